@@ -86,7 +86,7 @@ PETSC_INTERN PetscErrorCode ContactRenewNeighbours(Contact, PetscReal, PetscBool
 PETSC_INTERN void           ContactCopyRow(Contact, PetscInt, PetscBool, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTold(Contact);
-PETSC_INTERN PetscErrorCode ContactTakeLeave(Contact, const ContactPair *, const PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactTakeLeave(Contact, const ContactPair *, const PetscReal[], const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactTellStates(Contact, ContactPairState[]);
 PETSC_INTERN PetscErrorCode ContactTellState(Contact, PetscInt, ContactPairState *);
 PETSC_INTERN void           ContactGetTold(Contact, PetscInt, PetscInt *, PetscInt *);

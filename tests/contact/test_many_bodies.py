@@ -247,6 +247,74 @@ def test_pairs_that_come_and_go(kind, ranks, impakt):
     assert both[0] == pytest.approx(both[1], rel=1e-6)  # each contact counts once
 
 
+FORCES = {
+    "friction": "-contact_law coulomb -contact_friction 0.3",
+    "penalty": "-contact_type penalty",
+    "springs": "-contact_type penalty -contact_law coulomb -contact_friction 0.3",
+    "augmented": "-contact_type augmented_lagrangian",
+    "lagrange": "-contact_type lagrange -contact_law coulomb -contact_friction 0.3",
+}
+
+
+def moving(kind, cuts=False):
+    """The discs with forces of another kind; at ten times the step, which is cut in halves as bodies meet."""
+    words = cloud(15).replace("neo_hookean", "linear_elastic").replace("-time_end 0.045", "-time_end 0.03") + f" {FORCES[kind]}"
+    return words.replace("-time_step 3e-5", "-time_step 6e-4").replace("centraldifference", "alpha2") if cuts else words
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    ("kind", "cuts", "ranks"),
+    [("friction", False, 1), ("penalty", False, 1), ("springs", True, 1), ("augmented", False, 1), ("lagrange", True, 1), ("friction", True, 2)],
+)
+def test_pairs_that_come_and_go_with_other_forces(kind, cuts, ranks, impakt):
+    """Friction, whose forces are remembered from step to step, and springs: where pairs come and go all is as with all pairs."""
+    some, all_ = impakt(f"{moving(kind, cuts)} -contact_pairs auto", ranks), impakt(f"{moving(kind, cuts)} -contact_pairs {named(15)}", ranks)
+    assert not re.search(r"\d contact node", some.stdout)  # at the start none is near another
+    assert some.summary["contact"]["onsets"] == all_.summary["contact"]["onsets"] >= 3
+    assert (some.summary["step_control"]["step_cuts"] > 0) == cuts and some.summary["step_control"]["step_cuts"] == all_.summary["step_control"]["step_cuts"]
+    for figure in ("momentum", "potential"):
+        scale = max(np.abs(all_.history["body"][body][figure][()]).max() for body in all_.history["body"])
+        for body in all_.history["body"]:
+            a, b = (run.history["body"][body][figure][()] for run in (some, all_))
+            np.testing.assert_allclose(a, b, rtol=0, atol=1e-10 * scale, err_msg=f"{body} {figure}")  # measured: 2e-12
+    if "coulomb" in FORCES[kind]:
+        # pairs have gone before the end: what friction has taken there still counts, with one body each
+        losses = [sum(pair["friction_loss"][()] for pair in run.history["contact"].values()) for run in (some, all_)]
+        assert some.summary["contact"]["friction_loss"] > 1
+        np.testing.assert_allclose(losses[0], losses[1], rtol=0, atol=1e-9 * losses[1].max())
+        assert sum(pair["sliding"][()].sum() for pair in some.history["contact"].values()) == sum(pair["sliding"][()].sum() for pair in all_.history["contact"].values()) > 0
+    if "penalty" in FORCES[kind]:
+        stored = all_.history["penalty_energy"][()]
+        np.testing.assert_allclose(some.history["penalty_energy"][()], stored, rtol=0, atol=1e-9 * stored.max())
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(("kind", "cuts", "ranks"), [("friction", True, 3), ("penalty", False, 2), ("springs", True, 2), ("augmented", False, 2)])
+def test_restart_where_pairs_with_other_forces_come_and_go(kind, cuts, ranks, impakt):
+    """With the same bits, and on other ranks to round-off, which impacts make larger."""
+    words = f"{moving(kind, cuts)} -contact_pairs auto -checkpoint_interval {25 if cuts else 600}"
+    whole = impakt(f"{words} -checkpoint c.h5")
+    begin = 26 if cuts else 601
+    for each, close in ((1, 0), (ranks, 1e-10)):
+        rest = impakt(f"{words} -checkpoint d.h5 -restart {whole.folder / 'c.prev.h5'}", each)
+        assert whole.history["time"][begin] == rest.history["time"][0]
+        for group, figures in (("body", ("momentum", "kinetic", "potential")), ("contact", ("impulse", "force", "friction_loss"))):
+            for figure in figures:
+                if figure not in whole.history[group][next(iter(whole.history[group]))]:
+                    continue
+                scale = max(np.abs(item[figure][()]).max() for item in whole.history[group].values())
+                for name, item in whole.history[group].items():
+                    np.testing.assert_allclose(rest.history[group][name][figure][()], item[figure][begin:], rtol=0, atol=close * scale, err_msg=f"{name} {figure}")  # measured: 3e-12
+
+
+def test_friction_says_at_the_start_what_it_needs(impakt):
+    """Where no bodies are near yet, too."""
+    words = moving("friction") + " -contact_pairs auto"
+    for change, message in ((("-contact_friction 0.3", ""), "-contact_friction mu"), (("-time_step", "-d3_mass_redistribute false -time_step"), "massless contact nodes")):
+        assert message in impakt(words.replace(*change), expect_failure=True).stderr
+
+
 @pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
 def test_restart_where_pairs_come_and_go(ranks, impakt):
     """The checkpoint has the pairs that are near, and when they are looked for again."""
@@ -308,9 +376,10 @@ def grid(n):
     return " ".join(words)
 
 
-def test_rows_go_with_near_pairs(impakt):
+@pytest.mark.parametrize("forces", ["", *[pytest.param(FORCES[kind], marks=pytest.mark.long) for kind in ("friction", "penalty", "augmented")]], ids=["schwarz", "friction", "penalty", "augmented"])
+def test_rows_go_with_near_pairs(forces, impakt):
     """Not with the square of the number of bodies: 4 times as many discs have 4 times as many contact nodes, but for what is missing at the rim."""
-    counts = {n: contact_nodes(impakt(grid(n))) for n in (25, 100)}
+    counts = {n: contact_nodes(impakt(f"{grid(n)} {forces}")) for n in (25, 100)}
     assert counts[25] <= 25 * 6 * 16  # 2 to 4 neighbours, of which each has its rows once, and obstacles
     assert counts[100] / 100 <= 1.2 * counts[25] / 25
 

@@ -9,8 +9,8 @@
 static PetscErrorCode SetBodyForces(Contact contact, PetscInt b, Trace force)
 {
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+  for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
+    const ContactPair *pair = &contact->pairs[contact->body_rows[b].pairs[k]];
 
     for (PetscInt side = 0; side < 2; side++)
       if (pair->body[side] == b)

@@ -140,7 +140,9 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpEnergy(contact));
   PetscCall(ContactSetUpFriction(contact));
   PetscCall(ContactSetUpStabilization(contact));
-  if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
+  /* friction is set up even where no bodies are near yet, and says at once what it cannot do */
+  if (contact->rows.n_all || (contact->neighbours.come_and_go && contact->options.law == CONTACT_LAW_FRICTION))
+    PetscTryTypeMethod(contact, setup);
   for (PetscInt o = 0; o < contact->n_obstacles && contact->options.law != CONTACT_LAW_FRICTION; o++) {
     const char *name;
     PetscBool   moves;

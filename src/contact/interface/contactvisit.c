@@ -133,6 +133,9 @@ static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
   if (contact->friction.slip) {
     PetscCall(CheckpointVisitReals(checkpoint, "friction", contact->n_pairs, contact->friction.pair_loss));
     PetscCall(CheckpointVisitReals(checkpoint, "obstacle work", contact->n_pairs, contact->friction.pair_driven));
+    if (contact->neighbours.come_and_go)
+      PetscCall(CheckpointVisitReals(checkpoint, "friction of pairs that have gone", 2 * contact->neighbours.told.n,
+                                     contact->neighbours.told.gone_friction));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -47,10 +47,25 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the contact nodes of a body have mass */
+static PetscErrorCode BodyHasMass(Body body, PetscBool *has)
+{
+  PetscBool massless, without_inertia, rigid;
+
+  PetscFunctionBegin;
+  PetscCall(BodyIsRigid(body, &rigid));
+  PetscCall(BodyIsRedistributed(body, &massless));
+  PetscCall(BodyIsStatic(body, &without_inertia));
+  *has = (PetscBool)(!massless && !without_inertia && !rigid);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on their contact nodes. Those of a rigid
    body are no nodes that could move by themselves. */
 PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *has)
 {
+  PetscInt all = 0;
+
   PetscFunctionBegin;
   *has = PETSC_FALSE;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -58,15 +73,21 @@ PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *h
     PetscInt       with  = 0;
 
     for (PetscInt side = 0; side < sides; side++) {
-      PetscBool massless, without_inertia, rigid;
+      PetscBool mass = PETSC_FALSE;
 
-      PetscCall(BodyIsRigid(contact->bodies[contact->pairs[p].body[side]], &rigid));
-      PetscCall(BodyIsRedistributed(contact->bodies[contact->pairs[p].body[side]], &massless));
-      PetscCall(BodyIsStatic(contact->bodies[contact->pairs[p].body[side]], &without_inertia));
-      with += !massless && !without_inertia && !rigid;
+      PetscCall(BodyHasMass(contact->bodies[contact->pairs[p].body[side]], &mass));
+      with += mass;
     }
     *has = (PetscBool)(*has || (all_sides ? with == sides : with > 0));
   }
+  if (!contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) { /* any two of them may come near */
+    PetscBool mass = PETSC_FALSE;
+
+    PetscCall(BodyHasMass(contact->bodies[b], &mass));
+    all += mass;
+  }
+  if (all > (all_sides && !contact->n_obstacles ? 1 : 0)) *has = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -22,7 +22,8 @@ PetscErrorCode ContactSetUpTold(Contact contact)
 
   PetscFunctionBegin;
   told->n = n * (1 + contact->n_obstacles);
-  PetscCall(PetscCalloc3(told->n, &told->names, CONTACT_IMPULSES * told->n, &told->gone, CONTACT_IMPULSES * told->n, &told->sums));
+  PetscCall(PetscCalloc4(told->n, &told->names, CONTACT_IMPULSES * told->n, &told->gone, CONTACT_IMPULSES * told->n, &told->sums,
+                         2 * told->n, &told->gone_friction));
   for (PetscInt b = 0; b < n; b++) {
     const char *body = ((PetscObject)contact->bodies[b])->name;
     char        name[256];
@@ -56,7 +57,7 @@ PetscErrorCode ContactDestroyTold(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < told->n; p++) PetscCall(PetscFree(told->names[p]));
-  PetscCall(PetscFree3(told->names, told->gone, told->sums));
+  PetscCall(PetscFree4(told->names, told->gone, told->sums, told->gone_friction));
   PetscCall(PetscFree(told->states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -70,16 +71,17 @@ static void AddImpulses(PetscReal sums[], PetscInt sign, const PetscReal impulse
   sums[8] += impulses[8];
 }
 
-/* A pair goes: what it has done stays with its bodies */
-PetscErrorCode ContactTakeLeave(Contact contact, const ContactPair *pair, const PetscReal impulses[])
+/* A pair goes: what it has done stays with its bodies. `friction`: what that has taken, and the work of an obstacle, of all ranks [J] */
+PetscErrorCode ContactTakeLeave(Contact contact, const ContactPair *pair, const PetscReal impulses[], const PetscReal friction[])
 {
-  PetscReal *gone = contact->neighbours.told.gone;
+  PetscReal     *gone  = contact->neighbours.told.gone;
+  const PetscInt place = pair->obstacle ? ObstaclePlace(contact, pair->body[0], ContactPairPartner(contact, pair) - contact->n_bodies)
+                                        : pair->body[0];
 
   PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2; k++) contact->neighbours.told.gone_friction[2 * place + k] += friction[k];
   if (pair->obstacle) {
-    const PetscInt o = ContactPairPartner(contact, pair) - contact->n_bodies;
-
-    AddImpulses(gone + CONTACT_IMPULSES * ObstaclePlace(contact, pair->body[0], o), 1, impulses);
+    AddImpulses(gone + CONTACT_IMPULSES * place, 1, impulses);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt side = 0; side < 2; side++) AddImpulses(gone + CONTACT_IMPULSES * pair->body[side], side ? -1 : 1, impulses);
@@ -103,12 +105,19 @@ static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairStat
   sum->area += state->area;
   sum->normal_impulse += state->normal_impulse;
   sum->beyond_impulse += state->beyond_impulse;
+  sum->sliding += state->sliding;
+  sum->friction_loss += state->friction_loss;
+  sum->obstacle_work += state->obstacle_work;
 }
 
 /* What pairs that have gone have done */
-static void BeginState(const PetscReal sums[], ContactPairState *state)
+static void BeginState(const PetscReal sums[], const PetscReal friction[], ContactPairState *state)
 {
-  *state = (ContactPairState){.gap = CONTACT_NO_GAP, .normal_impulse = sums[6], .beyond_impulse = sums[8]};
+  *state = (ContactPairState){.gap            = CONTACT_NO_GAP,
+                              .normal_impulse = sums[6],
+                              .beyond_impulse = sums[8],
+                              .friction_loss  = friction[0],
+                              .obstacle_work  = friction[1]};
   for (PetscInt d = 0; d < 3; d++) state->impulse[d] = sums[d];
 }
 
@@ -128,7 +137,7 @@ PetscErrorCode ContactTellStates(Contact contact, ContactPairState states[])
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, told->sums, (PetscMPIInt)(CONTACT_IMPULSES * told->n), MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
-  for (PetscInt p = 0; p < told->n; p++) BeginState(told->sums + CONTACT_IMPULSES * p, &states[p]);
+  for (PetscInt p = 0; p < told->n; p++) BeginState(told->sums + CONTACT_IMPULSES * p, told->gone_friction + 2 * p, &states[p]);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
@@ -149,7 +158,7 @@ PetscErrorCode ContactTellState(Contact contact, PetscInt p, ContactPairState *s
   ContactGetTold(contact, p, &body, &obstacle);
   PetscCallMPI(MPIU_Allreduce(contact->neighbours.told.gone + CONTACT_IMPULSES * p, sums, CONTACT_IMPULSES, MPIU_REAL, MPIU_SUM,
                               PetscObjectComm((PetscObject)contact)));
-  BeginState(sums, state);
+  BeginState(sums, contact->neighbours.told.gone_friction + 2 * p, state);
   for (PetscInt q = 0; q < contact->n_pairs; q++) {
     const ContactPair *pair = &contact->pairs[q];
     const PetscInt     sign = pair->body[0] == body ? 1 : pair->body[1] == body ? -1 : 0;

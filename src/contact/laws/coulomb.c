@@ -14,6 +14,13 @@ static PetscErrorCode SetUp(Contact contact, void *data)
 
   PetscFunctionBegin;
   (void)data;
+  if (contact->neighbours.come_and_go) { /* pairs that come later have the same coefficient */
+    PetscCheck(contact->options.friction >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_law coulomb needs a coefficient of friction: set -contact_friction mu for all pairs");
+    PetscCheck(kinetic <= contact->options.friction, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_friction_kinetic %g is above the coefficient %g with which nodes stick", (double)kinetic,
+               (double)contact->options.friction);
+  }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 

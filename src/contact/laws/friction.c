@@ -38,6 +38,7 @@ PetscErrorCode ContactGetFrictionLoss(Contact contact, PetscReal *loss)
   PetscAssertPointer(loss, 2);
   *loss = 0;
   for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_loss; p++) *loss += contact->friction.pair_loss[p];
+  for (PetscInt p = 0; p < contact->neighbours.told.n; p++) *loss += contact->neighbours.told.gone_friction[2 * p];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,6 +64,7 @@ PetscErrorCode ContactGetObstacleWork(Contact contact, PetscReal *work)
   PetscAssertPointer(work, 2);
   *work = 0;
   for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_driven; p++) *work += contact->friction.pair_driven[p];
+  for (PetscInt p = 0; p < contact->neighbours.told.n; p++) *work += contact->neighbours.told.gone_friction[2 * p + 1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,14 +77,25 @@ PetscErrorCode ContactRefuseFriction(Contact contact, const char why[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for what is kept of rows and pairs */
+static PetscErrorCode DestroyRows(ContactFriction *friction)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree7(friction->slip, friction->drive, friction->step_loss, friction->loss, friction->distance, friction->speed,
+                       friction->slides));
+  PetscCall(PetscFree4(friction->pair_step, friction->pair_loss, friction->pair_work, friction->pair_driven));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for what is kept of the rows and pairs that there are now */
 PetscErrorCode ContactSetUpFriction(Contact contact)
 {
   ContactFriction *friction = &contact->friction;
   const PetscInt   n        = contact->rows.n;
 
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_FRICTION || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->options.law != CONTACT_LAW_FRICTION || (!contact->n_pairs && !contact->neighbours.come_and_go))
+    PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DestroyRows(friction));
   PetscCall(PetscCalloc7(PetscMax(n, 1), &friction->slip, n, &friction->drive, n, &friction->step_loss, n, &friction->loss, n,
                          &friction->distance, n, &friction->speed, n, &friction->slides));
   PetscCall(PetscCalloc4(contact->n_pairs, &friction->pair_step, contact->n_pairs, &friction->pair_loss, contact->n_pairs,
@@ -92,13 +105,9 @@ PetscErrorCode ContactSetUpFriction(Contact contact)
 
 PetscErrorCode ContactDestroyFriction(Contact contact)
 {
-  ContactFriction *friction = &contact->friction;
-
   PetscFunctionBegin;
   PetscCall(ContactDestroyFrictionLaw(contact));
-  PetscCall(PetscFree7(friction->slip, friction->drive, friction->step_loss, friction->loss, friction->distance, friction->speed,
-                       friction->slides));
-  PetscCall(PetscFree4(friction->pair_step, friction->pair_loss, friction->pair_work, friction->pair_driven));
+  PetscCall(DestroyRows(&contact->friction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -244,7 +244,19 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(Contact contact)
+/* Some rows have new entries */
+static PetscErrorCode RowsChanged(Contact contact)
+{
+  FrictionStep *step = (FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) step->compliance[i] = -1;
+  PetscCall(FrictionSetUpSprings(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All that has to do with the rows there are */
+static PetscErrorCode Reset(Contact contact)
 {
   FrictionStep *step = (FrictionStep *)contact->data;
 
@@ -255,6 +267,35 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(FrictionProblemDestroy(&step->problem));
   PetscCall(FrictionDestroyProducts(contact));
   PetscCall(PetscFree5(step->marks, step->mine, step->flexibility, step->multiplier, step->change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same for the rows that there are now */
+static PetscErrorCode SetUp(Contact contact)
+{
+  const InterfaceSettings settings = {.dense_limit  = contact->options.friction_dense,
+                                      .few          = contact->options.friction_dense,
+                                      .products     = PETSC_TRUE,
+                                      .precondition = PETSC_TRUE};
+  FrictionStep           *step     = (FrictionStep *)contact->data;
+
+  PetscFunctionBegin;
+  if (contact->friction.law.setup) PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
+  step->problem = (FrictionProblem){.dim = contact->dim, .still = step->atol};
+  PetscCall(ForcesCreate(contact, &step->forces));
+  PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
+  PetscCall(FrictionSolverCreate(&step->solver));
+  PetscCall(PetscCalloc5(contact->rows.n, &step->marks, contact->rows.n, &step->mine, contact->rows.n, &step->flexibility, contact->rows.n,
+                         &step->multiplier, contact->rows.n, &step->change));
+  PetscCall(FrictionCreateProducts(contact));
+  PetscCall(RowsChanged(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(Reset(contact));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -281,26 +322,11 @@ static PetscErrorCode Check(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Some rows have new entries */
-static PetscErrorCode RowsChanged(Contact contact)
-{
-  FrictionStep *step = (FrictionStep *)contact->data;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) step->compliance[i] = -1;
-  PetscCall(FrictionSetUpSprings(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Makes controller steps with friction: takes the place of a method that would close gaps by the same forces without it, or hold them by
    springs (`NULL`: there are none) */
 PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprings *springs)
 {
-  const InterfaceSettings      settings = {.dense_limit  = contact->options.friction_dense,
-                                           .few          = contact->options.friction_dense,
-                                           .products     = PETSC_TRUE,
-                                           .precondition = PETSC_TRUE};
-  const ContactFrictionSprings given    = springs ? *springs : (ContactFrictionSprings){0};
+  const ContactFrictionSprings given = springs ? *springs : (ContactFrictionSprings){0};
   FrictionStep                *step;
 
   PetscFunctionBegin;
@@ -308,27 +334,20 @@ PetscErrorCode ContactStepByFriction(Contact contact, const ContactFrictionSprin
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
   contact->data = NULL;
   PetscCall(Check(contact));
-  if (contact->friction.law.setup) PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(PetscNew(&step));
   contact->friction.steps   = PETSC_TRUE;
   contact->data             = step;
   contact->ops->step        = Step;
   contact->ops->stored      = springs && !given.max_it ? FrictionStoredEnergy : ContactStoresNothing;
   contact->ops->view        = View;
+  contact->ops->setup       = SetUp;
+  contact->ops->reset       = Reset;
   contact->ops->destroy     = Destroy;
   contact->ops->visit       = FrictionVisit;
   contact->ops->rowschanged = RowsChanged;
   step->atol                = CONTACT_POSITION_TOLERANCE * contact->scale.length;
-  step->problem.dim         = contact->dim;
-  step->problem.still       = step->atol;
-  PetscCall(ForcesCreate(contact, &step->forces));
-  PetscCall(InterfaceOperatorCreate(contact, &settings, &step->S));
-  PetscCall(FrictionSolverCreate(&step->solver));
-  PetscCall(PetscCalloc5(contact->rows.n, &step->marks, contact->rows.n, &step->mine, contact->rows.n, &step->flexibility, contact->rows.n,
-                         &step->multiplier, contact->rows.n, &step->change));
-  step->springs     = given;
-  step->has_springs = (PetscBool)(springs != NULL);
-  PetscCall(FrictionCreateProducts(contact));
-  PetscCall(RowsChanged(contact));
+  step->springs             = given;
+  step->has_springs         = (PetscBool)(springs != NULL);
+  PetscCall(SetUp(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,14 +15,15 @@ typedef struct {
   PetscReal   *rows;      /* per row: N_ROW */
   PetscReal   *impulses;  /* per pair */
   PetscReal   *pair_sums; /* per pair: 2 */
+  PetscReal   *friction;  /* per pair: what it has taken, and the work of an obstacle [J] */
   PetscBool   *goes_on;   /* per pair */
 } Kept;
 
 static PetscErrorCode KeepRows(Contact contact, Kept *kept)
 {
   PetscFunctionBegin;
-  PetscCall(PetscCalloc4(N_ROW * contact->rows.n, &kept->rows, CONTACT_IMPULSES * contact->n_pairs, &kept->impulses, 2 * contact->n_pairs,
-                         &kept->pair_sums, contact->n_pairs, &kept->goes_on));
+  PetscCall(PetscCalloc5(N_ROW * contact->rows.n, &kept->rows, CONTACT_IMPULSES * contact->n_pairs, &kept->impulses, 2 * contact->n_pairs,
+                         &kept->pair_sums, 2 * contact->n_pairs, &kept->friction, contact->n_pairs, &kept->goes_on));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     ContactCopyRow(contact, i, PETSC_FALSE, kept->rows + N_ROW * i);
     kept->rows[N_ROW * i + ROW_DOF] = (PetscReal)contact->rows.dof[i];
@@ -32,6 +33,10 @@ static PetscErrorCode KeepRows(Contact contact, Kept *kept)
   if (contact->n_pairs) PetscCall(PetscArraycpy(kept->impulses, contact->resultants.impulse, CONTACT_IMPULSES * contact->n_pairs));
   if (contact->n_pairs && contact->energy.pair_sums)
     PetscCall(PetscArraycpy(kept->pair_sums, contact->energy.pair_sums, 2 * contact->n_pairs));
+  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_loss; p++) {
+    kept->friction[2 * p]     = contact->friction.pair_loss[p];
+    kept->friction[2 * p + 1] = contact->friction.pair_driven[p];
+  }
   kept->n_pairs      = contact->n_pairs;
   kept->pairs        = contact->pairs;
   contact->pairs     = NULL;
@@ -81,7 +86,7 @@ static PetscErrorCode TakePairs(Contact contact, PetscInt n, const PetscInt list
 
     if (kept->goes_on[p]) continue;
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) affected[pair->body[side]] = PETSC_TRUE;
-    PetscCall(ContactTakeLeave(contact, pair, kept->impulses + CONTACT_IMPULSES * p));
+    PetscCall(ContactTakeLeave(contact, pair, kept->impulses + CONTACT_IMPULSES * p, kept->friction + 2 * p));
     PetscCall(ContactDestroyPair(pair));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -108,6 +113,9 @@ static PetscErrorCode PutBack(Contact contact, const Kept *kept, const PetscInt 
     PetscCall(
         PetscArraycpy(contact->resultants.impulse + CONTACT_IMPULSES * p, kept->impulses + CONTACT_IMPULSES * was[p], CONTACT_IMPULSES));
     PetscCall(PetscArraycpy(contact->energy.pair_sums + 2 * p, kept->pair_sums + 2 * was[p], 2));
+    if (!contact->friction.pair_loss) continue;
+    contact->friction.pair_loss[p]   = kept->friction[2 * was[p]];
+    contact->friction.pair_driven[p] = kept->friction[2 * was[p] + 1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -218,6 +226,7 @@ PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt l
   PetscCall(LayOut(contact));
   PetscCall(ContactSetUpPairResultants(contact));
   PetscCall(ContactSetUpRowEnergy(contact));
+  PetscCall(ContactSetUpFriction(contact));
   PetscCall(PutBack(contact, &kept, old_begin, was));
   PetscCall(ContactFindSharedNodes(contact));
   LeaveOutAgain(contact, &kept, old_begin, was);
@@ -225,7 +234,7 @@ PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt l
   PetscCall(ContactSetUpObstacleTraces(contact));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
   contact->neighbours.layouts++;
-  PetscCall(PetscFree4(kept.rows, kept.impulses, kept.pair_sums, kept.goes_on));
+  PetscCall(PetscFree5(kept.rows, kept.impulses, kept.pair_sums, kept.friction, kept.goes_on));
   PetscCall(PetscFree(kept.pairs));
   PetscCall(PetscFree4(was, old_begin, old_shift, affected));
   PetscFunctionReturn(PETSC_SUCCESS);

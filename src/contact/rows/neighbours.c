@@ -29,8 +29,9 @@ PetscErrorCode ContactHasMany(Contact contact, PetscBool *many)
 PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
 {
   PetscFunctionBegin;
-  *suits = (PetscBool)(!contact->options.facing && contact->options.law == CONTACT_LAW_FRICTIONLESS && !contact->options.balance &&
-                       contact->options.row_side == CONTACT_ROW_SIDE_FIRST &&
+  *suits = (PetscBool)(!contact->options.facing &&
+                       (contact->options.law == CONTACT_LAW_FRICTIONLESS || contact->options.law == CONTACT_LAW_FRICTION) &&
+                       !contact->options.balance && contact->options.row_side == CONTACT_ROW_SIDE_FIRST &&
                        contact->options.stabilization == CONTACT_STABILIZATION_NONE && contact->ops->mayreplacerows &&
                        (*contact->ops->mayreplacerows)(contact));
   for (PetscInt b = 0; b < contact->n_bodies && *suits; b++) {

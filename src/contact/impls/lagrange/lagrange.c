@@ -48,6 +48,13 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Steps with friction may, which has what it needs for that. Without it forces of all rows there are make up one dense matrix, and how many
+   rows it may have is known at the start. */
+static PetscBool MayReplaceRows(Contact contact)
+{
+  return (PetscBool)(contact->options.law == CONTACT_LAW_FRICTION);
+}
+
 /*MC
    CONTACT_LAGRANGE - Lagrange multipliers: contact forces that close the gap exactly
 
@@ -89,6 +96,7 @@ M*/
 PetscErrorCode ContactCreate_Lagrange(Contact contact)
 {
   PetscFunctionBegin;
-  contact->ops->setup = ContactSetUp_Lagrange;
+  contact->ops->setup          = ContactSetUp_Lagrange;
+  contact->ops->mayreplacerows = MayReplaceRows;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

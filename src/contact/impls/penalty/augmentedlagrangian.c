@@ -137,6 +137,8 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
   contact->ops->steplevel         = PenaltySetStepLevel;
   contact->ops->view              = ContactView_AugmentedLagrangian;
   contact->ops->visit             = PenaltyVisit;
+  contact->ops->mayreplacerows    = PenaltyMayReplaceRows;
+  contact->ops->reset             = PenaltyReset;
   contact->ops->destroy           = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

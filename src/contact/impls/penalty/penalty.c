@@ -14,6 +14,7 @@
 #include "penaltyimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/petsccompat.h>
+#include <stddef.h>
 
 /* Relative tolerance on contact forces, for which the method itself leaves 1e-3 and more of penetration */
 #define FORCE_RTOL 1e-9
@@ -388,7 +389,15 @@ PetscErrorCode PenaltyVisit(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode PenaltyDestroy(Contact contact)
+/* Springs and dampers follow from the rows as they are, and forces are those of contact itself */
+PetscBool PenaltyMayReplaceRows(Contact contact)
+{
+  (void)contact;
+  return PETSC_TRUE;
+}
+
+/* All but the options */
+PetscErrorCode PenaltyReset(Contact contact)
 {
   Penalty *penalty = (Penalty *)contact->data;
 
@@ -399,6 +408,14 @@ PetscErrorCode PenaltyDestroy(Contact contact)
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) PetscCall(ForceProblemDestroy(&penalty->problems[k]));
   PetscCall(PetscFree(penalty->start));
   PetscCall(PetscFree6(penalty->multiplier, penalty->pushing, penalty->spring, penalty->damper, penalty->stiffness, penalty->work));
+  PetscCall(PetscMemzero((char *)penalty + offsetof(Penalty, outer), sizeof(*penalty) - offsetof(Penalty, outer)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode PenaltyDestroy(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(PenaltyReset(contact));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -443,6 +460,8 @@ PetscErrorCode ContactCreate_Penalty(Contact contact)
   contact->ops->steplevel      = PenaltySetStepLevel;
   contact->ops->view           = ContactView_Penalty;
   contact->ops->visit          = PenaltyVisit;
+  contact->ops->mayreplacerows = PenaltyMayReplaceRows;
+  contact->ops->reset          = PenaltyReset;
   contact->ops->destroy        = PenaltyDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,12 +6,16 @@
 #include <contact/compliance/outersolver.h>
 
 typedef struct {
+  /* options */
+  PetscReal penalty;                /* N/m for each unit of area [N/m in one dimension]; 0: from materials and elements */
+  PetscReal scale;                  /* of the latter; 0: by the mass of the contact nodes */
+  PetscReal damping;                /* N s/m for each unit of area */
+  PetscReal augmentation_tolerance; /* of the augmented Lagrangian [m] */
+  PetscInt  augmentation_max_it;    /* 0: the penalty method */
+  /* all else; PenaltyReset() clears what follows */
   OuterSolver   outer;
   PetscBool     may_damp;   /* Newton's method, whose line search is not the user's */
   PetscBool     springs;    /* there are any */
-  PetscReal     penalty;    /* N/m for each unit of area [N/m in one dimension]; 0: from materials and elements */
-  PetscReal     scale;      /* of the latter; 0: by the mass of the contact nodes */
-  PetscReal     damping;    /* N s/m for each unit of area */
   PetscReal    *spring;     /* per row of this rank [N/m] */
   PetscReal    *damper;     /* per row of this rank [N s/m] */
   PetscReal    *stiffness;  /* of both over a controller step, per row of this rank [N/m] */
@@ -26,10 +30,8 @@ typedef struct {
   PetscBool    *pushing;                        /* rows with a force that answers to their gap */
   PetscReal     residual, magnitude, round_off; /* [N] */
   PetscScalar **start;                          /* per body: displacement of all rows at the start of the step, the body's own */
-  /* augmented Lagrangian */
-  PetscReal augmentation_tolerance; /* [m] */
-  PetscInt  augmentation_max_it;
-  PetscBool again; /* a round that is to make gaps smaller than the last has: forces that are as they were will not do */
+  PetscBool     again; /* a round of the augmented Lagrangian that is to make gaps smaller than the last has: forces that are as they were
+                          will not do */
 } Penalty;
 
 PETSC_INTERN PetscErrorCode PenaltyReadParameter(Contact);
@@ -42,5 +44,7 @@ PETSC_INTERN PetscErrorCode PenaltySolve(Contact);
 PETSC_INTERN PetscErrorCode PenaltyStepBack(Contact);
 PETSC_INTERN PetscErrorCode PenaltySetStepLevel(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscErrorCode PenaltyRowsChanged(Contact);
+PETSC_INTERN PetscBool      PenaltyMayReplaceRows(Contact);
+PETSC_INTERN PetscErrorCode PenaltyReset(Contact);
 PETSC_INTERN PetscErrorCode PenaltyDestroy(Contact);
 PETSC_INTERN PetscErrorCode PenaltyVisit(Contact, Checkpoint);
