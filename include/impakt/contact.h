@@ -376,6 +376,7 @@ PETSC_EXTERN PetscErrorCode ContactGetPairStates(Contact, ContactPairState[]);
 PETSC_EXTERN PetscErrorCode ContactGetPenaltyEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);
 PETSC_EXTERN PetscErrorCode ContactGetBodyTrace(Contact, PetscInt, PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactGetBodyTraces(Contact, PetscReal[], PetscReal[]);
 
 PETSC_EXTERN PetscErrorCode ContactFieldsCreate(Contact, ContactFields *);
 PETSC_EXTERN PetscErrorCode ContactFieldsCompute(ContactFields, PetscInt, PetscReal[]);

@@ -64,6 +64,7 @@ PETSC_EXTERN PetscErrorCode TransferFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
 PETSC_EXTERN PetscErrorCode TransferSetMoved(Transfer, PetscBool);
+PETSC_EXTERN PetscErrorCode TransferSetOwner(Transfer, PetscMPIInt);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscReal, PetscReal, PetscBool *);

@@ -160,7 +160,7 @@ PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
 PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
-PETSC_INTERN PetscErrorCode ContactSetBodyConditions(Contact, ContactConditions, PetscInt);
+PETSC_INTERN PetscErrorCode ContactSetSomeConditions(Contact, ContactConditions, const PetscBool[]);
 PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact, PetscBool (*)(Contact, PetscInt));
 PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);

@@ -1,5 +1,6 @@
 /* The class and its time loop. */
 #include "controllerimpl.h"
+#include <impakt/private/bodyrows.h>
 #include <sys/resource.h>
 #include <sys/stages.h>
 
@@ -72,7 +73,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
   PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n,
                          &controller->contact_velocities, n_pairs, &controller->pair_states));
-  PetscCall(PetscCalloc2(n, &controller->guard.start, n, &controller->energies));
+  PetscCall(PetscCalloc3(n, &controller->guard.start, n, &controller->energies, BODY_MEASURE_SUMS * n, &controller->measure_sums));
   for (PetscInt p = 0; p < n_pairs; p++) {
     Body first, second;
 
@@ -232,7 +233,7 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   PetscCall(ContactDestroy(&c->contact));
   for (PetscInt b = 0; b < c->n_bodies; b++) PetscCall(BodyDestroy(&c->bodies[b]));
   PetscCall(PetscFree(c->bodies));
-  PetscCall(PetscFree2(c->guard.start, c->energies));
+  PetscCall(PetscFree3(c->guard.start, c->energies, c->measure_sums));
   PetscCall(PetscFree2(c->supports, c->reactions));
   PetscCall(PetscFree2(c->probes, c->probe_values));
   PetscCall(PetscFree5(c->measures, c->has_obstacle, c->contact_positions, c->contact_velocities, c->pair_states));

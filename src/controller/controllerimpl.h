@@ -43,6 +43,7 @@ struct _p_Controller {
   void                  *after_step_ctx;
   /* what they are shown, see ControllerFrame */
   BodyMeasures      *measures;
+  PetscReal         *measure_sums; /* work space: `BODY_MEASURE_SUMS` per body */
   PetscReal         *energies;     /* per body: what contact alone is to change [J] */
   PetscBool         *has_obstacle; /* per body: it may touch an obstacle, whose force is one from outside */
   PetscReal         *contact_positions, *contact_velocities;
@@ -69,6 +70,7 @@ struct _p_Controller {
 #define ENERGY_GUARD 0.05 /* by default */
 
 /* controller.c calls the others; terminal.c calls monitors.c, which calls guard.c; controllerset.c calls guard.c */
+PETSC_INTERN PetscErrorCode ControllerPlaceBodies(Controller, PetscInt);
 PETSC_INTERN PetscErrorCode ControllerReadEnergyGuard(Controller);
 PETSC_INTERN PetscErrorCode ControllerGuardEnergy(Controller, const ControllerFrame *);
 PETSC_INTERN PetscErrorCode ControllerNotify(Controller, PetscInt);

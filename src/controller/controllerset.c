@@ -108,6 +108,7 @@ static PetscErrorCode ReadBodies(Controller controller)
   }
   PetscCall(NamesDestroy(n, &names));
   PetscCall(error);
+  PetscCall(ControllerPlaceBodies(controller, first));
   for (PetscInt b = first; b < controller->n_bodies; b++) {
     StatusLineTell("mesh of body %s", ((PetscObject)controller->bodies[b])->name);
     PetscCall(BodySetFromOptions(controller->bodies[b]));

@@ -1,5 +1,6 @@
 /* The observers of a run: who they are, and what they are told after each accepted controller step. */
 #include "controllerimpl.h"
+#include <impakt/private/bodyrows.h>
 #include <sys/stages.h>
 
 /*@C
@@ -57,11 +58,10 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   /* not summed up, so that round-off does not pile up over many steps */
   frame.time = controller->time_start + step * controller->time_step;
   PetscCall(ContactGetNumPairs(controller->contact, &frame.n_pairs));
-  for (PetscInt b = 0; b < controller->n_bodies; b++) {
-    PetscCall(BodyGetMeasures(controller->bodies[b], &controller->measures[b]));
+  PetscCall(BodyGetAllMeasures(controller->n_bodies, controller->bodies, controller->measure_sums, controller->measures));
+  for (PetscInt b = 0; b < controller->n_bodies; b++)
     if (controller->has_obstacle[b]) controller->measures[b].loaded = PETSC_TRUE;
-    PetscCall(ContactGetBodyTrace(controller->contact, b, controller->contact_positions + 3 * b, controller->contact_velocities + 3 * b));
-  }
+  PetscCall(ContactGetBodyTraces(controller->contact, controller->contact_positions, controller->contact_velocities));
   PetscCall(ControllerNoteEnergies(controller));
   PetscCall(ContactGetPairStates(controller->contact, controller->pair_states));
   PetscCall(ControllerFindReactions(controller));

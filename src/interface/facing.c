@@ -43,10 +43,9 @@ static void Centroid(const SurfaceData *data, PetscInt f, PetscReal x[])
   }
 }
 
-static PetscErrorCode GetDirections(Surface surface, Directions *directions)
+static PetscErrorCode GetDirections(MPI_Comm comm, Surface surface, Directions *directions)
 {
   const SurfaceData *data = &surface->data;
-  MPI_Comm           comm = PetscObjectComm((PetscObject)surface->dm);
   PetscReal          box[2][3];
 
   PetscFunctionBegin;
@@ -118,7 +117,7 @@ static PetscErrorCode SeesObstacle(Obstacle obstacle, const PetscReal x[], const
 }
 
 /* How far the whole body of a surface reaches along each direction n: the largest n . x of all its nodes, displaced by u [m] */
-static PetscErrorCode GetSupport(Surface surface, Vec u, PetscInt n, const PetscReal directions[][3], PetscReal support[])
+static PetscErrorCode GetSupport(MPI_Comm comm, Surface surface, Vec u, PetscInt n, const PetscReal directions[][3], PetscReal support[])
 {
   const PetscInt     dim = surface->data.dim;
   PetscSection       coordinate_section, section;
@@ -131,7 +130,8 @@ static PetscErrorCode GetSupport(Surface surface, Vec u, PetscInt n, const Petsc
   PetscCall(DMGetCoordinatesLocal(surface->dm, &coordinates));
   PetscCall(DMGetLocalSection(surface->dm, &section));
   PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
-  if (u) {
+  if (u && !surface->divided) PetscCall(VecGetArrayRead(u, &values)); /* its nodes are in the order of the section */
+  else if (u) {
     PetscCall(DMGetLocalVector(surface->dm, &local));
     PetscCall(DMGlobalToLocalBegin(surface->dm, u, INSERT_VALUES, local));
     PetscCall(DMGlobalToLocalEnd(surface->dm, u, INSERT_VALUES, local));
@@ -149,11 +149,12 @@ static PetscErrorCode GetSupport(Surface surface, Vec u, PetscInt n, const Petsc
     for (PetscInt i = 0; i < n; i++) support[i] = PetscMax(support[i], Dot(position, directions[i]));
   }
   PetscCall(VecRestoreArrayRead(coordinates, &x));
-  if (u) {
+  if (u && !surface->divided) PetscCall(VecRestoreArrayRead(u, &values));
+  else if (u) {
     PetscCall(VecRestoreArrayRead(local, &values));
     PetscCall(DMRestoreLocalVector(surface->dm, &local));
   }
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, support, (PetscMPIInt)n, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)surface->dm)));
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, support, (PetscMPIInt)n, MPIU_REAL, MPIU_MAX, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,7 +171,7 @@ static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, P
 
 /* An upper bound of the depth by which the convex hulls of two bodies overlap [m]: the least of the depths along the mean normals of the
    groups and along the axes. If the depth along any direction is negative, the bodies are apart (theorem of separating axes). */
-static PetscErrorCode ComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b, PetscReal *overlap)
+static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b, PetscReal *overlap)
 {
   PetscReal *support[2];
   PetscReal(*list)[3];
@@ -182,10 +183,10 @@ static PetscErrorCode ComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Dir
     for (PetscInt d = 0; d < 3; d++) list[n][d] = d == side / 2 ? (side % 2 ? 1 : -1) : 0;
   AddDirections(of_a, 1, &n, list);
   AddDirections(of_b, -1, &n, list);
-  PetscCall(GetSupport(a, u_a, n, (const PetscReal(*)[3])list, support[0]));
+  PetscCall(GetSupport(comm, a, u_a, n, (const PetscReal(*)[3])list, support[0]));
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt d = 0; d < 3; d++) list[i][d] = -list[i][d];
-  PetscCall(GetSupport(b, u_b, n, (const PetscReal(*)[3])list, support[1]));
+  PetscCall(GetSupport(comm, b, u_b, n, (const PetscReal(*)[3])list, support[1]));
   *overlap = PETSC_MAX_REAL;
   for (PetscInt i = 0; i < n; i++) *overlap = PetscMin(*overlap, support[0][i] + support[1][i]);
   *overlap = PetscMax(*overlap, 0) * (1 + OVERLAP_MARGIN) + OVERLAP_FLOOR * PetscMax(of_a->extent, of_b->extent);
@@ -193,16 +194,16 @@ static PetscErrorCode ComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, Dir
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An upper bound of the depth by which two bodies overlap under displacements u [m] */
-PetscErrorCode SurfaceComputeOverlap(Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap)
+/* An upper bound of the depth by which two bodies overlap under displacements u, collective on a communicator that has all of both [m] */
+PetscErrorCode SurfaceComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap)
 {
   Directions *directions;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2, &directions));
-  PetscCall(GetDirections(a, &directions[0]));
-  PetscCall(GetDirections(b, &directions[1]));
-  PetscCall(ComputeOverlap(a, u_a, b, u_b, &directions[0], &directions[1], overlap));
+  PetscCall(GetDirections(comm, a, &directions[0]));
+  PetscCall(GetDirections(comm, b, &directions[1]));
+  PetscCall(ComputeOverlap(comm, a, u_a, b, u_b, &directions[0], &directions[1], overlap));
   PetscCall(PetscFree(directions));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -246,8 +247,8 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
     PetscCheck(a->data.dim == b->data.dim, PetscObjectComm((PetscObject)a->dm), PETSC_ERR_USER_INPUT,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", a->data.dim, b->data.dim);
     PetscCall(PetscMalloc1(2, &directions));
-    for (PetscInt side = 0; side < 2; side++) PetscCall(GetDirections(surfaces[side], &directions[side]));
-    PetscCall(ComputeOverlap(a, NULL, b, NULL, &directions[0], &directions[1], &depth));
+    for (PetscInt side = 0; side < 2; side++) PetscCall(GetDirections(PetscObjectComm((PetscObject)surfaces[side]->dm), surfaces[side], &directions[side]));
+    PetscCall(ComputeOverlap(PetscObjectComm((PetscObject)a->dm), a, NULL, b, NULL, &directions[0], &directions[1], &depth));
   }
   for (PetscInt side = 0; side < 2; side++) {
     if (!surfaces[side] || !wanted[side]) continue;

@@ -237,6 +237,8 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
              "Only rows between two surfaces in two or three dimensions follow, after TransferUpdate()");
   PetscCheck(step > 0 && last > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The steps %g s and %g s must be positive", (double)step,
              (double)last);
+  *any = PETSC_FALSE;
+  if (transfer->idle) PetscFunctionReturn(PETSC_SUCCESS);
   follow->scale = follow->step > 0 ? step / follow->step : 1;
   PetscCall(NoteMotion(transfer));
   PetscCall(MarkFollowers(transfer, touches, reach, any));

@@ -16,6 +16,7 @@ struct _p_Surface {
   PetscReal   *signs;       /* per face, in one dimension: direction of its outward normal, 1 or -1 */
   PetscInt    *owner_index; /* per node: its number on the rank that owns it */
   PetscMPIInt *owner_rank;
+  PetscBool    divided;      /* some rank has nodes of the mesh that another one owns */
   PetscBool    axisymmetric; /* areas are those of rings, see SurfaceSetAxisymmetric() */
   PetscReal    on_axis;      /* nodes with a smaller first coordinate lie on the axis [m] */
   PetscBool    round;        /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
@@ -116,7 +117,9 @@ typedef struct {
 
 struct _p_Transfer {
   PETSCHEADER(int);
-  MPI_Comm       comm;
+  MPI_Comm       comm;               /* of what is found of both surfaces: one rank where that has all of both */
+  PetscMPIInt    owner;              /* that rank, see TransferSetOwner(); PETSC_DECIDE: there may be several */
+  PetscBool      idle;               /* it is another one than this, which has no rows */
   Surface        dirichlet, neumann; /* neumann NULL: an obstacle */
   Obstacle       obstacle;
   PetscInt       dim, n;
@@ -186,7 +189,7 @@ PETSC_INTERN PetscErrorCode ExchangeFaces(MPI_Comm, Surface, Surface, PetscReal,
 PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceKeepFaces(Surface, const PetscBool[]);
-PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(Surface, Vec, Surface, Vec, PetscReal *);
+PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(MPI_Comm, Surface, Vec, Surface, Vec, PetscReal *);
 
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);

@@ -256,6 +256,7 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
+  if (transfer->owner >= 0) PetscCall(PetscArrayzero(owners, n_mine)); /* of one rank alone that is its number */
   PetscCall(ExchangeRecords(transfer->comm, sizeof(Share), n_mine, owners, mine, n_shares, (void **)shares));
   counts[0] = segments.candidates;
   counts[1] = segments.n;

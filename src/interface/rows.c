@@ -81,8 +81,10 @@ PetscErrorCode RowSetConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n,
   const PetscInt count = set->offsets[n];
   PetscInt      *dofs;
   PetscSFNode   *owners;
+  PetscMPIInt    size;
 
   PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
   set->n_columns = count;
   PetscCall(PetscMalloc1(count, &dofs));
   for (PetscInt i = 0; i < count; i++) dofs[i] = set->shares[i].dof;
@@ -90,7 +92,7 @@ PetscErrorCode RowSetConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n,
   PetscCall(PetscMalloc1(set->n_columns, &owners));
   for (PetscInt i = 0; i < count; i++) {
     PetscCall(PetscFindInt(set->shares[i].dof, set->n_columns, dofs, &set->columns[i]));
-    owners[set->columns[i]].rank  = set->shares[i].owner_rank;
+    owners[set->columns[i]].rank  = size > 1 ? set->shares[i].owner_rank : 0; /* of one rank alone that is its number */
     owners[set->columns[i]].index = set->shares[i].owner_index;
   }
   PetscCall(PetscFree(dofs));
@@ -267,7 +269,7 @@ static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], Petsc
 static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal *behind)
 {
   PetscFunctionBegin;
-  PetscCall(SurfaceComputeOverlap(transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind));
+  PetscCall(SurfaceComputeOverlap(transfer->comm, transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind));
   if (transfer->dim > 1) *behind *= OBLIQUE;
   if (transfer->built && transfer->dim > 1) *behind = PetscMax(*behind, LEAST_DEPTH * transfer->smallest_size);
   PetscFunctionReturn(PETSC_SUCCESS);

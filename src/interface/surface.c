@@ -78,6 +78,7 @@ static PetscErrorCode NumberNodes(Surface surface, PetscInt marks[])
 /* Finds the rank that owns each node, and makes the star forests from owned nodes to ghosts */
 static PetscErrorCode ConnectNodes(Surface surface, PetscSF points, PetscInt numbers[])
 {
+  int                divided;
   MPI_Comm           comm = PetscObjectComm((PetscObject)surface->dm);
   SurfaceData       *data = &surface->data;
   PetscInt           start, n_leaves = 0, n_ghosts = 0, *ghosts;
@@ -88,6 +89,10 @@ static PetscErrorCode ConnectNodes(Surface surface, PetscSF points, PetscInt num
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (points) PetscCall(PetscSFGetGraph(points, NULL, &n_leaves, NULL, NULL));
+  divided = n_leaves > 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &divided, 1, MPI_INT, MPI_MAX, comm));
+  surface->divided = (PetscBool)divided;
   PetscCall(DMPlexGetChart(surface->dm, &start, NULL));
   for (PetscInt i = 0; i < data->n_owned; i++) {
     surface->owner_index[i] = i;
@@ -120,6 +125,9 @@ static PetscErrorCode ConnectNodes(Surface surface, PetscSF points, PetscInt num
   PetscCall(CreateVectorForest(comm, data->n_owned, n_ghosts, ghosts, owners, &surface->vectors));
   PetscCall(PetscSFCreate(comm, &surface->sf));
   PetscCall(PetscSFSetGraph(surface->sf, data->n_owned, n_ghosts, ghosts, PETSC_OWN_POINTER, owners, PETSC_OWN_POINTER));
+  /* while all ranks are here: later one may use them alone */
+  PetscCall(PetscSFSetUp(surface->sf));
+  PetscCall(PetscSFSetUp(surface->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,6 +16,7 @@ static PetscErrorCode UpdatePositions(Surface surface, Vec u)
   for (PetscInt i = 0; i < data->n_owned; i++)
     for (PetscInt d = 0; d < data->dim; d++) data->positions[3 * i + d] += PetscRealPart(values[data->dofs[i] - start + d]);
   PetscCall(VecRestoreArrayRead(u, &values));
+  if (!surface->divided) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSFBcastBegin(surface->vectors, MPIU_REAL, data->positions, data->positions, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(surface->vectors, MPIU_REAL, data->positions, data->positions, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -123,15 +124,18 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
   PetscCall(PetscArrayzero(data->areas, data->n_nodes));
   for (PetscInt i = 0; i < data->n_nodes; i++) data->sizes[i] = PETSC_MAX_REAL;
   AddFaces(surface);
-  PetscCall(PetscSFReduceBegin(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
-  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
-  PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
-  PetscCall(PetscSFReduceEnd(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
-  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
-  PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+  if (surface->divided) {
+    PetscCall(PetscSFReduceBegin(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
+    PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
+    PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+    PetscCall(PetscSFReduceEnd(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
+    PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
+    PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+  }
   for (PetscInt i = 0; i < data->n_owned && surface->axisymmetric; i++)
     if (data->reference[3 * i] <= surface->on_axis) data->normals[3 * i] = 0;
   for (PetscInt i = 0; i < data->n_owned; i++) (void)Normalize(data->normals + 3 * i);
+  if (!surface->divided) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSFBcastBegin(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));

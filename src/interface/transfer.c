@@ -40,6 +40,7 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   PetscCheck(!neumann != !obstacle, comm, PETSC_ERR_ARG_WRONG, "A transfer is between a surface and either another surface or an obstacle");
   t              = *transfer;
   t->comm        = comm;
+  t->owner       = PETSC_DECIDE;
   t->dirichlet   = dirichlet;
   t->neumann     = neumann;
   t->obstacle    = obstacle;
@@ -148,6 +149,37 @@ PetscErrorCode TransferSetMoved(Transfer transfer, PetscBool moved)
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscValidLogicalCollectiveBool(transfer, moved, 2);
   transfer->moved = moved;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferSetOwner - says that one rank has all of both surfaces, so that it needs no other to update the rows
+
+  Logically Collective
+
+  Input Parameters:
++ transfer - the `Transfer`, before the first `TransferUpdate()`
+- rank     - that rank
+
+  Level: developer
+
+  Note:
+  From then on what an update finds, whether rows have been built and whether any has followed, that rank alone knows; and updates are collective
+  no more. Gaps must not be turned.
+
+.seealso: `Transfer`, `TransferUpdate()`, `TransferFollow()`, `TransferSetBalance()`
+@*/
+PetscErrorCode TransferSetOwner(Transfer transfer, PetscMPIInt rank)
+{
+  PetscMPIInt mine;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
+  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)transfer), &mine));
+  transfer->comm  = PETSC_COMM_SELF;
+  transfer->owner = rank;
+  transfer->idle  = (PetscBool)(mine != rank);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

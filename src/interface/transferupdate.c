@@ -286,6 +286,8 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
     PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
     if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   }
+  *rebuilt = PETSC_FALSE;
+  if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
   *rebuilt         = (PetscBool)(!transfer->built || transfer->sleeps || near > transfer->built_near);
   transfer->sleeps = PETSC_FALSE;
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));

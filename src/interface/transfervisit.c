@@ -62,6 +62,28 @@ static PetscErrorCode VisitBalance(Transfer transfer, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What one rank alone knows of a transfer, to all ranks */
+static PetscErrorCode TellRanks(Transfer transfer)
+{
+  Follow *follow = &transfer->follow;
+  struct {
+    PetscReal      near, size, step, scale;
+    PetscBool      sleeps, has_last;
+    TransferCounts counts;
+  } told = {transfer->built_near, transfer->smallest_size, follow->step, follow->scale, transfer->sleeps, follow->has_last, transfer->counts};
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Bcast(&told, sizeof(told), MPI_BYTE, transfer->owner, PetscObjectComm((PetscObject)transfer)));
+  transfer->built_near    = told.near;
+  transfer->smallest_size = told.size;
+  transfer->sleeps        = told.sleeps;
+  transfer->counts        = told.counts;
+  follow->step            = told.step;
+  follow->scale           = told.scale;
+  follow->has_last        = told.has_last;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* TransferVisitShared - what all ranks have of the state of a transfer, to or from a checkpoint */
 PetscErrorCode TransferVisitShared(Transfer transfer, Checkpoint checkpoint)
 {
@@ -69,6 +91,7 @@ PetscErrorCode TransferVisitShared(Transfer transfer, Checkpoint checkpoint)
   Balance *balance = &transfer->balance;
 
   PetscFunctionBegin;
+  if (transfer->owner >= 0 && !CheckpointLoads(checkpoint)) PetscCall(TellRanks(transfer));
   PetscCall(CheckpointVisitReals(checkpoint, "built_near", 1, &transfer->built_near));
   PetscCall(CheckpointVisitBools(checkpoint, "sleeps", 1, &transfer->sleeps));
   PetscCall(CheckpointVisitReals(checkpoint, "smallest_size", 1, &transfer->smallest_size));

@@ -94,13 +94,13 @@ static PetscErrorCode ReadBricks(MPI_Comm comm, const char prefix[], MeshBox *bo
 /* Whether each rank makes its own brick of the box */
 static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], const char name[], MeshBox *box, PetscBool *bricks)
 {
-  const char *const divisions[] = {"bricks", "graph"};
+  const char *const divisions[] = {"bricks", "graph", "whole"};
   const char       *option;
   PetscInt          division = 0;
   PetscBool         given, set, balance;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 2, &division, &set));
+  PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 3, &division, &set));
   PetscCall(ReadBricks(comm, prefix, box, &given));
   PetscCall(FindOptionOfGraph(prefix, &option));
   PetscCheck(!given || !division, comm, PETSC_ERR_USER_INPUT, "-%smesh_bricks needs -%smesh_division bricks", prefix, prefix);
@@ -233,21 +233,22 @@ static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const MeshBox *box, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A box or another of DMPLEX's shapes from options; whole: there is a mesh now, all of it on the first rank */
-PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], DM *dm, PetscBool *whole)
+/* A box or another of DMPLEX's shapes from options; whole: it is not to be divided; first: there is a mesh now, all of it on the first rank
+ */
+PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], PetscBool whole, DM *dm, PetscBool *first)
 {
   MeshBox   box;
   PetscBool bricks = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(ReadBox(comm, prefix, &box));
-  *whole = (PetscBool)(box.is_box && box.dim > 1 && box.simplex);
+  *first = (PetscBool)(box.is_box && box.dim > 1 && box.simplex);
   if (box.is_box && box.dim > 1 && box.simplex) {
     PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (box.is_box) PetscCall(ReadDivision(comm, prefix, name, &box, &bricks));
-  if (bricks) {
+  if (bricks && !whole) {
     PetscCall(MeshCreateBricks(comm, &box, dm));
   } else {
     PetscCall(DMCreate(comm, dm));

@@ -116,7 +116,7 @@ static PetscErrorCode SetPrefix(DM dm, const char prefix[])
 . -<body>_dm_plex_box_lower x,y,z                     - its lower corner [m]
 . -<body>_dm_plex_box_upper x,y,z                     - its upper corner [m]
 . -<body>_dm_plex_simplex (true|false)                - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
-. -<body>_mesh_division (bricks|graph)                - each rank makes its own brick of a box, or the first one all of it, as a graph
+. -<body>_mesh_division (bricks|graph|whole)          - each rank makes its own brick of a box; or a graph is divided; or one rank has all
 . -<body>_mesh_bricks n,n,n                           - bricks of a box along each axis, their product the number of ranks
 . -<body>_mesh_contact_surfaces a,b                   - surfaces that may touch another body, whose faces are spread over the ranks; default
                                                         those that -contact_pairs names
@@ -169,12 +169,38 @@ elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner
 @*/
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
-  char      path[PETSC_MAX_PATH_LEN];
-  PetscBool from_file, blocks, composite, ball = PETSC_FALSE, rod = PETSC_FALSE, whole = PETSC_TRUE;
-  MeshMiddles middles = {NULL, NULL};
+  PetscFunctionBegin;
+  PetscCall(MeshCreateOnRank(comm, prefix, name, PETSC_DECIDE, dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  MeshCreateOnRank - the mesh of a body from options, as `MeshCreate()` makes it, all of it on one rank
+
+  Collective
+
+  Input Parameters:
++ comm   - the communicator
+. prefix - of its options, such as "left_"
+. name   - of the body, for messages; becomes that of the mesh
+- rank   - the rank that has it, or `PETSC_DECIDE`: all ranks have a part
+
+  Output Parameter:
+. dm - a `DMPLEX` with faces and edges; after an error it is `NULL`, or to be destroyed
+
+  Level: developer
+
+.seealso: `MeshCreate()`, `MeshEstimate()`, `MeshMayBeWhole()`, `BodySetMeshRank()`
+@*/
+PetscErrorCode MeshCreateOnRank(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm)
+{
+  char        path[PETSC_MAX_PATH_LEN];
+  PetscBool   from_file, blocks, composite, ball = PETSC_FALSE, rod = PETSC_FALSE,
+                                            first = PETSC_TRUE; /* there is a mesh, on the first rank */
+  MeshMiddles middles                             = {NULL, NULL};
 
   PetscFunctionBegin;
-  PetscAssertPointer(dm, 4);
+  PetscAssertPointer(dm, 5);
   *dm = NULL;
   PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_filename", path, sizeof(path), &from_file));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_blocks", &blocks));
@@ -185,14 +211,16 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm, &middles));
   else if (rod) PetscCall(MeshCreateRod(comm, prefix, name, dm));
   else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, dm));
-  else PetscCall(MeshCreateBox(comm, prefix, name, dm, &whole));
+  else PetscCall(MeshCreateBox(comm, prefix, name, (PetscBool)(rank >= 0), dm, &first));
   PetscCall(SetPrefix(*dm, prefix));
-  if (whole) PetscCall(MeshSpreadContact(*dm, prefix, name, (PetscBool)!from_file));
+  if (rank >= 0) PetscCall(DMPlexDistributeSetDefault(*dm, PETSC_FALSE));
+  else if (first) PetscCall(MeshSpreadContact(*dm, prefix, name, (PetscBool)!from_file));
 #if defined(PETSC_HAVE_PTSCOTCH)
   SCOTCH_randomReset(); /* what it draws goes on from one mesh to the next: a body's parts would hang on what was divided before it */
 #endif
-  if (middles.section) PetscCall(MeshDistributeWithMiddles(dm, prefix, &middles));
-  else PetscCall(DMSetFromOptions(*dm)); /* distributes it */
+  if (!middles.section) PetscCall(DMSetFromOptions(*dm)); /* distributes it */
+  else if (rank < 0) PetscCall(MeshDistributeWithMiddles(dm, prefix, &middles));
+  if (rank >= 0) PetscCall(MeshMoveToRank(rank, dm, &middles));
   PetscCall(PetscObjectSetName((PetscObject)*dm, name));
   if (!from_file) PetscCall(MeshMarkSides(*dm));
   PetscCall(MeshWantsComposite(prefix, &composite));

@@ -32,8 +32,8 @@ PetscErrorCode MeshFileCollectEdges(MeshFile *file)
         for (PetscInt i = 0; i < 2; i++) edge[i] = file->cells[cell * file->corners + edges[k][i]];
         edge[2] = middle;
         PetscCheck(file->vertex_of_node[middle] < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-                   "node %" PetscInt_FMT " is in the middle of an edge of element %" PetscInt_FMT
-                   " (%s, %" PetscInt_FMT " nodes) and a corner of another: neighbours must have their edges in common",
+                   "node %" PetscInt_FMT " is in the middle of an edge of element %" PetscInt_FMT " (%s, %" PetscInt_FMT
+                   " nodes) and a corner of another: neighbours must have their edges in common",
                    Number(file, middle), file->cell_numbers[cell], DMPolytopeTypes[file->shape], run->nodes);
         for (PetscInt d = 0; d < file->dim; d++)
           PetscCheck(!PetscIsInfOrNanReal(file->coordinates[3 * middle + d]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
@@ -116,35 +116,41 @@ PetscErrorCode MeshMiddlesDestroy(MeshMiddles *middles)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Divides a mesh that is on the first rank among all, and with it the positions in the middle of its edges */
+/* Divides a mesh that is on the first rank as its partitioner says, and with it the positions in the middle of its edges */
+PetscErrorCode MeshDivideWithMiddles(DM *dm, MeshMiddles *middles)
+{
+  MeshMiddles part;
+  PetscSF     sf;
+  DM          parallel;
+  const char *prefix;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexDistribute(*dm, 0, &sf, &parallel));
+  if (parallel) {
+    PetscCall(PetscSectionCreate(PetscObjectComm((PetscObject)*dm), &part.section));
+    PetscCall(VecCreate(PETSC_COMM_SELF, &part.positions));
+    PetscCall(DMPlexDistributeField(*dm, sf, middles->section, middles->positions, part.section, part.positions));
+    PetscCall(MeshMiddlesDestroy(middles));
+    *middles = part;
+    PetscCall(DMGetOptionsPrefix(*dm, &prefix));
+    PetscCall(DMSetOptionsPrefix(parallel, prefix));
+    PetscCall(DMDestroy(dm));
+    *dm = parallel;
+  }
+  PetscCall(PetscSFDestroy(&sf));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same as options say */
 PetscErrorCode MeshDistributeWithMiddles(DM *dm, const char prefix[], MeshMiddles *middles)
 {
-  MPI_Comm         comm = PetscObjectComm((PetscObject)*dm);
   PetscPartitioner partitioner;
-  PetscSF          sf;
-  DM               parallel;
   PetscBool        distribute = PETSC_TRUE;
 
   PetscFunctionBegin;
   PetscCall(DMPlexGetPartitioner(*dm, &partitioner));
   PetscCall(PetscPartitionerSetFromOptions(partitioner));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_distribute", &distribute, NULL));
-  if (!distribute) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DMPlexDistribute(*dm, 0, &sf, &parallel));
-  if (parallel) {
-    MeshMiddles part;
-    const char *of_mesh;
-
-    PetscCall(PetscSectionCreate(comm, &part.section));
-    PetscCall(VecCreate(PETSC_COMM_SELF, &part.positions));
-    PetscCall(DMPlexDistributeField(*dm, sf, middles->section, middles->positions, part.section, part.positions));
-    PetscCall(MeshMiddlesDestroy(middles));
-    *middles = part;
-    PetscCall(DMGetOptionsPrefix(*dm, &of_mesh));
-    PetscCall(DMSetOptionsPrefix(parallel, of_mesh));
-    PetscCall(DMDestroy(dm));
-    *dm = parallel;
-  }
-  PetscCall(PetscSFDestroy(&sf));
+  if (distribute) PetscCall(MeshDivideWithMiddles(dm, middles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

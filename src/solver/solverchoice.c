@@ -19,15 +19,61 @@ static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
    iterations of conjugate gradients with a matrix of 81 entries in a row take */
 #define FLOPS_OF_UNKNOWN 4000
 
+/* Whether one of several ranks has all rows of a matrix */
+static PetscErrorCode IsOnOneRank(Mat A, PetscMPIInt size, PetscBool *one)
+{
+  const PetscInt *ranges;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRanges(A, &ranges));
+  *one = PETSC_FALSE;
+  for (PetscMPIInt r = 0; r < size && size > 1; r++)
+    if (ranges[r] == 0 && ranges[r + 1] == ranges[size] && ranges[size] > 0) *one = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Factors of one rank alone */
+static PetscErrorCode ChooseSequential(PC pc, PetscInt n, PetscInt dim)
+{
+  PetscFunctionBegin;
+  if (n > max_sequential_size[dim]) {
+    PetscCall(PCSetType(pc, PCCHOLESKY)); /* all matrices here are symmetric */
+    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(PCFactorSetZeroPivot(pc, 0)); /* PETSc's default is 2e-14, whatever the unit of the matrix */
+  PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A matrix of one rank is factored and solved with there, without a message: the block of each other rank is empty */
+static PetscErrorCode ChooseOneRank(PC pc, Mat A, PetscInt n, PetscInt dim)
+{
+  KSP *inner;
+
+  PetscFunctionBegin;
+  PetscCall(PCSetType(pc, PCBJACOBI));
+  PetscCall(PCSetOperators(pc, A, A));
+  PetscCall(PCSetUp(pc)); /* makes the solver of the block, which is set up later */
+  PetscCall(PCBJacobiGetSubKSP(pc, NULL, NULL, &inner));
+  PetscCall(KSPSetType(inner[0], KSPPREONLY));
+  PetscCall(KSPGetPC(inner[0], &pc));
+  PetscCall(ChooseSequential(pc, n, dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* How A is factored, unless options say otherwise */
 PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
 {
   PetscMPIInt size;
   PetscInt    n;
+  PetscBool   one = PETSC_FALSE;
   PC          pc;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)ksp), &size));
+  PetscCall(IsOnOneRank(A, size, &one));
   PetscCall(MatGetSize(A, &n, NULL));
   PetscCall(KSPGetPC(ksp, &pc));
   PetscCall(KSPSetTolerances(ksp, ITERATIVE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, ITERATIVE_MAX_IT));
@@ -37,6 +83,10 @@ PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(KSPSetType(ksp, KSPPREONLY));
+  if (one) {
+    PetscCall(ChooseOneRank(pc, A, n, dim));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (size > 1 && n <= MAX_REDUNDANT_SIZE) {
     KSP inner;
 
@@ -49,14 +99,10 @@ PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
     PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (size > 1 || n > max_sequential_size[dim]) {
+  if (size > 1) {
     PetscCall(PCSetType(pc, PCCHOLESKY)); /* all matrices here are symmetric */
     PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PCSetType(pc, PCLU));
-  PetscCall(PCFactorSetZeroPivot(pc, 0)); /* PETSc's default is 2e-14, whatever the unit of the matrix */
-  PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
+  } else PetscCall(ChooseSequential(pc, n, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,7 +135,7 @@ PetscErrorCode ConstrainedSolverRepeats(ConstrainedSolver s, PetscBool *repeats)
   PetscFunctionBegin;
   *repeats = PETSC_FALSE;
   if (!s->direct) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->size > 1) PetscCall(PetscObjectTypeCompare((PetscObject)s->direct, PCREDUNDANT, repeats));
+  if (s->size > 1) PetscCall(PetscObjectTypeCompareAny((PetscObject)s->direct, repeats, PCREDUNDANT, PCBJACOBI, ""));
   else PetscCall(PetscObjectTypeCompareAny((PetscObject)s->direct, repeats, PCREDUNDANT, PCLU, PCCHOLESKY, ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

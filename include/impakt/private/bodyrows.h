@@ -89,10 +89,19 @@ PETSC_EXTERN PetscErrorCode BodyNoteKnownRows(Body);
 PETSC_EXTERN PetscErrorCode BodyKeep(Body);
 PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
+/* What the ranks add up of the conditions of a body: how many rows are prescribed, forced and Robin ones, and whether any is another one */
+#define BODY_CONDITION_COUNTS 4
+PETSC_EXTERN PetscErrorCode BodyProposeConditions(Body, const BodyCondition[], PetscInt[BODY_CONDITION_COUNTS]);
+PETSC_EXTERN PetscErrorCode BodyTakeConditions(Body, const PetscInt[BODY_CONDITION_COUNTS]);
 PETSC_EXTERN PetscErrorCode BodyGetTraces(Body, BodyTraces *);
 PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
 PETSC_EXTERN PetscErrorCode BodyGetRowForces(Body, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyIsLocal(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeEnergy(Body, PetscReal *);
+/* Numbers that measures and energies of a body are summed up from */
+#define BODY_MEASURE_SUMS 20
+PETSC_EXTERN PetscErrorCode BodyGetAllMeasures(PetscInt, const Body[], PetscReal[], BodyMeasures[]);
+PETSC_EXTERN PetscErrorCode BodyComputeEnergies(PetscInt, const Body[], PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrateRows(Body, StepConvergedReason *);

@@ -305,6 +305,8 @@ typedef struct {
   PetscBool     *leaves;                   /* per row: it has left in this step, or in an attempt at it */
   ContactSearch *search;                   /* per group, by its first body */
   PetscReal     *of_group;                 /* work space: three numbers per group, by its first body */
+  PetscReal     *sums;                     /* work space: `BODY_MEASURE_SUMS` per body */
+  BodyMeasures  *measures;                 /* work space, per body */
 } ContactEnergy;
 
 /* What a friction law tells. The force across the normal of a node is at most a cohesion [N] plus a coefficient times its normal force. */
@@ -337,6 +339,8 @@ typedef struct {
 /* How the controller step is being made */
 typedef struct {
   StepFailure failure;
+  PetscBool   local;                 /* a body has been integrated whose failure one rank alone knows; until ContactAgree() */
+  PetscInt    failed;                /* the first of these that has failed on this rank; PETSC_INT_MAX: none */
   PetscBool   returns;               /* ContactStep() leaves a failure to its caller */
   PetscReal   most_loss;             /* energy that a step may take or bring at contact before it is cut, where it may be [J] */
   PetscBool   may_cut;               /* who can make the step again in halves, so that nothing is accepted that has not converged */
@@ -407,6 +411,8 @@ typedef struct {
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
   PetscReal     *speeds;     /* per body */
+  PetscReal     *traces;     /* six numbers per body, see ContactGetBodyTraces() */
+  PetscInt      *counts;     /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
   PetscReal     *boxes;      /* per surface: lower corner, and the upper one with its sign changed [m] */
   int           *hands_over; /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;      /* to a body */
@@ -416,6 +422,7 @@ typedef struct {
   PetscReal     *handover;   /* two numbers to a body per row */
   PetscInt      *intervals;  /* to a body */
   PetscReal     *rest;       /* to a body */
+  int           *updated;    /* per pair: what has become of its rows, see rowsupdate.c */
   BodyCondition *conditions; /* to a body */
 } ContactWork;
 
@@ -497,6 +504,7 @@ PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 /* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
    can: ContactFailed() tells. */
 PETSC_EXTERN PetscErrorCode ContactIntegrateBody(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactAgree(Contact);
 PETSC_EXTERN PetscErrorCode ContactCompleteBodies(Contact);
 PETSC_EXTERN PetscErrorCode ContactRejectResidual(Vec);
 PETSC_EXTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);

@@ -346,6 +346,7 @@ PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
   integrator->has_inertia       = PETSC_TRUE;
   integrator->needs_stable_step = PETSC_TRUE;
   integrator->divides_by_mass   = PETSC_TRUE;
+  integrator->is_local          = PETSC_TRUE;
   integrator->staggered         = 0.25;
   integrator->affine            = PETSC_TRUE;
   integrator->ops.setup         = SetUp;

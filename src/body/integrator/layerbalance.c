@@ -139,7 +139,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
   PetscFunctionBegin;
   if (!linear) {
     if (contact && layer->now.rounds >= SLOW_ROUNDS_WITHIN_STEP) PetscCall(RefactorAt(layer, body, u));
-    PetscCall(VecNorm(u, NORM_2, &round_off));
+    PetscCall(BodyGetNorm(body, u, &round_off));
     round_off = ROUND_OFF * (round_off + layer->reach);
   }
   if (outside) PetscCall(BodyComputeOutsideForce(body, time, position, contact, u, force));
@@ -157,7 +157,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     PetscCall(VecScatterBegin(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
     PetscCall(VecScatterEnd(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
     if (linear) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(VecNorm(layer->solution, NORM_2, &change));
+    PetscCall(BodyGetNorm(body, layer->solution, &change));
     first = PetscMax(first, change);
     /* what is not a number is told when the substep is over */
     if (contact) layer->now.rounds = round + 1;

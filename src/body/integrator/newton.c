@@ -293,7 +293,7 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
                              "): %s; choose a smaller -%sts_time_step, or a direct solver (-%spc_type cholesky)",
                              body->hdr.name, (double)body->state.time, body->state.step, KSPConvergedReasons[linear],
                              ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
-  PetscCall(BodyNoteInverted(body));
+  PetscCall(BodyNoteInverted(body, PETSC_FALSE));
   PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
                            "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
                            "): %s after %" PetscInt_FMT " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",

@@ -10,9 +10,9 @@ PetscErrorCode BodyCheckSubstep(Body body)
 
   PetscFunctionBegin;
   PetscCall(TSGetConvergedReason(body->time.ts, &reason));
-  PetscCall(VecNorm(body->state.v, NORM_2, &norm));
+  PetscCall(BodyGetNorm(body, body->state.v, &norm));
   if (body->integrator->ops.checksubstep) PetscCall((*body->integrator->ops.checksubstep)(body));
-  if (PetscIsInfOrNanReal(norm)) PetscCall(BodyNoteInverted(body));
+  if (PetscIsInfOrNanReal(norm)) PetscCall(BodyNoteInverted(body, BodyStepsAlone(body)));
   if (reason < 0 || PetscIsInfOrNanReal(norm))
     PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NAN, PETSC_ERR_FP,
                              "The displacement of body '%s' is not a number at time %.9g s (its step %" PetscInt_FMT
@@ -38,7 +38,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     body->state.step++;
     body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
     PetscCall(BodyCheckSubstep(body));
-    if (body->failure.reason < 0) break;
+    if (BodyHasStopped(body)) break;
     if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyEndMeanForce(body));
     PetscCall((*body->integrator->ops.finishsubstep)(body));
     if (!body->state.incomplete) PetscCall(BodyHistoryEnd(body));

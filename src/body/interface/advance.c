@@ -172,7 +172,7 @@ static PetscErrorCode CheckSolver(Body body)
 . body - the `Body`
 
   Output Parameter:
-. reason - negative where the step has failed, the same on every rank; or `NULL`
+. reason - negative where the step has failed, the same on every rank but of a body that is local, see `BodyIsLocal()`; or `NULL`
 
   Level: developer
 
@@ -194,10 +194,10 @@ PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
   PetscCall(PetscTime(&begin));
   StepFailureClear(&body->failure);
   PetscCall(BodyCheckStableStep(body));
-  if (body->failure.reason >= 0) PetscCall(BodyRepeat(body, &done));
-  if (body->failure.reason >= 0 && !done) PetscCall(BodyMakeSubsteps(body));
+  if (!BodyHasStopped(body)) PetscCall(BodyRepeat(body, &done));
+  if (!BodyHasStopped(body) && !done) PetscCall(BodyMakeSubsteps(body));
   PetscCall(CheckSolver(body));
-  if (!done && body->failure.reason >= 0) PetscCall(BodyNoteInputs(body));
+  if (!done && !BodyHasStopped(body)) PetscCall(BodyNoteInputs(body));
   PetscCall(PetscTime(&end));
   body->statistics.seconds += end - begin;
   PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));
@@ -214,7 +214,7 @@ PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
 . body - the `Body`, after `BodyTryIntegrateRows()`
 
   Output Parameter:
-. reason - negative where the step has failed, the same on every rank; or `NULL`
+. reason - negative where the step has failed, the same on every rank but of a body that is local, see `BodyIsLocal()`; or `NULL`
 
   Level: developer
 
@@ -229,7 +229,7 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->state.incomplete && body->failure.reason >= 0) {
+  if (body->state.incomplete && !BodyHasStopped(body)) {
     PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
     PetscCall(PetscTime(&begin));
     PetscCall((*body->integrator->ops.complete)(body));
@@ -268,7 +268,35 @@ PetscErrorCode BodyTryIntegrate(Body body, StepConvergedReason *reason)
 {
   PetscFunctionBegin;
   PetscCall(BodyTryIntegrateRows(body, NULL));
-  PetscCall(BodyCompleteStep(body, reason));
+  PetscCall(BodyCompleteStep(body, NULL));
+  if (body->local)
+    PetscCallMPI(MPI_Bcast(&body->failure, sizeof(body->failure), MPI_BYTE, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  if (reason) *reason = body->failure.reason;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyIsLocal - whether a body is whole on one of several ranks, and integrated there
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. local - if so, ranks do not wait for each other in `BodyTryIntegrateRows()` and `BodyCompleteStep()` unless rows are prescribed, and the rank
+          of `BodyGetMeshRank()` alone knows whether the step has failed
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetMeshRank()`, `BodyTryIntegrateRows()`, `ContactAgree()`
+@*/
+PetscErrorCode BodyIsLocal(Body body, PetscBool *local)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(local, 2);
+  *local = body->local;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -36,6 +36,7 @@ PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
   (*body)->mass.redistribute = PETSC_TRUE;
   (*body)->mass.moments      = BODY_MASS_INERTIA;
   (*body)->springs.part      = PETSC_DECIDE;
+  (*body)->mesh.rank         = PETSC_DECIDE;
   PetscCall(ElementCreate(comm, &(*body)->model.element));
   PetscCall(ElementSetOptionsPrefix((*body)->model.element, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -89,13 +90,14 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   PetscScalar       *mark;
   const PetscScalar *all;
   Vec                marks, local;
-  const PetscBool    ghosted = (PetscBool)(body->rows.size > 1);
+  PetscBool          ghosted;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
   if (n) PetscAssertPointer(vertices, 3);
   PetscCall(BodySetUpDiscretization(body));
+  ghosted = body->mesh.ghosted;
   PetscCall(BodyCreateVec(body, &marks));
   local = marks;
   if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
@@ -237,6 +239,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpPoints(body));
   PetscCall(BodySetUpTime(body));
   PetscCall(BodySetUpRepeat(body));
+  body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local && body->mass.inverse);
   if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) {
     PetscCall(BodyCreateVec(body, &body->substep_start.u));
     PetscCall(BodyCreateVec(body, &body->substep_start.v));

@@ -21,7 +21,7 @@ static PetscErrorCode CheckDescribed(Body body)
 static PetscErrorCode CreateMesh(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(MeshCreate(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, &body->mesh.dm));
+  PetscCall(MeshCreateOnRank(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, body->mesh.rank, &body->mesh.dm));
   PetscCall(DMGetCoordinateDim(body->mesh.dm, &body->mesh.dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -231,7 +231,7 @@ PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscIn
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(VecNorm(body->state.internal_force, NORM_2, &norm));
   StepFailureClear(&body->failure);
-  if (PetscIsInfOrNanReal(norm) && !body->model.linear) PetscCall(BodyNoteInverted(body));
+  if (PetscIsInfOrNanReal(norm) && !body->model.linear) PetscCall(BodyNoteInverted(body, PETSC_FALSE));
   PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
   PetscCall(BodyComputeStartAcceleration(body, PETSC_FALSE, NULL));
   PetscCall(BodyWriteTraces(body, 0));

@@ -211,12 +211,27 @@ PetscErrorCode BodyTakeRows(Body body, const PetscInt now[], Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What one rank alone knows of a local body, to all ranks */
+static PetscErrorCode TellRanks(Body body)
+{
+  PetscReal *const values[] = {&body->state.external_work, &body->state.damping_work, &body->time.stable_now, &body->time.stable_found,
+                               &body->time.thinness};
+  PetscReal        told[PETSC_STATIC_ARRAY_LENGTH(values)];
+
+  PetscFunctionBegin;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) told[k] = *values[k];
+  PetscCallMPI(MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(values), MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) *values[k] = told[k];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* BodyVisitShared - what all ranks have of the state of a body, to or from a checkpoint */
 PetscErrorCode BodyVisitShared(Body body, Checkpoint checkpoint)
 {
   BodyState *state = &body->state;
 
   PetscFunctionBegin;
+  if (body->local && !CheckpointLoads(checkpoint)) PetscCall(TellRanks(body));
   PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
   PetscCall(CheckpointCheckInts(checkpoint, "dimensions", 1, &body->mesh.dim));
   PetscCall(CheckpointCheckInts(checkpoint, "substeps of a step", 1, &body->time.substeps));

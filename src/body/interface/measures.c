@@ -1,6 +1,10 @@
 /* Energies, momentum and mean rotation. */
 #include <body/layout/bodyimpl.h>
 
+/* Sums over nodes and elements that measures are made of; beyond them are the works of loads and of dashpots, in all accepted steps and in
+   the one that has not been accepted yet */
+#define N_SUMS (BODY_MEASURE_SUMS - 4)
+
 /* Sum of a[i] b[i]: four sums, since each addition to a single one would wait for the one before it */
 static PetscReal Dot(PetscInt n, const PetscScalar a[], const PetscScalar b[])
 {
@@ -161,14 +165,14 @@ static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the sums of the last measures are those of the present state, and from now on they are; one that is spread over ranks, or
+/* Whether the sums of the last measures are those of the present state, and from now on they are; one that is divided among ranks, or
    remembers, is measured each time */
 static PetscErrorCode IsMeasured(Body body, PetscBool *measured)
 {
   const Vec of[4] = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
 
   PetscFunctionBegin;
-  *measured = (PetscBool)(body->rows.size == 1 && !body->history && body->measured.time_step == body->time.step);
+  *measured = (PetscBool)(!body->mesh.ghosted && !body->history && body->measured.time_step == body->time.step);
   for (PetscInt k = 0; k < 4; k++) {
     PetscObjectState now = 0;
 
@@ -184,7 +188,7 @@ static PetscErrorCode IsMeasured(Body body, PetscBool *measured)
 static PetscErrorCode SumMeasures(Body body, PetscReal sums[])
 {
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(sums, BODY_MEASURE_SUMS));
+  PetscCall(PetscArrayzero(sums, N_SUMS));
   PetscCall(ComputePotential(body, &sums[1]));
   PetscCall(ComputeHourglassEnergy(body, &sums[14]));
   if (!body->integrator->has_inertia) PetscCall(SumMassVelocity(body, sums + 8));
@@ -222,21 +226,51 @@ static PetscErrorCode SumMeasures(Body body, PetscReal sums[])
 @*/
 PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
 {
-  PetscReal sums[BODY_MEASURE_SUMS], drag;
+  PetscReal sums[BODY_MEASURE_SUMS];
+
+  PetscFunctionBegin;
+  PetscAssertPointer(measures, 2);
+  PetscCall(BodyGetAllMeasures(1, &body, sums, measures));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What this rank adds to the sums of a body. The works are not sums over its nodes: they come from the rank that knows them. */
+static PetscErrorCode GetSums(Body body, PetscReal sums[BODY_MEASURE_SUMS])
+{
   PetscBool measured;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(measures, 2);
   PetscCall(IsMeasured(body, &measured));
   if (!measured) PetscCall(SumMeasures(body, body->measured.sums));
-  PetscCall(PetscArraycpy(sums, body->measured.sums, BODY_MEASURE_SUMS));
-  if (body->rows.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, BODY_MEASURE_SUMS, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(PetscArraycpy(sums, body->measured.sums, N_SUMS));
+  sums[N_SUMS]     = BodyShareOf(body, body->state.external_work);
+  sums[N_SUMS + 1] = BodyShareOf(body, body->state.damping_work);
+  sums[N_SUMS + 2] = sums[N_SUMS + 3] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The sums of all ranks */
+static PetscErrorCode AddRanks(PetscInt n, const Body bodies[], PetscReal sums[])
+{
+  PetscMPIInt count;
+
+  PetscFunctionBegin;
+  if (!n || bodies[0]->rows.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMPIIntCast(BODY_MEASURE_SUMS * n, &count));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, count, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)bodies[0])));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Measures from the sums of all ranks */
+static PetscErrorCode Finish(Body body, const PetscReal sums[], BodyMeasures *measures)
+{
+  PetscReal drag;
+
+  PetscFunctionBegin;
   measures->kinetic          = sums[0];
   measures->potential        = sums[1];
-  measures->external_work    = body->state.external_work;
-  measures->damping_work     = body->state.damping_work;
+  measures->external_work    = sums[N_SUMS];
+  measures->damping_work     = sums[N_SUMS + 1];
   measures->plastic_work     = sums[15] - body->plastic_before;
   measures->hourglass_energy = sums[14];
   BodyFinishRotation(body, sums + 11, measures->rotation);
@@ -249,6 +283,81 @@ PetscErrorCode BodyGetMeasures(Body body, BodyMeasures *measures)
     measures->place[d] = measures->orientation[d] = measures->angular_velocity[d] = 0;
   }
   if (body->integrator->ops.measure) PetscCall((*body->integrator->ops.measure)(body, measures));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetAllMeasures - energies, momenta and mean velocity of some bodies at the current time
+
+  Collective
+
+  Input Parameters:
++ n      - number of bodies, all on one communicator
+. bodies - the bodies
+- sums   - work space, `BODY_MEASURE_SUMS` for each
+
+  Output Parameter:
+. measures - of each, see `BodyMeasures`
+
+  Level: developer
+
+  Note:
+  As `BodyGetMeasures()` of each, with one sum over the ranks for all.
+
+.seealso: `Body`, `BodyMeasures`, `BodyGetMeasures()`, `BodyComputeEnergies()`
+@*/
+PetscErrorCode BodyGetAllMeasures(PetscInt n, const Body bodies[], PetscReal sums[], BodyMeasures measures[])
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < n; b++) {
+    PetscValidHeaderSpecific(bodies[b], BODY_CLASSID, 2);
+    PetscCall(GetSums(bodies[b], sums + BODY_MEASURE_SUMS * b));
+  }
+  PetscCall(AddRanks(n, bodies, sums));
+  for (PetscInt b = 0; b < n; b++) PetscCall(Finish(bodies[b], sums + BODY_MEASURE_SUMS * b, &measures[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyComputeEnergies - kinetic and potential energy, less the work of loads, with what dashpots took, of the present states of some bodies
+
+  Collective
+
+  Input Parameters:
++ n      - number of bodies, all on one communicator
+. bodies - the bodies, integrated or saved
+- sums   - work space, `BODY_MEASURE_SUMS` for each
+
+  Output Parameter:
+. energies - of each, of all ranks; what only contact and errors of the integrator change [J]
+
+  Level: developer
+
+  Note:
+  As `BodyComputeEnergy()` of each, with one sum over the ranks for all.
+
+.seealso: `Body`, `BodyComputeEnergy()`, `BodyGetAllMeasures()`
+@*/
+PetscErrorCode BodyComputeEnergies(PetscInt n, const Body bodies[], PetscReal sums[], PetscReal energies[])
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < n; b++) {
+    const Body body = bodies[b];
+
+    PetscValidHeaderSpecific(body, BODY_CLASSID, 2);
+    /* where a step has been undone, the internal force is still that of its end */
+    if (body->state.step == body->saved.step) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+    PetscCall(GetSums(body, sums + BODY_MEASURE_SUMS * b));
+    PetscCall(BodyAddPendingWork(body, sums + BODY_MEASURE_SUMS * b + N_SUMS + 2));
+  }
+  PetscCall(AddRanks(n, bodies, sums));
+  for (PetscInt b = 0; b < n; b++) {
+    const PetscReal *of = sums + BODY_MEASURE_SUMS * b;
+    BodyMeasures     measures;
+
+    PetscCall(Finish(bodies[b], of, &measures));
+    energies[b] = BodyMeasuresGetBalance(&measures) - of[N_SUMS + 2] + of[N_SUMS + 3];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

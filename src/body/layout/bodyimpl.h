@@ -30,6 +30,11 @@ typedef struct {
   PetscReal      cells[2];       /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
   PetscBool     *on_axis;        /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
   PetscBool      touches_axis;   /* there are such nodes on any rank */
+  PetscMPIInt    rank;           /* that is to have all of a mesh from options; PETSC_DECIDE: it is divided */
+  PetscMPIInt    owner;          /* the rank that has all cells, where one has; else the first */
+  PetscBool      is_owner;       /* it is this one */
+  PetscBool      whole;          /* there are several ranks, of which one has all cells */
+  PetscBool      ghosted;        /* on any rank there may be nodes of others */
 } BodyMesh;
 
 /* Blocks of the mesh with materials of their own, and last, where there are cells in none of them, one with the body's */
@@ -181,8 +186,6 @@ typedef struct {
 
 /* Motions of a body as if it were rigid: as many as space has translations and rotations */
 #define BODY_MAX_RIGID 6
-/* Sums over nodes and elements that measures are made of, see measures.c */
-#define BODY_MEASURE_SUMS 16
 
 /* Artificial springs of a static body that contact or ties alone hold, see src/body/system/springs.c */
 typedef struct {
@@ -201,6 +204,9 @@ typedef struct {
 struct _p_Body {
   PETSCHEADER(int);
   PetscBool         setup;
+  /* The mesh is whole on one of several ranks, and steps of the integrator need nothing of others but where rows are prescribed: see
+     src/body/README.md. What a substep finds out of the body as a whole (works, stable step, failure) that rank alone knows. */
+  PetscBool         local;
   BodyMesh          mesh;
   BodyModel         model;
   BodyMass          mass;
@@ -258,6 +264,19 @@ struct _p_Body {
   } statistics;
 };
 
+/* Whether a step of the body is one rank's alone: then no rank waits for another in it */
+static inline PetscBool BodyStepsAlone(Body body)
+{
+  return (PetscBool)(body->local && !body->rows.n_prescribed && !body->rows.n_robin);
+}
+
+/* Whether a failure ends a step at once. That of a local body others do not know yet: the step is made to its end, good for nothing, so that
+   all ranks do the same. */
+static inline PetscBool BodyHasStopped(Body body)
+{
+  return (PetscBool)(body->failure.reason < 0 && !body->local);
+}
+
 /* For setters */
 #define BodyCheckNotSetUp(body)                                                                                                            \
   PetscCheck(!(body)->setup, PetscObjectComm((PetscObject)(body)), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call %s() before BodySetUp()",    \
@@ -267,6 +286,10 @@ PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Compliance, BODY_InternalForce, 
 
 PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
 PETSC_INTERN PetscErrorCode BodyAnyRank(Body, PetscBool *);
+PETSC_INTERN PetscErrorCode BodyGetLocalDot(Vec, Vec, PetscReal *);
+PETSC_INTERN PetscErrorCode BodyGetNorm(Body, Vec, PetscReal *);
+PETSC_INTERN PetscErrorCode BodyAddPendingWork(Body, PetscReal[2]);
+PETSC_INTERN PetscReal      BodyShareOf(Body, PetscReal);
 PETSC_INTERN PetscErrorCode BodyGetLocalRead(Body, Vec, Vec *, const PetscScalar *[]);
 PETSC_INTERN PetscErrorCode BodyRestoreLocalRead(Body, Vec, Vec *, const PetscScalar *[]);
 PETSC_INTERN PetscErrorCode BodyGetLocalSum(Body, Vec, Vec *, PetscScalar *[]);
@@ -286,7 +309,7 @@ PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
-PETSC_INTERN PetscErrorCode BodyNoteInverted(Body);
+PETSC_INTERN PetscErrorCode BodyNoteInverted(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyFindFirstElement(Body, PetscInt, PetscMPIInt *, PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyCheckHeld(Body);
@@ -316,7 +339,7 @@ PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
 PETSC_INTERN PetscErrorCode BodyFindOrphans(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
-PETSC_INTERN PetscErrorCode BodyComputeStableStepAt(Body, const PetscScalar[], PetscReal *);
+PETSC_INTERN PetscErrorCode BodyComputeStableStepAt(Body, const PetscScalar[], PetscBool, PetscReal *);
 PETSC_INTERN PetscErrorCode BodyUpdateStableStep(Body);
 PETSC_INTERN PetscErrorCode BodyCheckStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);

@@ -72,6 +72,7 @@ struct _n_BodyIntegrator {
   PetscBool has_inertia;       /* false: neither mass nor acceleration means anything, and the state has no kinetic energy */
   PetscBool needs_stable_step; /* substeps are bounded by 2 / omega_max */
   PetscBool divides_by_mass;   /* each substep divides by the mass, so that factoring it has to be paid for */
+  PetscBool is_local;          /* substeps need no sums over all ranks but what rows that are prescribed take: see `local` in bodyimpl.h */
   PetscReal staggered;         /* the energy that the scheme conserves has 1/2 (v'Mv - staggered dt^2 a'Ma) for kinetic energy */
   /* known after getparameters() */
   PetscBool affine; /* for linear materials, displacements at the ends of substeps are affine in the contact forces at these ends alone */

@@ -2,6 +2,7 @@
 #include "bodyimpl.h"
 #include "cells.h"
 #include <impakt/mesh.h>
+#include <petscblaslapack.h>
 
 /* One node at each vertex, `dim` displacements at each node */
 static PetscErrorCode SetUpSection(Body body)
@@ -172,6 +173,26 @@ static PetscErrorCode FindAxis(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether one of several ranks has all cells, and which */
+static PetscErrorCode FindOwner(Body body)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
+  PetscInt    start, end;
+  PetscMPIInt rank, found[2];
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &start, &end));
+  found[0] = end > start;
+  found[1] = end > start ? rank : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_SUM, comm));
+  body->mesh.whole   = (PetscBool)(body->rows.size > 1 && found[0] == 1);
+  body->mesh.ghosted = (PetscBool)(body->rows.size > 1 && !body->mesh.whole);
+  body->mesh.owner    = body->mesh.whole ? found[1] : 0;
+  body->mesh.is_owner = (PetscBool)(rank == body->mesh.owner);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Numbering, coordinates, connectivity and elements from the DMPlex, after BodySetUpCells() */
 PetscErrorCode BodySetUpLayout(Body body)
 {
@@ -179,6 +200,7 @@ PetscErrorCode BodySetUpLayout(Body body)
   PetscScalar *x;
 
   PetscFunctionBegin;
+  PetscCall(FindOwner(body));
   PetscCall(SetUpSection(body));
   PetscCall(DMPlexGetDepthStratum(body->mesh.dm, 0, &vstart, &vend));
   PetscCall(PetscMalloc1(vend - vstart, &node_of_vertex));
@@ -207,18 +229,52 @@ PetscErrorCode BodyAnyRank(Body body, PetscBool *any)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A vector with the layout of the DM's global vector and, on several ranks, room for the ghosts behind the owned values, so
-   that element loops read and write it in place */
+/* The product of this rank's parts of two vectors: as that of vectors of one rank, bit for bit */
+PetscErrorCode BodyGetLocalDot(Vec a, Vec b, PetscReal *dot)
+{
+  const PetscScalar *x, *y;
+  PetscInt           n;
+  PetscBLASInt       size, one = 1;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(a, &n));
+  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(VecGetArrayRead(a, &x));
+  PetscCall(VecGetArrayRead(b, &y));
+  *dot = PetscRealPart(BLASdot_(&size, x, &one, y, &one));
+  PetscCall(VecRestoreArrayRead(b, &y));
+  PetscCall(VecRestoreArrayRead(a, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 2-norm of a vector laid out as displacements, or one of the massless layer: of a body that steps alone that of this rank's part */
+PetscErrorCode BodyGetNorm(Body body, Vec vec, PetscReal *norm)
+{
+  PetscFunctionBegin;
+  if (BodyStepsAlone(body)) {
+    PetscCall(BodyGetLocalDot(vec, vec, norm));
+    *norm = PetscSqrtReal(*norm);
+  } else PetscCall(VecNorm(vec, NORM_2, norm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What this rank adds to a sum over all ranks that is to be a number of the body: that of the rank that knows it */
+PetscReal BodyShareOf(Body body, PetscReal value)
+{
+  return body->mesh.is_owner ? value : 0;
+}
+
+/* A vector with the layout of the DM's global vector and, where several ranks have a part of the mesh, room for the ghosts behind the owned
+   values, so that element loops read and write it in place */
 PetscErrorCode BodyCreateVec(Body body, Vec *vec)
 {
   MPI_Comm       comm   = PetscObjectComm((PetscObject)body);
   const PetscInt owned  = body->mesh.owned_nodes * body->mesh.dim,
                  ghosts = (body->mesh.local_nodes - body->mesh.owned_nodes) * body->mesh.dim;
-  PetscMPIInt    size;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
-  if (size == 1) PetscCall(VecCreateSeq(comm, owned, vec));
+  if (body->rows.size == 1) PetscCall(VecCreateSeq(comm, owned, vec));
+  else if (!body->mesh.ghosted) PetscCall(VecCreateMPI(comm, owned, PETSC_DETERMINE, vec));
   else PetscCall(VecCreateGhost(comm, owned, PETSC_DETERMINE, ghosts, body->mesh.ghost_dofs, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -228,7 +284,7 @@ PetscErrorCode BodyGetLocalRead(Body body, Vec vec, Vec *local, const PetscScala
 {
   PetscFunctionBegin;
   *local = vec;
-  if (body->rows.size > 1) {
+  if (body->mesh.ghosted) {
     PetscCall(VecGhostUpdateBegin(vec, INSERT_VALUES, SCATTER_FORWARD));
     PetscCall(VecGhostUpdateEnd(vec, INSERT_VALUES, SCATTER_FORWARD));
     PetscCall(VecGhostGetLocalForm(vec, local));
@@ -241,7 +297,7 @@ PetscErrorCode BodyRestoreLocalRead(Body body, Vec vec, Vec *local, const PetscS
 {
   PetscFunctionBegin;
   PetscCall(VecRestoreArrayRead(*local, array));
-  if (body->rows.size > 1) PetscCall(VecGhostRestoreLocalForm(vec, local));
+  if (body->mesh.ghosted) PetscCall(VecGhostRestoreLocalForm(vec, local));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -251,7 +307,7 @@ PetscErrorCode BodyGetLocalSum(Body body, Vec vec, Vec *local, PetscScalar *arra
 {
   PetscFunctionBegin;
   *local = vec;
-  if (body->rows.size > 1) PetscCall(VecGhostGetLocalForm(vec, local));
+  if (body->mesh.ghosted) PetscCall(VecGhostGetLocalForm(vec, local));
   PetscCall(VecGetArrayWrite(*local, array));
   PetscCall(PetscArrayzero(*array, body->mesh.local_nodes * body->mesh.dim));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -261,7 +317,7 @@ PetscErrorCode BodyRestoreLocalSum(Body body, Vec vec, Vec *local, PetscScalar *
 {
   PetscFunctionBegin;
   PetscCall(VecRestoreArrayWrite(*local, array));
-  if (body->rows.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->mesh.ghosted) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGhostRestoreLocalForm(vec, local));
   PetscCall(VecGhostUpdateBegin(vec, ADD_VALUES, SCATTER_REVERSE));
   PetscCall(VecGhostUpdateEnd(vec, ADD_VALUES, SCATTER_REVERSE));

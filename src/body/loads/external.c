@@ -78,7 +78,8 @@ static PetscErrorCode ComputeWork(Body body, Vec start, Vec applied, PetscReal *
   PetscCall(ComputeApplied(body, applied));
   PetscCall(VecWAXPY(sum, 1, body->state.applied, applied));
   PetscCall(VecWAXPY(way, -1, start, body->state.u));
-  PetscCall(VecDot(sum, way, work));
+  if (body->local) PetscCall(BodyGetLocalDot(sum, way, work));
+  else PetscCall(VecDot(sum, way, work));
   *work *= 0.5;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -117,18 +118,25 @@ PetscErrorCode BodyAddWork(Body body, Vec start)
 @*/
 PetscErrorCode BodyComputeEnergy(Body body, PetscReal *energy)
 {
-  PetscReal    pending = 0, damped = 0;
-  BodyMeasures measures;
+  PetscReal sums[BODY_MEASURE_SUMS];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(energy, 2);
-  /* where a step has been undone, the internal force is still that of its end */
-  if (body->state.step == body->saved.step) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  PetscCall(BodyGetMeasures(body, &measures));
+  PetscCall(BodyComputeEnergies(1, &body, sums, energy));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What this rank adds to the sums that the energy of the present state is made of, beside those of the measures: the work of loads and of
+   dashpots in a step that has not been accepted yet */
+PetscErrorCode BodyAddPendingWork(Body body, PetscReal sums[2])
+{
+  PetscReal pending = 0, damped = 0;
+
+  PetscFunctionBegin;
   if (body->loads && body->time.substeps == 1 && body->state.step != body->saved.step)
     PetscCall(ComputeWork(body, body->substep_start.u, body->work.nodes[2], &pending));
   if (body->time.substeps == 1 && body->state.step != body->saved.step) PetscCall(BodyGetPendingDampingWork(body, &damped));
-  *energy = BodyMeasuresGetBalance(&measures) - pending + damped;
+  sums[0] = BodyShareOf(body, pending);
+  sums[1] = BodyShareOf(body, damped);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -85,7 +85,7 @@ static PetscErrorCode IntegrateAll(Body body, PetscInt n, const Load loads[], Lo
 /* The nodal forces of one kind, with the shares of ghosts at their owners */
 static PetscErrorCode Assemble(Body body, PetscInt n, const Load loads[], LoadKind kind, PetscReal t, Vec f)
 {
-  const PetscBool ghosted = (PetscBool)(body->rows.size > 1);
+  const PetscBool ghosted = body->mesh.ghosted;
   PetscErrorCode  error;
   Vec             local = f;
 

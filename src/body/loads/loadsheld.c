@@ -37,7 +37,7 @@ static PetscErrorCode MarkAxis(Body body, Vec local)
    having a face of it. */
 static PetscErrorCode MarkAllHeld(Body body, Vec marks)
 {
-  const PetscBool          ghosted = (PetscBool)(body->rows.size > 1);
+  const PetscBool          ghosted = body->mesh.ghosted;
   const struct _BodyLoads *loads   = body->loads;
   PetscErrorCode           error   = PETSC_SUCCESS;
   Vec                      local   = marks;

@@ -278,7 +278,8 @@ static PetscErrorCode ComputeWork(Body body, PetscReal *work)
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(start->damping, &d0));
   PetscCall(VecRestoreArrayRead(start->u, &u0));
-  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, work, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  if (body->rows.size > 1 && !body->local)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, work, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -57,7 +57,7 @@ static PetscReal GetThinness(Body body, const Corners *corners, const PetscScala
   return largest;
 }
 
-/* Looks at the present state, which is that of an accepted step. Collective. */
+/* Looks at the present state, which is that of an accepted step. Collective; of a local body the rank that has it looks alone. */
 PetscErrorCode BodyUpdateStableStep(Body body)
 {
   const Corners     *corners = BodyFindCorners(body);
@@ -69,18 +69,20 @@ PetscErrorCode BodyUpdateStableStep(Body body)
 
   PetscFunctionBegin;
   if (!body->integrator->needs_stable_step || body->model.linear || !corners) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->local && !body->mesh.is_owner) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->state.step / time->substeps % INTERVAL) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   thinness[0] = GetThinness(body, corners, u);
   thinness[1] = time->thinness > 0 ? 0 : GetThinness(body, corners, NULL);
-  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, thinness, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
+  if (body->rows.size > 1 && !body->local)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, thinness, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
   if (!(time->thinness > 0)) {
     time->thinness     = thinness[1];
     time->stable_found = time->stable_step;
   }
   time->stable_now = time->stable_found * PetscMin(1, time->thinness / thinness[0]);
   if (time->stable_now < TRUSTED * whole && thinness[0] * THINNER > time->thinness) {
-    PetscCall(BodyComputeStableStepAt(body, u, &time->stable_found));
+    PetscCall(BodyComputeStableStepAt(body, u, body->local, &time->stable_found));
     time->thinness   = thinness[0];
     time->stable_now = time->stable_found;
   }
@@ -94,6 +96,7 @@ PetscErrorCode BodyCheckStableStep(Body body)
   const BodyTime *time = &body->time;
 
   PetscFunctionBegin;
+  if (body->local && !body->mesh.is_owner) PetscFunctionReturn(PETSC_SUCCESS); /* what a checkpoint has told it may be old */
   if (!(time->stable_now > 0) || time->stable_now > UNDEFORMED * time->stable_step || time->step <= time->stable_now)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_UNSTABLE, PETSC_ERR_NOT_CONVERGED,

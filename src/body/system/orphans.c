@@ -21,7 +21,7 @@ typedef struct {
 static PetscErrorCode AddGhosts(Body body, Vec vec)
 {
   PetscFunctionBegin;
-  if (body->rows.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->mesh.ghosted) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGhostUpdateBegin(vec, ADD_VALUES, SCATTER_REVERSE));
   PetscCall(VecGhostUpdateEnd(vec, ADD_VALUES, SCATTER_REVERSE));
   PetscCall(VecGhostUpdateBegin(vec, INSERT_VALUES, SCATTER_FORWARD));
@@ -33,7 +33,7 @@ static PetscErrorCode OpenLocal(Body body, Vec vec, Vec *local, PetscScalar **ar
 {
   PetscFunctionBegin;
   *local = vec;
-  if (body->rows.size > 1) PetscCall(VecGhostGetLocalForm(vec, local));
+  if (body->mesh.ghosted) PetscCall(VecGhostGetLocalForm(vec, local));
   PetscCall(VecGetArray(*local, array));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -42,7 +42,7 @@ static PetscErrorCode CloseLocal(Body body, Vec vec, Vec *local, PetscScalar **a
 {
   PetscFunctionBegin;
   PetscCall(VecRestoreArray(*local, array));
-  if (body->rows.size > 1) PetscCall(VecGhostRestoreLocalForm(vec, local));
+  if (body->mesh.ghosted) PetscCall(VecGhostRestoreLocalForm(vec, local));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

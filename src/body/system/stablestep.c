@@ -210,8 +210,9 @@ static PetscErrorCode LargestOfLumped(Body body, const PetscScalar u[], PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* 2 / omega_max, from below; less with dashpots. u: displacement of this rank's nodes; NULL: none. Collective. */
-PetscErrorCode BodyComputeStableStepAt(Body body, const PetscScalar u[], PetscReal *step)
+/* 2 / omega_max, from below; less with dashpots. u: displacement of this rank's nodes; NULL: none. Collective; or `alone`: of the rank that
+   has the body. */
+PetscErrorCode BodyComputeStableStepAt(Body body, const PetscScalar u[], PetscBool alone, PetscReal *step)
 {
   PetscReal          largest = 0, alpha, beta, rate;
   PetscScalar       *zero    = NULL;
@@ -235,7 +236,7 @@ PetscErrorCode BodyComputeStableStepAt(Body body, const PetscScalar u[], PetscRe
     }
   BodyHistoryLookBack(body, &before);
   PetscCall(PetscFree(zero));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
+  if (!alone) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
   PetscCall(BodyGetDamping(body, &alpha, &beta));
   /* of dashpots that feel the velocity at mid-step: (2 / omega) (sqrt(1 + zeta^2) - zeta), twice zeta omega being alpha + beta omega^2 */
   rate  = alpha + beta * largest;
@@ -248,6 +249,6 @@ PetscErrorCode BodyComputeStableStep(Body body)
 {
   PetscFunctionBegin;
   if (body->time.stable_step > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyComputeStableStepAt(body, NULL, &body->time.stable_step));
+  PetscCall(BodyComputeStableStepAt(body, NULL, PETSC_FALSE, &body->time.stable_step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

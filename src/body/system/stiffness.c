@@ -26,45 +26,68 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where an element of this rank lies in the undeformed mesh, three numbers [m] */
+static void GetCentre(Body body, PetscInt e, PetscReal centre[3])
+{
+  const PetscInt n = body->model.element->nodes;
+
+  for (PetscInt d = 0; d < 3; d++) centre[d] = 0;
+  for (PetscInt a = 0; a < n; a++)
+    for (PetscInt d = 0; d < body->mesh.dim; d++)
+      centre[d] += body->mesh.coordinates[body->mesh.connectivity[e * n + a] * body->mesh.dim + d] / (PetscReal)n;
+}
+
 /* The first rank that has an element to tell of, and where that lies; `e`: of this rank, -1: none. `first` is the number of ranks where no
    rank has one; else `centre` is that of the element in the undeformed mesh, three numbers [m]. Collective. */
 PetscErrorCode BodyFindFirstElement(Body body, PetscInt e, PetscMPIInt *first, PetscReal centre[3])
 {
-  MPI_Comm       comm = PetscObjectComm((PetscObject)body);
-  const PetscInt n    = body->model.element->nodes;
-  PetscMPIInt    rank;
+  MPI_Comm    comm = PetscObjectComm((PetscObject)body);
+  PetscMPIInt rank;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   *first = e < 0 ? body->rows.size : rank;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, first, 1, MPI_INT, MPI_MIN, comm));
   if (*first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt d = 0; d < 3; d++) centre[d] = 0;
-  for (PetscInt a = 0; a < n && rank == *first; a++)
-    for (PetscInt d = 0; d < body->mesh.dim; d++)
-      centre[d] += body->mesh.coordinates[body->mesh.connectivity[e * n + a] * body->mesh.dim + d] / (PetscReal)n;
+  if (rank == *first) GetCentre(body, e, centre);
   PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, *first, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes that the step has failed, and where, if the last internal force found an element inverted on any rank. Collective: to be called
-   where it is known to all ranks that something is wrong. */
-PetscErrorCode BodyNoteInverted(Body body)
+/* Of an element that is inverted, which is known to all ranks that it is, or to one of them that notes it alone: its number, and where it
+   lies */
+static PetscErrorCode FindInverted(Body body, PetscBool alone, PetscInt e, PetscInt *number, PetscReal centre[3])
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)body);
-  PetscReal   centre[3];
-  PetscInt    e, number, offset;
+  PetscInt    offset;
   PetscMPIInt first;
+
+  PetscFunctionBegin;
+  *number = e;
+  if (alone) {
+    if (e >= 0) GetCentre(body, e, centre);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(BodyFindFirstElement(body, e, &first, centre));
+  if (first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Scan(&body->model.element->count, &offset, 1, MPIU_INT, MPI_SUM, comm));
+  *number = offset - body->model.element->count + e;
+  PetscCallMPI(MPI_Bcast(number, 1, MPIU_INT, first, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes that the step has failed, and where, if the last internal force found an element inverted on any rank. Collective: to be called
+   where it is known to all ranks that something is wrong; but where the rank that has the body knows it alone. */
+PetscErrorCode BodyNoteInverted(Body body, PetscBool alone)
+{
+  PetscReal   centre[3] = {0};
+  PetscInt    number;
   Element     element;
 
   PetscFunctionBegin;
   PetscCall(BodyGetElement(body, &element));
-  e = element->inverted;
-  PetscCall(BodyFindFirstElement(body, e, &first, centre));
-  if (first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Scan(&body->model.element->count, &offset, 1, MPIU_INT, MPI_SUM, comm));
-  number = offset - body->model.element->count + e;
-  PetscCallMPI(MPI_Bcast(&number, 1, MPIU_INT, first, comm));
+  PetscCall(FindInverted(body, alone, element->inverted, &number, centre));
+  if (number < 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StepFailureSet(
       &body->failure, STEP_DIVERGED_INVERTED, PETSC_ERR_FP,
       "Body '%s': element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or "

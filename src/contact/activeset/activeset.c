@@ -23,19 +23,30 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
   }
 }
 
-/* Tells a body what its rows mean */
-PetscErrorCode ContactSetBodyConditions(Contact contact, ContactConditions conditions, PetscInt b)
+/* Tells the bodies what their rows mean, but those that are left out; NULL: none is, or the same of them on every rank. The ranks add up
+   their counts for all bodies at once. */
+PetscErrorCode ContactSetSomeConditions(Contact contact, ContactConditions conditions, const PetscBool left_out[])
 {
+  PetscInt *counts = contact->work.counts;
+
   PetscFunctionBegin;
-  ContactGetConditions(contact, conditions, b, contact->work.conditions);
-  PetscCall(BodySetConditions(contact->bodies[b], contact->work.conditions));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    if (left_out && left_out[b]) continue;
+    ContactGetConditions(contact, conditions, b, contact->work.conditions);
+    PetscCall(BodyProposeConditions(contact->bodies[b], contact->work.conditions, counts + BODY_CONDITION_COUNTS * b));
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, (PetscMPIInt)(BODY_CONDITION_COUNTS * contact->n_bodies), MPIU_INT, MPI_SUM,
+                               PetscObjectComm((PetscObject)contact)));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (!left_out || !left_out[b]) PetscCall(BodyTakeConditions(contact->bodies[b], counts + BODY_CONDITION_COUNTS * b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ContactSetConditions(Contact contact, ContactConditions conditions)
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactSetBodyConditions(contact, conditions, b));
+  PetscCall(ContactSetSomeConditions(contact, conditions, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,19 +94,48 @@ PetscErrorCode ContactComputeGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The failure of a body's step is that of the controller step */
+/* The failure of a body's step is that of the controller step; that of a body of one rank alone once ContactAgree() tells the others */
 static PetscErrorCode TakeFailure(Contact contact, PetscInt b, StepConvergedReason reason)
 {
   const StepFailure *failure;
+  PetscBool          local;
 
   PetscFunctionBegin;
+  PetscCall(BodyIsLocal(contact->bodies[b], &local));
+  contact->attempt.local = (PetscBool)(contact->attempt.local || local);
   if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (local) contact->attempt.failed = PetscMin(contact->attempt.failed, b);
+  if (local) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetFailure(contact->bodies[b], &failure));
   StepFailureCopy(failure, &contact->attempt.failure);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One body through the controller step, as far as its rows depend on it, unless the step has failed already */
+/* After bodies have been integrated: all ranks know that the step has failed, and why, where bodies of one rank alone tell it that. The
+   first of these counts. */
+PetscErrorCode ContactAgree(Contact contact)
+{
+  PetscInt           failed = contact->attempt.failed;
+  const StepFailure *failure;
+  StepFailure        told;
+  PetscMPIInt        rank;
+
+  PetscFunctionBegin;
+  if (!contact->attempt.local) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->attempt.local  = PETSC_FALSE;
+  contact->attempt.failed = PETSC_INT_MAX;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)contact)));
+  if (failed == PETSC_INT_MAX) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetMeshRank(contact->bodies[failed], &rank));
+  PetscCall(BodyGetFailure(contact->bodies[failed], &failure));
+  told = *failure;
+  PetscCallMPI(MPI_Bcast(&told, sizeof(told), MPI_BYTE, rank, PetscObjectComm((PetscObject)contact)));
+  StepFailureCopy(&told, &contact->attempt.failure);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One body through the controller step, as far as its rows depend on it, unless the step has failed already. ContactAgree() follows when all
+   bodies have been integrated. */
 PetscErrorCode ContactIntegrateBody(Contact contact, PetscInt b)
 {
   StepConvergedReason reason;
@@ -117,6 +157,7 @@ PetscErrorCode ContactCompleteBodies(Contact contact)
     PetscCall(BodyCompleteStep(contact->bodies[b], &reason));
     PetscCall(TakeFailure(contact, b, reason));
   }
+  PetscCall(ContactAgree(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,6 +188,7 @@ PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
     PetscCall(ContactLoadReleased(contact, b));
     PetscCall(ContactIntegrateBody(contact, b));
   }
+  PetscCall(ContactAgree(contact));
   *penetrating = PETSC_FALSE;
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactComputeGaps(contact));

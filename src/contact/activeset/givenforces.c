@@ -56,6 +56,7 @@ PetscErrorCode ContactIntegrateForces(Contact contact, const PetscReal force[])
     PetscCall(LoadRows(contact, b, force));
     PetscCall(ContactIntegrateBody(contact, b));
   }
+  PetscCall(ContactAgree(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     contact->end.force[i]  = force[i];

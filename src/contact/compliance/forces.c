@@ -40,6 +40,7 @@ PetscErrorCode ForcesIntegrate(Contact contact, Forces *forces, const PetscScala
     PetscCall(SetBodyForces(contact, b, forces->trace));
     PetscCall(ContactIntegrateBody(contact, b));
   }
+  PetscCall(ContactAgree(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   contact->counts.sweeps++;
   PetscCall(PetscTime(&finish));

@@ -156,16 +156,20 @@ static PetscErrorCode BookLevel(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Kinetic and potential energy of a body, without what is given to it for good: that of a rigid body that is led */
-static PetscErrorCode GetOwnEnergy(Body body, PetscReal *energy)
+/* Kinetic and potential energy of all bodies, without what is given to them for good: that of a rigid body that is led. Collective. */
+static PetscErrorCode GetOwnEnergy(Contact contact, PetscReal *energy)
 {
-  BodyMeasures measures;
-  PetscBool    given;
+  const BodyMeasures *measures = contact->energy.measures;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetMeasures(body, &measures));
-  PetscCall(BodyGetLed(body, NULL, &given));
-  *energy = (given ? 0 : measures.kinetic) + measures.potential;
+  *energy = 0;
+  PetscCall(BodyGetAllMeasures(contact->n_bodies, contact->bodies, contact->energy.sums, contact->energy.measures));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool given;
+
+    PetscCall(BodyGetLed(contact->bodies[b], NULL, &given));
+    *energy += (given ? 0 : measures[b].kinetic) + measures[b].potential;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,12 +183,7 @@ static PetscErrorCode GrowRoom(Contact contact)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += ContactMoreRoom(contact);
   if (!energy->at_rest || energy->excess == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscReal own = 0;
-
-    PetscCall(GetOwnEnergy(contact->bodies[b], &own));
-    now += own;
-  }
+  PetscCall(GetOwnEnergy(contact, &now));
   if (now <= energy->scale) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += energy->excess * (now - energy->scale) / contact->n_bodies;
   energy->scale = now;
@@ -270,6 +269,7 @@ PetscErrorCode ContactSetUpEnergy(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(n, &energy->stays));
+  PetscCall(PetscCalloc2(BODY_MEASURE_SUMS * n, &energy->sums, n, &energy->measures));
   PetscCall(PetscCalloc5(n, &energy->change, n, &energy->start_energy, n, &energy->first_work, n, &energy->room, n, &energy->group));
   PetscCall(
       PetscCalloc5(n, &energy->group_work, n, &energy->first_energy, n, &energy->energies, n, &energy->search, 3 * n, &energy->of_group));
@@ -285,12 +285,7 @@ PetscErrorCode ContactBeginEnergy(Contact contact)
   PetscFunctionBegin;
   if (energy->begun) PetscFunctionReturn(PETSC_SUCCESS);
   energy->begun = PETSC_TRUE;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscReal own = 0;
-
-    PetscCall(GetOwnEnergy(contact->bodies[b], &own));
-    energy->scale += own;
-  }
+  PetscCall(GetOwnEnergy(contact, &energy->scale));
   energy->at_rest = (PetscBool)(energy->scale <= 0);
   energy->scale   = PetscMax(energy->scale, 0);
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] = energy->excess * energy->scale / contact->n_bodies;
@@ -304,6 +299,7 @@ PetscErrorCode ContactDestroyEnergy(Contact contact)
   PetscFunctionBegin;
   PetscCall(DestroyRowEnergy(contact));
   PetscCall(PetscFree(energy->stays));
+  PetscCall(PetscFree2(energy->sums, energy->measures));
   PetscCall(PetscFree5(energy->change, energy->start_energy, energy->first_work, energy->room, energy->group));
   PetscCall(PetscFree5(energy->group_work, energy->first_energy, energy->energies, energy->search, energy->of_group));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -86,7 +86,7 @@ PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], Petsc
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeEnergy(contact->bodies[b], &bodies[b]));
+  PetscCall(BodyComputeEnergies(contact->n_bodies, contact->bodies, energy->sums, bodies));
   PetscCall(PetscArrayzero(springs, 2 * contact->n_pairs));
   AddSprings(contact, PETSC_TRUE, springs);
   for (PetscInt i = 0; i < contact->rows.n; i++)
@@ -109,7 +109,7 @@ PetscErrorCode ContactNoteRebuild(Contact contact)
   /* in halves of a step the staggered energy of explicit bodies is another */
   if (energy->start_known && contact->attempt.level == 0 && contact->attempt.accepted_level == 0) PetscFunctionReturn(PETSC_SUCCESS);
   energy->start_known = PETSC_FALSE;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyComputeEnergy(contact->bodies[b], &energy->start_energy[b]));
+  PetscCall(BodyComputeEnergies(contact->n_bodies, contact->bodies, energy->sums, energy->start_energy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

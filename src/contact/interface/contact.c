@@ -40,6 +40,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
   PetscCallMPI(MPI_Comm_rank(comm, &(*contact)->ranks.rank));
+  (*contact)->attempt.failed           = PETSC_INT_MAX;
   (*contact)->options.facing           = PETSC_TRUE;
   (*contact)->options.shared_times     = PETSC_TRUE;
   (*contact)->options.balanced_start   = PETSC_TRUE;
@@ -368,7 +369,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
-  PetscCall(PetscFree2(c->spares, c->work.hands_over));
+  PetscCall(PetscFree4(c->spares, c->work.hands_over, c->work.traces, c->work.counts));
   PetscCall(PetscFree(c->work.boxes));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyFloating(c));

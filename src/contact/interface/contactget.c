@@ -152,6 +152,54 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Sums over this rank's contact nodes of a body: positions and velocities, three numbers each */
+static PetscErrorCode SumBodyTrace(Contact contact, PetscInt body, PetscReal sums[6])
+{
+  const PetscScalar *x, *u, *v;
+  Vec                positions, displacements, velocities;
+  PetscInt           dim;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDimension(contact->bodies[body], &dim));
+  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+  PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));
+  for (PetscInt k = 0; k < 6; k++) sums[k] = 0;
+  if (!contact->nodes.n[body]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(positions, &x));
+  PetscCall(VecGetArrayRead(displacements, &u));
+  PetscCall(VecGetArrayRead(velocities, &v));
+  for (PetscInt i = 0; i < contact->nodes.n[body]; i++) {
+    const PetscInt dof = contact->nodes.dofs[body][i];
+
+    for (PetscInt d = 0; d < dim; d++) {
+      sums[d] += x[dof + d] + u[dof + d];
+      sums[3 + d] += v[dof + d];
+    }
+  }
+  PetscCall(VecRestoreArrayRead(velocities, &v));
+  PetscCall(VecRestoreArrayRead(displacements, &u));
+  PetscCall(VecRestoreArrayRead(positions, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Means of some bodies, from the first one on */
+static PetscErrorCode GetTraces(Contact contact, PetscInt first, PetscInt n, PetscReal sums[], PetscReal positions[],
+                                PetscReal velocities[])
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < n; b++) PetscCall(SumBodyTrace(contact, first + b, sums + 6 * b));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(6 * n), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt b = 0; b < n; b++)
+    for (PetscInt d = 0; d < 3; d++) {
+      const PetscInt nodes = contact->nodes.n_all[first + b];
+
+      positions[3 * b + d]  = nodes ? sums[6 * b + d] / nodes : 0;
+      velocities[3 * b + d] = nodes ? sums[6 * b + 3 + d] / nodes : 0;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactGetBodyTrace - mean position and velocity of the contact nodes of a body, in the first pair it takes part in
 
@@ -167,41 +215,45 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
 
   Level: intermediate
 
-.seealso: `Contact`
+.seealso: `Contact`, `ContactGetBodyTraces()`
 @*/
 PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal position[], PetscReal velocity[])
 {
-  const PetscScalar *x, *u, *v;
-  Vec                positions, displacements, velocities;
-  PetscReal          sums[6] = {0};
-  PetscInt           dim;
+  PetscReal sums[6];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(position, 3);
   PetscAssertPointer(velocity, 4);
-  PetscCall(BodyGetDimension(contact->bodies[body], &dim));
-  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
-  PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));
-  PetscCall(VecGetArrayRead(positions, &x));
-  PetscCall(VecGetArrayRead(displacements, &u));
-  PetscCall(VecGetArrayRead(velocities, &v));
-  for (PetscInt i = 0; i < contact->nodes.n[body]; i++) {
-    const PetscInt dof = contact->nodes.dofs[body][i];
+  PetscCall(GetTraces(contact, body, 1, sums, position, velocity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    for (PetscInt d = 0; d < dim; d++) {
-      sums[d] += x[dof + d] + u[dof + d];
-      sums[3 + d] += v[dof + d];
-    }
-  }
-  PetscCall(VecRestoreArrayRead(velocities, &v));
-  PetscCall(VecRestoreArrayRead(displacements, &u));
-  PetscCall(VecRestoreArrayRead(positions, &x));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 6, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt d = 0; d < 3; d++) {
-    position[d] = contact->nodes.n_all[body] ? sums[d] / contact->nodes.n_all[body] : 0;
-    velocity[d] = contact->nodes.n_all[body] ? sums[3 + d] / contact->nodes.n_all[body] : 0;
-  }
+/*@
+  ContactGetBodyTraces - mean position and velocity of the contact nodes of each body, in the first pair it takes part in
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameters:
++ positions  - 3 numbers for each body [m]
+- velocities - 3 numbers for each body [m/s]
+
+  Level: intermediate
+
+  Note:
+  As `ContactGetBodyTrace()` of each, with one sum over the ranks for all.
+
+.seealso: `Contact`, `ContactGetBodyTrace()`
+@*/
+PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], PetscReal velocities[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(positions, 2);
+  PetscAssertPointer(velocities, 3);
+  PetscCall(GetTraces(contact, 0, contact->n_bodies, contact->work.traces, positions, velocities));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

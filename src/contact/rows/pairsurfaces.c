@@ -267,6 +267,20 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where one of several ranks has all of both surfaces it is the only one that looks at them */
+static PetscErrorCode SetOwner(Contact contact, const ContactPair *pair)
+{
+  PetscMPIInt rank[2];
+
+  PetscFunctionBegin;
+  if (contact->ranks.size == 1 || contact->options.balance) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetMeshRank(contact->bodies[pair->body[0]], &rank[0]));
+  rank[1] = rank[0];
+  if (!pair->obstacle) PetscCall(BodyGetMeshRank(contact->bodies[pair->body[1]], &rank[1]));
+  if (rank[0] >= 0 && rank[0] == rank[1]) PetscCall(TransferSetOwner(pair->transfer, rank[0]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The transfer of a pair, whose surfaces are known */
 PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
 {
@@ -284,6 +298,7 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
     linear = (PetscBool)(linear && is_linear);
   }
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
+  PetscCall(SetOwner(contact, pair));
   PetscCall(TransferSetMoved(pair->transfer, PETSC_TRUE));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
   /* in three dimensions coarse balls lose six times the energy if bends count with normals that are means by areas */

@@ -315,6 +315,35 @@ static PetscErrorCode UpdatePair(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What has become of the rows of a pair */
+enum { ROWS_STAY, ROWS_FOLLOWED, ROWS_REBUILT };
+
+/* Builds the rows of those pairs again whose surfaces have slid or turned far enough, and lets those near contact follow: what has become of
+   them, for each pair, the same on all ranks */
+static PetscErrorCode UpdatePairs(Contact contact, PetscReal near)
+{
+  int *updated = contact->work.updated;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair     = &contact->pairs[p];
+    PetscBool    followed = PETSC_FALSE, rebuilt, logged;
+
+    updated[p] = ROWS_STAY;
+    if (pair->bonded || (pair->far && pair->was_far)) continue;
+    PetscCall(StageBegin(STAGE_SEARCH, &logged));
+    PetscCall(UpdatePair(contact, pair, near, &rebuilt));
+    PetscCall(StageEnd(logged));
+    if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
+    updated[p] = rebuilt ? ROWS_REBUILT : followed ? ROWS_FOLLOWED : ROWS_STAY;
+  }
+  /* of a pair that one rank has to itself it alone knows */
+  if (contact->ranks.size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, updated, (PetscMPIInt)contact->n_pairs, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough, and lets those
    near contact follow. Rows in contact that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
@@ -342,20 +371,15 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactMoveSurfaces(contact));
   PetscCall(ContactFindFarPairs(contact, near));
   PetscCall(StageEnd(logged));
+  PetscCall(UpdatePairs(contact, near));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair     = &contact->pairs[p];
-    PetscBool    followed = PETSC_FALSE, rebuilt;
+    const PetscBool rebuilt = (PetscBool)(contact->work.updated[p] == ROWS_REBUILT);
 
-    if (pair->bonded || (pair->far && pair->was_far)) continue;
-    PetscCall(StageBegin(STAGE_SEARCH, &logged));
-    PetscCall(UpdatePair(contact, pair, near, &rebuilt));
-    PetscCall(StageEnd(logged));
-    if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
-    if (!rebuilt && !followed) continue;
+    if (contact->work.updated[p] == ROWS_STAY) continue;
     built = (PetscBool)(built || rebuilt);
     any   = PETSC_TRUE;
-    Affect(contact, pair, rebuilt);
-    PetscCall(ContactDescribeRows(contact, pair));
+    Affect(contact, &contact->pairs[p], rebuilt);
+    PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
   }
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   if (built) contact->counts.rebuilds++;

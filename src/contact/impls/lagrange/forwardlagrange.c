@@ -57,6 +57,7 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
     PetscCall(BodyAddImpulse(contact->bodies[b], lagrange->forces.mine));
     PetscCall(ContactIntegrateBody(contact, b));
   }
+  PetscCall(ContactAgree(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     contact->end.force[i]  = lagrange->forces.forces[i];
     contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || contact->end.force[i] > 0);

@@ -225,6 +225,7 @@ PetscErrorCode SchwarzPrepareCondensed(Contact contact)
   if (!schwarz->have_base) {
     PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(MakeBase(contact, b));
+    PetscCall(ContactAgree(contact));
     schwarz->have_base = PETSC_TRUE;
   }
   PetscCall(SchwarzSetRoles(contact));
@@ -261,6 +262,7 @@ PetscErrorCode SchwarzFinishCondensed(Contact contact)
   }
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactIntegrateBody(contact, b));
+  PetscCall(ContactAgree(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

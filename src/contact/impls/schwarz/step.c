@@ -31,8 +31,7 @@ static PetscErrorCode PrepareSweeps(Contact contact)
   PetscCall(SchwarzFindGroups(contact));
   schwarz->goes_on = (PetscBool)(schwarz->iterated && schwarz->groups.on && !schwarz->substeps);
   PetscCall(SchwarzPredict(contact));
-  for (PetscInt b = 0; b < contact->n_bodies && schwarz->step == STEP_WHOLE; b++)
-    if (!schwarz->groups.rests[b]) PetscCall(ContactSetBodyConditions(contact, SchwarzConditions(schwarz), b));
+  if (schwarz->step == STEP_WHOLE) PetscCall(ContactSetSomeConditions(contact, SchwarzConditions(schwarz), schwarz->groups.rests));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

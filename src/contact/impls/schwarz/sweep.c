@@ -300,6 +300,7 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
     else PetscCall(ContactIntegrateBody(contact, contact->order[k]));
     if (schwarz->has_forces) PetscCall(SchwarzReportByForce(contact, contact->order[k]));
   }
+  PetscCall(ContactAgree(contact));
   if (ContactFailed(contact)) PetscCall(ContactRejectResidual(F));
   else {
     PetscCall(VecGetArrayWrite(F, &f));

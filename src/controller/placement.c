@@ -1,0 +1,131 @@
+/*
+   Bodies that are whole on one rank. A body that is divided is integrated by all ranks together, which wait for each other in each of its
+   steps: with few elements that takes longer than the elements. Where there are many small bodies, each is given to one rank, and those that
+   are near each other to the same one as far as they can: their places are halved across their longest extent, with as much work on both
+   sides, until there is a part for each rank (recursive coordinate bisection, as in src/mesh/bisection.c).
+*/
+#include "controllerimpl.h"
+#include <impakt/mesh.h>
+#include <impakt/tssecondorder.h>
+
+/* Cells up to which an explicit body is small: the elements of one with more take as long as some reductions */
+#define SMALL 2000
+/* So many small bodies for each rank, at least: the ranks are to have as much work each, to a quarter */
+#define MANY 4
+
+typedef struct {
+  PetscInt  n, *bodies; /* those that are placed */
+  PetscReal (*places)[3], *work;
+  PetscInt *ranks; /* of each body of the controller, PETSC_DECIDE: it is divided */
+} Placement;
+
+/* Whether a body may be given to one rank, as its options say, and whether it has to */
+static PetscErrorCode IsSmall(Body body, PetscBool *small, PetscBool *asks, PetscReal place[3], PetscReal *work)
+{
+  char        type[64] = "";
+  const char *prefix   = ((PetscObject)body)->prefix;
+  PetscInt    cells;
+  PetscBool   may, is_explicit, rigid = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(MeshMayBeWhole(prefix, &may, asks));
+  PetscCall(MeshEstimate(prefix, &cells, place));
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
+  PetscCall(PetscStrcasecmp(type, TSCENTRALDIFFERENCE, &is_explicit));
+  PetscCall(PetscOptionsGetBool(NULL, prefix, "-rigid", &rigid, NULL));
+  *small = (PetscBool)(may && is_explicit && !rigid && cells > 0 && cells <= SMALL);
+  *work  = (PetscReal)PetscMax(cells, 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The axis along which these bodies reach farthest */
+static PetscInt LongestAxis(const Placement *p, PetscInt n, const PetscInt list[])
+{
+  PetscReal longest = -1;
+  PetscInt  axis    = 0;
+
+  for (PetscInt d = 0; d < 3; d++) {
+    PetscReal lower = PETSC_MAX_REAL, upper = -PETSC_MAX_REAL;
+
+    for (PetscInt i = 0; i < n; i++) {
+      lower = PetscMin(lower, p->places[list[i]][d]);
+      upper = PetscMax(upper, p->places[list[i]][d]);
+    }
+    if (upper - lower > longest) axis = d;
+    longest = PetscMax(longest, upper - lower);
+  }
+  return axis;
+}
+
+/* Gives bodies to the ranks from `first` on, as much work to each; list: their numbers in the placement */
+static PetscErrorCode Halve(Placement *p, PetscInt n, PetscInt list[], PetscMPIInt first, PetscMPIInt size)
+{
+  PetscReal *along;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &along));
+  while (size > 1) {
+    const PetscMPIInt below = size / 2;
+    const PetscInt    axis  = LongestAxis(p, n, list);
+    PetscReal         all = 0, sum = 0;
+    PetscInt          k = 0;
+
+    PetscCall(PetscSortInt(n, list)); /* those at one place in the order of their numbers */
+    for (PetscInt i = 0; i < n; i++) {
+      along[i] = p->places[list[i]][axis];
+      all += p->work[list[i]];
+    }
+    PetscCall(PetscSortRealWithArrayInt(n, along, list));
+    while (k < n && sum + 0.5 * p->work[list[k]] < all * below / size) sum += p->work[list[k++]];
+    PetscCall(Halve(p, k, list, first, below)); /* as deep as the logarithm of the number of ranks */
+    list += k;
+    n -= k;
+    first += below;
+    size -= below;
+  }
+  for (PetscInt i = 0; i < n; i++) p->ranks[p->bodies[list[i]]] = first;
+  PetscCall(PetscFree(along));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ControllerPlaceBodies - tells bodies from options that are to be whole on one rank on which, before their meshes are made */
+PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
+{
+  const PetscInt n     = controller->n_bodies - begin;
+  Placement      p     = {0};
+  PetscInt       small = 0, *list;
+  PetscBool     *asks;
+  PetscMPIInt    size;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)controller), &size));
+  if (size == 1 || n < 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc5(n, &p.bodies, n, &p.places, n, &p.work, n, &p.ranks, n, &list));
+  PetscCall(PetscMalloc1(n, &asks));
+  for (PetscInt b = 0; b < n; b++) {
+    PetscBool is_small = PETSC_FALSE;
+
+    p.ranks[b] = PETSC_DECIDE;
+    PetscCall(IsSmall(controller->bodies[begin + b], &is_small, &asks[b], p.places[p.n], &p.work[p.n]));
+    if (!is_small && !asks[b]) continue;
+    if (is_small) small++;
+    p.bodies[p.n++] = b;
+  }
+  if (small < MANY * size) { /* those alone that ask for it */
+    PetscInt kept = 0;
+
+    for (PetscInt i = 0; i < p.n; i++) {
+      if (!asks[p.bodies[i]]) continue;
+      p.bodies[kept] = p.bodies[i];
+      p.work[kept]   = p.work[i];
+      PetscCall(PetscArraycpy(p.places[kept++], p.places[i], 3));
+    }
+    p.n = kept;
+  }
+  for (PetscInt i = 0; i < p.n; i++) list[i] = i;
+  PetscCall(Halve(&p, p.n, list, 0, size));
+  for (PetscInt b = 0; b < n; b++) PetscCall(BodySetMeshRank(controller->bodies[begin + b], (PetscMPIInt)p.ranks[b]));
+  PetscCall(PetscFree(asks));
+  PetscCall(PetscFree5(p.bodies, p.places, p.work, p.ranks, list));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,165 @@
+/* Meshes that lie whole on one rank: of which size and where they will be, as options tell before there is a mesh, and how they get there.
+ */
+#include "meshimpl.h"
+#include <petscpartitioner.h>
+
+/* Cells of a section of an O-grid, a disc or that of a rod: the central block, and the four around it */
+static PetscInt SectionCells(PetscInt divisions, PetscInt layers)
+{
+  return divisions * (divisions + 4 * layers);
+}
+
+/* Divisions and layers of an O-grid; nothing is checked, which is for those who make the mesh */
+static PetscErrorCode GetGrid(const char prefix[], const char shape[], PetscInt *divisions, PetscInt *layers)
+{
+  char option[64];
+
+  PetscFunctionBegin;
+  *divisions = 4;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_divisions", shape));
+  PetscCall(PetscOptionsGetInt(NULL, prefix, option, divisions, NULL));
+  *layers = (*divisions + 1) / 2;
+  PetscCall(PetscSNPrintf(option, sizeof(option), "-%s_layers", shape));
+  PetscCall(PetscOptionsGetInt(NULL, prefix, option, layers, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EstimateBox(const char prefix[], PetscInt dim, PetscInt *cells, PetscReal centre[3])
+{
+  PetscInt  faces[3] = {1, 1, 1}, n = 3;
+  PetscReal lower[3] = {0, 0, 0}, upper[3] = {1, 1, 1};
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < dim; d++) faces[d] = dim == 1 ? 1 : 4 - dim;
+  PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-dm_plex_box_faces", faces, &n, NULL));
+  n = 3;
+  PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-dm_plex_box_lower", lower, &n, NULL));
+  n = 3;
+  PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-dm_plex_box_upper", upper, &n, NULL));
+  *cells = 1;
+  for (PetscInt d = 0; d < dim; d++) {
+    *cells    = faces[d] > 0 && faces[d] < PETSC_INT_MAX / *cells ? *cells * faces[d] : PETSC_INT_MAX;
+    centre[d] = 0.5 * (lower[d] + upper[d]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  MeshEstimate - how many cells a mesh will have, and where it will be, as its options tell before it is made
+
+  Not Collective
+
+  Input Parameter:
+. prefix - of its options, such as "left_"
+
+  Output Parameters:
++ cells  - their number; 0 where the options do not tell, as with a file
+- centre - about where its middle is, three numbers [m]
+
+  Level: developer
+
+  Note:
+  To choose the rank on which a mesh is to lie whole: rotations and parts of balls do not count, and nothing is an error.
+
+.seealso: `MeshCreateOnRank()`, `MeshMayBeWhole()`
+@*/
+PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal centre[3])
+{
+  PetscReal shift[3] = {0, 0, 0}, scale = 1;
+  PetscInt  dim = 2, divisions, layers, n = 3;
+  PetscBool file, ball, rod, simplex      = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscAssertPointer(cells, 2);
+  PetscAssertPointer(centre, 3);
+  *cells = 0;
+  for (PetscInt d = 0; d < 3; d++) centre[d] = 0;
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_filename", &file));
+  PetscCall(MeshIsBall(prefix, &ball));
+  PetscCall(MeshIsRod(prefix, &rod));
+  PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &dim, NULL));
+  dim = PetscMin(PetscMax(dim, 1), 3);
+  if (ball) {
+    PetscCall(GetGrid(prefix, "ball", &divisions, &layers));
+    *cells = SectionCells(divisions, layers);
+    if (dim == 3) *cells = divisions * divisions * (divisions + 6 * layers);
+    PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-ball_centre", centre, &n, NULL));
+  } else if (rod) {
+    PetscInt elements = 10;
+
+    dim = 3;
+    PetscCall(GetGrid(prefix, "rod", &divisions, &layers));
+    PetscCall(PetscOptionsGetInt(NULL, prefix, "-rod_elements", &elements, NULL));
+    *cells = elements * SectionCells(divisions, layers);
+  } else if (!file) PetscCall(EstimateBox(prefix, dim, cells, centre));
+  PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &simplex, NULL));
+  if (simplex && dim > 1 && *cells < PETSC_INT_MAX / 6) *cells *= dim == 2 ? 2 : 6;
+  n = 3;
+  PetscCall(PetscOptionsGetReal(NULL, prefix, "-scale", &scale, NULL));
+  PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-translate", shift, &n, NULL));
+  for (PetscInt d = 0; d < 3; d++) centre[d] = scale * centre[d] + shift[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  MeshMayBeWhole - whether options leave it open how a mesh is divided among ranks, or ask for it to be whole
+
+  Not Collective
+
+  Input Parameter:
+. prefix - of its options, such as "left_"
+
+  Output Parameters:
++ may  - no option asks for a division
+- asks - `-<body>_mesh_division whole`
+
+  Level: developer
+
+.seealso: `MeshCreateOnRank()`, `MeshEstimate()`
+@*/
+PetscErrorCode MeshMayBeWhole(const char prefix[], PetscBool *may, PetscBool *asks)
+{
+  static const char *const options[]  = {"-petscpartitioner_type", "-dm_distribute",         "-dm_distribute_overlap", "-mesh_bricks",
+                                         "-mesh_division",         "-mesh_contact_surfaces", "-mesh_contact_cost"};
+  PetscBool                has        = PETSC_FALSE;
+  char                     division[] = "graphs"; /* as long as the longest word, and one more */
+
+  PetscFunctionBegin;
+  PetscAssertPointer(may, 2);
+  PetscAssertPointer(asks, 3);
+  PetscCall(PetscOptionsHasName(NULL, NULL, "-petscpartitioner_type", &has));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !has; i++) PetscCall(PetscOptionsHasName(NULL, prefix, options[i], &has));
+  *may = (PetscBool)!has;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-mesh_division", division, sizeof(division), NULL));
+  PetscCall(PetscStrcasecmp(division, "whole", asks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves a mesh from the first rank, which has all of it, and the positions in the middle of its edges, if there are any, to another one */
+PetscErrorCode MeshMoveToRank(PetscMPIInt rank, DM *dm, MeshMiddles *middles)
+{
+  PetscPartitioner partitioner;
+  PetscInt         start, end, *sizes, *cells;
+  PetscMPIInt      size;
+  DM               moved;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)*dm), &size));
+  PetscCall(DMPlexGetHeightStratum(*dm, 0, &start, &end));
+  PetscCall(PetscCalloc2(size, &sizes, end - start, &cells));
+  for (PetscInt c = start; c < end; c++) cells[c - start] = c - start;
+  sizes[rank] = end - start;
+  PetscCall(DMPlexGetPartitioner(*dm, &partitioner));
+  PetscCall(PetscPartitionerSetType(partitioner, PETSCPARTITIONERSHELL));
+  PetscCall(PetscPartitionerShellSetPartition(partitioner, size, sizes, cells));
+  PetscCall(PetscFree2(sizes, cells));
+  if (middles->section) {
+    PetscCall(MeshDivideWithMiddles(dm, middles));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(DMPlexDistribute(*dm, 0, NULL, &moved));
+  if (!moved) PetscFunctionReturn(PETSC_SUCCESS); /* there is one rank */
+  PetscCall(DMDestroy(dm));
+  *dm = moved;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
