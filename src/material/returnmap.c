@@ -5,7 +5,8 @@
      q - (3 mu + K) d = strength(strain + d),
 
    K the modulus of kinematic hardening (Simo, Hughes, Computational Inelasticity, 1998, section 3.3). Where strength is no linear function
-   of the strain the root is found by Newton's method, kept between 0 and q / (3 mu + K), where the two sides change order.
+   of the strain, nor one in pieces, the root is found by Newton's method, kept between 0 and q / (3 mu + K), where the two sides change
+   order.
 */
 #include <impakt/private/plastic.h>
 #include <impakt/private/simdmath.h>
@@ -16,48 +17,23 @@
 /* Strains below, of which powers are taken, count as this */
 #define SMALLEST 1e-300
 
-/* Strength less that of the virgin material at a plastic strain, from the table; beyond, it stays */
-static PetscReal OfTable(const Plastic *plastic, PetscReal strain, PetscReal *slope)
-{
-  PetscInt k = 1;
-
-  *slope = plastic->modulus;
-  if (plastic->hardening != HARDENING_TABLE) return plastic->modulus * strain;
-  while (k + 1 < plastic->n_table && strain > plastic->strain[k]) k++;
-  *slope = (plastic->stress[k] - plastic->stress[k - 1]) / (plastic->strain[k] - plastic->strain[k - 1]);
-  if (strain > plastic->strain[k]) {
-    *slope = 0;
-    return plastic->stress[k] - plastic->stress[0];
-  }
-  return plastic->stress[k - 1] - plastic->stress[0] + *slope * (strain - plastic->strain[k - 1]);
-}
-
-/* Strength of half a batch less that of the virgin material, by the equivalent plastic strain alone, and its slope [Pa] */
+/* Of Voce's law or Johnson and Cook's: strength of half a batch less that of the virgin material, by the equivalent plastic strain alone,
+ * and its slope [Pa] */
 SIMD_INLINE SimdVector GetStrength(const Plastic *plastic, SimdVector strain, SimdVector *slope)
 {
-  SimdVector strength = {0};
-
   if (plastic->hardening == HARDENING_VOCE) {
     const PetscReal  rise = plastic->saturation - plastic->yield;
     const SimdVector rest = SimdExp(-plastic->saturate_at * strain);
 
     *slope = plastic->modulus + rise * plastic->saturate_at * rest;
     return plastic->modulus * strain + rise * (1 - rest);
-  }
-  if (plastic->hardening == HARDENING_JOHNSON_COOK) {
+  } else {
     const SimdVector inside = SimdMax(strain, SimdAll(SMALLEST)), power = plastic->modulus * SimdExp(plastic->exponent * SimdLog(inside));
     const SimdBits   any = (SimdBits)(strain > SMALLEST);
 
-    *slope = SimdSelect(any, plastic->exponent * power / inside, strength);
-    return SimdSelect(any, power, strength);
+    *slope = SimdSelect(any, plastic->exponent * power / inside, SimdAll(0));
+    return SimdSelect(any, power, SimdAll(0));
   }
-  for (int p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) {
-    PetscReal of_point;
-
-    strength[p] = OfTable(plastic, strain[p], &of_point);
-    (*slope)[p] = of_point;
-  }
-  return strength;
 }
 
 /* Johnson and Cook's factor of temperature, from the work that has become heat */
@@ -88,11 +64,9 @@ SIMD_INLINE SimdVector FirstGuess(const Plastic *plastic, SimdVector excess, Pet
   if (plastic->hardening == HARDENING_VOCE)
     return excess / (stiffness + plastic->modulus +
                      plastic->saturate_at * (plastic->saturation - plastic->yield - strength + plastic->modulus * strain));
-  if (plastic->hardening == HARDENING_JOHNSON_COOK)
-    return excess / SimdSelect((SimdBits)(strain > SMALLEST),
-                               stiffness + soft * (plastic->exponent * strength / SimdMax(strain, SimdAll(SMALLEST))),
-                               SimdAll(2 * stiffness));
-  return excess / stiffness;
+  return excess / SimdSelect((SimdBits)(strain > SMALLEST),
+                             stiffness + soft * (plastic->exponent * strength / SimdMax(strain, SimdAll(SMALLEST))),
+                             SimdAll(2 * stiffness));
 }
 
 /* The roots of those points of half a batch that flow, from a first guess; NaN where there is none to be found */
@@ -129,9 +103,9 @@ SIMD_INLINE SimdVector FindRoots(const Plastic *plastic, PetscReal dt, SimdVecto
   return SimdSelect(open, SimdAll(NAN), growth);
 }
 
-/* Of any law, half a batch */
-SIMD_INLINE void FindFlowOfPart(const Plastic *plastic, PetscReal dt, PetscInt part, const PetscReal equivalent[8],
-                                const PetscReal start[][8], PlasticFlow *flow)
+/* Of these two, half a batch */
+SIMD_INLINE void FindCurvedFlowOfPart(const Plastic *plastic, PetscReal dt, PetscInt part, const PetscReal equivalent[8],
+                                      const PetscReal start[][8], PlasticFlow *flow)
 {
   const SimdVector q = ((const SimdVector *)equivalent)[part], strain = ((const SimdVector *)start[PLASTIC_STRAIN])[part];
   const SimdVector before = ((const SimdVector *)start[PLASTIC_STRENGTH])[part], zero = {0};
@@ -143,7 +117,7 @@ SIMD_INLINE void FindFlowOfPart(const Plastic *plastic, PetscReal dt, PetscInt p
   if (plastic->hardening == HARDENING_JOHNSON_COOK) soft = GetSoftening(plastic, ((const SimdVector *)start[PLASTIC_WORK])[part]);
   excess = q - soft * (yield + before);
   flows  = (SimdBits)(excess > 0); /* not where the stress is no number */
-  for (int p = 0; p < SIMD_WIDTH / SIMD_PARTS && dt >= 0; p++) any |= flows[p];
+  for (int p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) any |= flows[p];
   if (any) {
     growth   = SimdSelect(flows, FirstGuess(plastic, excess, stiffness, soft, strain, before), zero);
     growth   = FindRoots(plastic, dt, q, strain, soft, flows, growth, &slope);
@@ -157,10 +131,53 @@ SIMD_INLINE void FindFlowOfPart(const Plastic *plastic, PetscReal dt, PetscInt p
   SimdGetParts(flow->work)[part] = soft * growth * (yield + 0.5 * (before + strength) + (rated - 1) * (yield + strength));
 }
 
-SIMD_CLONES static void FindAnyFlow(const Plastic *plastic, PetscReal dt, const PetscReal q[8], const PetscReal start[][8],
-                                    PlasticFlow *flow)
+SIMD_CLONES static void FindCurvedFlow(const Plastic *plastic, PetscReal dt, const PetscReal q[8], const PetscReal start[][8],
+                                       PlasticFlow *flow)
 {
-  for (PetscInt part = 0; part < SIMD_PARTS; part++) FindFlowOfPart(plastic, dt, part, q, start, flow);
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) FindCurvedFlowOfPart(plastic, dt, part, q, start, flow);
+}
+
+/* Of a table: from one of its points to the next, and beyond them without hardening */
+static void FlowAlongTable(const Plastic *plastic, PetscReal excess, PetscReal strain, PetscReal *growth, PetscReal *strength,
+                           PetscReal *slope)
+{
+  const PetscReal stiffness = 3 * plastic->elastic.mu + plastic->kinematic;
+  PetscInt        k         = 1;
+
+  while (k < plastic->n_table && strain >= plastic->strain[k]) k++;
+  for (;; k++) {
+    const PetscBool last = (PetscBool)(k == plastic->n_table);
+    const PetscReal room = last ? PETSC_MAX_REAL : plastic->strain[k] - (strain + *growth);
+    PetscReal       step;
+
+    *slope = last ? 0 : (plastic->stress[k] - plastic->stress[k - 1]) / (plastic->strain[k] - plastic->strain[k - 1]);
+    step   = PetscMin(room, excess / (stiffness + *slope));
+    *growth += step;
+    *strength += *slope * step;
+    excess -= (stiffness + *slope) * step;
+    if (step < room) return;
+  }
+}
+
+static void FindTableFlow(const Plastic *plastic, const PetscReal q[8], const PetscReal start[][8], PlasticFlow *flow)
+{
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const PetscReal before = start[PLASTIC_STRENGTH][p], excess = q[p] - (plastic->yield + before);
+
+    flow->strain[p] = flow->slope[p] = 0;
+    flow->strength[p]                = before;
+    if (excess > 0) FlowAlongTable(plastic, excess, start[PLASTIC_STRAIN][p], &flow->strain[p], &flow->strength[p], &flow->slope[p]);
+    flow->work[p] = flow->strain[p] * (plastic->yield + 0.5 * (before + flow->strength[p]));
+  }
+}
+
+/* Where nothing is to flow */
+static void FindNoFlow(const PetscReal start[][8], PlasticFlow *flow)
+{
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    flow->strain[p] = flow->work[p] = flow->slope[p] = 0;
+    flow->strength[p]                                = start[PLASTIC_STRENGTH][p];
+  }
 }
 
 /* Of linear hardening, for all points at once */
@@ -184,9 +201,8 @@ SIMD_CLONES static void FindLinearFlow(const Plastic *plastic, const PetscReal q
    a negative dt: nothing is to flow */
 void PlasticFindFlow(const Plastic *plastic, PetscReal dt, const PetscReal q[8], const PetscReal start[][8], PlasticFlow *flow)
 {
-  if (plastic->hardening == HARDENING_LINEAR && dt >= 0) {
-    FindLinearFlow(plastic, q, start, flow);
-    return;
-  }
-  FindAnyFlow(plastic, dt, q, start, flow);
+  if (dt < 0) FindNoFlow(start, flow);
+  else if (plastic->hardening == HARDENING_LINEAR) FindLinearFlow(plastic, q, start, flow);
+  else if (plastic->hardening == HARDENING_TABLE) FindTableFlow(plastic, q, start, flow);
+  else FindCurvedFlow(plastic, dt, q, start, flow);
 }
