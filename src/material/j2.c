@@ -13,7 +13,7 @@
    degree 2 by Cayley and Hamilton's A^3 = I A^2 - II A + III. Where strains are too large for the series it comes from eigenvalues.
 */
 #include "logarithm.h"
-#include "symmetric.h"
+#include "logarithmderivative.h"
 #include <impakt/private/plastic.h>
 #include <math.h>
 
@@ -217,20 +217,60 @@ static void GetMatrices(const Trial *trial, const PetscReal history[][8], int p,
   ToMatrix(packed, a);
 }
 
-/* With kinematic hardening M has axes of its own: point by point */
-static void StoreCentredStress(const Trial *trial, const PetscReal history[][8], PetscReal M[6][8], PetscReal P[9][8])
+/* P = Fe S Fp^-T with S = D ln(C)[M] where M has axes of its own, as with kinematic hardening */
+SIMD_INLINE void StoreTurnedStress(PetscInt part, const Trial *trial, const PetscReal history[][8], Symmetric m, PetscReal norm,
+                                   PetscReal P[9][8])
 {
-  for (int p = 0; p < SIMD_WIDTH; p++) {
-    PetscReal    f[3][3], g[3][3], a[3][3], m[3][3], stress[3][3], packed[6];
-    SymmetricLog log;
+  const Symmetric S = SymmetricLogDerivative(SymmetricGet(trial->A, part), m, norm);
+  SimdVector      f[9], g[9], n[9];
+  SimdReal        determinant, defined;
 
-    GetMatrices(trial, history, p, f, g, a);
-    for (int i = 0; i < 6; i++) packed[i] = M[i][p];
-    ToMatrix(packed, m);
-    SymmetricLogCreate((const PetscReal(*)[3])a, PETSC_FALSE, &log);
-    GetStressOfPoint(&log, f, g, m, stress);
-    for (int i = 0; i < 9; i++) P[i][p] = stress[i / 3][i % 3];
+  for (PetscInt i = 0; i < 9; i++) {
+    f[i] = SymmetricLoad(trial->Fe[i], part);
+    g[i] = SymmetricLoad(history[PLASTIC_DEFORMATION + i], part);
   }
+  for (PetscInt i = 0; i < 9; i += 4) {
+    f[i] += 1;
+    g[i] += 1;
+  }
+  SimdGetParts(determinant)[0] = f[0] * (f[4] * f[8] - f[5] * f[7]) + f[1] * (f[5] * f[6] - f[3] * f[8]) +
+                                 f[2] * (f[3] * f[7] - f[4] * f[6]);
+  for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) defined[p] = determinant[p] > 0 ? 1 : NAN;
+#pragma GCC unroll 3
+  for (PetscInt i = 0; i < 3; i++) {
+    n[3 * i]     = SimdGetParts(defined)[0] * (f[3 * i] * S.xx + f[3 * i + 1] * S.xy + f[3 * i + 2] * S.zx);
+    n[3 * i + 1] = SimdGetParts(defined)[0] * (f[3 * i] * S.xy + f[3 * i + 1] * S.yy + f[3 * i + 2] * S.yz);
+    n[3 * i + 2] = SimdGetParts(defined)[0] * (f[3 * i] * S.zx + f[3 * i + 1] * S.yz + f[3 * i + 2] * S.zz);
+#pragma GCC unroll 3
+    for (PetscInt j = 0; j < 3; j++)
+      SimdGetParts(P[3 * i + j])[part] = n[3 * i] * g[3 * j] + n[3 * i + 1] * g[3 * j + 1] + n[3 * i + 2] * g[3 * j + 2];
+  }
+}
+
+/* The same by eigenvalues, of points with too large strains */
+static void TurnStressOfPoint(int p, const Trial *trial, const PetscReal history[][8], PetscReal M[6][8], PetscReal P[9][8])
+{
+  PetscReal    f[3][3], g[3][3], a[3][3], m[3][3], stress[3][3], packed[6];
+  SymmetricLog log;
+
+  GetMatrices(trial, history, p, f, g, a);
+  for (int i = 0; i < 6; i++) packed[i] = M[i][p];
+  ToMatrix(packed, m);
+  SymmetricLogCreate((const PetscReal(*)[3])a, PETSC_FALSE, &log);
+  GetStressOfPoint(&log, f, g, m, stress);
+  for (int i = 0; i < 9; i++) P[i][p] = stress[i / 3][i % 3];
+}
+
+SIMD_INLINE void StoreCentredStress(const Trial *trial, const PetscReal history[][8], PetscReal M[6][8], PetscReal P[9][8])
+{
+  PetscReal largest = 0;
+
+  for (int p = 0; p < SIMD_WIDTH; p++) largest = PetscMax(largest, trial->squares[p]);
+  for (PetscInt part = 0; part < SIMD_PARTS; part++)
+    StoreTurnedStress(part, trial, history, SymmetricGet(M, part), PetscSqrtReal(largest), P);
+  if (largest <= SERIES_LIMIT * SERIES_LIMIT) return;
+  for (int p = 0; p < SIMD_WIDTH; p++)
+    if (trial->squares[p] > SERIES_LIMIT * SERIES_LIMIT) TurnStressOfPoint(p, trial, history, M, P);
 }
 
 /* Deviator of M less the centre of the yield surface */

@@ -5,95 +5,179 @@
      q - (3 mu + K) d = strength(strain + d),
 
    K the modulus of kinematic hardening (Simo, Hughes, Computational Inelasticity, 1998, section 3.3). Where strength is no linear function
-   of the strain the root is found by Newton's method, kept between 0 and q / (3 mu + K), where the two sides change order.
+   of the strain, nor one in pieces, the root is found by Newton's method, kept between 0 and q / (3 mu + K), where the two sides change
+   order.
 */
 #include <impakt/private/plastic.h>
+#include <impakt/private/simdmath.h>
 #include <math.h>
 
 #define MAX_ITERATIONS 60
 #define TOLERANCE      (8 * PETSC_MACHINE_EPSILON)
+/* Strains below, of which powers are taken, count as this */
+#define SMALLEST 1e-300
 
-/* Strength less that of the virgin material, by the equivalent plastic strain alone, and its slope [Pa] */
-static PetscReal StrengthAt(const Plastic *plastic, PetscReal strain, PetscReal *slope)
+/* Of Voce's law or Johnson and Cook's: strength of half a batch less that of the virgin material, by the equivalent plastic strain alone,
+ * and its slope [Pa] */
+SIMD_INLINE SimdVector GetStrength(const Plastic *plastic, SimdVector strain, SimdVector *slope)
 {
-  PetscInt k = 1;
-
-  switch (plastic->hardening) {
-  case HARDENING_VOCE: {
-    const PetscReal rise = plastic->saturation - plastic->yield, rest = PetscExpReal(-plastic->saturate_at * strain);
+  if (plastic->hardening == HARDENING_VOCE) {
+    const PetscReal  rise = plastic->saturation - plastic->yield;
+    const SimdVector rest = SimdExp(-plastic->saturate_at * strain);
 
     *slope = plastic->modulus + rise * plastic->saturate_at * rest;
-    return plastic->modulus * strain - rise * expm1(-plastic->saturate_at * strain);
-  }
-  case HARDENING_TABLE:
-    while (k + 1 < plastic->n_table && strain > plastic->strain[k]) k++;
-    *slope = (plastic->stress[k] - plastic->stress[k - 1]) / (plastic->strain[k] - plastic->strain[k - 1]);
-    if (strain > plastic->strain[k]) { /* beyond the table the strength stays */
-      *slope = 0;
-      return plastic->stress[k] - plastic->stress[0];
-    }
-    return plastic->stress[k - 1] - plastic->stress[0] + *slope * (strain - plastic->strain[k - 1]);
-  case HARDENING_JOHNSON_COOK:
-    if (!(strain > 0)) {
-      *slope = 0;
-      return 0;
-    }
-    *slope = plastic->modulus * plastic->exponent * PetscPowReal(strain, plastic->exponent - 1);
-    return plastic->modulus * PetscPowReal(strain, plastic->exponent);
-  default:
-    *slope = plastic->modulus;
-    return plastic->modulus * strain;
+    return plastic->modulus * strain + rise * (1 - rest);
+  } else {
+    const SimdVector inside = SimdMax(strain, SimdAll(SMALLEST)), power = plastic->modulus * SimdExp(plastic->exponent * SimdLog(inside));
+    const SimdBits   any = (SimdBits)(strain > SMALLEST);
+
+    *slope = SimdSelect(any, plastic->exponent * power / inside, SimdAll(0));
+    return SimdSelect(any, power, SimdAll(0));
   }
 }
 
 /* Johnson and Cook's factor of temperature, from the work that has become heat */
-static PetscReal Softened(const Plastic *plastic, PetscReal work)
+SIMD_INLINE SimdVector GetSoftening(const Plastic *plastic, SimdVector work)
 {
-  PetscReal homologous;
+  const PetscReal  by_work    = plastic->heat_fraction / (plastic->density * plastic->specific_heat);
+  const SimdVector homologous = (plastic->initial - plastic->room + by_work * work) / (plastic->melting - plastic->room);
+  const SimdVector inside     = SimdMin(SimdMax(homologous, SimdAll(SMALLEST)), SimdAll(1));
 
-  if (plastic->hardening != HARDENING_JOHNSON_COOK) return 1;
-  homologous = (plastic->initial + plastic->heat_fraction * work / (plastic->density * plastic->specific_heat) - plastic->room) /
-               (plastic->melting - plastic->room);
-  if (homologous <= 0) return 1;
-  return homologous >= 1 ? 0 : 1 - PetscPowReal(homologous, plastic->softening);
+  return 1 - SimdSelect((SimdBits)(homologous > SMALLEST), SimdExp(plastic->softening * SimdLog(inside)), SimdAll(0));
 }
 
 /* Their factor of the strain rate, 1 below the reference rate, and its slope by the growth of the strain in the step */
-static PetscReal Rated(const Plastic *plastic, PetscReal growth, PetscReal dt, PetscReal *slope)
+SIMD_INLINE SimdVector GetRate(const Plastic *plastic, SimdVector growth, PetscReal dt, SimdVector *slope)
 {
-  const PetscReal ratio = dt > 0 ? growth / (dt * plastic->reference_rate) : 0;
+  const PetscReal  inverse = dt > 0 ? 1 / (dt * plastic->reference_rate) : 0;
+  const SimdVector ratio = growth * inverse, fast = SimdMax(ratio, SimdAll(1));
 
-  *slope = 0;
-  if (plastic->hardening != HARDENING_JOHNSON_COOK || !(ratio > 1)) return 1;
-  *slope = plastic->rate / growth;
-  return 1 + plastic->rate * PetscLogReal(ratio);
+  *slope = SimdSelect((SimdBits)(ratio > 1), plastic->rate * inverse / fast, SimdAll(0));
+  return 1 + plastic->rate * SimdLog(fast);
 }
 
-/* The root at one point, whose equivalent stress is above its strength; NaN where there is none to be found */
-static PetscReal FindRoot(const Plastic *plastic, PetscReal dt, PetscReal q, PetscReal strain, PetscReal soft, PetscReal *slope)
+/* The step from the start by the slope there, which is below the root of a law that becomes flatter; half of what perfect plasticity
+   would do where the slope may be infinite */
+SIMD_INLINE SimdVector FirstGuess(const Plastic *plastic, SimdVector excess, PetscReal stiffness, SimdVector soft, SimdVector strain,
+                                  SimdVector strength)
+{
+  if (plastic->hardening == HARDENING_VOCE)
+    return excess / (stiffness + plastic->modulus +
+                     plastic->saturate_at * (plastic->saturation - plastic->yield - strength + plastic->modulus * strain));
+  return excess / SimdSelect((SimdBits)(strain > SMALLEST),
+                             stiffness + soft * (plastic->exponent * strength / SimdMax(strain, SimdAll(SMALLEST))),
+                             SimdAll(2 * stiffness));
+}
+
+/* The roots of those points of half a batch that flow, from a first guess; NaN where there is none to be found */
+SIMD_INLINE SimdVector FindRoots(const Plastic *plastic, PetscReal dt, SimdVector q, SimdVector strain, SimdVector soft, SimdBits flows,
+                                 SimdVector growth, SimdVector *slope)
 {
   const PetscReal stiffness = 3 * plastic->elastic.mu + plastic->kinematic;
-  PetscReal       low = 0, high = q / stiffness, growth = 0;
+  SimdVector      low = {0}, high = q / stiffness, rated = SimdAll(1), by_rate = {0}, by_strain;
+  SimdBits        open = flows;
 
-  /* from the start of the step the slope of a power law may be infinite */
-  if (plastic->hardening == HARDENING_JOHNSON_COOK) growth = PetscMax(0, (q - soft * plastic->yield) / stiffness) * 0.5;
+  *slope = low;
   for (PetscInt iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-    PetscReal       by_strain, by_rate;
-    const PetscReal hardened = plastic->yield + StrengthAt(plastic, strain + growth, &by_strain);
-    const PetscReal rated    = Rated(plastic, growth, dt, &by_rate);
-    const PetscReal excess = q - stiffness * growth - soft * rated * hardened, next = soft * (rated * by_strain + by_rate * hardened);
+    const SimdVector whole = plastic->yield + GetStrength(plastic, strain + growth, &by_strain);
+    SimdVector       excess, step, moved;
+    SimdBits         found, settled;
+    int64_t          left = 0;
+
+    if (plastic->hardening == HARDENING_JOHNSON_COOK) rated = GetRate(plastic, growth, dt, &by_rate);
+    excess = q - stiffness * growth - soft * rated * whole;
+    *slope = SimdSelect(open, soft * (rated * by_strain + by_rate * whole), *slope);
+    low    = SimdSelect((SimdBits)(excess > 0), growth, low);
+    high   = SimdSelect((SimdBits)(excess > 0), high, growth);
+    moved  = growth + excess / (stiffness + *slope);
+    moved  = SimdSelect((SimdBits)(moved > low) & (SimdBits)(moved < high), moved, 0.5 * (low + high));
+    step   = moved - growth;
+    /* whether the excess is round-off, and whether what is left to go is */
+    found   = (SimdBits)(SimdMax(excess, -excess) <= TOLERANCE * q);
+    settled = (SimdBits)(SimdMax(step, -step) <= TOLERANCE * moved) | (SimdBits)(high - low <= TOLERANCE * high);
+    growth  = SimdSelect(open & ~found, moved, growth);
+    open &= ~(found | settled);
+    for (int p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) left |= open[p];
+    if (!left) return growth;
+  }
+  return SimdSelect(open, SimdAll(NAN), growth);
+}
+
+/* Of these two, half a batch */
+SIMD_INLINE void FindCurvedFlowOfPart(const Plastic *plastic, PetscReal dt, PetscInt part, const PetscReal equivalent[8],
+                                      const PetscReal start[][8], PlasticFlow *flow)
+{
+  const SimdVector q = ((const SimdVector *)equivalent)[part], strain = ((const SimdVector *)start[PLASTIC_STRAIN])[part];
+  const SimdVector before = ((const SimdVector *)start[PLASTIC_STRENGTH])[part], zero = {0};
+  const PetscReal  stiffness = 3 * plastic->elastic.mu + plastic->kinematic, yield = plastic->yield;
+  SimdVector       soft = SimdAll(1), rated = soft, excess, growth = zero, strength = before, slope = zero, unused;
+  SimdBits         flows;
+  int64_t          any = 0;
+
+  if (plastic->hardening == HARDENING_JOHNSON_COOK) soft = GetSoftening(plastic, ((const SimdVector *)start[PLASTIC_WORK])[part]);
+  excess = q - soft * (yield + before);
+  flows  = (SimdBits)(excess > 0); /* not where the stress is no number */
+  for (int p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) any |= flows[p];
+  if (any) {
+    growth   = SimdSelect(flows, FirstGuess(plastic, excess, stiffness, soft, strain, before), zero);
+    growth   = FindRoots(plastic, dt, q, strain, soft, flows, growth, &slope);
+    strength = SimdSelect(flows, GetStrength(plastic, strain + growth, &unused), before);
+    if (plastic->hardening == HARDENING_JOHNSON_COOK) rated = GetRate(plastic, growth, dt, &unused);
+  }
+  SimdGetParts(flow->strain)[part]   = growth;
+  SimdGetParts(flow->strength)[part] = strength;
+  SimdGetParts(flow->slope)[part]    = slope;
+  /* at rest the mean of the strengths at both ends; what the rate adds is what it adds at the end */
+  SimdGetParts(flow->work)[part] = soft * growth * (yield + 0.5 * (before + strength) + (rated - 1) * (yield + strength));
+}
+
+SIMD_CLONES static void FindCurvedFlow(const Plastic *plastic, PetscReal dt, const PetscReal q[8], const PetscReal start[][8],
+                                       PlasticFlow *flow)
+{
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) FindCurvedFlowOfPart(plastic, dt, part, q, start, flow);
+}
+
+/* Of a table: from one of its points to the next, and beyond them without hardening */
+static void FlowAlongTable(const Plastic *plastic, PetscReal excess, PetscReal strain, PetscReal *growth, PetscReal *strength,
+                           PetscReal *slope)
+{
+  const PetscReal stiffness = 3 * plastic->elastic.mu + plastic->kinematic;
+  PetscInt        k         = 1;
+
+  while (k < plastic->n_table && strain >= plastic->strain[k]) k++;
+  for (;; k++) {
+    const PetscBool last = (PetscBool)(k == plastic->n_table);
+    const PetscReal room = last ? PETSC_MAX_REAL : plastic->strain[k] - (strain + *growth);
     PetscReal       step;
 
-    *slope = next;
-    if (PetscAbsReal(excess) <= TOLERANCE * q) return growth;
-    if (excess > 0) low = growth;
-    else high = growth;
-    step = excess / (stiffness + next);
-    if (!(growth + step > low && growth + step < high)) step = 0.5 * (low + high) - growth;
-    growth += step;
-    if (PetscAbsReal(step) <= TOLERANCE * growth || high - low <= TOLERANCE * high) return growth;
+    *slope = last ? 0 : (plastic->stress[k] - plastic->stress[k - 1]) / (plastic->strain[k] - plastic->strain[k - 1]);
+    step   = PetscMin(room, excess / (stiffness + *slope));
+    *growth += step;
+    *strength += *slope * step;
+    excess -= (stiffness + *slope) * step;
+    if (step < room) return;
   }
-  return NAN;
+}
+
+static void FindTableFlow(const Plastic *plastic, const PetscReal q[8], const PetscReal start[][8], PlasticFlow *flow)
+{
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    const PetscReal before = start[PLASTIC_STRENGTH][p], excess = q[p] - (plastic->yield + before);
+
+    flow->strain[p] = flow->slope[p] = 0;
+    flow->strength[p]                = before;
+    if (excess > 0) FlowAlongTable(plastic, excess, start[PLASTIC_STRAIN][p], &flow->strain[p], &flow->strength[p], &flow->slope[p]);
+    flow->work[p] = flow->strain[p] * (plastic->yield + 0.5 * (before + flow->strength[p]));
+  }
+}
+
+/* Where nothing is to flow */
+static void FindNoFlow(const PetscReal start[][8], PlasticFlow *flow)
+{
+  for (int p = 0; p < SIMD_WIDTH; p++) {
+    flow->strain[p] = flow->work[p] = flow->slope[p] = 0;
+    flow->strength[p]                                = start[PLASTIC_STRENGTH][p];
+  }
 }
 
 /* Of linear hardening, for all points at once */
@@ -117,25 +201,8 @@ SIMD_CLONES static void FindLinearFlow(const Plastic *plastic, const PetscReal q
    a negative dt: nothing is to flow */
 void PlasticFindFlow(const Plastic *plastic, PetscReal dt, const PetscReal q[8], const PetscReal start[][8], PlasticFlow *flow)
 {
-  if (plastic->hardening == HARDENING_LINEAR && dt >= 0) {
-    FindLinearFlow(plastic, q, start, flow);
-    return;
-  }
-  for (int p = 0; p < SIMD_WIDTH; p++) {
-    const PetscReal strain = start[PLASTIC_STRAIN][p], before = start[PLASTIC_STRENGTH][p],
-                    soft = Softened(plastic, start[PLASTIC_WORK][p]);
-    PetscReal       slope, rate_slope, growth;
-
-    flow->strain[p] = flow->work[p] = flow->slope[p] = 0;
-    flow->strength[p]                                = before;
-    if (dt < 0 || q[p] <= soft * (plastic->yield + before) || q[p] == 0 || isnan(q[p]))
-      continue; /* a stress that is none goes on as it is */
-    growth            = FindRoot(plastic, dt, q[p], strain, soft, &flow->slope[p]);
-    flow->strain[p]   = growth;
-    flow->strength[p] = StrengthAt(plastic, strain + growth, &slope);
-    /* at rest the mean of the strengths at both ends; what the rate adds is what it adds at the end */
-    flow->work[p] = soft * growth *
-                    (plastic->yield + 0.5 * (before + flow->strength[p]) +
-                     (Rated(plastic, growth, dt, &rate_slope) - 1) * (plastic->yield + flow->strength[p]));
-  }
+  if (dt < 0) FindNoFlow(start, flow);
+  else if (plastic->hardening == HARDENING_LINEAR) FindLinearFlow(plastic, q, start, flow);
+  else if (plastic->hardening == HARDENING_TABLE) FindTableFlow(plastic, q, start, flow);
+  else FindCurvedFlow(plastic, dt, q, start, flow);
 }

@@ -54,6 +54,14 @@ def test_mooney_rivlin(impakt):
     assert force(impakt(f"{coarse} -rubber_mooney_rivlin_share 0.3")) == pytest.approx(force(impakt(coarse)), rel=1e-3)
 
 
+@pytest.mark.parametrize("step", [0.2, 0.5])
+def test_large_steps(impakt, step):
+    """What the plate does is carried into the block before Newton's method begins: steps of 0.1 and 0.25 mm, 40 % of an element's height, go through whole and end where
+    ten of 0.05 mm do. With the plate's nodes alone moved, those of 0.1 mm failed."""
+    case = f"{CASE} -rubber_dm_plex_box_faces 32,16 -controller_step_cuts 0"
+    assert force(impakt(f"{case} -time_step {step}")) == pytest.approx(force(impakt(case)), rel=1e-9)
+
+
 def test_locking(impakt):
     """Full integration is told to lock, and is 3.6 times as stiff on 16 x 8 elements."""
     run = impakt(f"{CASE} -rubber_dm_plex_box_faces 16,8 -rubber_element_formulation full")

@@ -200,6 +200,7 @@ PetscErrorCode BodyImplicitDestroy(Body body)
 
   PetscFunctionBegin;
   for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
+  for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&implicit->lead[k]));
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
     PetscCall(MatDestroy(&implicit->matrices[k]));
     PetscCall(VecDestroy(&implicit->points[k]));

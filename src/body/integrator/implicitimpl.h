@@ -15,6 +15,7 @@ typedef struct {
   PetscReal  shift_velocity;              /* of C where the body is damped [1/s] */
   PetscReal  terms, round_off;            /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
   PetscReal  unit_strain;                 /* norm of the forces of strains of size 1, of a nonlinear body [N] */
+  Vec        lead[4];                     /* work of BodyImplicitCarry() */
   Vec        u, v, a, next;               /* state of a body at rest while a column of the compliance is made; NULL until then */
 } BodyImplicit;
 
@@ -33,5 +34,6 @@ PETSC_INTERN PetscErrorCode BodyImplicitSetRows(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode BodyImplicitCheckSubstep(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitAddForces(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitPrescribe(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyImplicitCarry(Body, BodyResidualFn *, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitCorrect(Body, const PetscScalar[], const PetscScalar[], Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitVisit(Body, PetscInt, Checkpoint);

@@ -19,7 +19,7 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First iterate: the last displacement with held dofs and prescribed rows in place */
+/* First iterate: the last displacement with held dofs and prescribed rows in place, and what they do to a nonlinear body */
 static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 {
   Body body = (Body)ctx;
@@ -30,6 +30,7 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscCall(VecCopy(body->state.a, A0));
   PetscCall(VecCopy(X0, X1));
   PetscCall(BodyImplicitPrescribe(body, X1));
+  if (!body->model.linear) PetscCall(BodyImplicitCarry(body, ComputeResidual, X0, X1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,6 +54,8 @@ static PetscErrorCode SetUp(Body body)
              "course of %" PetscInt_FMT " substeps; set -%sts_time_step to -time_step, or prescribe displacements",
              body->hdr.name, body->time.substeps, ((PetscObject)body)->prefix);
   PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
+  for (PetscInt k = 0; k < 4 && !body->model.linear; k++)
+    PetscCall(BodyCreateVec(body, &((BodyImplicit *)body->integrator->data)->lead[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
