@@ -67,7 +67,8 @@ export OMPI_CC := clang-19
 export MPICH_CC := clang-19
 endif
 
-WARNINGS := -Wall -Wextra -Werror
+# vectors are handed over within a file alone: it is no matter how they are between compilers
+WARNINGS := -Wall -Wextra -Werror -Wno-psabi
 CFLAGS   := -std=c11 -fopenmp-simd $(WARNINGS) $(OPTIMISE)
 # One set of objects serves the program and the shared library, which shows nothing but what is PETSC_EXTERN
 SHARED   := -fPIC -fvisibility=hidden -fno-semantic-interposition
