@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from cases import long
-from solidmeshes import SHAPES, dim_of, sides
+from solidmeshes import SHAPES, dim_of, made_by_options, sides
 
 E, NU, RHO = 8.0, 0.3, 2.0
 LAMBDA, MU = E * NU / (1 + NU) / (1 - 2 * NU), E / 2 / (1 + NU)
@@ -13,7 +13,7 @@ OMEGA = 3.0
 
 def box(shape, n):
     dim = dim_of(shape)
-    return f"-b_dm_plex_dim {dim} -b_dm_plex_simplex {str(shape in ('tri3', 'tet4')).lower()} -b_dm_plex_box_faces {','.join([str(n)] * dim)}"
+    return f"-b_dm_plex_dim {dim} {made_by_options(shape)} -b_dm_plex_box_faces {','.join([str(n)] * dim)}"
 
 
 def error(impakt, options):
@@ -45,7 +45,7 @@ def standing(dim, w):
 
 
 # Edge of the box [m] and elements along it in the finest of three meshes. Tetrahedra take more of them for a wave until their order shows
-BOXES = {"tri3": (1, 32), "quad4": (1, 32), "tet4": (0.4, 8), "hex8": (1, 12)}
+BOXES = {"tri3": (1, 32), "quad4": (1, 32), "tet4": (0.4, 8), "hex8": (1, 12), "tri6": (1, 16), "tet10": (0.4, 4)}
 
 
 @pytest.mark.parametrize(
@@ -53,7 +53,7 @@ BOXES = {"tri3": (1, 32), "quad4": (1, 32), "tet4": (0.4, 8), "hex8": (1, 12)}
     [
         *((shape, "alpha2 averaged") for shape in SHAPES),
         ("quad4", "centraldifference lumped"),
-        *long(*((shape, "centraldifference lumped") for shape in ("tri3", "tet4", "hex8"))),
+        *long(*((shape, "centraldifference lumped") for shape in ("tri3", "tet4", "hex8", "tri6", "tet10"))),
     ],
 )
 def test_space(impakt, shape, ts):
