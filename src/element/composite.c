@@ -12,9 +12,9 @@
    the corners they are found once, with weights that integrate linear functions exactly, so that gradients have their mean and volumes
    are those of the parts.
 
-   The ratio of volumes is the mean of the element to the power s, times that of the point to the power 1 - s (B. Moran, M. Ortiz, C. F. Shih,
-   International Journal for Numerical Methods in Engineering 29, 1990). Of the mean alone, s = 1, tetrahedra have three motions that store
-   nothing, those that change angles nowhere and volumes not on average; in plane strain angles to the plane change with them. What a
+   The ratio of volumes is the mean of the element to the power s, times that of the point to the power 1 - s (B. Moran, M. Ortiz, C. F.
+   Shih, International Journal for Numerical Methods in Engineering 29, 1990). Of the mean alone, s = 1, tetrahedra have three motions that
+   store nothing, those that change angles nowhere and volumes not on average; in plane strain angles to the plane change with them. What a
    change of volume that is not the mean stores is (1 - s)^2 kappa, which is made STIFFNESS times the shear modulus mu, small beside what
    changes of shape store whatever Poisson's ratio is: more made rubber slow to converge by Newton's method.
 */
@@ -193,7 +193,7 @@ static PetscErrorCode FillAll(Element element)
   composite->weights   = composite->gradients + batches * of_batch * (size_t)(nodes * dim);
   for (PetscInt slot = 0; slot < (PetscInt)batches * SIMD_WIDTH; slot++) {
     PetscReal  gradients[4][COMPOSITE_MAX_NODES][3], weights[4];
-    PetscReal *to      = composite->gradients + (size_t)(slot / SIMD_WIDTH) * of_batch * (size_t)(nodes * dim) + slot % SIMD_WIDTH;
+    PetscReal *to         = composite->gradients + (size_t)(slot / SIMD_WIDTH) * of_batch * (size_t)(nodes * dim) + slot % SIMD_WIDTH;
     PetscReal *weights_to = composite->weights + (size_t)(slot / SIMD_WIDTH) * of_batch + slot % SIMD_WIDTH;
 
     PetscCall(FillElement(element, PetscMin(slot, element->count - 1), gradients, weights));

@@ -33,9 +33,9 @@ static PetscErrorCode HasEnds(DM dm, DMLabel label, PetscInt value, PetscInt edg
    faces. A node in the middle of an edge stays where the ends of the edge are in the label too. */
 static PetscErrorCode MendPoint(DMPlexTransform division, DM dm, DMLabel label, PetscInt value, PetscInt point, DMLabel divided)
 {
-  DMPolytopeType  shape, *shapes;
-  PetscInt        n, *sizes, *cones, *turns;
-  PetscBool       ends = PETSC_FALSE;
+  DMPolytopeType shape, *shapes;
+  PetscInt       n, *sizes, *cones, *turns;
+  PetscBool      ends = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(DMPlexGetCellType(dm, point, &shape));

@@ -46,7 +46,7 @@ static PetscErrorCode FindShape(const Exodus *exodus, const char type[], PetscIn
       {"TETRA", DM_POLYTOPE_TETRAHEDRON, PETSC_FALSE},     {"HEX", DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE},
       {"HEXAHEDRON", DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE},
   };
-  char   stem[64];
+  char     stem[64];
   PetscInt corners;
   size_t   length;
   long     said;

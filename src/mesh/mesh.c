@@ -169,8 +169,8 @@ elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner
 @*/
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
-  char      path[PETSC_MAX_PATH_LEN];
-  PetscBool from_file, blocks, composite, ball = PETSC_FALSE, rod = PETSC_FALSE, whole = PETSC_TRUE;
+  char        path[PETSC_MAX_PATH_LEN];
+  PetscBool   from_file, blocks, composite, ball = PETSC_FALSE, rod = PETSC_FALSE, whole = PETSC_TRUE;
   MeshMiddles middles = {NULL, NULL};
 
   PetscFunctionBegin;

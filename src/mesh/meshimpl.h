@@ -25,7 +25,7 @@ typedef struct {
 typedef struct {
   DMPolytopeType shape;
   PetscInt       dim, corners;
-  PetscInt       nodes; /* corners, and the nodes in the middle of the edges where there are some, in VTK's order */
+  PetscInt       nodes;                /* corners, and the nodes in the middle of the edges where there are some, in VTK's order */
   PetscInt       n, first, first_node; /* number of elements; where those of the first begin in `numbers` and in `element_nodes` */
   PetscInt       n_groups, first_group;
   PetscBool      chosen; /* they are cells of this body */
@@ -60,7 +60,8 @@ typedef struct {
   PetscInt      *cells, *cell_numbers; /* vertices of each cell; its number in the file */
   PetscInt      *vertex_of_node;       /* < 0: not the body's */
   PetscReal     *vertices;
-  /* of a body of six-node triangles or ten-node tetrahedra: the ends of all edges of all cells and the node in the middle, 3 numbers; none: 0 */
+  /* of a body of six-node triangles or ten-node tetrahedra: the ends of all edges of all cells and the node in the middle, 3 numbers; none:
+   * 0 */
   PetscInt  n_edges;
   PetscInt *edges;
   PetscInt *edge_of_node; /* point of the DMPlex; -1: the node is in the middle of none. NULL without such cells */

@@ -32,8 +32,8 @@ PetscErrorCode MeshFileCollectEdges(MeshFile *file)
         for (PetscInt i = 0; i < 2; i++) edge[i] = file->cells[cell * file->corners + edges[k][i]];
         edge[2] = middle;
         PetscCheck(file->vertex_of_node[middle] < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-                   "node %" PetscInt_FMT " is in the middle of an edge of element %" PetscInt_FMT
-                   " (%s, %" PetscInt_FMT " nodes) and a corner of another: neighbours must have their edges in common",
+                   "node %" PetscInt_FMT " is in the middle of an edge of element %" PetscInt_FMT " (%s, %" PetscInt_FMT
+                   " nodes) and a corner of another: neighbours must have their edges in common",
                    Number(file, middle), file->cell_numbers[cell], DMPolytopeTypes[file->shape], run->nodes);
         for (PetscInt d = 0; d < file->dim; d++)
           PetscCheck(!PetscIsInfOrNanReal(file->coordinates[3 * middle + d]), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,

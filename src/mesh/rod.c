@@ -76,8 +76,8 @@ static PetscErrorCode ReadRod(MPI_Comm comm, const char prefix[], Rod *rod)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the simplices that fill what a triangle or a line of the disc becomes between two of its copies: diagonals of its sides lead from the
-   node with the lower number below to that with the higher one above, so that neighbours cut their common side alike */
+/* Adds the simplices that fill what a triangle or a line of the disc becomes between two of its copies: diagonals of its sides lead from
+   the node with the lower number below to that with the higher one above, so that neighbours cut their common side alike */
 static PetscErrorCode AddSimplices(const Rod *rod, PetscInt n, const PetscInt flat[], PetscInt lower, PetscInt upper)
 {
   static const PetscInt parts[2][3][4] = {{{0, 1, 3}, {0, 3, 2}}, {{0, 1, 2, 5}, {1, 0, 4, 5}, {0, 3, 4, 5}}};

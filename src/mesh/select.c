@@ -96,7 +96,8 @@ static PetscErrorCode CollectCells(MeshFile *file)
 
     if (!run->chosen) continue;
     for (PetscInt e = 0; e < run->n; e++)
-      PetscCall(PetscArraycpy(file->cells + (cell + e) * file->corners, file->element_nodes + run->first_node + e * run->nodes, file->corners));
+      PetscCall(
+          PetscArraycpy(file->cells + (cell + e) * file->corners, file->element_nodes + run->first_node + e * run->nodes, file->corners));
     PetscCall(PetscArraycpy(file->cell_numbers + cell, file->numbers + run->first, run->n));
     cell += run->n;
   }

@@ -128,7 +128,8 @@ static const KnownOption options[] = {
      "bodies; with modes of their own that bend, for implicit and static bodies; or with one point, for explicit ones. Default full, but "
      "mean_dilatation where Poisson's "
      "ratio is "
-     "larger than 0.4, except in plane stress. Of triangles and tetrahedra: composite divides each into 4 or 8, which together are an element of six or "
+     "larger than 0.4, except in plane stress. Of triangles and tetrahedra: composite divides each into 4 or 8, which together are an "
+     "element of six or "
      "ten nodes that does not lock; default for files of such elements"},
 
     {"loads", OPTION_OF_BODY, "boundary_displacement", "a,b", "surfaces or node sets whose displacement is prescribed"},

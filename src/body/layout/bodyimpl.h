@@ -22,14 +22,14 @@ typedef struct {
   PetscInt      *node_of_vertex; /* of the vertices in their order */
   PetscInt      *connectivity;   /* nodes of the elements, element by element */
   /* the cells of the DM, which are the elements but for composite ones: each of these is made of several cells that follow each other */
-  PetscInt  n_cells, cell_nodes, cells_of_element;
-  PetscInt *cell_connectivity; /* `connectivity`, where cells are elements */
-  PetscReal     *coordinates;    /* local_nodes x dim: reference positions [m] */
-  PetscInt      *ghost_dofs;     /* global numbers */
-  Vec            positions;      /* reference positions of owned nodes, laid out as displacements [m] */
-  PetscReal      cells[2];       /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
-  PetscBool     *on_axis;        /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
-  PetscBool      touches_axis;   /* there are such nodes on any rank */
+  PetscInt   n_cells, cell_nodes, cells_of_element;
+  PetscInt  *cell_connectivity; /* `connectivity`, where cells are elements */
+  PetscReal *coordinates;       /* local_nodes x dim: reference positions [m] */
+  PetscInt  *ghost_dofs;        /* global numbers */
+  Vec        positions;         /* reference positions of owned nodes, laid out as displacements [m] */
+  PetscReal  cells[2];          /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
+  PetscBool *on_axis;           /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
+  PetscBool  touches_axis;      /* there are such nodes on any rank */
 } BodyMesh;
 
 /* Blocks of the mesh with materials of their own, and last, where there are cells in none of them, one with the body's */
