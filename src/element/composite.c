@@ -12,14 +12,18 @@
    the corners they are found once, with weights that integrate linear functions exactly, so that gradients have their mean and volumes
    are those of the parts.
 
-   The ratio of volumes is the mean of the element to the power SHARE, times that of the point to the power 1 - SHARE (B. Moran, M. Ortiz,
-   C. F. Shih, International Journal for Numerical Methods in Engineering 29, 1990): of the mean alone tetrahedra have three motions
-   that store nothing, those that change angles nowhere and volumes not on average.
+   The ratio of volumes is the mean of the element to the power s, times that of the point to the power 1 - s (B. Moran, M. Ortiz, C. F.
+   Shih, International Journal for Numerical Methods in Engineering 29, 1990). Of the mean alone, s = 1, tetrahedra have three motions that
+   store nothing, those that change angles nowhere and volumes not on average; in plane strain angles to the plane change with them. What a
+   change of volume that is not the mean stores is (1 - s)^2 kappa, which is made STIFFNESS times the shear modulus mu, small beside what
+   changes of shape store whatever Poisson's ratio is: more made rubber slow to converge by Newton's method.
 */
 #include "composite.h"
 
-/* Part of the mean in the ratio of volumes */
-#define SHARE 0.95
+/* Modulus of changes of volume within tetrahedra, in parts of the shear modulus */
+#define STIFFNESS 0.02
+/* 1 - s at most, and for materials without a ratio of Poisson */
+#define LARGEST 0.1
 /* Below this part of the mean of all, the volume of a linear part is round-off */
 #define DEGENERATE 1e-10
 
@@ -189,7 +193,7 @@ static PetscErrorCode FillAll(Element element)
   composite->weights   = composite->gradients + batches * of_batch * (size_t)(nodes * dim);
   for (PetscInt slot = 0; slot < (PetscInt)batches * SIMD_WIDTH; slot++) {
     PetscReal  gradients[4][COMPOSITE_MAX_NODES][3], weights[4];
-    PetscReal *to      = composite->gradients + (size_t)(slot / SIMD_WIDTH) * of_batch * (size_t)(nodes * dim) + slot % SIMD_WIDTH;
+    PetscReal *to         = composite->gradients + (size_t)(slot / SIMD_WIDTH) * of_batch * (size_t)(nodes * dim) + slot % SIMD_WIDTH;
     PetscReal *weights_to = composite->weights + (size_t)(slot / SIMD_WIDTH) * of_batch + slot % SIMD_WIDTH;
 
     PetscCall(FillElement(element, PetscMin(slot, element->count - 1), gradients, weights));
@@ -331,6 +335,22 @@ static PetscErrorCode ElementDestroy_Composite(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* s */
+static PetscErrorCode GetShare(Element element, PetscReal *share)
+{
+  PetscErrorCode (*get)(Material, PetscReal *);
+  PetscReal ratio, shear;
+
+  PetscFunctionBegin;
+  *share = element->dim == 3 ? 1 - LARGEST : 1;
+  PetscCall(PetscObjectQueryFunction((PetscObject)element->material, "MaterialGetPoissonsRatio_C", &get));
+  if (element->dim == 2 || !get) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall((*get)(element->material, &ratio));
+  shear = 1.5 * (1 - 2 * ratio) / (1 + ratio); /* mu / kappa */
+  if (shear > 0) *share = 1 - PetscMin(LARGEST, PetscSqrtReal(STIFFNESS * shear));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All but the loops over all elements, of an element that has been made as one of the linear ones */
 PetscErrorCode ElementCreate_Composite(Element element, const CompositeShape *shape)
 {
@@ -361,7 +381,7 @@ PetscErrorCode ElementCreate_Composite(Element element, const CompositeShape *sh
   element->ops->destroy = ElementDestroy_Composite;
   if (!element->plane_stress) {
     PetscCall(ElementCreate_Solid_MeanDilatation(element));
-    solid->mean_share = SHARE;
+    PetscCall(GetShare(element, &solid->mean_share));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

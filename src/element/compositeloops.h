@@ -197,7 +197,8 @@ SIMD_INLINE void Undilate(PetscBool linear, PetscReal share, const CompositePoin
 }
 
 /* What the mean pressure adds to the stress of a point */
-SIMD_INLINE void AddPressure(PetscBool linear, const CompositeMeans *means, const CompositePoint *at, const SimdReal pressure, SimdReal P[9])
+SIMD_INLINE void AddPressure(PetscBool linear, const CompositeMeans *means, const CompositePoint *at, const SimdReal pressure,
+                             SimdReal P[9])
 {
   for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
     const PetscReal mean = pressure[p] * means->inverse[p] / means->volume[p];
@@ -234,7 +235,7 @@ SIMD_INLINE PetscInt AddBatch(const Solid *solid, PetscBool linear, PetscReal sc
                               const CompositePoint at[POINTS], const CompositeMeans *means, SimdReal P[POINTS][9], const PetscInt nodes[],
                               PetscInt in_batch, PetscReal f[])
 {
-  const PetscReal share = solid->mean_share;
+  const PetscReal share              = solid->mean_share;
   SimdReal        force[DIM * NODES] = {{0}}, pressure = {0};
   PetscInt        bad = -1;
 

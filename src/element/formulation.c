@@ -88,8 +88,8 @@ PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char 
   against the potential energy where elements do not bend. Quadrilaterals and hexahedra have it.
 
   `ELEMENT_COMPOSITE` makes one element of six or ten nodes of 4 triangles or 8 tetrahedra into which a cell has been divided, with
-  gradients that are linear over it and one mean change of volume. It does not lock. Meshes of such elements, which `MeshCreateComposite()` and files
-  of six-node triangles or ten-node tetrahedra make, have it by default.
+  gradients that are linear over it and one mean change of volume. It does not lock. Meshes of such elements, which `MeshCreateComposite()`
+and files of six-node triangles or ten-node tetrahedra make, have it by default.
 
 .seealso: `Element`, `ElementGetFormulation()`, `BodySetElementFormulation()`, `ElementRegisterFormulation()`
 @*/
@@ -132,8 +132,8 @@ PetscErrorCode ElementSetComposite(Element element)
 {
   PetscFunctionBegin;
   PetscCheck(element->cell_type == DM_POLYTOPE_TRIANGLE || element->cell_type == DM_POLYTOPE_TETRAHEDRON,
-             PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_INCOMP, "-%selement_formulation composite: elements of shape '%s' have none",
-             Prefix(element), DMPolytopeTypes[element->cell_type]);
+             PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_INCOMP,
+             "-%selement_formulation composite: elements of shape '%s' have none", Prefix(element), DMPolytopeTypes[element->cell_type]);
   PetscCheck(!element->axisymmetric, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
              "-%saxisymmetric true: rings of six-node triangles are not supported; use quadrilaterals, or -%selement_formulation full",
              Prefix(element), Prefix(element));
@@ -235,8 +235,8 @@ PetscErrorCode ElementApplyFormulation(Element element)
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_MEAN_DILATATION, &mean));
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_COMPOSITE, &composite));
   PetscCheck(composite == element->composite, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_INCOMP,
-             "-%selement_formulation %s: the elements have %" PetscInt_FMT " nodes%s", Prefix(element), element->formulation, element->nodes,
-             composite ? "; make the mesh by MeshCreate() or MeshCreateComposite()" : "");
+             "-%selement_formulation %s: the elements have %" PetscInt_FMT " nodes%s", Prefix(element), element->formulation,
+             element->nodes, composite ? "; make the mesh by MeshCreate() or MeshCreateComposite()" : "");
   PetscCall(HasHistory(element, &flows));
   PetscCheck(full || mean || composite || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
              "-%selement_formulation %s: it keeps no history of plastic flow; use mean_dilatation or full", Prefix(element),
@@ -285,6 +285,8 @@ PetscErrorCode ElementWarnOfLocking(Element element)
                            "is larger than %g, and are too stiff; use a mesh of quadrilaterals or hexahedra%s%s%s\n",
                            ((PetscObject)element)->name ? ((PetscObject)element)->name : "", material, DMPolytopeTypes[element->cell_type],
                            LOCKING_RATIO, element->axisymmetric ? "" : ", or -", element->axisymmetric ? "" : Prefix(element),
-                           element->axisymmetric ? "" : "element_formulation composite, which files of 6-node triangles and 10-node tetrahedra have by default"));
+                           element->axisymmetric
+                               ? ""
+                               : "element_formulation composite, which files of 6-node triangles and 10-node tetrahedra have by default"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

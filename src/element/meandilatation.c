@@ -67,9 +67,9 @@ static void FillPoint(Element element, PetscInt e, PetscInt g, PetscBool finite,
  */
 static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscInt n_points, Point points[], PetscReal dtheta[])
 {
-  const Solid   *solid  = (const Solid *)element->data;
-  const PetscInt n      = element->nodes * element->dim;
-  const PetscReal third = solid->mean_share / 3;
+  const Solid    *solid  = (const Solid *)element->data;
+  const PetscInt  n      = element->nodes * element->dim;
+  const PetscReal third  = solid->mean_share / 3;
   PetscReal       volume = 0, theta = 0;
 
   for (PetscInt i = 0; i < n; i++) dtheta[i] = 0;
@@ -197,7 +197,7 @@ PetscErrorCode ElementCreate_Solid_MeanDilatation(Element element)
              "does not lock; use full or enhanced",
              ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "");
   ((Solid *)element->data)->mean_share = 1;
-  element->ops->stiffness = ElementStiffness_MeanDilatation;
-  element->ops->viscosity = ElementViscosity_MeanDilatation;
+  element->ops->stiffness              = ElementStiffness_MeanDilatation;
+  element->ops->viscosity              = ElementViscosity_MeanDilatation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -195,9 +195,9 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
 PetscErrorCode MeshCreateOnRank(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm)
 {
   char        path[PETSC_MAX_PATH_LEN];
-  PetscBool   from_file, blocks, composite, ball = PETSC_FALSE, rod = PETSC_FALSE,
-                                            first = PETSC_TRUE; /* there is a mesh, on the first rank */
-  MeshMiddles middles                             = {NULL, NULL};
+  PetscBool   from_file, blocks, composite, ball = PETSC_FALSE, rod = PETSC_FALSE;
+  PetscBool   first   = PETSC_TRUE; /* all of the mesh is on the first rank */
+  MeshMiddles middles = {NULL, NULL};
 
   PetscFunctionBegin;
   PetscAssertPointer(dm, 5);

@@ -1,4 +1,4 @@
-/* Rods from options: a disc, or a half or a quarter of it, drawn out along z, of hexahedra. */
+/* Rods from options: a disc, or a half or a quarter of it, drawn out along z, of hexahedra or tetrahedra. */
 #include "ballimpl.h"
 
 typedef struct {
@@ -55,8 +55,7 @@ static PetscErrorCode ReadPart(MPI_Comm comm, const char prefix[], Ball *disc)
 
 static PetscErrorCode ReadRod(MPI_Comm comm, const char prefix[], Rod *rod)
 {
-  PetscInt  dim     = 3;
-  PetscBool simplex = PETSC_FALSE;
+  PetscInt dim = 3;
 
   PetscFunctionBegin;
   rod->disc     = (Ball){.dim = 2, .divisions = 4, .radius = 1, .grading = 1, .keep_volume = PETSC_TRUE, .pole = {0, -1, 0}};
@@ -65,8 +64,7 @@ static PetscErrorCode ReadRod(MPI_Comm comm, const char prefix[], Rod *rod)
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &dim, NULL));
   PetscCheck(dim == 3, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_dim %" PetscInt_FMT ": -%sdm_plex_shape rod has 3 dimensions", prefix, dim,
              prefix);
-  PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &simplex, NULL));
-  PetscCheck(!simplex, comm, PETSC_ERR_USER_INPUT, "-%sdm_plex_simplex: -%sdm_plex_shape rod is made of hexahedra", prefix, prefix);
+  PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &rod->disc.simplex, NULL));
   PetscCall(ReadLength(comm, prefix, "-rod_radius", &rod->disc.radius));
   PetscCall(ReadLength(comm, prefix, "-rod_length", &rod->length));
   PetscCall(ReadCount(comm, prefix, "-rod_divisions", &rod->disc.divisions));
@@ -75,6 +73,37 @@ static PetscErrorCode ReadRod(MPI_Comm comm, const char prefix[], Rod *rod)
   PetscCall(ReadCount(comm, prefix, "-rod_elements", &rod->elements));
   PetscCall(ReadPart(comm, prefix, &rod->disc));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-rod_keep_volume", &rod->disc.keep_volume, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds the simplices that fill what a triangle or a line of the disc becomes between two of its copies: diagonals of its sides lead from
+   the node with the lower number below to that with the higher one above, so that neighbours cut their common side alike */
+static PetscErrorCode AddSimplices(const Rod *rod, PetscInt n, const PetscInt flat[], PetscInt lower, PetscInt upper)
+{
+  static const PetscInt parts[2][3][4] = {{{0, 1, 3}, {0, 3, 2}}, {{0, 1, 2, 5}, {1, 0, 4, 5}, {0, 3, 4, 5}}};
+  PetscInt              corners[6], sorted[3];
+  PetscBool             mirrored = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt a = 0; a < n; a++) sorted[a] = flat[a];
+  for (PetscInt a = 1; a < n; a++)
+    for (PetscInt k = a; k > 0 && sorted[k - 1] > sorted[k]; k--) {
+      const PetscInt node = sorted[k];
+
+      sorted[k]     = sorted[k - 1];
+      sorted[k - 1] = node;
+      mirrored      = (PetscBool)!mirrored;
+    }
+  for (PetscInt a = 0; a < n; a++) {
+    corners[a]     = lower + sorted[a];
+    corners[n + a] = upper + sorted[a];
+  }
+  for (PetscInt part = 0; part < n; part++) {
+    PetscInt *nodes;
+
+    PetscCall(MeshFileAddElement(rod->file, rod->file->n_elements + 1, &nodes));
+    for (PetscInt k = 0; k <= n; k++) nodes[mirrored && k < 2 ? 1 - k : k] = corners[parts[n - 2][part][k]];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,14 +119,18 @@ static PetscErrorCode DrawOut(const Rod *rod, const MeshFile *disc, PetscInt r)
 
     PetscCall(MeshFileAddGroup(rod->file, MESH_SIDE_SET, 2, of_disc->number, &group));
     PetscCall(PetscStrncpy(rod->file->groups[group].name, of_disc->name, sizeof(rod->file->groups[group].name)));
-    PetscCall(MeshFileAddRun(rod->file, DM_POLYTOPE_QUADRILATERAL, 1, &group));
-  } else PetscCall(MeshFileAddRun(rod->file, DM_POLYTOPE_HEXAHEDRON, 0, NULL));
+    PetscCall(MeshFileAddRun(rod->file, rod->disc.simplex ? DM_POLYTOPE_TRIANGLE : DM_POLYTOPE_QUADRILATERAL, 1, &group));
+  } else PetscCall(MeshFileAddRun(rod->file, rod->disc.simplex ? DM_POLYTOPE_TETRAHEDRON : DM_POLYTOPE_HEXAHEDRON, 0, NULL));
   for (PetscInt k = 0; k < rod->elements; k++)
     for (PetscInt e = 0; e < run->n; e++) {
       const PetscInt *flat  = disc->element_nodes + run->first_node + e * run->corners;
       const PetscInt  lower = k * disc->n_nodes, upper = lower + disc->n_nodes;
       PetscInt       *nodes;
 
+      if (rod->disc.simplex) {
+        PetscCall(AddSimplices(rod, run->corners, flat, lower, upper));
+        continue;
+      }
       PetscCall(MeshFileAddElement(rod->file, rod->file->n_elements + 1, &nodes));
       for (PetscInt a = 0; a < run->corners; a++) {
         nodes[a]                                          = lower + flat[a];

@@ -122,13 +122,15 @@ static const KnownOption options[] = {
      "in 2-D: rings about the axis x = 0, which x is the distance from and y goes along; forces, masses and contact areas are those of "
      "whole "
      "rings; default false"},
-    {"materials", OPTION_OF_BODY, "element_formulation", "full|mean_dilatation|enhanced|reduced",
+    {"materials", OPTION_OF_BODY, "element_formulation", "full|mean_dilatation|enhanced|reduced|composite",
      "of quadrilaterals and hexahedra: fully integrated; with one change of volume for each element, against locking of nearly "
      "incompressible "
      "bodies; with modes of their own that bend, for implicit and static bodies; or with one point, for explicit ones. Default full, but "
      "mean_dilatation where Poisson's "
      "ratio is "
-     "larger than 0.4, except in plane stress"},
+     "larger than 0.4, except in plane stress. Of triangles and tetrahedra: composite divides each into 4 or 8, which together are an "
+     "element of six or "
+     "ten nodes that does not lock; default for files of such elements"},
 
     {"loads", OPTION_OF_BODY, "boundary_displacement", "a,b", "surfaces or node sets whose displacement is prescribed"},
     {"loads", OPTION_OF_BODY, "boundary_displacement_<surface>", "u[,u,u]",

@@ -16,7 +16,7 @@ import solidmeshes
 from conftest import ROOT
 from setups import FIELDS, linear, rotation
 
-# per pairing: elements of the lower and of the upper block, which of them are simplices
+# per pairing: elements of the lower and of the upper block, which of them are simplices, and which of these composite: capitals
 PAIRINGS = {
     "quad4-quad4-2:1": ("2,2", "4,4", ""),
     "quad4-quad4-2:3": ("2,2", "3,2", ""),
@@ -26,6 +26,13 @@ PAIRINGS = {
     "hex8-hex8-3:2": ("3,3,2", "2,2,2", ""),
     "hex8-tet4-3:2": ("3,3,2", "2,2,2", "b"),
     "tet4-hex8-2:1": ("4,4,2", "2,2,2", "a"),
+    "quad4-tri6-3:2": ("3,2", "2,2", "B"),
+    "tri6-tri3-3:2": ("3,2", "2,2", "Ab"),
+    "tri6-tri6-3:2": ("3,2", "2,2", "AB"),
+    "hex8-tet10-3:2": ("3,3,2", "2,2,2", "B"),
+    "tet10-hex8-2:1": ("4,4,2", "2,2,2", "A"),
+    "tet10-tet4-3:2": ("3,3,2", "2,2,2", "Ab"),
+    "tet10-tet10-3:2": ("3,3,2", "2,2,2", "AB"),
 }
 LAWS = {"frictionless": "", "tied": "-contact_law tied"}
 # axes and angles of the whole set-up
@@ -51,7 +58,8 @@ def boxes(pairing):
     dim = dim_of(pairing)
     *faces, simplices = PAIRINGS[pairing]
     across = ",".join(map(str, SIZE[: dim - 1]))
-    words = [f"-{b}_dm_plex_dim {dim} -{b}_dm_plex_box_faces {n} {f'-{b}_dm_plex_simplex' if b in simplices else ''}" for b, n in zip("ab", faces)]
+    words = [f"-{b}_dm_plex_dim {dim} -{b}_dm_plex_box_faces {n} {f'-{b}_dm_plex_simplex' if b in simplices.lower() else ''}" for b, n in zip("ab", faces)]
+    words += [f"-{b}_element_formulation composite" for b in "ab" if b.upper() in simplices]
     words.append(f"-a_dm_plex_box_upper {across},{HEIGHTS[0]} -b_dm_plex_box_lower {'0,' * (dim - 1)}{HEIGHTS[0]} -b_dm_plex_box_upper {across},{sum(HEIGHTS)}")
     return " ".join(words)
 
@@ -104,7 +112,9 @@ def turned(pairing, turn, law):
 
 
 def nodes(pairing):
-    return sum(int(np.prod([int(n) + 1 for n in faces.split(",")[:-1]])) for faces in PAIRINGS[pairing][:2])
+    """Of both surfaces: those of composite elements have one in the middle of each edge too, also of the diagonals."""
+    simplices = PAIRINGS[pairing][2]
+    return sum(int(np.prod([(2 if b in simplices else 1) * int(n) + 1 for n in faces.split(",")[:-1]])) for b, faces in zip("AB", PAIRINGS[pairing][:2]))
 
 
 @pytest.mark.parametrize("law", list(LAWS))
@@ -121,7 +131,7 @@ def test_pressed(pairing, turn, law, shared_run):
 
 
 @pytest.mark.parametrize("method", ["-schwarz_condense 0", "-schwarz_snes_type anderson", "-contact_pairs a:b", "-contact_pairs b:a"])
-@pytest.mark.parametrize("pairing", ["quad4-tri3-3:2", "hex8-tet4-3:2"])
+@pytest.mark.parametrize("pairing", ["quad4-tri3-3:2", "hex8-tet4-3:2", "tet10-hex8-2:1"])
 def test_methods(pairing, method, shared_run):
     """Whole bodies in every sweep, another outer iteration, either side. Measured: 2e-12."""
     options, stress = turned(pairing, "over", "frictionless")
@@ -131,9 +141,10 @@ def test_methods(pairing, method, shared_run):
 
 @pytest.mark.parametrize("ranks", [2, 3])
 @pytest.mark.parametrize("law", list(LAWS))
-def test_ranks(law, ranks, shared_run):
-    options, stress = turned("hex8-tet4-3:2", "turned", law)
-    assert check(shared_run(f"{STATIC} -contact_pairs auto {options}", ranks), PRESSURE, stress, 1e-10) == nodes("hex8-tet4-3:2")
+@pytest.mark.parametrize("pairing", ["hex8-tet4-3:2", "tet10-tet10-3:2"])
+def test_ranks(pairing, law, ranks, shared_run):
+    options, stress = turned(pairing, "turned", law)
+    assert check(shared_run(f"{STATIC} -contact_pairs auto {options}", ranks), PRESSURE, stress, 1e-10) == nodes(pairing)
 
 
 @pytest.mark.parametrize("law", list(LAWS))
@@ -174,7 +185,7 @@ def write_oblique(path, shape, faces, low, high, slope):
     meshio.write(path, mesh, file_format="gmsh22", binary=False)
 
 
-OBLIQUE = {"quad4-tri3": ("quad4", "tri3", (3, 2), (4, 3)), "tri3-quad4": ("tri3", "quad4", (2, 2), (5, 3)), "hex8-tet4": ("hex8", "tet4", (3, 3, 2), (2, 2, 2)), "tet4-hex8": ("tet4", "hex8", (4, 3, 2), (3, 2, 2))}
+OBLIQUE = {"quad4-tri3": ("quad4", "tri3", (3, 2), (4, 3)), "tri3-quad4": ("tri3", "quad4", (2, 2), (5, 3)), "hex8-tet4": ("hex8", "tet4", (3, 3, 2), (2, 2, 2)), "tet4-hex8": ("tet4", "hex8", (4, 3, 2), (3, 2, 2)), "tri6-quad4": ("tri6", "quad4", (2, 2), (5, 3)), "hex8-tet10": ("hex8", "tet10", (3, 3, 2), (2, 2, 2)), "tet10-tet10": ("tet10", "tet10", (3, 2, 2), (2, 2, 2))}
 SLOPE = np.array((0.4, -0.3))
 
 

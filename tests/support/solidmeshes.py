@@ -58,6 +58,12 @@ def write_box(path, shape, faces, size, distortion=0.0):
     meshio.write(path, mesh, file_format="gmsh22", binary=False)
 
 
+def made_by_options(shape, name="b"):
+    """Options for boxes of such elements: composite ones are cells of the linear ones, divided."""
+    simplex = f"-{name}_dm_plex_simplex {str(shape[0] == 't').lower()}"
+    return f"{simplex} -{name}_element_formulation composite" if shape in LINEAR else simplex
+
+
 def sides(shape):
     return [f"{axis}{end}" for axis in "xyz"[: dim_of(shape)] for end in ("min", "max")]
 

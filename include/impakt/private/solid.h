@@ -1,5 +1,5 @@
-/* Solid elements in two and three dimensions: what tri3, quad4, tet4, hex8 and those made of them share. Total Lagrangian: everything is integrated over the
-   undeformed element. */
+/* Solid elements in two and three dimensions: what tri3, quad4, tet4, hex8 and those made of them share. Total Lagrangian: everything is
+   integrated over the undeformed element. */
 #pragma once
 #include <impakt/private/elementimpl.h>
 #include <impakt/private/simd.h>
@@ -26,12 +26,12 @@ typedef struct {
   MaterialKernels       unconstrained; /* of the same material when not in plane stress */
   PetscBool             plane_stress, linear;
   PetscBool             mean_dilatation; /* of axisymmetric elements */
-  PetscReal             mean_share; /* of the mean of the element in the ratio of volumes at its points; 0 to 1, which most formulations have */
+  PetscReal mean_share; /* of the mean of the element in the ratio of volumes at its points; 0 to 1, which most formulations have */
   PetscReal (*point)(Element, PetscInt, PetscInt, PetscReal[]); /* weight of a point of an element with the thickness, and the gradients of
                                                                    the shape functions there, nodes x dim */
-  PetscReal             load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
-  SolidShape            reduced; /* the shape with another rule, where a formulation has one */
-  void                 *own;     /* of the formulation */
+  PetscReal  load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
+  SolidShape reduced; /* the shape with another rule, where a formulation has one */
+  void      *own;     /* of the formulation */
 } Solid;
 
 /* The first number of the history of point g of a batch */

@@ -292,7 +292,7 @@ PetscErrorCode BodySetPlaneStress(Body body, PetscBool plane_stress)
 `ElementRegisterFormulation()`
 
   Options Database Key:
-. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced) - the formulation
+. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced|composite) - the formulation
 
   Level: beginner
 

@@ -8,7 +8,11 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->mesh.cell_shape]));
+  if (body->model.element->composite)
+    PetscCall(PetscViewerASCIIPrintf(
+        viewer, "  %" PetscInt_FMT " composite elements of %" PetscInt_FMT " nodes, each of %" PetscInt_FMT " cells of shape %s\n", count,
+        body->model.element->nodes, body->mesh.cells_of_element, DMPolytopeTypes[body->mesh.cell_shape]));
+  else PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->mesh.cell_shape]));
   if (body->integrator->ops.view) PetscCall((*body->integrator->ops.view)(body, viewer));
   if (body->integrator->needs_stable_step)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->time.stable_step));

@@ -22,19 +22,19 @@ typedef struct {
   PetscInt      *node_of_vertex; /* of the vertices in their order */
   PetscInt      *connectivity;   /* nodes of the elements, element by element */
   /* the cells of the DM, which are the elements but for composite ones: each of these is made of several cells that follow each other */
-  PetscInt  n_cells, cell_nodes, cells_of_element;
-  PetscInt *cell_connectivity; /* `connectivity`, where cells are elements */
-  PetscReal     *coordinates;    /* local_nodes x dim: reference positions [m] */
-  PetscInt      *ghost_dofs;     /* global numbers */
-  Vec            positions;      /* reference positions of owned nodes, laid out as displacements [m] */
-  PetscReal      cells[2];       /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
-  PetscBool     *on_axis;        /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
-  PetscBool      touches_axis;   /* there are such nodes on any rank */
-  PetscMPIInt    rank;           /* that is to have all of a mesh from options; PETSC_DECIDE: it is divided */
-  PetscMPIInt    owner;          /* the rank that has all cells, where one has; else the first */
-  PetscBool      is_owner;       /* it is this one */
-  PetscBool      whole;          /* there are several ranks, of which one has all cells */
-  PetscBool      ghosted;        /* on any rank there may be nodes of others */
+  PetscInt    n_cells, cell_nodes, cells_of_element;
+  PetscInt   *cell_connectivity; /* `connectivity`, where cells are elements */
+  PetscReal  *coordinates;       /* local_nodes x dim: reference positions [m] */
+  PetscInt   *ghost_dofs;        /* global numbers */
+  Vec         positions;         /* reference positions of owned nodes, laid out as displacements [m] */
+  PetscReal   cells[2];          /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
+  PetscBool  *on_axis;           /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
+  PetscBool   touches_axis;      /* there are such nodes on any rank */
+  PetscMPIInt rank;              /* that is to have all of a mesh from options; PETSC_DECIDE: it is divided */
+  PetscMPIInt owner;             /* the rank that has all cells, where one has; else the first */
+  PetscBool   is_owner;          /* it is this one */
+  PetscBool   whole;             /* there are several ranks, of which one has all cells */
+  PetscBool   ghosted;           /* on any rank there may be nodes of others */
 } BodyMesh;
 
 /* Blocks of the mesh with materials of their own, and last, where there are cells in none of them, one with the body's */
@@ -203,7 +203,7 @@ typedef struct {
 
 struct _p_Body {
   PETSCHEADER(int);
-  PetscBool         setup;
+  PetscBool setup;
   /* The mesh is whole on one of several ranks, and steps of the integrator need nothing of others but where rows are prescribed: see
      src/body/README.md. What a substep finds out of the body as a whole (works, stable step, failure) that rank alone knows. */
   PetscBool         local;
@@ -270,8 +270,8 @@ static inline PetscBool BodyStepsAlone(Body body)
   return (PetscBool)(body->local && !body->rows.n_prescribed && !body->rows.n_robin);
 }
 
-/* Whether a failure ends a step at once. That of a local body others do not know yet: the step is made to its end, good for nothing, so that
-   all ranks do the same. */
+/* Whether a failure ends a step at once. That of a local body others do not know yet: the step is made to its end, good for nothing, so
+   that all ranks do the same. */
 static inline PetscBool BodyHasStopped(Body body)
 {
   return (PetscBool)(body->failure.reason < 0 && !body->local);

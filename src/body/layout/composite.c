@@ -64,7 +64,7 @@ static void TurnTo(PetscInt node, PetscInt nodes, const PetscInt from[], PetscIn
 /* The nodes of an element from those of its cells. A corner is in one cell, which has the middles of the edges that meet there. */
 static PetscBool FindNodes(const PetscInt cells[], PetscInt n_cells, PetscInt nodes, PetscInt element[])
 {
-  static const PetscInt edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+  static const PetscInt edges[6][2]          = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
   PetscInt              corner[MOST_CORNERS] = {0}, cell[MOST_CORNERS] = {0}, first[MOST_CORNERS], n = 0;
   const PetscInt        n_edges = nodes == 3 ? 3 : 6;
 
@@ -113,12 +113,14 @@ PetscErrorCode BodySetUpComposite(Body body)
   mesh->cells_of_element = cells;
   PetscCall(PetscMalloc1(n * nodes, &mesh->connectivity));
   for (PetscInt e = 0; e < n && !wrong; e++)
-    wrong = (PetscBool)!FindNodes(mesh->cell_connectivity + e * cells * mesh->cell_nodes, cells, mesh->cell_nodes, mesh->connectivity + e * nodes);
+    wrong = (PetscBool)!FindNodes(mesh->cell_connectivity + e * cells * mesh->cell_nodes, cells, mesh->cell_nodes,
+                                  mesh->connectivity + e * nodes);
   PetscCall(BodyAnyRank(body, &wrong));
-  PetscCheck(!wrong, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG,
-             "Body '%s': the mesh has the label of composite elements, but its cells are not what MeshCreateComposite() makes; do not refine "
-             "or distribute a mesh after it",
-             body->hdr.name);
+  PetscCheck(
+      !wrong, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG,
+      "Body '%s': the mesh has the label of composite elements, but its cells are not what MeshCreateComposite() makes; do not refine "
+      "or distribute a mesh after it",
+      body->hdr.name);
   if (!blocks->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(n + 1, &blocks->of_element));
   for (PetscInt e = 0; e < n; e++) {

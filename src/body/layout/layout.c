@@ -341,7 +341,8 @@ PetscErrorCode BodyRestoreLocalSum(Body body, Vec vec, Vec *local, PetscScalar *
   Level: intermediate
 
   Note:
-  A composite element is the cells that it is made of. Global node k is the k-th block of `dim` displacements in the vectors of `BodyGetSolution()`.
+  A composite element is the cells that it is made of. Global node k is the k-th block of `dim` displacements in the vectors of
+`BodyGetSolution()`.
 
 .seealso: `Body`, `BodyGetReferencePositions()`, `BodyComputeStress()`
 @*/

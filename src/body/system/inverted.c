@@ -39,7 +39,8 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscR
   PetscFunctionBegin;
   for (PetscInt e = 0; e < body->mesh.n_cells; e++)
     for (PetscInt c = 0; c < shape->corners; c++) {
-      const PetscReal jacobian = Jacobian(body->mesh.dim, body->mesh.cell_connectivity + e * n, c, shape->ends[c], body->mesh.coordinates, NULL);
+      const PetscReal jacobian = Jacobian(body->mesh.dim, body->mesh.cell_connectivity + e * n, c, shape->ends[c], body->mesh.coordinates,
+                                          NULL);
 
       sum += jacobian / (PetscReal)shape->corners;
       if (jacobian > 0) least = PetscMin(least, jacobian);

@@ -2,20 +2,19 @@
 
 import numpy as np
 import pytest
-from solidmeshes import dim_of, sides
+from solidmeshes import dim_of, made_by_options, sides
 
 E, NU = 200.0, 0.3
 LAMBDA, MU = E * NU / (1 + NU) / (1 - 2 * NU), E / 2 / (1 + NU)
 SIZE = (1.0, 0.3, 0.2)
-KINDS = ["tri3 strain", "tri3 stress", "quad4 strain", "quad4 stress", "tet4", "hex8"]
+KINDS = ["tri3 strain", "tri3 stress", "quad4 strain", "quad4 stress", "tet4", "hex8", "tri6 strain", "tri6 stress", "tet10"]
 
 
 def bar(kind):
     shape = kind.split()[0]
     dim = dim_of(shape)
     plane = " -b_plane_stress" if "stress" in kind else ""
-    simplex = str(shape in ("tri3", "tet4")).lower()
-    mesh = f"-b_dm_plex_dim {dim} -b_dm_plex_simplex {simplex} -b_dm_plex_box_faces {','.join('421'[:dim])} -b_dm_plex_box_upper {','.join(map(str, SIZE[:dim]))}"
+    mesh = f"-b_dm_plex_dim {dim} {made_by_options(shape)} -b_dm_plex_box_faces {','.join('421'[:dim])} -b_dm_plex_box_upper {','.join(map(str, SIZE[:dim]))}"
     return f"-bodies b {mesh} -b_density 1 -b_youngs_modulus {E} -b_poissons_ratio {NU} -b_ts_type static{plane}"
 
 

@@ -8,7 +8,7 @@ from conftest import ROOT
 from messages import check_message
 from solidmeshes import write_blocks
 
-FACES = {"quad4": (12, 4), "tri3": (12, 4), "hex8": (8, 3, 4), "tet4": (6, 2, 4)}
+FACES = {"quad4": (12, 4), "tri3": (12, 4), "hex8": (8, 3, 4), "tet4": (6, 2, 4), "tri6": (6, 2), "tet10": (3, 1, 2)}
 LOWER = {2: lambda x: int(x[1] > 0.1), 3: lambda x: int(x[2] > 0.1)}
 MOVING = {2: "20*y,-30*x", 3: "20*z,10*x*y,-30*x"}
 
@@ -41,6 +41,9 @@ KINDS = [
     ("hex8", "-b_material_type neo_hookean -b_ts_type centraldifference -b_element_formulation reduced"),
     ("hex8", "-b_material_type j2 -b_yield_stress 1e5 -b_ts_type centraldifference"),
     ("quad4", "-b_material_type neo_hookean -b_damping_stiffness 1e-5"),
+    ("tri6", "-b_damping_stiffness 1e-5"),
+    ("tet10", "-b_material_type j2 -b_yield_stress 1e5 -b_ts_type centraldifference"),
+    ("tet10", "-b_element_formulation full"),
 ]
 
 

@@ -5,7 +5,7 @@ import re
 
 import numpy as np
 import pytest
-from solidmeshes import SHAPES, dim_of
+from solidmeshes import SHAPES, dim_of, made_by_options
 
 # A box off the origin, of soft material: 12 rad/s stretch it by some 5 %
 COMMON = "-bodies b -b_density 1000 -b_youngs_modulus 2e4 -b_poissons_ratio 0.3 -b_material_type neo_hookean"
@@ -13,9 +13,8 @@ COMMON = "-bodies b -b_density 1000 -b_youngs_modulus 2e4 -b_poissons_ratio 0.3 
 
 def box(shape, n=(3, 2, 2)):
     dim = dim_of(shape)
-    simplex = str(shape in ("tri3", "tet4")).lower()
     lower, upper = [0.1, -0.2, 0.3][:dim], [0.4, 0.0, 0.5][:dim]
-    return f"-b_dm_plex_dim {dim} -b_dm_plex_simplex {simplex} -b_dm_plex_box_faces {','.join(map(str, n[:dim]))} -b_dm_plex_box_lower {','.join(map(str, lower))} -b_dm_plex_box_upper {','.join(map(str, upper))}"
+    return f"-b_dm_plex_dim {dim} {made_by_options(shape)} -b_dm_plex_box_faces {','.join(map(str, n[:dim]))} -b_dm_plex_box_lower {','.join(map(str, lower))} -b_dm_plex_box_upper {','.join(map(str, upper))}"
 
 
 # v = v0 + omega x (r - c), about the centre c of the box

@@ -24,6 +24,10 @@ CASES = {
     "hex8-explicit": ("hex8", "linear_elastic -b_ts_type centraldifference"),
     "hex8-static": ("hex8", "neo_hookean -b_ts_type static"),
     "tri3-static": ("tri3", "linear_elastic -b_plane_stress -b_ts_type static"),
+    "tri6-implicit": ("tri6", "neo_hookean -b_ts_type alpha2"),
+    "tet10-explicit": ("tet10", "saint_venant_kirchhoff -b_ts_type centraldifference -b_ts_time_step auto"),
+    "tet10-static": ("tet10", "neo_hookean -b_ts_type static"),
+    "tet10-composite": ("tet4", "linear_elastic -b_ts_type alpha2 -b_mass_type consistent -b_element_formulation composite"),
 }
 
 
