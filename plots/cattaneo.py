@@ -108,8 +108,8 @@ class Run:
     def step(self, time):
         return int(np.argmin(np.abs(self.time - time)))
 
-    def nodes(self, step):
-        """Of cylinders, the nodes that touch, of the body that has the rows: positions and tractions by those of theory, whether they slide; element [a]."""
+    def fields(self, step, *names):
+        """Which nodes are those of the body that has the rows, their positions, and fields at a load step."""
         with h5py.File(find_fields(self.path, self.options)) as file:
             positions, cells = file["mesh/positions"][()], file["mesh/cells"][()]
             first = np.zeros(len(positions), bool)
@@ -117,11 +117,35 @@ class Run:
             frame = sorted(file["contact_pressure"])[
                 int(np.argmin(np.abs(file["time"][()] - self.time[step])))
             ]
-            pressure, sliding = (
-                file[f"{name}/{frame}"][()].ravel()
-                for name in ("contact_pressure", "contact_sliding")
-            )
-            along = file[f"friction_traction/{frame}"][()][:, self.dim - 2]
+            return [
+                first,
+                positions,
+                *(np.squeeze(file[f"{name}/{frame}"][()]) for name in names),
+            ]
+
+    def of_rows(self, step):
+        """P and Q / (mu P) by the forces along and across the rows, whose sums are not those along the axes: the plane of contact is turned by the traction
+        across it, (1 - 2 nu) / (4 G) times that, and as the centres move past each other, together by some 2 % of mu."""
+        first, _, pressure, traction, force = self.fields(
+            step, "contact_pressure", "friction_traction", "contact_force"
+        )
+        touch = first & (pressure > 0)
+        pressure, traction = pressure[touch], traction[touch]
+        area = np.linalg.norm(force[touch], axis=1) / np.sqrt(
+            pressure**2 + (traction**2).sum(axis=1)
+        )
+        load, across = (
+            (pressure * area).sum(),
+            (traction * area[:, None]).sum(axis=0)[self.dim - 2],
+        )
+        return float(load), float((2 * self.first - 1) * across / (self.mu * load))
+
+    def nodes(self, step):
+        """Of cylinders, the nodes that touch, of the body that has the rows: positions and tractions by those of theory, whether they slide; element [a]."""
+        first, positions, pressure, sliding, traction = self.fields(
+            step, "contact_pressure", "contact_sliding", "friction_traction"
+        )
+        along = traction[:, self.dim - 2]
         touch = np.flatnonzero(first & (pressure > 0))
         touch = touch[np.argsort(positions[touch, 0])]
         x = positions[touch, 0] / self.a[step]
@@ -176,9 +200,8 @@ def draw_loop(axes, run):
     turn = int(np.argmax(run.q))
     factor, unit = scale(run.loss[last], "J")
     axes.plot(run.time, run.q, color=BLUE, label="Q/µP")
-    theory = loop_loss(
-        run.mu * run.load[turn], run.a[turn], run.compliance, run.q[turn]
-    )
+    load, q = run.of_rows(turn)
+    theory = loop_loss(run.mu * load, run.a[turn], run.compliance, q)
     other = axes.twinx()
     other.plot(run.time, factor * run.loss, color="0.4", label="taken by friction")
     other.set_ylabel(f"taken by friction [{unit}]")

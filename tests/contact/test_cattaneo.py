@@ -57,20 +57,25 @@ def test_loop_loss_is_the_area_of_the_loop():
     assert cattaneo.loop_loss(1, 1, 1, q) == pytest.approx(area, rel=1e-6)
 
 
-@pytest.mark.long
+@pytest.mark.longest
 def test_spheres(shared_run):
-    """A loop at q = 0.9, and what sticks at its first end, on a mesh that has six elements to the radius of the contact."""
+    """A loop at q = 0.9, on a mesh that has five elements to the radius of the contact. q is that of the rows: the plane of contact turns by 2 % of mu, and the loss
+    goes with the sixth power of q."""
     run = read(shared_run(SPHERES))
     turn, back = run.step(3), run.step(5)
     assert run.a[turn] < run.radius / 10
-    assert run.q[turn] == pytest.approx(0.9, abs=0.02)
-    assert run.q[back] == pytest.approx(-run.q[turn], rel=2e-3)
+    (load, q), (_, other) = run.of_rows(turn), run.of_rows(back)
+    assert load == pytest.approx(run.load[turn], rel=1e-3)  # measured: 1.4e-4
+    assert q == pytest.approx(0.9, abs=0.02)
+    assert other == pytest.approx(-q, rel=2e-3)  # measured: 7e-4
     half = run.loss[back] - run.loss[turn]
-    # Measured: +7.6 %. The ring that slides is one to four elements wide, where the loss is: with Poisson's ratio 0.3 and 12 and 16 divisions +7.1 and +6.1 %
-    assert half == pytest.approx(cattaneo.loop_loss(run.mu * run.load[turn], run.a[turn], run.compliance, run.q[turn]) / 2, rel=0.09)
+    theory = cattaneo.loop_loss(run.mu * load, run.a[turn], run.compliance, (q - other) / 2) / 2
+    # Measured: +0.8 %. Where the radius of the contact is 0.089 of the spheres' instead of 0.079: +2.3 %, with half the steps +2.1 %. Half spaces of squares as wide
+    # as these elements lose 2 % less than theory, so that the mesh hides a part of what round bodies do
+    assert half == pytest.approx(theory, rel=0.02)
 
 
-@pytest.mark.long
+@pytest.mark.longest
 def test_figure(shared_run, launch, tmp_path):
     figure = tmp_path / "figure.png"
     histories = [shared_run(options).folder / "history.h5" for options in (CYLINDERS, SPHERES)]

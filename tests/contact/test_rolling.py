@@ -22,6 +22,13 @@ def rate(time, values):
     return np.polyfit(time, values, 1)[0]
 
 
+PLATE = "-options_file options/rolling-disc-on-plate.opts"
+SOFT = (
+    "-slope_rigid false -slope_youngs_modulus 5e6 -slope_poissons_ratio 0.25 -slope_boundary_displacement ymin -slope_boundary_displacement_ymin 0,0 "
+    "-slope_dm_plex_box_faces 60,4"
+)
+
+
 def check_balance(run):
     """Of angular momentum about the origin, between what gravity and the plane have done in the last half; and of energy."""
     time, x, _, _ = motion(run)
@@ -54,3 +61,23 @@ def test_slides(shared_run):
     spins = 2 * 0.1 * G * np.cos(TILT) / R * x[:, 1].mean() / R
     assert -rate(time, spin) == pytest.approx(spins, rel=1e-2)  # measured: -3e-3
     check_balance(run)
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("plate", ["", SOFT])
+def test_rolls_on_a_plate(plate, shared_run):
+    """On a body with a mesh, rigid or elastic, in place of an obstacle."""
+    run = shared_run(f"{PLATE} {plate}")
+    time, _, v, spin = motion(run)
+    a = rate(time, v[:, 0])
+    assert a == pytest.approx(2 / 3 * G * np.sin(TILT), rel=1e-2)  # measured: -2.0e-3, -2.6e-3
+    assert -R * rate(time, spin) == pytest.approx(a, rel=1e-2)  # measured: -8e-4, +1e-4
+    assert max(abs(run.summary["system"][key]) for key in ("energy_error_min", "energy_error_max")) <= 5e-4  # measured: 5e-5
+
+
+@pytest.mark.long
+def test_slides_on_a_plate(shared_run):
+    run = shared_run(f"{PLATE} -contact_friction 0.1")
+    time, _, v, spin = motion(run)
+    assert rate(time, v[:, 0]) == pytest.approx(G * (np.sin(TILT) - 0.1 * np.cos(TILT)), rel=1e-2)  # measured: below 1e-4
+    assert -rate(time, spin) == pytest.approx(2 * 0.1 * G * np.cos(TILT) / R, rel=1e-2)  # measured: -7.6e-3; with the height of the centre for the lever below 1e-4
