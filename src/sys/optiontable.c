@@ -187,7 +187,9 @@ static const KnownOption options[] = {
      "mu_k, what the coefficient mu_s falls to with the speed v of sliding: mu_k + (mu_s - mu_k) exp(-d v)"},
     {"contact", OPTION_OF_RUN, "contact_friction_decay", "d", "d in that [s/m]"},
     {"contact", OPTION_OF_RUN, "contact_friction_dense_limit", "n",
-     "rows in contact up to which steps with friction have dense matrices, default 500; beyond, forces come from GMRES"},
+     "rows in contact up to which steps with friction have dense matrices, default 300, and 2000 where products take longer; beyond, "
+     "forces "
+     "come from GMRES"},
     {"contact", OPTION_OF_RUN, "contact_tie_distance", "d",
      "gap or overlap at the start up to which nodes are tied, in parts of a face, default 0.01; more is an error"},
     {"contact", OPTION_OF_RUN, "contact_constraint", "gap|gap_rate|both", "what contact forces keep from becoming negative, default gap"},

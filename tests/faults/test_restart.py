@@ -42,6 +42,8 @@ VARIANTS = {
     "augmented Lagrangian": BLOCKS + "-contact_type augmented_lagrangian",
     "bonded": BLOCKS + "-contact_law bonded",
     "friction": BLOCKS + "-contact_law coulomb -contact_friction 0.3",
+    "friction, products": BLOCKS + "-contact_law coulomb -contact_friction 0.3 -contact_friction_dense_limit 0",
+    "nonlinear, friction, products": NONLINEAR + "-contact_law coulomb -contact_friction 0.3 -contact_friction_dense_limit 0",
     "friction by springs": BLOCKS + "-contact_type penalty -contact_law coulomb -contact_friction 0.3",
     "friction, augmented": BLOCKS + "-contact_type augmented_lagrangian -contact_law coulomb -contact_friction 0.3",
     "nonlinear, friction": NONLINEAR + "-contact_law coulomb -contact_friction 0.3 -contact_friction_kinetic 0.1 -contact_friction_decay 1",

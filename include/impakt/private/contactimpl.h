@@ -81,9 +81,6 @@ typedef struct {
    their relative tolerance unless they vanish. */
 #define CONTACT_FORCE_TOLERANCE 1e-17
 
-/* Rows of a step with friction up to which matrices are dense */
-#define FRICTION_DENSE_LIMIT 500
-
 /* The gap of a row that has no partner opposite: larger than any gap, in whatever unit, and still a number that displacements can be added
    to */
 #define CONTACT_NO_GAP 1e30
@@ -128,7 +125,7 @@ typedef struct {
   PetscReal            friction;         /* coefficient of friction of nodes that stick; less than 0: not set */
   PetscReal            friction_kinetic; /* of those that slide fast; less than 0: the same */
   PetscReal            friction_decay;   /* how fast it falls to that with the speed [s/m] */
-  PetscInt             friction_dense;   /* rows up to which the matrices of steps with friction are dense */
+  PetscInt             friction_dense;   /* rows up to which the matrices of steps with friction are dense; less than 0: as costs say */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */

@@ -32,7 +32,8 @@ typedef struct {
   PetscBool
       precondition;   /* conjugate gradients by what the Dirichlet sides answer with, where these are linear and rows beyond dense_limit */
   PetscBool sparse;   /* factors of S may be sparse, with more rows than dense_limit, where the bodies are many */
-  PetscBool products; /* where matrices are not dense S is multiplied with alone, and nothing is iterated for here */
+  PetscBool products; /* where matrices are not dense S is multiplied with alone, and nothing is iterated for here: they are so beyond `few`
+                         where products cost little */
   PetscBool direct;   /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
 } InterfaceSettings;
 

@@ -8,6 +8,10 @@
 #define SPARSE_PART 8
 #define CHEAP_FLOPS 1e6
 
+/* Where nothing is iterated for here: n^3 operations of dense LU factors are as fast as so many products. Steps with friction take some ten
+   products for each factorization, and sparse factors make fewer operations in a second than dense ones. */
+#define PRODUCTS_OF_FACTORS 50
+
 /* Room for n listed rows */
 PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator op, PetscInt n)
 {
@@ -110,6 +114,12 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
   op->dense_flops = 0;
   op->is_sparse   = IsSparse(op);
   op->dense       = (PetscBool)(size <= op->settings.dense_limit || op->is_sparse);
+  if (op->settings.products && op->dense && size > op->settings.few) {
+    PetscCall(CountFlops(op, &op->product_flops, &op->dense_flops));
+    op->dense       = (PetscBool)(PRODUCTS_OF_FACTORS * op->product_flops > (PetscLogDouble)size * size * size);
+    op->dense_flops = 0;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (!op->dense || size <= op->settings.few || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
   if (InterfaceIsDirect(op) && op->n_groups < MANY_GROUPS && !op->is_sparse) {
     op->dense = PETSC_FALSE;

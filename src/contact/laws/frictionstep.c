@@ -7,6 +7,9 @@
 #include "frictionstep.h"
 #include <contact/compliance/augmentation.h>
 
+/* Rows up to which S is a matrix, and up to which it is so whatever products with it cost */
+#define DENSE_LIMIT 2000
+#define DENSE_ROWS  300
 /* Integrations of all bodies in a step */
 #define MOST_SWEEPS FRICTION_SECANTS
 /* Round-off of what rows open by, in parts of the displacements that this is the difference of */
@@ -273,8 +276,9 @@ static PetscErrorCode Reset(Contact contact)
 /* The same for the rows that there are now */
 static PetscErrorCode SetUp(Contact contact)
 {
-  const InterfaceSettings settings = {.dense_limit  = contact->options.friction_dense,
-                                      .few          = contact->options.friction_dense,
+  const PetscInt          limit    = contact->options.friction_dense;
+  const InterfaceSettings settings = {.dense_limit  = limit < 0 ? DENSE_LIMIT : limit,
+                                      .few          = limit < 0 ? DENSE_ROWS : limit,
                                       .products     = PETSC_TRUE,
                                       .precondition = PETSC_TRUE};
   FrictionStep           *step     = (FrictionStep *)contact->data;

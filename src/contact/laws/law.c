@@ -193,7 +193,8 @@ PetscErrorCode ContactSetKineticFriction(Contact contact, PetscReal coefficient,
 
   Input Parameters:
 + contact - the `Contact`, not yet set up
-- limit   - rows in contact at once: two for each node in the plane, three in space; 0: no matrix is dense
+- limit   - rows in contact at once: two for each node in the plane, three in space; 0: no matrix is dense. By default 300 rows, and 2000
+            where products with the factors of the bodies would take longer
 
   Options Database Key:
 . -contact_friction_dense_limit n - the limit
