@@ -411,6 +411,7 @@ typedef struct {
   PetscReal     *last_force; /* per row */
   PetscReal     *handover;   /* two numbers to a body per row */
   PetscInt      *intervals;  /* to a body */
+  PetscInt      *counts;     /* two numbers per row */
   PetscReal     *rest;       /* to a body */
   BodyCondition *conditions; /* to a body */
 } ContactWork;
