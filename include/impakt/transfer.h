@@ -79,6 +79,7 @@ PETSC_EXTERN PetscErrorCode TransferSetCurved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, const PetscInt[2], PetscInt, const Mat[2]);
+PETSC_EXTERN PetscErrorCode TransferCountValues(Transfer, PetscInt[], PetscInt[]);
 PETSC_EXTERN PetscErrorCode TransferSetDirectedValues(Transfer, const PetscInt[2], PetscInt, const PetscReal[], const Mat[2]);
 PETSC_EXTERN PetscErrorCode TransferSetNeighbours(Transfer, PetscInt, PetscInt, PetscReal, Mat);
 PETSC_EXTERN PetscErrorCode TransferGetCounts(Transfer, TransferCounts *);

@@ -234,6 +234,7 @@ PetscErrorCode TransferTurn(Transfer transfer, const PetscReal change[])
       transfer->rows.gap[row] += more;
       balance->turned[row] += more;
     }
+  transfer->saved.same = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -302,6 +303,7 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
     transfer->rows.gap[row] += more;
     balance->turned[row] += more;
   }
-  *any = PETSC_TRUE;
+  transfer->saved.same = PETSC_FALSE;
+  *any                 = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

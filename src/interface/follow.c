@@ -163,8 +163,10 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   int           found = 0;
 
   PetscFunctionBegin;
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+  if (!transfer->columns_present) {
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+  }
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscInt n = set->offsets[row + 1] - set->offsets[row];
 
@@ -244,6 +246,8 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   PetscCall(MarkFollowers(transfer, touches, reach, any));
   if (*any) {
     int found = 0;
+
+    transfer->saved.same = PETSC_FALSE;
 
     PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
     for (PetscInt row = 0; row < transfer->n; row++) {

@@ -105,6 +105,7 @@ typedef struct {
 /* What TransferSave() puts aside */
 typedef struct {
   PetscBool  ready; /* there is room for it */
+  PetscBool  same;  /* rows have neither been built, nor have they followed or gone to sleep, since they were put aside */
   PetscBool  sleeps;
   PetscInt   builds; /* those counted when the rows were put aside; 0: none have been */
   RowSet     rows;
@@ -141,6 +142,7 @@ struct _p_Transfer {
   Follow         follow;
   PetscReal     *column_x, *column_normals;       /* of the columns: present positions and normals, */
   PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
+  PetscBool      columns_present;                 /* positions and normals are those of the last update */
   Balance        balance;
   TransferCounts counts;
   TransferSaved  saved;

@@ -2,6 +2,9 @@
 #include "interfaceimpl.h"
 #include <sys/citations.h>
 
+/* Shares of a row whose entries go into a matrix together */
+#define SHARES_AT_ONCE 32
+
 /* Bounds beyond which rows are built again, unless TransferSetBounds() is called: with this slip bound a half disc that is led round
    another one has a normal force steady to 0.2 % */
 #define SLIP_BOUND  0.05 /* [parts of the face] */
@@ -280,6 +283,66 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
 }
 
 /*@
+  TransferCountValues - how many entries a row has in the matrices of both sides
+
+  Not Collective
+
+  Input Parameter:
+. transfer - the `Transfer`, updated once at least
+
+  Output Parameters:
++ first  - for each node of this rank: of a row of it, along its normal or another direction, in the matrix of the first side
+- second - the same in that of the second side; `NULL` for obstacles
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferSetValues()`, `TransferSetDirectedValues()`
+@*/
+PetscErrorCode TransferCountValues(Transfer transfer, PetscInt first[], PetscInt second[])
+{
+  const RowSet *set = &transfer->rows;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
+  if (transfer->n) PetscAssertPointer(first, 2);
+  for (PetscInt i = 0; i < transfer->n; i++) {
+    first[i] = transfer->dim;
+    if (second) second[i] = set->opposite[i] ? transfer->dim * (set->offsets[i + 1] - set->offsets[i]) : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The entries of one row of node i: n components of a direction, the first of them that along axis `first`. Whole rows at once, since a
+   call for each entry takes most of its time for itself. */
+static PetscErrorCode SetRow(Transfer transfer, PetscInt i, const PetscInt row[2], PetscInt first, PetscInt n, const PetscReal direction[],
+                             const Mat rows[2])
+{
+  const RowSet *set = &transfer->rows;
+  PetscInt      columns[3 * SHARES_AT_ONCE];
+  PetscScalar   values[3 * SHARES_AT_ONCE];
+
+  PetscFunctionBegin;
+  for (PetscInt d = 0; d < n; d++) {
+    columns[d] = transfer->dirichlet->data.dofs[i] + first + d;
+    values[d]  = direction[d];
+  }
+  if (rows[0]) PetscCall(MatSetValues(rows[0], 1, &row[0], n, columns, values, INSERT_VALUES));
+  if (!rows[1] || !set->opposite[i]) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt begin = set->offsets[i]; begin < set->offsets[i + 1]; begin += SHARES_AT_ONCE) {
+    PetscInt count = 0;
+
+    for (PetscInt j = begin; j < PetscMin(begin + SHARES_AT_ONCE, set->offsets[i + 1]); j++)
+      for (PetscInt d = 0; d < n; d++) {
+        columns[count]  = set->shares[j].dof + first + d;
+        values[count++] = direction[d] * set->shares[j].value;
+      }
+    PetscCall(MatSetValues(rows[1], 1, &row[1], count, columns, values, INSERT_VALUES));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferSetValues - puts the rows of this rank into the matrices of both sides
 
   Not Collective
@@ -314,17 +377,11 @@ PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], Pet
              "A row has 1 or %" PetscInt_FMT " components, not %" PetscInt_FMT, dim, components);
   for (PetscInt i = 0; i < transfer->n; i++)
     for (PetscInt c = 0; c < components; c++) {
-      const PetscInt row = i * components + c;
+      const PetscInt  row[2] = {begin[0] + i * components + c, begin[1] + i * components + c};
+      const PetscReal unit   = 1;
 
-      for (PetscInt d = 0; d < dim; d++) {
-        const PetscReal direction = components == 1 ? set->normals[dim * i + d] : 1;
-
-        if (components > 1 && c != d) continue;
-        if (rows[0]) PetscCall(MatSetValue(rows[0], begin[0] + row, transfer->dirichlet->data.dofs[i] + d, direction, INSERT_VALUES));
-        if (!rows[1] || !set->opposite[i]) continue;
-        for (PetscInt j = set->offsets[i]; j < set->offsets[i + 1]; j++)
-          PetscCall(MatSetValue(rows[1], begin[1] + row, set->shares[j].dof + d, direction * set->shares[j].value, INSERT_VALUES));
-      }
+      if (components == 1) PetscCall(SetRow(transfer, i, row, 0, dim, set->normals + dim * i, rows));
+      else PetscCall(SetRow(transfer, i, row, c, 1, &unit, rows));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -348,22 +405,15 @@ PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], Pet
 PetscErrorCode TransferSetDirectedValues(Transfer transfer, const PetscInt begin[2], PetscInt components, const PetscReal directions[],
                                          const Mat rows[2])
 {
-  const RowSet  *set = &transfer->rows;
-  const PetscInt dim = transfer->dim;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   for (PetscInt i = 0; i < transfer->n; i++)
-    for (PetscInt row = i * components; row < (i + 1) * components; row++)
-      for (PetscInt d = 0; d < dim; d++) {
-        const PetscReal direction = directions[3 * row + d];
+    for (PetscInt k = i * components; k < (i + 1) * components; k++) {
+      const PetscInt row[2] = {begin[0] + k, begin[1] + k};
 
-        if (rows[0]) PetscCall(MatSetValue(rows[0], begin[0] + row, transfer->dirichlet->data.dofs[i] + d, direction, INSERT_VALUES));
-        if (!rows[1] || !set->opposite[i]) continue;
-        for (PetscInt j = set->offsets[i]; j < set->offsets[i + 1]; j++)
-          PetscCall(MatSetValue(rows[1], begin[1] + row, set->shares[j].dof + d, direction * set->shares[j].value, INSERT_VALUES));
-      }
+      PetscCall(SetRow(transfer, i, row, 0, transfer->dim, directions + 3 * k, rows));
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -35,8 +35,10 @@ static PetscErrorCode SaveRows(Transfer transfer)
     saved->rows.vectors   = rows->vectors;
     if (rows->vectors) PetscCall(PetscObjectReference((PetscObject)rows->vectors));
     saved->builds = transfer->counts.builds;
+    saved->same   = PETSC_FALSE;
   }
-  PetscCall(CopyNumbers(transfer->dim, transfer->n, rows, &saved->rows));
+  if (!saved->same) PetscCall(CopyNumbers(transfer->dim, transfer->n, rows, &saved->rows));
+  saved->same = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -47,6 +49,7 @@ static PetscErrorCode RestoreRows(Transfer transfer)
   PetscFunctionBegin;
   if (saved->builds == transfer->counts.builds) {
     PetscCall(CopyNumbers(transfer->dim, transfer->n, &saved->rows, &transfer->rows));
+    saved->same = PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(RowSetDestroy(&transfer->rows));
@@ -168,6 +171,7 @@ PetscErrorCode TransferAllocateColumns(Transfer transfer)
   const PetscInt n = 3 * transfer->rows.n_columns;
 
   PetscFunctionBegin;
+  transfer->columns_present = PETSC_FALSE;
   PetscCall(PetscFree4(transfer->column_x, transfer->column_normals, transfer->column_moved, transfer->column_reference));
   PetscCall(PetscMalloc4(n, &transfer->column_x, n, &transfer->column_normals, n, &transfer->column_moved, n, &transfer->column_reference));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -108,6 +108,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
   if (transfer->neumann) {
     PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
     PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+    transfer->columns_present = PETSC_TRUE;
   }
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscReal *normal = transfer->rows.normals + dim * row, size = data->sizes[row];
@@ -120,10 +121,11 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     if (transfer->neumann) {
       GetOffset(transfer, row, offset);
       SplitOffset(dim, normal, offset, &gap);
-      TransferPresentNormal(transfer, row, present);
       for (PetscInt d = 0; d < dim; d++) slip += PetscSqr(offset[d] - transfer->built_slip[3 * row + d]);
-      for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(present[d] - normal[d]);
       transfer->slip[row] = PetscSqrtReal(slip) / size;
+      if (PetscAbsReal(gap) >= NEAR_CONTACT * size) continue; /* of most rows the normals do not matter */
+      TransferPresentNormal(transfer, row, present);
+      for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(present[d] - normal[d]);
     } else {
       PetscCall(ObstacleGetGap(transfer->obstacle, data->positions + 3 * row, &gap, gradient));
       for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(gradient[d] + normal[d]);
@@ -237,6 +239,7 @@ PetscErrorCode TransferSleep(Transfer transfer)
     set->opposite[row] = set->beyond[row] = transfer->keep[row] = PETSC_FALSE;
     transfer->follow.known[row] = transfer->followed[row] = transfer->goes_on[row] = PETSC_FALSE;
   }
+  transfer->saved.same      = PETSC_FALSE;
   transfer->follow.has_last = PETSC_FALSE;
   transfer->sleeps          = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -286,7 +289,8 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
     PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
     if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   }
-  *rebuilt = PETSC_FALSE;
+  *rebuilt                  = PETSC_FALSE;
+  transfer->columns_present = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
   *rebuilt         = (PetscBool)(!transfer->built || transfer->sleeps || near > transfer->built_near);
   transfer->sleeps = PETSC_FALSE;

@@ -299,14 +299,87 @@ static void search_costs_in_proportion(void **state)
   assert_true(counts[1].candidates < 20 * 16 * 16);
 }
 
+/* What matrices of rows are made with: as many entries as they get, neither fewer nor more */
+static void entries_are_counted(void **state)
+{
+  (void)state;
+  for (PetscInt pair = 0; pair < PAIRS; pair++) {
+    Interface interface;
+    PetscInt *counts[2];
+
+    open_pair(&interface, pair, PETSC_FALSE, map_nothing);
+    ok(PetscMalloc2(interface.rows.n, &counts[0], interface.rows.n, &counts[1]));
+    ok(TransferCountValues(interface.transfer, counts[0], counts[1]));
+    for (PetscInt i = 0; i < interface.rows.n; i++)
+      for (PetscInt side = 0; side < 2; side++) {
+        PetscInt n;
+
+        ok(MatGetRow(interface.matrix[side], interface.begin + i, &n, NULL, NULL));
+        assert_int_equal(counts[side][i], n);
+        if (!side) assert_int_equal(n, interface.dim);
+        ok(MatRestoreRow(interface.matrix[side], interface.begin + i, &n, NULL, NULL));
+      }
+    ok(PetscFree2(counts[0], counts[1]));
+    interface_destroy(&interface);
+  }
+}
+
+/* Rows that have been put aside come back to the last bit, however often: whether they have followed the surfaces since, have been built
+   again, or have done neither between two times that they were put aside */
+static void rows_come_back(void **state)
+{
+  const PetscReal slips[] = {0.005, 0.01, 0.2, 0.005}; /* m; rows are built again from 0.0125 on */
+
+  (void)state;
+  for (PetscInt pair = 0; pair < 2; pair++) {
+    Interface  interface;
+    Mat        first[2];
+    PetscBool *touches, follows;
+
+    open_pair(&interface, pair, PETSC_FALSE, map_nothing);
+    ok(PetscMalloc1(interface.rows.n, &touches));
+    for (PetscInt i = 0; i < interface.rows.n; i++) touches[i] = PETSC_TRUE;
+    for (PetscInt side = 0; side < 2; side++) ok(MatDuplicate(interface.matrix[side], MAT_COPY_VALUES, &first[side]));
+    for (PetscInt i = 0; i < 4; i++) {
+      const PetscReal slip[3] = {slips[i], 0, 0};
+      PetscBool       rebuilt, same;
+
+      ok(TransferSave(interface.transfer));
+      for (PetscInt again = 0; again < 2; again++) {
+        move_mesh(interface.dm[1], map_nothing, slip, interface.u[1]);
+        ok(TransferUpdate(interface.transfer, interface.u[0], interface.u[1], PETSC_MAX_REAL, &rebuilt));
+        assert_int_equal(rebuilt, slips[i] > 0.1);
+        ok(TransferFollow(interface.transfer, touches, 1, 0, PETSC_FALSE, 1, 1, &follows));
+        assert_true(follows);
+        ok(TransferRestore(interface.transfer));
+        move_mesh(interface.dm[1], map_nothing, nowhere, interface.u[1]);
+        assert_false(interface_update(&interface, PETSC_MAX_REAL, 1));
+        for (PetscInt side = 0; side < 2; side++) {
+          ok(MatEqual(first[side], interface.matrix[side], &same));
+          assert_true(same);
+        }
+      }
+    }
+    ok(PetscFree(touches));
+    for (PetscInt side = 0; side < 2; side++) ok(MatDestroy(&first[side]));
+    interface_destroy(&interface);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(uniform_pressure_stays_uniform), simulation_test(flat_rows),
-      simulation_test(linear_fields_are_reproduced),   simulation_test(force_and_moment_are_conserved),
-      simulation_test(rows_are_built_when_needed),     simulation_test(ends_are_covered_in_part),
-      simulation_test(neighbours_share_an_edge),       simulation_test(ends_are_guarded),
+      simulation_test(uniform_pressure_stays_uniform),
+      simulation_test(flat_rows),
+      simulation_test(linear_fields_are_reproduced),
+      simulation_test(force_and_moment_are_conserved),
+      simulation_test(rows_are_built_when_needed),
+      simulation_test(ends_are_covered_in_part),
+      simulation_test(neighbours_share_an_edge),
+      simulation_test(ends_are_guarded),
       simulation_test(search_costs_in_proportion),
+      simulation_test(entries_are_counted),
+      simulation_test(rows_come_back),
   };
 
   return impakt_main(argc, argv, tests);

@@ -418,6 +418,7 @@ typedef struct {
   PetscReal     *last_force; /* per row */
   PetscReal     *handover;   /* two numbers to a body per row */
   PetscInt      *intervals;  /* to a body */
+  PetscInt      *counts;     /* two numbers per row */
   PetscReal     *rest;       /* to a body */
   int           *updated;    /* per pair: what has become of its rows, see rowsupdate.c */
   BodyCondition *conditions; /* to a body */

@@ -42,7 +42,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc5(contact->rows.n_all, &contact->ranks.row_pair, n, &contact->ranks.mine_active, contact->rows.n_all,
                          &contact->ranks.all_active, contact->ranks.size, &contact->ranks.counts, contact->ranks.size,
                          &contact->ranks.offsets));
-  PetscCall(PetscCalloc2(n, &contact->ties.holds, n, &contact->ties.distance));
+  PetscCall(PetscCalloc3(n, &contact->ties.holds, n, &contact->ties.distance, 2 * n, &contact->work.counts));
   PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap));
   PetscCall(PetscCalloc7(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
@@ -156,10 +156,29 @@ static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Room for the entries of the rows of a body, of which each has as many as its transfer tells: PETSc else collects them in a hash table.
+   Ties have other rows, and on several ranks nobody knows which columns are those of other ranks. */
+static PetscErrorCode Preallocate(Contact contact, PetscInt b)
+{
+  PetscInt *entries = contact->work.intervals, *counts[2] = {contact->work.counts, contact->work.counts + contact->rows.n};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
+    const ContactPair *pair = &contact->pairs[contact->body_rows[b].pairs[k]];
+    const PetscInt     side = pair->body[0] == b ? 0 : 1;
+
+    PetscCall(TransferCountValues(pair->transfer, counts[0], pair->obstacle ? NULL : counts[1]));
+    for (PetscInt i = pair->begin; i < pair->end; i++) entries[i - pair->shift[side]] = counts[side][(i - pair->begin) / pair->components];
+  }
+  PetscCall(MatSeqAIJSetPreallocation(contact->interfaces[b], 0, entries));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
 {
-  Vec      positions;
-  PetscInt n;
+  const ContactLaw law = contact->options.law;
+  Vec              positions;
+  PetscInt         n;
 
   PetscFunctionBegin;
   PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
@@ -168,7 +187,8 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
   PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), &contact->interfaces[b]));
   PetscCall(MatSetSizes(contact->interfaces[b], contact->body_rows[b].n, n, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
-  PetscCall(MatSetUp(contact->interfaces[b]));
+  if (contact->ranks.size == 1 && (law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION)) PetscCall(Preallocate(contact, b));
+  else PetscCall(MatSetUp(contact->interfaces[b]));
   PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -320,7 +340,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree(contact->work.updated));
   PetscCall(ContactDestroyBodyRows(contact));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
-  PetscCall(PetscFree2(contact->ties.holds, contact->ties.distance));
+  PetscCall(PetscFree3(contact->ties.holds, contact->ties.distance, contact->work.counts));
   PetscCall(ContactDestroySavedRows(contact));
   PetscCall(ContactDestroyTurns(contact));
   PetscCall(ContactDestroySharedNodes(contact));
