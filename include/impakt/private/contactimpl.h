@@ -407,21 +407,21 @@ typedef struct {
 
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
-  PetscReal     *speeds;     /* per body */
-  PetscReal     *traces;     /* six numbers per body, see ContactGetBodyTraces() */
-  PetscInt      *counts;     /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
-  PetscReal     *boxes;      /* per surface: lower corner, and the upper one with its sign changed [m] */
-  int           *hands_over; /* per body: it begins the step with forces along other rows than it ends it with */
-  PetscBool     *flags;      /* to a body */
-  PetscReal     *last_gap;   /* per row */
-  PetscBool     *moved;      /* per row */
-  PetscReal     *last_force; /* per row */
-  PetscReal     *handover;   /* two numbers to a body per row */
-  PetscInt      *intervals;  /* to a body */
-  PetscInt      *counts;     /* two numbers per row */
-  PetscReal     *rest;       /* to a body */
-  int           *updated;    /* per pair: what has become of its rows, see rowsupdate.c */
-  BodyCondition *conditions; /* to a body */
+  PetscReal     *speeds;       /* per body */
+  PetscReal     *traces;       /* six numbers per body, see ContactGetBodyTraces() */
+  PetscInt      *counts;       /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
+  PetscReal     *boxes;        /* per surface: lower corner, and the upper one with its sign changed [m] */
+  int           *hands_over;   /* per body: it begins the step with forces along other rows than it ends it with */
+  PetscBool     *flags;        /* to a body */
+  PetscReal     *last_gap;     /* per row */
+  PetscBool     *moved;        /* per row */
+  PetscReal     *last_force;   /* per row */
+  PetscReal     *handover;     /* two numbers to a body per row */
+  PetscInt      *intervals;    /* to a body */
+  PetscInt      *entry_counts; /* two numbers per row */
+  PetscReal     *rest;         /* to a body */
+  int           *updated;      /* per pair: what has become of its rows, see rowsupdate.c */
+  BodyCondition *conditions;   /* to a body */
 } ContactWork;
 
 struct _p_Contact {

@@ -42,7 +42,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc5(contact->rows.n_all, &contact->ranks.row_pair, n, &contact->ranks.mine_active, contact->rows.n_all,
                          &contact->ranks.all_active, contact->ranks.size, &contact->ranks.counts, contact->ranks.size,
                          &contact->ranks.offsets));
-  PetscCall(PetscCalloc3(n, &contact->ties.holds, n, &contact->ties.distance, 2 * n, &contact->work.counts));
+  PetscCall(PetscCalloc3(n, &contact->ties.holds, n, &contact->ties.distance, 2 * n, &contact->work.entry_counts));
   PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap));
   PetscCall(PetscCalloc7(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
@@ -160,7 +160,7 @@ static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
    Ties have other rows, and on several ranks nobody knows which columns are those of other ranks. */
 static PetscErrorCode Preallocate(Contact contact, PetscInt b)
 {
-  PetscInt *entries = contact->work.intervals, *counts[2] = {contact->work.counts, contact->work.counts + contact->rows.n};
+  PetscInt *entries = contact->work.intervals, *counts[2] = {contact->work.entry_counts, contact->work.entry_counts + contact->rows.n};
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
@@ -340,7 +340,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree(contact->work.updated));
   PetscCall(ContactDestroyBodyRows(contact));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
-  PetscCall(PetscFree3(contact->ties.holds, contact->ties.distance, contact->work.counts));
+  PetscCall(PetscFree3(contact->ties.holds, contact->ties.distance, contact->work.entry_counts));
   PetscCall(ContactDestroySavedRows(contact));
   PetscCall(ContactDestroyTurns(contact));
   PetscCall(ContactDestroySharedNodes(contact));
