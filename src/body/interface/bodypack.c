@@ -45,6 +45,7 @@ static PetscErrorCode PackPoint(Body body, Tables tables)
   PetscCall(VecDuplicate(body->state.u, &point));
   PetscCall(VecZeroEntries(point));
   PetscCall((*body->integrator->ops.copypoint)(body, PETSC_FALSE, point, numbers));
+  if (body->local) PetscCallMPI(MPI_Bcast(numbers, N_FACTORS, MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
   PetscCall(PetscMalloc1(n * width, &packed));
   PetscCall(VecGetArrayRead(point, &values));
   for (PetscInt i = 0; i < n; i++) {
