@@ -76,8 +76,8 @@ PetscErrorCode ComplianceReserve(Compliance c, PetscInt more)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Values of this rank's rows, for some levels one after the other, on the known rows of every rank; or `alone`: of this one, which has all of
-   them */
+/* Values of this rank's rows, for some levels one after the other, on the known rows of every rank; or `alone`: of this one, which has all
+   of them */
 PetscErrorCode ComplianceGather(Compliance c, PetscBool alone, PetscInt levels, const PetscScalar mine[], PetscScalar all[])
 {
   PetscFunctionBegin;

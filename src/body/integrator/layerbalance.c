@@ -128,7 +128,8 @@ PetscErrorCode LayerBalanceAgree(LayerBalance layer, Body body)
     told[3 + 2 * slot] = layer->aside[slot].number;
     told[4 + 2 * slot] = layer->aside[slot].rounds;
   }
-  PetscCallMPI(MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(told), MPIU_INT, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  PetscCallMPI(
+      MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(told), MPIU_INT, body->mesh.owner, PetscObjectComm((PetscObject)body)));
   layer->n_made     = told[0];
   layer->now.number = told[1];
   layer->now.rounds = told[2];

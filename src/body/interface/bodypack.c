@@ -221,7 +221,8 @@ static PetscErrorCode TellRanks(Body body)
 
   PetscFunctionBegin;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) told[k] = *values[k];
-  PetscCallMPI(MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(values), MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  PetscCallMPI(
+      MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(values), MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) *values[k] = told[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -144,7 +144,7 @@ typedef struct {
   PetscMPIInt     *changed;      /* work space, per row of all ranks */
   PetscMPIInt      size;         /* ranks */
   PetscInt         local, global, begin;
-  PetscBool        at_home; /* the mesh is whole on one of several ranks, and no other has rows */
+  PetscBool        at_home;          /* the mesh is whole on one of several ranks, and no other has rows */
   PetscBool        expected;         /* rows may come in the course of the run */
   PetscMPIInt     *counts, *offsets; /* of 4 numbers for each row, on each rank */
   BodyGram         gram;             /* of prescribed rows that are not orthonormal */
@@ -200,7 +200,7 @@ typedef struct {
 
 struct _p_Body {
   PETSCHEADER(int);
-  PetscBool         setup;
+  PetscBool setup;
   /* The mesh is whole on one of several ranks, and steps of the integrator need nothing of others but where rows are prescribed: see
      src/body/README.md. What a substep finds out of the body as a whole (works, stable step, failure) that rank alone knows. */
   PetscBool         local;
@@ -267,8 +267,8 @@ static inline PetscBool BodyStepsAlone(Body body)
   return (PetscBool)(body->local && !body->rows.n_prescribed && !body->rows.n_robin);
 }
 
-/* Whether a failure ends a step at once. That of a local body others do not know yet: the step is made to its end, good for nothing, so that
-   all ranks do the same. */
+/* Whether a failure ends a step at once. That of a local body others do not know yet: the step is made to its end, good for nothing, so
+   that all ranks do the same. */
 static inline PetscBool BodyHasStopped(Body body)
 {
   return (PetscBool)(body->failure.reason < 0 && !body->local);

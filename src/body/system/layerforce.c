@@ -307,7 +307,8 @@ PetscErrorCode BodySpreadLayer(Body body, Vec near, Vec u)
 }
 
 /* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m], from a history that BodyLayerCopyHistory()
-   has given, with its step; NULL: that of the present substep. The first time collective; then, where one rank has the body, of that alone */
+   has given, with its step; NULL: that of the present substep. The first time collective; then, where one rank has the body, of that alone
+ */
 PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[], PetscReal step, Mat K)
 {
   LayerElements      layer = body->layer.elements;
