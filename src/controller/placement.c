@@ -1,8 +1,8 @@
 /*
    Bodies that are whole on one rank. A body that is divided is integrated by all ranks together, which wait for each other in each of its
-   steps: with few elements that takes longer than the elements. Where there are many small bodies, each is given to one rank, and those that
-   are near each other to the same one as far as they can: their places are halved across their longest extent, with as much work on both
-   sides, until there is a part for each rank (recursive coordinate bisection, as in src/mesh/bisection.c).
+   steps: with few elements that takes longer than the elements. Where there are many small bodies, each is given to one rank, and those
+   that are near each other to the same one as far as they can: their places are halved across their longest extent, with as much work on
+   both sides, until there is a part for each rank (recursive coordinate bisection, as in src/mesh/bisection.c).
 */
 #include "controllerimpl.h"
 #include <impakt/mesh.h>
@@ -14,7 +14,7 @@
 #define MANY 4
 
 typedef struct {
-  PetscInt  n, *bodies; /* those that are placed */
+  PetscInt n, *bodies; /* those that are placed */
   PetscReal (*places)[3], *work;
   PetscInt *ranks; /* of each body of the controller, PETSC_DECIDE: it is divided */
 } Placement;
@@ -28,7 +28,7 @@ static PetscErrorCode IsSmall(Body body, PetscBool *small, PetscBool *asks, Pets
   PetscBool   may, is_explicit, rigid = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(MeshMayBeWhole(prefix, &may, asks));
+  PetscCall(MeshMayBeWhole(PetscObjectComm((PetscObject)body), prefix, &may, asks));
   PetscCall(MeshEstimate(prefix, &cells, place));
   PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
   PetscCall(PetscStrcasecmp(type, TSCENTRALDIFFERENCE, &is_explicit));
@@ -99,7 +99,7 @@ PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)controller), &size));
-  if (size == 1 || n < 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (n < 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc5(n, &p.bodies, n, &p.places, n, &p.work, n, &p.ranks, n, &list));
   PetscCall(PetscMalloc1(n, &asks));
   for (PetscInt b = 0; b < n; b++) {
@@ -124,7 +124,7 @@ PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
   }
   for (PetscInt i = 0; i < p.n; i++) list[i] = i;
   PetscCall(Halve(&p, p.n, list, 0, size));
-  for (PetscInt b = 0; b < n; b++) PetscCall(BodySetMeshRank(controller->bodies[begin + b], (PetscMPIInt)p.ranks[b]));
+  for (PetscInt b = 0; b < n && size > 1; b++) PetscCall(BodySetMeshRank(controller->bodies[begin + b], (PetscMPIInt)p.ranks[b]));
   PetscCall(PetscFree(asks));
   PetscCall(PetscFree5(p.bodies, p.places, p.work, p.ranks, list));
   PetscFunctionReturn(PETSC_SUCCESS);

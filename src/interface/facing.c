@@ -171,7 +171,8 @@ static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, P
 
 /* An upper bound of the depth by which the convex hulls of two bodies overlap [m]: the least of the depths along the mean normals of the
    groups and along the axes. If the depth along any direction is negative, the bodies are apart (theorem of separating axes). */
-static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b, PetscReal *overlap)
+static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b,
+                                     PetscReal *overlap)
 {
   PetscReal *support[2];
   PetscReal(*list)[3];
@@ -247,7 +248,8 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
     PetscCheck(a->data.dim == b->data.dim, PetscObjectComm((PetscObject)a->dm), PETSC_ERR_USER_INPUT,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", a->data.dim, b->data.dim);
     PetscCall(PetscMalloc1(2, &directions));
-    for (PetscInt side = 0; side < 2; side++) PetscCall(GetDirections(PetscObjectComm((PetscObject)surfaces[side]->dm), surfaces[side], &directions[side]));
+    for (PetscInt side = 0; side < 2; side++)
+      PetscCall(GetDirections(PetscObjectComm((PetscObject)surfaces[side]->dm), surfaces[side], &directions[side]));
     PetscCall(ComputeOverlap(PetscObjectComm((PetscObject)a->dm), a, NULL, b, NULL, &directions[0], &directions[1], &depth));
   }
   for (PetscInt side = 0; side < 2; side++) {

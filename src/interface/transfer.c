@@ -167,8 +167,8 @@ PetscErrorCode TransferSetMoved(Transfer transfer, PetscBool moved)
   Level: developer
 
   Note:
-  From then on what an update finds, whether rows have been built and whether any has followed, that rank alone knows; and updates are collective
-  no more. Gaps must not be turned.
+  From then on what an update finds, whether rows have been built and whether any has followed, that rank alone knows; and updates are
+collective no more. Gaps must not be turned.
 
 .seealso: `Transfer`, `TransferUpdate()`, `TransferFollow()`, `TransferSetBalance()`
 @*/

@@ -70,7 +70,8 @@ static PetscErrorCode TellRanks(Transfer transfer)
     PetscReal      near, size, step, scale;
     PetscBool      sleeps, has_last;
     TransferCounts counts;
-  } told = {transfer->built_near, transfer->smallest_size, follow->step, follow->scale, transfer->sleeps, follow->has_last, transfer->counts};
+  } told = {transfer->built_near, transfer->smallest_size, follow->step,    follow->scale,
+            transfer->sleeps,     follow->has_last,        transfer->counts};
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Bcast(&told, sizeof(told), MPI_BYTE, transfer->owner, PetscObjectComm((PetscObject)transfer)));

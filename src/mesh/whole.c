@@ -104,10 +104,11 @@ PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal cent
 /*@C
   MeshMayBeWhole - whether options leave it open how a mesh is divided among ranks, or ask for it to be whole
 
-  Not Collective
+  Logically Collective
 
-  Input Parameter:
-. prefix - of its options, such as "left_"
+  Input Parameters:
++ comm   - communicator
+- prefix - of its options, such as "left_"
 
   Output Parameters:
 + may  - no option asks for a division
@@ -117,21 +118,32 @@ PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal cent
 
 .seealso: `MeshCreateOnRank()`, `MeshEstimate()`
 @*/
-PetscErrorCode MeshMayBeWhole(const char prefix[], PetscBool *may, PetscBool *asks)
+PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may, PetscBool *asks)
 {
-  static const char *const options[]  = {"-petscpartitioner_type", "-dm_distribute",         "-dm_distribute_overlap", "-mesh_bricks",
-                                         "-mesh_division",         "-mesh_contact_surfaces", "-mesh_contact_cost"};
-  PetscBool                has        = PETSC_FALSE;
-  char                     division[] = "graphs"; /* as long as the longest word, and one more */
+  static const char *const options[]   = {"-petscpartitioner_type", "-dm_distribute", "-dm_distribute_overlap", "-mesh_contact_surfaces",
+                                          "-mesh_contact_cost"};
+  const char *const        divisions[] = {"bricks", "graph", "whole"};
+  PetscInt                 division    = 0;
+  PetscBool                has         = PETSC_FALSE, set, file, ball, rod;
 
   PetscFunctionBegin;
-  PetscAssertPointer(may, 2);
-  PetscAssertPointer(asks, 3);
+  PetscAssertPointer(may, 3);
+  PetscAssertPointer(asks, 4);
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_filename", &file));
+  PetscCall(MeshIsBall(prefix, &ball));
+  PetscCall(MeshIsRod(prefix, &rod));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-petscpartitioner_type", &has));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !has; i++) PetscCall(PetscOptionsHasName(NULL, prefix, options[i], &has));
-  *may = (PetscBool)!has;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-mesh_division", division, sizeof(division), NULL));
-  PetscCall(PetscStrcasecmp(division, "whole", asks));
+  if (!has && !file && !ball && !rod) PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_bricks", &has));
+  PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 3, &division, &set));
+  PetscCheck(!set || division || !(file || ball || rod), comm, PETSC_ERR_USER_INPUT,
+             "-%smesh_division bricks: boxes alone are made of bricks; choose graph or whole, or leave the option out", prefix);
+  *asks = (PetscBool)(set && division == 2);
+  PetscCheck(!*asks || !has, comm, PETSC_ERR_USER_INPUT,
+             "-%smesh_division whole: another option divides the mesh (petscpartitioner_type, dm_distribute, mesh_bricks, "
+             "mesh_contact_surfaces, ...); leave one of them out",
+             prefix);
+  *may = (PetscBool) !(has || set);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -76,8 +76,9 @@ PetscErrorCode ComplianceReserve(Compliance c, PetscInt more)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Values of this rank's rows, for some levels one after the other, on the known rows of every rank */
-PetscErrorCode ComplianceGather(Compliance c, PetscInt levels, const PetscScalar mine[], PetscScalar all[])
+/* Values of this rank's rows, for some levels one after the other, on the known rows of every rank; or `alone`: of this one, which has all
+   of them */
+PetscErrorCode ComplianceGather(Compliance c, PetscBool alone, PetscInt levels, const PetscScalar mine[], PetscScalar all[])
 {
   PetscFunctionBegin;
   for (PetscInt k = 0; k < levels; k++)
@@ -86,7 +87,7 @@ PetscErrorCode ComplianceGather(Compliance c, PetscInt levels, const PetscScalar
 
       all[k * c->n + i] = local >= 0 && local < c->local ? mine[k * c->local + local] : 0;
     }
-  if (c->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(levels * c->n), MPIU_SCALAR, MPIU_SUM, c->comm));
+  if (c->size > 1 && !alone) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(levels * c->n), MPIU_SCALAR, MPIU_SUM, c->comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -117,7 +118,7 @@ PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, 
   PetscFunctionBegin;
   if (c->place[row] < 0) PetscCall(AddRow(c, row));
   j = c->place[row];
-  PetscCall(ComplianceGather(c, levels, mine, c->column));
+  PetscCall(ComplianceGather(c, PETSC_FALSE, levels, mine, c->column));
   for (PetscInt k = 0; k < levels; k++) {
     PetscScalar *matrix = c->matrices + k * c->room * c->room;
 

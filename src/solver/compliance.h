@@ -16,7 +16,7 @@ PETSC_INTERN PetscErrorCode ComplianceReserve(Compliance, PetscInt);
 PETSC_INTERN PetscErrorCode ComplianceSetColumn(Compliance, PetscInt, PetscInt, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode ComplianceForget(Compliance, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode ComplianceTruncate(Compliance, PetscInt);
-PETSC_INTERN PetscErrorCode ComplianceGather(Compliance, PetscInt, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode ComplianceGather(Compliance, PetscBool, PetscInt, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN void           ComplianceGetRows(Compliance, PetscInt *, const PetscInt *[], const PetscInt *[]);
 PETSC_INTERN PetscBool      ComplianceKnows(Compliance, PetscInt);
 PETSC_INTERN void           ComplianceGetMatrix(Compliance, PetscInt, PetscInt *, const PetscScalar *[]);

@@ -8,6 +8,8 @@ typedef struct _n_ConstrainedSolver *ConstrainedSolver;
 PETSC_INTERN PetscErrorCode     ConstrainedSolverCreate(Mat, Mat, PetscInt, const char[], Compliance, ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverDestroy(ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverRefactor(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverFreeRows(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverForgetColumns(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverGetMatrices(ConstrainedSolver, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverChoose(KSP, Mat, PetscInt);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);

@@ -122,6 +122,26 @@ PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* No row of any rank is constrained. Not collective. */
+PetscErrorCode ConstrainedSolverFreeRows(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = -1;
+  s->dense = PETSC_TRUE;
+  if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
+  PetscCall(FactorConstraints(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One rank may have factored A without the others: columns of A^{-1} B^T are made again on all of them */
+PetscErrorCode ConstrainedSolverForgetColumns(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(s->fresh, s->global));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A has new values, as that of a nonlinear body has in every Newton iteration */
 PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver s)
 {

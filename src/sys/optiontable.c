@@ -43,11 +43,11 @@ static const KnownOption options[] = {
     {"meshes", OPTION_OF_BODY, "dm_plex_box_upper", "x[,y,z]", "upper corner of a box [m]"},
     {"meshes", OPTION_OF_BODY, "dm_plex_simplex", "true|false",
      "whether a box or a ball is made of triangles or tetrahedra, default false: quadrilaterals or hexahedra"},
-    {"meshes", OPTION_OF_BODY, "mesh_division", "bricks|graph",
-     "how a box is divided among ranks: each makes its own brick of it, or the first makes all and it is divided as a graph; default "
-     "bricks, "
-     "but graph where a brick would have 1.1 times the mean number of elements, or where another option needs it (petscpartitioner_type, "
-     "dm_distribute, dm_distribute_overlap, dm_plex_box_bd)"},
+    {"meshes", OPTION_OF_BODY, "mesh_division", "bricks|graph|whole",
+     "how a mesh is divided among ranks: of a box each makes its own brick, or the first makes all and it is divided as a graph, or one "
+     "rank has all of it; default whole for explicit bodies of up to 2000 elements of a box, a ball or a rod where there are 4 or more for "
+     "each rank, else bricks, but graph where a brick would have 1.1 times the mean number of elements, or where another option needs it "
+     "(petscpartitioner_type, dm_distribute, dm_distribute_overlap, dm_plex_box_bd)"},
     {"meshes", OPTION_OF_BODY, "mesh_bricks", "n[,n,n]",
      "number of bricks along each axis of a box, their product the number of ranks; default: edges are halved again and again, the longest "
      "first, those along the normals of contact surfaces less often as far as a step costs less by that"},

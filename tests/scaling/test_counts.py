@@ -1,5 +1,6 @@
 """What the counts of runs on several ranks may be: they do not hang on a clock, nor on how many cores there are."""
 
+import subprocess
 from types import SimpleNamespace
 
 import pytest
@@ -62,6 +63,74 @@ def test_bytes_are_those_of_surfaces():
     sizes = [16, 24]
     found = [count([4], size=size)[0]["bytes"] for size in sizes]
     assert exponent(sizes, found) <= 2
+
+
+RADIUS = 0.01  # m
+
+
+def discs(n, gap, speed=1, **more):
+    """Options of n explicit discs of 48 elements in rows of 4, so far apart, each of which moves toward the middle of all."""
+    options = {"bodies": ",".join(f"d{i}" for i in range(n)), "contact_pairs": "auto", "contact_facing": "false", "progress": 0, "time_step": 2e-5}
+    for i in range(n):
+        row, column = divmod(i, 4)
+        options |= {
+            f"d{i}_dm_plex_dim": 2,
+            f"d{i}_dm_plex_shape": "ball",
+            f"d{i}_ball_radius": RADIUS,
+            f"d{i}_ball_centre": f"{(2 * RADIUS + gap) * column + 1e-5 * row},{(2 * RADIUS + gap) * row}",
+            f"d{i}_ball_divisions": 4,
+            f"d{i}_density": 1000,
+            f"d{i}_youngs_modulus": 1e6,
+            f"d{i}_poissons_ratio": 0.25,
+            f"d{i}_ts_type": "centraldifference",
+            f"d{i}_initial_velocity": f"{speed * (1.5 - column)},0",
+        }
+    return options | more
+
+
+def test_small_bodies_are_whole_on_ranks():
+    """Explicit bodies that touch nothing: as many reductions in a step whatever their number, no message, nothing of a body on two ranks, and as much on each. With
+    bodies that are divided there were 6 reductions for each body."""
+    arguments = SimpleNamespace(build=BUILD, mpiexec=MPIEXEC, time_limit=300)
+    few, many = (counts_of(arguments, discs(n, 5 * RADIUS), 2, (2, 4)) for n in (16, 32))
+    assert few["reductions"] == many["reductions"] <= 10
+    assert few["messages"] == many["messages"] == 0
+    assert many["halo"] == 0
+    assert many["elements"] == 16 * 48  # of one rank: half of all bodies
+    divided = counts_of(arguments, discs(16, 5 * RADIUS) | {f"d{i}_mesh_division": "graph" for i in range(16)}, 2, (2, 4))
+    assert divided["reductions"] > 3 * few["reductions"]
+    assert divided["halo"] > 0
+
+
+@pytest.mark.parametrize("material", ["linear_elastic", "neo_hookean"])
+def test_small_bodies_do_the_same_on_ranks(material):
+    """Discs that meet, on one rank, two and three: round-off of the contact forces between ranks; measured: 4e-14."""
+    arguments = SimpleNamespace(build=BUILD, mpiexec=MPIEXEC, time_limit=300)
+    options = discs(12, 5e-4) | {f"d{i}_material_type": material for i in range(12)}  # whose corners lie 0.09 mm outside their radius
+    one, *others = (run(arguments, options, ranks, 40) for ranks in (1, 2, 3))
+    assert one["contact"]["steps_in_contact"] > 5
+    scale = max(body["kinetic"] for body in one["bodies"].values())
+    for other in others:
+        assert other["timing"]["ranks"]["halo"]["largest"] == 0
+        assert other["contact"]["steps_in_contact"] == one["contact"]["steps_in_contact"]
+        for name, body in one["bodies"].items():
+            for energy in ("kinetic", "potential"):
+                assert other["bodies"][name][energy] == pytest.approx(body[energy], rel=0, abs=1e-12 * scale)
+
+
+def test_failure_on_one_rank_is_told_once():
+    """A body that is torn apart: the same message and the same exit code on one rank and on two, of which one alone has the body."""
+    options = discs(12, 5 * RADIUS) | {f"d{i}_material_type": "neo_hookean" for i in range(12)} | {"d9_initial_velocity": "1000*sin(900*x),0", "time_end": 1e-3}
+    found = []
+    for ranks in (1, 2):
+        words = [word for name, value in options.items() for word in (f"-{name}", str(value))]
+        done = subprocess.run([*MPIEXEC, "-n", str(ranks), BUILD / "impakt", *words], timeout=300, capture_output=True, text=True, check=False)
+        lines = [line for line in done.stderr.splitlines() if line.startswith("impakt: error:")]
+        found.append((done.returncode, lines))
+    assert found[0] == found[1]
+    assert found[0][0] != 0
+    assert len(found[0][1]) == 1
+    assert "'d9'" in found[0][1][0]
 
 
 @pytest.mark.long

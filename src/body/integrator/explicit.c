@@ -154,6 +154,13 @@ static PetscErrorCode Restore(Body body, BodySlot slot)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Agree(Body body)
+{
+  PetscFunctionBegin;
+  if (GetLayer(body)) PetscCall(LayerBalanceAgree(GetLayer(body), body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode VisitLayer(Body body, PetscInt level, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
@@ -355,6 +362,7 @@ PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
   integrator->ops.save          = Save;
   integrator->ops.restore       = Restore;
   integrator->ops.visit         = VisitLayer;
+  integrator->ops.agree         = Agree;
   integrator->ops.copypoint     = CopyPoint;
   integrator->ops.destroy       = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -11,6 +11,7 @@ PETSC_INTERN PetscErrorCode LayerBalanceSolve(LayerBalance, Body, PetscReal, Pet
 PETSC_INTERN PetscErrorCode LayerBalanceGetForce(LayerBalance, Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode LayerBalanceSave(LayerBalance, Body, BodySlot);
 PETSC_INTERN PetscErrorCode LayerBalanceRestore(LayerBalance, Body, BodySlot);
+PETSC_INTERN PetscErrorCode LayerBalanceAgree(LayerBalance, Body);
 PETSC_INTERN PetscErrorCode LayerBalanceApplyUnit(LayerBalance, Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode LayerBalanceVisit(LayerBalance, Body, Checkpoint);
 PETSC_INTERN PetscErrorCode LayerBalanceCopyPoint(LayerBalance, Body, PetscBool, Vec, PetscReal[2]);

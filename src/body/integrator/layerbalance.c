@@ -114,6 +114,33 @@ PetscErrorCode LayerBalanceSave(LayerBalance layer, Body body, BodySlot slot)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How good the factors of a local body are its rank alone knows; before all ranks have rows to hold, they all do */
+PetscErrorCode LayerBalanceAgree(LayerBalance layer, Body body)
+{
+  PetscInt told[3 + 2 * BODY_SLOTS];
+
+  PetscFunctionBegin;
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  told[0] = layer->n_made;
+  told[1] = layer->now.number;
+  told[2] = layer->now.rounds;
+  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
+    told[3 + 2 * slot] = layer->aside[slot].number;
+    told[4 + 2 * slot] = layer->aside[slot].rounds;
+  }
+  PetscCallMPI(
+      MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(told), MPIU_INT, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  layer->n_made     = told[0];
+  layer->now.number = told[1];
+  layer->now.rounds = told[2];
+  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
+    layer->aside[slot].number = told[3 + 2 * slot];
+    layer->aside[slot].rounds = told[4 + 2 * slot];
+  }
+  PetscCall(ConstrainedSolverForgetColumns(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body, BodySlot slot)
 {
   const Factors *aside = &layer->aside[slot];
@@ -244,6 +271,7 @@ static PetscErrorCode CreateRows(LayerBalance layer, Body body)
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
   PetscCall(MatCreateSubMatrix(body->rows.free_matrix, rows, layer->dofs, MAT_INITIAL_MATRIX, &layer->rows));
   PetscCall(MatSetOption(layer->rows, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscCall(MatSetOption(layer->rows, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE)); /* assembled again, it needs no word of other ranks */
   PetscCall(ISDestroy(&rows));
   PetscCall(RowPatternNote(&layer->pattern, layer->rows, &layer->same));
   PetscCall(MarkEntries(layer, body));

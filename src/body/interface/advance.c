@@ -284,8 +284,8 @@ PetscErrorCode BodyTryIntegrate(Body body, StepConvergedReason *reason)
 . body - the `Body`, set up
 
   Output Parameter:
-. local - if so, ranks do not wait for each other in `BodyTryIntegrateRows()` and `BodyCompleteStep()` unless rows are prescribed, and the rank
-          of `BodyGetMeshRank()` alone knows whether the step has failed
+. local - if so, ranks do not wait for each other in `BodyTryIntegrateRows()` and `BodyCompleteStep()` unless rows are prescribed, and the
+rank of `BodyGetMeshRank()` alone knows whether the step has failed
 
   Level: developer
 

@@ -21,7 +21,8 @@ static PetscErrorCode CheckDescribed(Body body)
 static PetscErrorCode CreateMesh(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(MeshCreateOnRank(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, body->mesh.rank, &body->mesh.dm));
+  PetscCall(
+      MeshCreateOnRank(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, body->mesh.rank, &body->mesh.dm));
   PetscCall(DMGetCoordinateDim(body->mesh.dm, &body->mesh.dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,6 +45,7 @@ static PetscErrorCode PackPoint(Body body, Tables tables)
   PetscCall(VecDuplicate(body->state.u, &point));
   PetscCall(VecZeroEntries(point));
   PetscCall((*body->integrator->ops.copypoint)(body, PETSC_FALSE, point, numbers));
+  if (body->local) PetscCallMPI(MPI_Bcast(numbers, N_FACTORS, MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
   PetscCall(PetscMalloc1(n * width, &packed));
   PetscCall(VecGetArrayRead(point, &values));
   for (PetscInt i = 0; i < n; i++) {
@@ -220,7 +221,8 @@ static PetscErrorCode TellRanks(Body body)
 
   PetscFunctionBegin;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) told[k] = *values[k];
-  PetscCallMPI(MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(values), MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  PetscCallMPI(
+      MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(values), MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) *values[k] = told[k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

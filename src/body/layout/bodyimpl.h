@@ -148,6 +148,7 @@ typedef struct {
   PetscMPIInt     *changed;      /* work space, per row of all ranks */
   PetscMPIInt      size;         /* ranks */
   PetscInt         local, global, begin;
+  PetscBool        at_home;          /* the mesh is whole on one of several ranks, and no other has rows */
   PetscBool        expected;         /* rows may come in the course of the run */
   PetscMPIInt     *counts, *offsets; /* of 4 numbers for each row, on each rank */
   BodyGram         gram;             /* of prescribed rows that are not orthonormal */

@@ -39,6 +39,8 @@ typedef struct {
    * present
    */
   PetscErrorCode (*visit)(Body, PetscInt, Checkpoint);
+  PetscErrorCode (*agree)(Body); /* (NULL) of a local body whose rows are to be prescribed: all ranks get to know what one of them remembers
+                                    of the steps that it has made alone */
   /* (NULL) of a nonlinear body: where its factors for whole controller steps have been made, and two numbers of them, to a vector of the
      body; or (true) back, with factors that are made there */
   PetscErrorCode (*copypoint)(Body, PetscBool, Vec, PetscReal[2]);

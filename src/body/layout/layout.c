@@ -186,8 +186,8 @@ static PetscErrorCode FindOwner(Body body)
   found[0] = end > start;
   found[1] = end > start ? rank : 0;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_SUM, comm));
-  body->mesh.whole   = (PetscBool)(body->rows.size > 1 && found[0] == 1);
-  body->mesh.ghosted = (PetscBool)(body->rows.size > 1 && !body->mesh.whole);
+  body->mesh.whole    = (PetscBool)(body->rows.size > 1 && found[0] == 1);
+  body->mesh.ghosted  = (PetscBool)(body->rows.size > 1 && !body->mesh.whole);
   body->mesh.owner    = body->mesh.whole ? found[1] : 0;
   body->mesh.is_owner = (PetscBool)(rank == body->mesh.owner);
   PetscFunctionReturn(PETSC_SUCCESS);

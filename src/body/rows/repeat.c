@@ -74,7 +74,7 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   *done = body->repeats;
   if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TakeInputs(body, &any));
-  PetscCall(BodyAnyRank(body, &any));
+  if (!(BodyStepsAlone(body) && body->rows.at_home)) PetscCall(BodyAnyRank(body, &any));
   /* Without a change the state stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and acceleration,
      which others feel through a mass matrix that is not diagonal alone. */
   if (any || (body->rows.have_mass && body->mass.matrix))

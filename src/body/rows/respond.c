@@ -149,10 +149,11 @@ PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (rows->at_home && !body->mesh.is_owner) PetscFunctionReturn(PETSC_SUCCESS); /* no other rank responds */
   PetscCall(PetscArraycpy(c->roles, roles, rows->local));
   PetscCall(PetscArrayzero(c->all_roles, rows->global));
   for (PetscInt i = 0; i < rows->local; i++) c->all_roles[rows->begin + i] = (PetscMPIInt)roles[i];
-  if (rows->size > 1)
+  if (rows->size > 1 && !rows->at_home)
     PetscCallMPI(
         MPI_Allreduce(MPI_IN_PLACE, c->all_roles, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   ComplianceGetRows(c->matrices, NULL, NULL, &place);
@@ -172,7 +173,7 @@ PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
   if (robin) {
     for (PetscInt i = 0; i < rows->local; i++)
       if (roles[i] == BODY_ROBIN) c->all_flexibility[rows->begin + i] = 1 / body->rows.robin[i];
-    if (rows->size > 1)
+    if (rows->size > 1 && !rows->at_home)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->all_flexibility, (PetscMPIInt)rows->global, MPIU_REAL, MPIU_SUM,
                                  PetscObjectComm((PetscObject)body)));
   }
@@ -202,6 +203,7 @@ static PetscErrorCode MakeRoom(Body body)
  */
 static PetscErrorCode GatherInputs(Body body)
 {
+  const PetscBool         alone = body->rows.at_home;
   struct _BodyCompliance *c     = body->compliance;
   const PetscInt          local = body->rows.local;
   PetscScalar            *displacement, *force;
@@ -209,8 +211,8 @@ static PetscErrorCode GatherInputs(Body body)
   PetscFunctionBegin;
   PetscCall(MakeRoom(body));
   if (!c->base_gathered || c->gathered_state != ComplianceGetState(c->matrices)) {
-    PetscCall(ComplianceGather(c->matrices, body->time.substeps, c->base_displacement, c->known_displacement));
-    PetscCall(ComplianceGather(c->matrices, body->time.substeps, c->base_force, c->known_force));
+    PetscCall(ComplianceGather(c->matrices, alone, body->time.substeps, c->base_displacement, c->known_displacement));
+    PetscCall(ComplianceGather(c->matrices, alone, body->time.substeps, c->base_force, c->known_force));
     c->base_gathered  = PETSC_TRUE;
     c->gathered_state = ComplianceGetState(c->matrices);
   }
@@ -220,7 +222,7 @@ static PetscErrorCode GatherInputs(Body body)
     for (PetscInt i = 0; i < local; i++)
       c->mine[k * local + i] = c->roles[i] == BODY_PRESCRIBED ? displacement[i] : c->roles[i] == BODY_FREE ? 0 : force[i];
   }
-  PetscCall(ComplianceGather(c->matrices, body->time.substeps, c->mine, c->input));
+  PetscCall(ComplianceGather(c->matrices, alone, body->time.substeps, c->mine, c->input));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -292,6 +294,7 @@ PetscErrorCode BodyRespond(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(c && c->has_base, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetBase() first");
+  if (rows->at_home && !body->mesh.is_owner) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GatherInputs(body));
   for (PetscInt k = 0; k < body->time.substeps; k++) PetscCall(RespondSubstep(body, k));
   ComplianceGetRows(c->matrices, &n, NULL, &place);

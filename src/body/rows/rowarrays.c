@@ -53,7 +53,11 @@ PetscErrorCode BodyCreateRowArrays(Body body)
   PetscCall(PetscMalloc2(rows->size, &rows->counts, rows->size, &rows->offsets));
   PetscCall(PetscMPIIntCast(4 * rows->local, &four));
   PetscCallMPI(MPI_Allgather(&four, 1, MPI_INT, rows->counts, 1, MPI_INT, PetscObjectComm((PetscObject)body)));
-  for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) rows->offsets[r] = total;
+  rows->at_home = body->mesh.whole;
+  for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) {
+    rows->offsets[r] = total;
+    if (r != body->mesh.owner && rows->counts[r]) rows->at_home = PETSC_FALSE;
+  }
   PetscCall(PetscCalloc4(rows->local, &rows->conditions, rows->local, &rows->constrained, rows->local, &rows->flexibility, rows->local,
                          &rows->robin));
   PetscCall(PetscMalloc1(rows->global, &rows->changed));

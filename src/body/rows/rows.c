@@ -246,7 +246,11 @@ PetscErrorCode BodySetConstraints(Body body)
     body->rows.flexibility[i] = body->rows.conditions[i] == BODY_ROBIN ? 1 / body->rows.robin[i] : 0;
   }
   BodyUnmarkDependent(body, body->rows.constrained);
-  if (body->solver) PetscCall(ConstrainedSolverSetConstraints(body->solver, body->rows.constrained, body->rows.flexibility));
+  if (body->solver && !body->rows.n_prescribed && !body->rows.n_robin) PetscCall(ConstrainedSolverFreeRows(body->solver));
+  else if (body->solver) {
+    if (body->local && body->integrator->ops.agree) PetscCall((*body->integrator->ops.agree)(body));
+    PetscCall(ConstrainedSolverSetConstraints(body->solver, body->rows.constrained, body->rows.flexibility));
+  }
   if (body->mass.solver && body->integrator->divides_by_mass && body->rows.have_mass) {
     for (PetscInt i = 0; i < body->rows.local; i++) body->rows.constrained[i] = (PetscBool)(body->rows.conditions[i] == BODY_PRESCRIBED);
     BodyUnmarkDependent(body, body->rows.constrained);

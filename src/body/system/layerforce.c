@@ -307,7 +307,8 @@ PetscErrorCode BodySpreadLayer(Body body, Vec near, Vec u)
 }
 
 /* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m], from a history that BodyLayerCopyHistory()
-   has given, with its step; NULL: that of the present substep */
+   has given, with its step; NULL: that of the present substep. The first time collective; then, where one rank has the body, of that alone
+ */
 PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[], PetscReal step, Mat K)
 {
   LayerElements      layer = body->layer.elements;
@@ -315,8 +316,12 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[],
   PetscInt           dofs[ELEMENT_MAX_DOFS];
   PetscScalar        element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
   const PetscScalar *at;
+  PetscBool          alone = PETSC_FALSE;
+  Mat                all   = K;
 
   PetscFunctionBegin;
+  if (body->mesh.whole) PetscCall(MatAssembled(K, &alone));
+  if (alone) PetscCall(MatMPIAIJGetSeqAIJ(all, &K, NULL, NULL)); /* the block of this rank: its assembly sends nothing */
   PrepareHistory(body);
   if (layer->history && history) {
     layer->element->history.start = history;
@@ -333,6 +338,7 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[],
   PetscCall(VecRestoreArrayRead(near, &at));
   PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
+  if (alone) PetscCall(PetscObjectStateIncrease((PetscObject)all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

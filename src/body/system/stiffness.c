@@ -80,9 +80,9 @@ static PetscErrorCode FindInverted(Body body, PetscBool alone, PetscInt e, Petsc
    where it is known to all ranks that something is wrong; but where the rank that has the body knows it alone. */
 PetscErrorCode BodyNoteInverted(Body body, PetscBool alone)
 {
-  PetscReal   centre[3] = {0};
-  PetscInt    number;
-  Element     element;
+  PetscReal centre[3] = {0};
+  PetscInt  number;
+  Element   element;
 
   PetscFunctionBegin;
   PetscCall(BodyGetElement(body, &element));

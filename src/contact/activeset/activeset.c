@@ -134,8 +134,8 @@ PetscErrorCode ContactAgree(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One body through the controller step, as far as its rows depend on it, unless the step has failed already. ContactAgree() follows when all
-   bodies have been integrated. */
+/* One body through the controller step, as far as its rows depend on it, unless the step has failed already. ContactAgree() follows when
+   all bodies have been integrated. */
 PetscErrorCode ContactIntegrateBody(Contact contact, PetscInt b)
 {
   StepConvergedReason reason;

@@ -245,6 +245,8 @@ PetscErrorCode ContactFillMatrices(Contact contact)
     if (!contact->body_rows[b].affected) continue;
     PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
+    /* values in the same places need no word of other ranks when they are assembled again */
+    PetscCall(MatSetOption(contact->interfaces[b], MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
     PetscCall(ContactTurnMatrix(contact, b));
     PetscCall(ContactMergeMatrix(contact, b));
   }

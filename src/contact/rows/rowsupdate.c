@@ -318,8 +318,8 @@ static PetscErrorCode UpdatePair(Contact contact, const ContactPair *pair, Petsc
 /* What has become of the rows of a pair */
 enum { ROWS_STAY, ROWS_FOLLOWED, ROWS_REBUILT };
 
-/* Builds the rows of those pairs again whose surfaces have slid or turned far enough, and lets those near contact follow: what has become of
-   them, for each pair, the same on all ranks */
+/* Builds the rows of those pairs again whose surfaces have slid or turned far enough, and lets those near contact follow: what has become
+   of them, for each pair, the same on all ranks */
 static PetscErrorCode UpdatePairs(Contact contact, PetscReal near)
 {
   int *updated = contact->work.updated;
