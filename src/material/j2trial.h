@@ -1,5 +1,5 @@
-/* The elastic part of plasticity at finite strain, in batches of points: the logarithmic strain if nothing flows, and the stress that answers
-   to it. Formulas stand in j2.c, whose own this is. */
+/* The elastic part of plasticity at finite strain, in batches of points: the logarithmic strain if nothing flows, and the stress that
+   answers to it. Private to j2.c, which has the formulas. */
 #pragma once
 #include "logarithm.h"
 #include "logarithmderivative.h"
