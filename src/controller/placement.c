@@ -28,12 +28,15 @@ static PetscErrorCode IsSmall(Body body, PetscBool *small, PetscBool *asks, Pets
   PetscBool   may, is_explicit, rigid = PETSC_FALSE;
 
   PetscFunctionBegin;
+  *small = PETSC_FALSE;
   PetscCall(MeshMayBeWhole(PetscObjectComm((PetscObject)body), prefix, &may, asks));
-  PetscCall(MeshEstimate(prefix, &cells, place));
   PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
   PetscCall(PetscStrcasecmp(type, TSCENTRALDIFFERENCE, &is_explicit));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-rigid", &rigid, NULL));
-  *small = (PetscBool)(may && is_explicit && !rigid && cells > 0 && cells <= SMALL);
+  may = (PetscBool)(may && is_explicit && !rigid);
+  if (!may && !*asks) PetscFunctionReturn(PETSC_SUCCESS); /* its mesh is read of when it is made, so that errors are not said to be its */
+  PetscCall(MeshEstimate(prefix, &cells, place));
+  *small = (PetscBool)(may && cells > 0 && cells <= SMALL);
   *work  = (PetscReal)PetscMax(cells, 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -199,7 +199,7 @@ static const KnownOption options[] = {
      "whether pairs of whole bodies keep only the faces that see each other at the start, default true; false where bodies roll or turn"},
     {"contact", OPTION_OF_RUN, "contact_slip_bound", "s", "slip after which contact rows are built again, in parts of a face, default 0.2"},
     {"contact", OPTION_OF_RUN, "contact_angle_bound", "a",
-     "turn of a contact normal after which its row is built again [rad], default 0.1, or 1e-4 between static bodies that have friction"},
+     "turn of a contact normal after which its row is built again [rad], default 0.1"},
     {"contact", OPTION_OF_RUN, "contact_energy_tolerance", "t",
      "part of the system's energy that contact may take or bring in a controller step before it is made again in halves, default 1e-3"},
     {"contact", OPTION_OF_RUN, "contact_tolerance", "g", "depth that does not yet count as penetration [m]"},

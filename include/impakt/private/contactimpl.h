@@ -114,7 +114,6 @@ typedef struct {
   PetscBool            facing;           /* pairs of whole bodies keep only the faces that see each other at the start */
   PetscReal            slip_bound;       /* slip after which rows are built again [parts of a face] */
   PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */
-  PetscBool            angle_chosen;     /* it is not the default, which is smaller where bodies without inertia have friction */
   PetscBool            allow_unstable;   /* what is known to gain energy runs all the same */
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
   PetscBool            balanced_start;   /* massless nodes are brought into balance in the first state */

@@ -46,7 +46,7 @@ static PetscErrorCode ReadSettings(Contact contact)
 {
   PetscReal energy_tolerance = 0;
   char      balance[64]      = "";
-  PetscBool given, chosen;
+  PetscBool given;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
@@ -66,8 +66,7 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "ContactSetBounds",
                              contact->options.slip_bound, &contact->options.slip_bound, NULL));
   PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "ContactSetBounds",
-                             contact->options.angle_bound, &contact->options.angle_bound, &chosen));
-  contact->options.angle_chosen = (PetscBool)(contact->options.angle_chosen || chosen);
+                             contact->options.angle_bound, &contact->options.angle_bound, NULL));
   PetscCall(PetscOptionsBool("-contact_allow_unstable", "What is known to gain energy runs all the same", "ContactSetAllowUnstable",
                              contact->options.allow_unstable, &contact->options.allow_unstable, NULL));
   PetscCall(PetscOptionsString("-contact_balance", "Forces have the same sum along the normals of both sides", "ContactSetBalance",

@@ -329,7 +329,7 @@ PetscErrorCode ContactGetTieDistance(Contact contact, PetscReal *distance)
   Input Parameters:
 + contact - the `Contact`, not yet set up
 . slip    - in parts of a face, 0.2 by default
-- angle   - by which a normal may turn [rad]; 0.1 by default, 10^-4 between bodies without inertia that have friction
+- angle   - by which a normal may turn, 0.1 by default [rad]
 
   Options Database Keys:
 + -contact_slip_bound s  - the slip
@@ -348,9 +348,8 @@ PetscErrorCode ContactSetBounds(Contact contact, PetscReal slip, PetscReal angle
   ContactCheckNotSetUp(contact);
   PetscCheck(slip > 0 && angle > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "The bounds of slip, %g, and angle, %g, must be positive", (double)slip, (double)angle);
-  contact->options.slip_bound   = slip;
-  contact->options.angle_bound  = angle;
-  contact->options.angle_chosen = PETSC_TRUE;
+  contact->options.slip_bound  = slip;
+  contact->options.angle_bound = angle;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
