@@ -121,7 +121,8 @@ PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
       if (!asks[p.bodies[i]]) continue;
       p.bodies[kept] = p.bodies[i];
       p.work[kept]   = p.work[i];
-      PetscCall(PetscArraycpy(p.places[kept++], p.places[i], 3));
+      PetscCall(PetscArraycpy(p.places[kept], p.places[i], 3));
+      kept++;
     }
     p.n = kept;
   }

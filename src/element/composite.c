@@ -28,6 +28,8 @@
 #define UNKNOWN 0.1
 /* Below this part of the mean of all, the volume of a linear part is round-off */
 #define DEGENERATE 1e-10
+/* Of what loops over batches read: a line of the cache, and what vectors want [bytes] */
+#define ALIGNMENT 64
 
 /* Positions of an element's nodes, and of the one in the middle */
 static void GetPositions(Element element, PetscInt e, PetscReal x[COMPOSITE_MAX_NODES + 1][3])
@@ -117,7 +119,7 @@ static PetscErrorCode FillElement(Element element, PetscInt e, PetscReal gradien
   const Solid          *solid = (const Solid *)element->data;
   const CompositeShape *shape = ((const Composite *)solid->own)->shape;
   const PetscInt        dim = element->dim, corners = dim + 1;
-  PetscReal             x[COMPOSITE_MAX_NODES + 1][3], lambda[COMPOSITE_MAX_NODES + 1][4], volumes[COMPOSITE_MAX_PARTS], volume = 0;
+  PetscReal             x[COMPOSITE_MAX_NODES + 1][3] = {{0}}, lambda[COMPOSITE_MAX_NODES + 1][4], volumes[COMPOSITE_MAX_PARTS], volume = 0;
   PetscReal             of_part[COMPOSITE_MAX_PARTS][COMPOSITE_MAX_NODES][3] = {{{0}}};
   PetscReal             M[4][4] = {{0}}, moments[4] = {0}, b[4][COMPOSITE_MAX_PARTS];
 
@@ -187,14 +189,17 @@ static PetscErrorCode FillAll(Element element)
   Solid         *solid     = (Solid *)element->data;
   Composite     *composite = (Composite *)solid->own;
   const PetscInt points = solid->shape->n_points, nodes = element->nodes, dim = element->dim;
-  const size_t   batches = (size_t)((element->count + SIMD_WIDTH - 1) / SIMD_WIDTH), of_batch = (size_t)(points * SIMD_WIDTH);
+  const PetscInt batches  = (element->count + SIMD_WIDTH - 1) / SIMD_WIDTH;
+  const size_t   of_batch = (size_t)points * SIMD_WIDTH, size = (size_t)batches * of_batch * (size_t)(nodes * dim);
+  size_t         beyond;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc(batches * of_batch * (size_t)(nodes * dim + 1) * sizeof(PetscReal) + 64, &composite->memory));
-  composite->gradients = (PetscReal *)(((PETSC_UINTPTR_T)composite->memory + 63) / 64 * 64);
-  composite->weights   = composite->gradients + batches * of_batch * (size_t)(nodes * dim);
-  for (PetscInt slot = 0; slot < (PetscInt)batches * SIMD_WIDTH; slot++) {
-    PetscReal  gradients[4][COMPOSITE_MAX_NODES][3], weights[4];
+  PetscCall(PetscMalloc((size + (size_t)batches * of_batch) * sizeof(PetscReal) + ALIGNMENT, &composite->memory));
+  beyond               = (size_t)((PETSC_UINTPTR_T)composite->memory % ALIGNMENT);
+  composite->gradients = (PetscReal *)(void *)((char *)composite->memory + (ALIGNMENT - beyond) % ALIGNMENT);
+  composite->weights   = composite->gradients + size;
+  for (PetscInt slot = 0; slot < batches * SIMD_WIDTH; slot++) {
+    PetscReal  gradients[4][COMPOSITE_MAX_NODES][3] = {{{0}}}, weights[4] = {0};
     PetscReal *to         = composite->gradients + (size_t)(slot / SIMD_WIDTH) * of_batch * (size_t)(nodes * dim) + slot % SIMD_WIDTH;
     PetscReal *weights_to = composite->weights + (size_t)(slot / SIMD_WIDTH) * of_batch + slot % SIMD_WIDTH;
 

@@ -139,11 +139,12 @@ SIMD_INLINE void GetPower(const SimdReal s, PetscReal power, SimdReal y)
   PetscReal largest = 0;
 
   for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-    PetscReal sum = 1;
+    const PetscReal square = s[p] * s[p];
+    PetscReal       sum    = 1;
 
     for (PetscInt k = 15; k > 1; k--) sum = 1 + sum * s[p] * (power - (PetscReal)(k - 1)) / (PetscReal)k;
     y[p]    = power * s[p] * sum;
-    largest = s[p] * s[p] > largest ? s[p] * s[p] : s[p] == s[p] ? largest : PETSC_MAX_REAL;
+    largest = square > largest ? square : square == square ? largest : PETSC_MAX_REAL; /* NOLINT(misc-redundant-expression): a NaN */
   }
   if (largest > SERIES_LIMIT * SERIES_LIMIT)
     for (PetscInt p = 0; p < SIMD_WIDTH; p++)

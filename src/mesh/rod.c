@@ -85,6 +85,7 @@ static PetscErrorCode AddSimplices(const Rod *rod, PetscInt n, const PetscInt fl
   PetscBool             mirrored = PETSC_FALSE;
 
   PetscFunctionBegin;
+  PetscCheck(n == 2 || n == 3, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " nodes are those of no line or triangle", n);
   for (PetscInt a = 0; a < n; a++) sorted[a] = flat[a];
   for (PetscInt a = 1; a < n; a++)
     for (PetscInt k = a; k > 0 && sorted[k - 1] > sorted[k]; k--) {

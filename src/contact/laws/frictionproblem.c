@@ -136,6 +136,7 @@ PetscErrorCode FrictionProblemIsAmbiguous(FrictionProblem *problem, PetscBool *a
   PetscFunctionBegin;
   *ambiguous = PETSC_FALSE;
   for (PetscInt first = 0; first < n; first += dim) may += MayBeAmbiguous(problem, first);
+  if (!may) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt first = 0; first < n && !*ambiguous; first += dim) {
     if (!MayBeAmbiguous(problem, first)) continue;
     if (problem->S) *ambiguous = IsAmbiguous(problem, first, problem->S + first * n);
