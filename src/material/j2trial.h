@@ -128,12 +128,9 @@ SIMD_INLINE Symmetric Hencky(const Isotropic *elastic, Symmetric e)
   return (Symmetric){d + two_mu * e.xx, d + two_mu * e.yy, d + two_mu * e.zz, two_mu * e.xy, two_mu * e.yz, two_mu * e.zx};
 }
 
-/* P = Fe S Fp^-T where M has the axes of C: Fe^-T M Fp^-T. Returns NaN times P where the point is inverted. */
-SIMD_INLINE void StoreStress(PetscInt part, const Trial *trial, const PetscReal history[][8], Symmetric m, PetscReal P[9][8])
+/* Fe and Fp^-1 of one part of a batch */
+SIMD_INLINE void LoadParts(PetscInt part, const Trial *trial, const PetscReal history[][8], SimdVector f[9], SimdVector g[9])
 {
-  SimdVector f[9], c[9], g[9], n[9];
-  SimdReal   determinant, inverse;
-
   for (PetscInt i = 0; i < 9; i++) {
     f[i] = SymmetricLoad(trial->Fe[i], part);
     g[i] = SymmetricLoad(history[PLASTIC_DEFORMATION + i], part);
@@ -142,6 +139,15 @@ SIMD_INLINE void StoreStress(PetscInt part, const Trial *trial, const PetscReal 
     f[i] += 1;
     g[i] += 1;
   }
+}
+
+/* P = Fe S Fp^-T where M has the axes of C: Fe^-T M Fp^-T. Returns NaN times P where the point is inverted. */
+SIMD_INLINE void StoreStress(PetscInt part, const Trial *trial, const PetscReal history[][8], Symmetric m, PetscReal P[9][8])
+{
+  SimdVector f[9], c[9], g[9], n[9];
+  SimdReal   determinant, inverse;
+
+  LoadParts(part, trial, history, f, g);
   c[0] = f[4] * f[8] - f[5] * f[7];
   c[1] = f[5] * f[6] - f[3] * f[8];
   c[2] = f[3] * f[7] - f[4] * f[6];
@@ -208,14 +214,7 @@ SIMD_INLINE void StoreTurnedStress(PetscInt part, const Trial *trial, const Pets
   SimdVector      f[9], g[9], n[9];
   SimdReal        determinant, defined;
 
-  for (PetscInt i = 0; i < 9; i++) {
-    f[i] = SymmetricLoad(trial->Fe[i], part);
-    g[i] = SymmetricLoad(history[PLASTIC_DEFORMATION + i], part);
-  }
-  for (PetscInt i = 0; i < 9; i += 4) {
-    f[i] += 1;
-    g[i] += 1;
-  }
+  LoadParts(part, trial, history, f, g);
   SimdGetParts(determinant)[0] = f[0] * (f[4] * f[8] - f[5] * f[7]) + f[1] * (f[5] * f[6] - f[3] * f[8]) +
                                  f[2] * (f[3] * f[7] - f[4] * f[6]);
   for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) defined[p] = determinant[p] > 0 ? 1 : NAN;
