@@ -251,6 +251,7 @@ typedef struct {
   PetscInt64     inner_iterations;  /* of conjugate gradients on the interface */
   PetscReal      friction_least;    /* least energy that friction has taken on a row in a step, by the forces at its ends; 0 or less [J] */
   PetscInt       ambiguous_steps;   /* in which friction may have had more than one solution */
+  PetscReal      friction_tilt;     /* most by which normal forces were off along surfaces, in parts of what friction can bear; statics */
   PetscReal      friction_residual; /* most by which a step has missed the law of friction, de Saxce's residual [m] */
   PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
   PetscLogDouble seconds;           /* in sweeps */

@@ -76,8 +76,10 @@ PETSC_EXTERN PetscErrorCode TransferGetTurns(Transfer, PetscInt *, const PetscRe
 PETSC_EXTERN PetscErrorCode TransferTurn(Transfer, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferBalance(Transfer, const PetscReal[], PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSetCurved(Transfer, PetscBool);
+PETSC_EXTERN PetscErrorCode TransferSetNormalShare(Transfer, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
+PETSC_EXTERN PetscErrorCode TransferGetTilts(Transfer, PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, const PetscInt[2], PetscInt, const Mat[2]);
 PETSC_EXTERN PetscErrorCode TransferCountValues(Transfer, PetscInt[], PetscInt[]);
 PETSC_EXTERN PetscErrorCode TransferSetDirectedValues(Transfer, const PetscInt[2], PetscInt, const PetscReal[], const Mat[2]);

@@ -177,6 +177,7 @@ PETSC_INTERN void           ContactCarryFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactDriveFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeFrictionLoss(Contact, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactAcceptFriction(Contact);
+PETSC_INTERN PetscErrorCode ContactNoteTilt(Contact);
 PETSC_INTERN PetscErrorCode ContactRefuseFriction(Contact, const char[]);
 PETSC_INTERN PetscErrorCode ContactDestroyFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactStepByFriction(Contact, const ContactFrictionSprings *);

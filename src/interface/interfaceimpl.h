@@ -126,6 +126,7 @@ struct _p_Transfer {
   PetscInt       dim, n;
   PetscReal      slip_bound, angle_bound;
   PetscBool      curved; /* rows take the bend of both surfaces into account, see TransferSetCurved() */
+  PetscReal      share;  /* of the partner's normals in those of rows then, see TransferSetNormalShare() */
   PetscBool      guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
   PetscBool      moved;  /* the caller has the surfaces moved, see TransferSetMoved() */
   RowSet         rows;
@@ -205,9 +206,9 @@ PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
 PETSC_INTERN PetscErrorCode RowSetConnectColumns(MPI_Comm, PetscInt, PetscInt, RowSet *);
-PETSC_INTERN void           RowNormal(PetscInt, PetscInt, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
-PETSC_INTERN PetscReal      RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
-                                     const PetscReal[]);
-PETSC_INTERN PetscReal      RowBendCounts(PetscReal);
-PETSC_INTERN PetscReal      RowBow(PetscInt, PetscInt, const PetscReal *[], const PetscReal *[], const PetscReal[]);
-PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);
+PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
+                                const PetscReal[]);
+PETSC_INTERN PetscReal RowBendCounts(PetscReal);
+PETSC_INTERN PetscReal RowBow(PetscInt, PetscInt, const PetscReal *[], const PetscReal *[], const PetscReal[]);
+PETSC_INTERN void      RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

@@ -74,17 +74,20 @@ PetscReal RowBendCounts(PetscReal cosine)
   return PetscMin(1, PetscMax(0, (cosine - EDGE) / (BENT - EDGE)));
 }
 
-/* The normal of a row is half way between that of its node and those of the partner, where they are opposed but for a bend: so it does not
-   depend on which of the surfaces has the nodes of the rows */
-void RowNormal(PetscInt dim, PetscInt n, const PetscReal node[], const PetscReal *normals[], const PetscReal weights[], PetscReal normal[])
+/* The normal of a row is between that of its node and those of the partner, with this share of the latter, where they are opposed but for a
+   bend, and that of the node at an edge. With a half it does not depend on which of the surfaces has the nodes of the rows. */
+void RowNormal(PetscInt dim, PetscInt n, PetscReal share, const PetscReal node[], const PetscReal *normals[], const PetscReal weights[],
+               PetscReal normal[])
 {
-  PetscReal partner[3] = {0}, sum[3] = {0}, square = 0, cosine = 0;
+  PetscReal partner[3] = {0}, sum[3] = {0}, square = 0, cosine = 0, of_node, of_partner;
 
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt d = 0; d < dim; d++) partner[d] -= weights[j] * normals[j][d];
   if (Normalize(partner) > 0) cosine = Dot(partner, node);
+  of_partner = share * RowBendCounts(cosine);
+  of_node    = 1 - share + PetscMax(0, 2 * share - 1) * (1 - RowBendCounts(cosine)); /* at an edge not nothing */
   for (PetscInt d = 0; d < 3; d++) {
-    sum[d] = d < dim ? node[d] + RowBendCounts(cosine) * partner[d] : 0;
+    sum[d] = d < dim ? of_node * node[d] + of_partner * partner[d] : 0;
     square += PetscSqr(sum[d]);
   }
   for (PetscInt d = 0; d < dim; d++) normal[d] = square > 0 ? sum[d] / PetscSqrtReal(square) : node[d];

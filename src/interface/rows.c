@@ -149,7 +149,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     partners[j] = x + 3 * set->columns[first + j];
     normals[j]  = column_normals + 3 * set->columns[first + j];
   }
-  if (transfer->curved) RowNormal(dim, n, data->normals + 3 * row, normals, weights, normal);
+  if (transfer->curved) RowNormal(dim, n, transfer->share, data->normals + 3 * row, normals, weights, normal);
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   for (PetscInt pass = 0; pass < 2; pass++)
     RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */

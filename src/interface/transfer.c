@@ -51,6 +51,7 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   t->n           = dirichlet->data.n_owned;
   t->slip_bound  = SLIP_BOUND;
   t->angle_bound = ANGLE_BOUND;
+  t->share       = 0.5;
   t->guards      = PETSC_TRUE;
   if (neumann && t->dim > 1) {
     PetscCall(ImpaktCite(CITE_DUAL_MORTAR));
@@ -213,35 +214,6 @@ PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
   PetscValidLogicalCollectiveBool(transfer, guards, 2);
   PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
   transfer->guards = guards;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  TransferSetCurved - whether rows take the bend of both surfaces into account
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, before the first `TransferUpdate()`
-- curved   - false by default
-
-  Level: developer
-
-  Notes:
-  If so, the normal of a row is half way between that of its node and those of the partner opposite, and its gap is counted to a surface of
-  second order that has the normals of the partner's nodes. Then what comes of it hardly depends on which surface has the nodes of the rows,
-  nor on where the corners of the faces are. Where normals differ by more than 26 degrees, which is an edge, the row is as it is otherwise:
-  with the normal of its node, and the gap to the faces.
-
-.seealso: `Transfer`, `TransferUpdate()`
-@*/
-PetscErrorCode TransferSetCurved(Transfer transfer, PetscBool curved)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(transfer, curved, 2);
-  PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
-  transfer->curved = curved;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -77,25 +77,6 @@ PetscErrorCode TransferGetColumns(Transfer transfer, const PetscReal vectors[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The normal that a row would have now */
-void TransferPresentNormal(Transfer transfer, PetscInt row, PetscReal normal[])
-{
-  const RowSet    *set   = &transfer->rows;
-  const PetscInt   first = set->offsets[row], n = set->offsets[row + 1] - first;
-  const PetscReal *normals[FOLLOW_MAX];
-  PetscReal        weights[FOLLOW_MAX];
-
-  if (!transfer->curved) {
-    for (PetscInt d = 0; d < transfer->dim; d++) normal[d] = transfer->dirichlet->data.normals[3 * row + d];
-    return;
-  }
-  for (PetscInt j = 0; j < PetscMin(n, FOLLOW_MAX); j++) {
-    normals[j] = transfer->column_normals + 3 * set->columns[first + j];
-    weights[j] = set->shares[first + j].value;
-  }
-  RowNormal(transfer->dim, PetscMin(n, FOLLOW_MAX), transfer->dirichlet->data.normals + 3 * row, normals, weights, normal);
-}
-
 /* Whether a row of this rank near contact has slipped or turned beyond the bounds. Marks those that have not, and notes all slips. */
 static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 {

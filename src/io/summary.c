@@ -97,6 +97,7 @@ static PetscErrorCode AddContact(json_t *root, Contact contact, const Statistics
     PetscCall(SetReal(object, "friction_least", counts.friction_least));
     PetscCall(SetReal(object, "friction_residual", counts.friction_residual));
     PetscCall(SetInteger(object, "ambiguous_steps", counts.ambiguous_steps));
+    PetscCall(SetReal(object, "friction_tilt", counts.friction_tilt));
   }
   PetscCall(SetObject(root, "pairs", &object));
   for (PetscInt i = 0; i < results->n_pairs; i++) {

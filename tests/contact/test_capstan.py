@@ -111,6 +111,17 @@ def test_band_that_stretches(impakt):
     assert worst_energy_error(run.summary) <= 1e-9
 
 
+def test_band_that_stretches_too_far(impakt):
+    """By 2 to 4 percent, along a drum: rows that lie as they did at the start are off by as much beside the friction, and the run says so."""
+    run = impakt(f"{CAPSTAN} -band_youngs_modulus 3e7 -time_end 0.35")
+    assert run.summary["contact"]["friction_tilt"] == pytest.approx(0.112, rel=0.02)  # measured: 0.1121
+    assert "surfaces have turned since contact rows were built" in run.stderr
+    assert "11.2 % of what friction can bear" in run.stderr
+    within = impakt(f"{CAPSTAN} -band_youngs_modulus 1e8 -time_end 0.35")
+    assert within.summary["contact"]["friction_tilt"] <= 0.05  # measured: 0.046
+    assert "have turned since" not in within.stderr
+
+
 FREE = (
     "-bodies band -obstacles drum -drum_obstacle_type cylinder -drum_point 0,0 -drum_radius 1 -contact_pairs band.inside:drum -contact_law coulomb "
     "-contact_friction 0.3 -time_step 1e-3 -time_end 0.2 -band_dm_plex_filename tests/meshes/capstan/band-80.msh -band_density 7800 "

@@ -60,6 +60,7 @@ typedef struct {
   PetscBool      bonded;       /* a node of it sticks already, see src/contact/rows/bonded.c */
   PetscBool      keeps_mass;   /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool      by_force;     /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
+  PetscBool      rests;        /* one of its bodies has no inertia */
   PetscInt       intervals;    /* of the controller step, between whose ends its force is linear */
   PetscBool      own_friction; /* it has a coefficient of friction of its own */
   PetscReal      friction;     /* that */
@@ -414,6 +415,7 @@ typedef struct {
   int           *hands_over;   /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;        /* to a body */
   PetscReal     *last_gap;     /* per row */
+  PetscReal     *tilts;        /* per node of a pair */
   PetscBool     *moved;        /* per row */
   PetscReal     *last_force;   /* per row */
   PetscReal     *handover;     /* two numbers to a body per row */

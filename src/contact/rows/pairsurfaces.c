@@ -281,12 +281,57 @@ static PetscErrorCode SetOwner(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether rows count with the bends of both surfaces. Without inertia they stay as they were built while forces press the surfaces flat:
+   between both normals is where that flat surface is, to first order in the curvatures, and what presses along normals of one side alone
+   has a part along the surface that is not small beside friction. With inertia rows follow the surfaces; in three dimensions coarse balls
+   lose six times the energy then if bends count, with normals that are means by areas. */
+static PetscBool IsCurved(Contact contact, PetscBool inertia, PetscBool linear)
+{
+  if (contact->options.law == CONTACT_LAW_TIED) return PETSC_FALSE;
+  if (!inertia) return PETSC_TRUE;
+  return (PetscBool)(!linear && (contact->dim == 2 || contact->options.balance));
+}
+
+/* The modulus E / (1 - nu^2) by which a body gives way where another one is pressed on it [Pa]; infinite, if it is rigid */
+static PetscErrorCode GetContactModulus(Body body, PetscReal *modulus)
+{
+  PetscBool rigid;
+  PetscReal poisson;
+  Material  material;
+
+  PetscFunctionBegin;
+  PetscCall(BodyIsRigid(body, &rigid));
+  *modulus = PETSC_INFINITY;
+  if (rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(MaterialGetYoungsModulus(material, modulus));
+  PetscCall(MaterialGetPoissonsRatio(material, &poisson));
+  *modulus /= 1 - PetscSqr(poisson);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How much of the normals of rows between bodies without inertia is that of the second body: the stiffer one keeps its shape */
+static PetscErrorCode GetNormalShare(Contact contact, const ContactPair *pair, PetscReal *share)
+{
+  PetscReal first, second;
+
+  PetscFunctionBegin;
+  *share = 0.5;
+  if (!pair->rests || pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetContactModulus(contact->bodies[pair->body[0]], &first));
+  PetscCall(GetContactModulus(contact->bodies[pair->body[1]], &second));
+  if (first == second) PetscFunctionReturn(PETSC_SUCCESS);
+  *share = second == PETSC_INFINITY ? 1 : second / (first + second); /* 0 where the first is rigid */
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The transfer of a pair, whose surfaces are known */
 PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
 {
   Vec       u[2] = {NULL, NULL};
   PetscBool rebuilt;
   PetscBool inertia = PETSC_TRUE, linear = PETSC_TRUE;
+  PetscReal share;
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
@@ -301,9 +346,10 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
   PetscCall(SetOwner(contact, pair));
   PetscCall(TransferSetMoved(pair->transfer, PETSC_TRUE));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
-  /* in three dimensions coarse balls lose six times the energy if bends count with normals that are means by areas */
-  PetscCall(TransferSetCurved(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED && inertia && !linear &&
-                                                          (contact->dim == 2 || contact->options.balance))));
+  pair->rests = (PetscBool)!inertia;
+  PetscCall(TransferSetCurved(pair->transfer, IsCurved(contact, inertia, linear)));
+  PetscCall(GetNormalShare(contact, pair, &share));
+  PetscCall(TransferSetNormalShare(pair->transfer, share));
   PetscCall(ContactSetUpBalance(contact, pair));
   PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2) && contact->setup; side++)

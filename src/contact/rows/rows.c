@@ -43,8 +43,8 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->ranks.all_active, contact->ranks.size, &contact->ranks.counts, contact->ranks.size,
                          &contact->ranks.offsets));
   PetscCall(PetscCalloc3(n, &contact->ties.holds, n, &contact->ties.distance, 2 * n, &contact->work.entry_counts));
-  PetscCall(PetscCalloc6(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
-                         &contact->held.heir, n, &contact->held.merged_gap));
+  PetscCall(PetscCalloc7(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
+                         &contact->held.heir, n, &contact->held.merged_gap, n, &contact->work.tilts));
   PetscCall(PetscCalloc7(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
                          &contact->rows.followed, n, &contact->work.moved, n, &contact->work.flags, n, &contact->work.rest));
   PetscCall(PetscCalloc1(contact->n_pairs, &contact->work.updated));
@@ -335,8 +335,8 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->start.active, contact->work.conditions));
   PetscCall(PetscFree5(contact->ranks.row_pair, contact->ranks.mine_active, contact->ranks.all_active, contact->ranks.counts,
                        contact->ranks.offsets));
-  PetscCall(PetscFree6(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
-                       contact->held.merged_gap));
+  PetscCall(PetscFree7(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
+                       contact->held.merged_gap, contact->work.tilts));
   PetscCall(PetscFree7(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed,
                        contact->work.moved, contact->work.flags, contact->work.rest));
   PetscCall(PetscFree(contact->work.updated));

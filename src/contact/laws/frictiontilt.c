@@ -1,0 +1,48 @@
+/*
+   How far rows in contact are turned from the surfaces, beside what friction can bear.
+
+   A normal force along a row that is turned by an angle has a part along the surface of that angle times the force. Beside mu times it,
+   which is all that friction has, that is no longer small where the angle is not small beside mu: what sticks, what slides and what
+   friction takes are then those of other surfaces. Rows of bodies with inertia follow the surfaces in each step. Those of bodies without
+   are as they were built, until the surfaces have turned by -contact_angle_bound.
+*/
+#include "friction.h"
+
+/* The sums of the tilt times the normal force, and of what friction can bear, of the rows of a pair on this rank [N] */
+static void AddTilts(Contact contact, const ContactPair *pair, const PetscReal tilts[], PetscReal sums[2])
+{
+  const ContactFrictionLaw *law = &contact->friction.law;
+
+  for (PetscInt first = pair->begin, k = 0; first < pair->end; first += pair->components, k++) {
+    PetscReal cohesion, coefficient;
+
+    if (!(contact->end.force[first] > 0) || !contact->rows.opposite[first]) continue;
+    (*law->getlimit)(contact, law->data, first, 0, &cohesion, &coefficient);
+    sums[0] += tilts[k] * contact->end.force[first];
+    sums[1] += cohesion + coefficient * contact->end.force[first];
+  }
+}
+
+/* Notes the most by which normal forces along rows are off along the surfaces, in parts of what friction can bear, at the end of the
+   accepted step, of pairs of bodies without inertia. Collective; surfaces are moved to where bodies are. */
+PetscErrorCode ContactNoteTilt(Contact contact)
+{
+  PetscBool any = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || contact->pairs[p].rests);
+  if (!any || contact->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactMoveSurfaces(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair    = &contact->pairs[p];
+    PetscReal          sums[2] = {0, 0};
+
+    if (!pair->rests || pair->far) continue;
+    PetscCall(TransferGetTilts(pair->transfer, contact->work.tilts));
+    AddTilts(contact, pair, contact->work.tilts, sums);
+    if (contact->ranks.size > 1)
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+    if (sums[1] > 0) contact->counts.friction_tilt = PetscMax(contact->counts.friction_tilt, sums[0] / sums[1]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
