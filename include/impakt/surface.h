@@ -49,6 +49,7 @@ PETSC_EXTERN PetscErrorCode SurfaceCreate(DM, const char[], Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceKeepFacing(Surface, Surface, Obstacle, PetscBool, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceSetRound(Surface, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceSetAxisymmetric(Surface);
+PETSC_EXTERN PetscErrorCode SurfaceSetMirrors(Surface, PetscInt, const PetscInt[], PetscInt);
 PETSC_EXTERN PetscErrorCode SurfaceUpdate(Surface, Vec);
 PETSC_EXTERN PetscErrorCode SurfaceView(Surface, PetscViewer);
 PETSC_EXTERN PetscErrorCode SurfaceViewFromOptions(Surface, PetscObject, const char[]);

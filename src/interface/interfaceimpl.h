@@ -19,6 +19,7 @@ struct _p_Surface {
   PetscBool    divided;      /* some rank has nodes of the mesh that another one owns */
   PetscBool    axisymmetric; /* areas are those of rings, see SurfaceSetAxisymmetric() */
   PetscReal    on_axis;      /* nodes with a smaller first coordinate lie on the axis [m] */
+  PetscInt    *mirrors;      /* per owned node: a bit for each axis across its planes of symmetry, see SurfaceSetMirrors(); or NULL */
   PetscBool    round;        /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
   PetscSF      sf;           /* from owned nodes to ghosts, one number for each node */
   PetscSF      vectors;      /* the same, three numbers for each node */
@@ -194,6 +195,7 @@ PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceKeepFaces(Surface, const PetscBool[]);
 PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(MPI_Comm, Surface, Vec, Surface, Vec, PetscReal *);
 
+PETSC_INTERN void           SurfaceMirrorNormals(Surface);
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);

@@ -311,6 +311,7 @@ PetscErrorCode SurfaceDestroy(Surface *surface)
   }
   PetscCall(SurfaceClearNodes(*surface));
   PetscCall(PetscFree((*surface)->points));
+  PetscCall(PetscFree((*surface)->mirrors));
   PetscCall(DMDestroy(&(*surface)->dm));
   PetscCall(PetscHeaderDestroy(surface));
   PetscFunctionReturn(PETSC_SUCCESS);

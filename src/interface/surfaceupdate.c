@@ -134,6 +134,7 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
   }
   for (PetscInt i = 0; i < data->n_owned && surface->axisymmetric; i++)
     if (data->reference[3 * i] <= surface->on_axis) data->normals[3 * i] = 0;
+  SurfaceMirrorNormals(surface);
   for (PetscInt i = 0; i < data->n_owned; i++) (void)Normalize(data->normals + 3 * i);
   if (!surface->divided) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSFBcastBegin(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));

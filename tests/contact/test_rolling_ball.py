@@ -87,3 +87,40 @@ def test_slides_as_a_stiffer_ball(shared_run):
     assert 0 < errors[1] < 1e-2  # measured: 9.5e-3
     assert errors[1] < 0.5 * errors[0]  # measured: 0.40
     check_balance(stiff)
+
+
+PLATE = "-options_file options/rolling-ball-on-plate.opts"
+
+
+def test_coarse_ball_on_a_plate(impakt):
+    """Half of it, on a plate with a mesh: its nodes in the plane of symmetry, whose faces are on one side, have friction along the plane alone, so that it slides under
+    exactly mu times the normal force."""
+    run = impakt(f"{PLATE} {SLIDES} -ball_ball_divisions 4 -ball_ball_grading 1 -ball_youngs_modulus 3e5 -ball_ball_centre 0,0,0.1025 -time_end 0.12")
+    (name,) = run.history["contact"]
+    pair = run.history[f"contact/{name}"]
+    force, sliding = pair["force_vector"][()], pair["sliding"][()]
+    slides = (sliding > 0) & (sliding == pair["active"][()])
+    assert slides.sum() > 200  # measured: 349 of 600 steps
+    assert np.abs(force[:, 0]).max() <= 0.05 * np.abs(force[:, 2]).max()
+    check_balance(run, 0.1025, 0.3)
+
+
+@pytest.mark.longest
+def test_rolls_on_a_plate(shared_run):
+    run = shared_run(PLATE)
+    time, _, v, spin = motion(run)
+    a = rate(time, v[:, 1])
+    assert a == pytest.approx(5 / 7 * G * np.sin(TILT), rel=1e-2)  # measured: -5.3e-3
+    assert R * rate(time, spin) == pytest.approx(a, rel=1e-2)  # measured: -4.1e-3
+    assert 0 < run.summary["contact"]["friction_loss"] < 0.01 * MASS * v[-1, 1] ** 2
+    check_balance(run)
+
+
+@pytest.mark.longest
+def test_slides_on_a_plate(shared_run):
+    run = shared_run(f"{PLATE} {SLIDES}")
+    time, x, v, spin = motion(run)
+    spins = 5 * 0.1 * G * np.cos(TILT) / (2 * R)
+    assert rate(time, v[:, 1]) == pytest.approx(G * (np.sin(TILT) - 0.1 * np.cos(TILT)), rel=1e-2)  # measured: -2.8e-3
+    assert rate(time, spin) == pytest.approx(spins * x[:, 2].mean() / R, rel=1e-2)  # measured: -2.8e-3
+    check_balance(run)

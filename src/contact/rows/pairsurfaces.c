@@ -226,6 +226,21 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Tells the surfaces which displacements are prescribed, so that normals stay in planes of symmetry */
+static PetscErrorCode MirrorSurface(Contact contact, PetscInt body, Surface surface)
+{
+  const PetscInt *dofs;
+  PetscInt        n, first;
+  Vec             positions;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetHeldDofs(contact->bodies[body], &n, &dofs));
+  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+  PetscCall(VecGetOwnershipRange(positions, &first, NULL));
+  PetscCall(SurfaceSetMirrors(surface, n, dofs, first));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All surfaces to where their bodies are */
 PetscErrorCode ContactMoveSurfaces(Contact contact)
 {
@@ -264,6 +279,8 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
   PetscCall(ContactCheckAxisymmetric(contact, pair));
   PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, faces[0], faces[1]));
   PetscCall(CheckFacing(contact, pair));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+    PetscCall(MirrorSurface(contact, pair->body[side], pair->surfaces[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,101 @@
+/*
+   Nodes of a surface that lie in a plane of symmetry.
+
+   The normal of a node at the rim of a surface comes from the faces on one side of it. Where the body is cut along a plane of symmetry, at
+   a right angle to an axis, its other half has as many on the other side, and the normal lies in the plane. One that is tilted out of it
+   makes gaps and friction of what moves along it: of half a ball of 12 elements to a quarter, on a plate with a mesh, friction across the
+   plane took up to all that the law has for the node.
+*/
+#include "interfaceimpl.h"
+
+/* Nodes of faces are on one side of a node that are behind it by less than this part of their extent */
+#define BEHIND 1e-6
+/* Sine of the angle by which normals may be tilted out of a plane of symmetry, 30 degrees. That of a ball of four elements round the
+   quarter is by 11; what is beyond is an edge of the body. */
+#define TILTED 0.5
+
+/* How far the nodes of the faces around each node reach along each axis, on all ranks */
+static PetscErrorCode FindExtents(Surface surface, PetscReal lower[], PetscReal upper[])
+{
+  const SurfaceData *data = &surface->data;
+  const PetscInt     n    = data->face_nodes;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(lower, data->reference, 3 * data->n_nodes));
+  PetscCall(PetscArraycpy(upper, data->reference, 3 * data->n_nodes));
+  for (PetscInt f = 0; f < data->n_faces; f++)
+    for (PetscInt k = 0; k < n; k++)
+      for (PetscInt l = 0; l < n; l++)
+        for (PetscInt d = 0; d < 3; d++) {
+          const PetscInt  at    = 3 * data->faces[f * n + k] + d;
+          const PetscReal other = data->reference[3 * data->faces[f * n + l] + d];
+
+          lower[at] = PetscMin(lower[at], other);
+          upper[at] = PetscMax(upper[at], other);
+        }
+  if (!surface->divided) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSFReduceBegin(surface->vectors, MPIU_REAL, lower, lower, MPIU_MIN));
+  PetscCall(PetscSFReduceEnd(surface->vectors, MPIU_REAL, lower, lower, MPIU_MIN));
+  PetscCall(PetscSFReduceBegin(surface->vectors, MPIU_REAL, upper, upper, MPIU_MAX));
+  PetscCall(PetscSFReduceEnd(surface->vectors, MPIU_REAL, upper, upper, MPIU_MAX));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SurfaceSetMirrors - finds the nodes that lie in planes of symmetry, whose normals stay in them
+
+  Collective
+
+  Input Parameters:
++ surface - the `Surface`
+. n       - number of displacements of this rank that are prescribed
+. dofs    - their numbers among those of this rank, ascending
+- first   - global number of the first displacement of this rank
+
+  Level: developer
+
+  Notes:
+  A node lies in one if it is held along one axis or two but not along all, all faces around it are on one side of it along that axis, and
+  its normal is out of the plane by 30 degrees at most. Normals count from the next `SurfaceUpdate()` on.
+
+.seealso: `Surface`, `SurfaceUpdate()`, `BodyGetHeldDofs()`
+@*/
+PetscErrorCode SurfaceSetMirrors(Surface surface, PetscInt n, const PetscInt dofs[], PetscInt first)
+{
+  const SurfaceData *data = &surface->data;
+  PetscReal         *lower, *upper;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
+  PetscCall(PetscFree(surface->mirrors));
+  if (data->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SurfaceUpdate(surface, NULL));
+  PetscCall(PetscCalloc1(data->n_owned, &surface->mirrors));
+  PetscCall(PetscMalloc2(3 * data->n_nodes, &lower, 3 * data->n_nodes, &upper));
+  PetscCall(FindExtents(surface, lower, upper));
+  for (PetscInt i = 0; i < data->n_owned; i++) {
+    PetscInt count = 0, mirrors = 0;
+
+    for (PetscInt d = 0; d < data->dim; d++) {
+      const PetscReal *x = data->reference + 3 * i, extent = upper[3 * i + d] - lower[3 * i + d];
+      PetscInt         place;
+
+      PetscCall(PetscFindInt(data->dofs[i] + d - first, n, dofs, &place));
+      if (place < 0) continue;
+      count++;
+      if (PetscMin(x[d] - lower[3 * i + d], upper[3 * i + d] - x[d]) < BEHIND * extent && PetscAbsReal(data->normals[3 * i + d]) <= TILTED)
+        mirrors |= 1 << d;
+    }
+    if (count < data->dim) surface->mirrors[i] = mirrors;
+  }
+  PetscCall(PetscFree2(lower, upper));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Puts the normals of owned nodes into their planes of symmetry; they need not have unit length */
+void SurfaceMirrorNormals(Surface surface)
+{
+  for (PetscInt i = 0; i < surface->data.n_owned && surface->mirrors; i++)
+    for (PetscInt d = 0; d < surface->data.dim; d++)
+      if (surface->mirrors[i] & (1 << d)) surface->data.normals[3 * i + d] = 0;
+}
