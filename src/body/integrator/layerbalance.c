@@ -335,6 +335,7 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscCall(ConstrainedSolverCreate(K, layer->rows, body->mesh.dim, prefix, BodyGetSharedCompliance(body), &body->solver));
   PetscCall(VecNorm(body->mesh.positions, NORM_2, &layer->reach));
   PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
+  PetscCall(BodyUseScatter(layer->scatter, body->state.u, layer->rhs));
   PetscCall(MatDestroy(&K));
   if (!body->model.linear) {
     PetscCall(BodyCreateLayerVec(body, &layer->now.point));

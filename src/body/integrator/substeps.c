@@ -48,6 +48,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
       PetscCall(BodyAddDampingWork(body));
     }
   }
+  body->time.stepped = PETSC_TRUE;
   body->statistics.substeps += body->time.substeps;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

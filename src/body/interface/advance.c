@@ -15,7 +15,7 @@
 @*/
 PetscErrorCode BodySave(Body body)
 {
-  const PetscBool stepped = (PetscBool)(body->state.step != body->saved.step);
+  const PetscBool stepped = (PetscBool)(body->state.step != body->saved.step), here = (PetscBool)!BodyIsElsewhere(body);
   PetscScalar    *start, *end;
 
   PetscFunctionBegin;
@@ -30,17 +30,17 @@ PetscErrorCode BodySave(Body body)
     }
   }
   /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
-  if (body->loads && body->time.substeps == 1 && stepped) PetscCall(BodyAddWork(body, body->substep_start.u));
-  if (body->time.substeps == 1 && stepped) PetscCall(BodyAddDampingWork(body));
+  if (here && body->loads && body->time.substeps == 1 && stepped) PetscCall(BodyAddWork(body, body->substep_start.u));
+  if (here && body->time.substeps == 1 && stepped) PetscCall(BodyAddDampingWork(body));
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
   if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
-  PetscCall(BodyStateCopy(&body->state, &body->saved));
+  PetscCall(BodyStateCopy(body, &body->state, &body->saved));
   BodyHistorySave(body);
   if (stepped) PetscCall(BodyUpdateStableStep(body));
   body->start.changed = PETSC_FALSE;
   /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
+  if (here && body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
   PetscCall(BodyHandoverEnd(body));
   body->iterate.known = PETSC_FALSE;
   body->repeats       = PETSC_FALSE;
@@ -84,7 +84,8 @@ PetscErrorCode BodyKeep(Body body)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyStateCopy(&body->state, &body->kept));
+  PetscCall(BodyStateCopy(body, &body->state, &body->kept));
+  if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyHistoryKeep(body, PETSC_FALSE));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_KEPT));
   PetscCall(CopyOutputTraces(body, PETSC_TRUE));
@@ -107,11 +108,12 @@ PetscErrorCode BodyReinstate(Body body)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyStateCopy(&body->kept, &body->state));
+  PetscCall(BodyStateCopy(body, &body->kept, &body->state));
+  body->repeats = PETSC_FALSE;
+  if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyHistoryKeep(body, PETSC_TRUE));
   if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_KEPT));
   PetscCall(CopyOutputTraces(body, PETSC_FALSE));
-  body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -163,6 +165,16 @@ static PetscErrorCode CheckSolver(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The substeps that another rank makes: time and step as they are there */
+static void CountSubsteps(Body body)
+{
+  body->time.substep     = body->time.substeps;
+  body->state.step       = body->saved.step + body->time.substeps;
+  body->state.time       = body->saved.time + body->time.substeps * body->time.step;
+  body->state.incomplete = PETSC_FALSE;
+  body->statistics.substeps += body->time.substeps;
+}
+
 /*@
   BodyTryIntegrateRows - as `BodyTryIntegrate()`, as far as the rows depend on it
 
@@ -190,9 +202,14 @@ PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  StepFailureClear(&body->failure);
+  if (reason) *reason = STEP_CONVERGED;
+  if (BodyIsElsewhere(body)) {
+    CountSubsteps(body);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
   PetscCall(PetscTime(&begin));
-  StepFailureClear(&body->failure);
   PetscCall(BodyCheckStableStep(body));
   if (!BodyHasStopped(body)) PetscCall(BodyRepeat(body, &done));
   if (!BodyHasStopped(body) && !done) PetscCall(BodyMakeSubsteps(body));
@@ -229,6 +246,7 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (BodyIsElsewhere(body)) body->state.incomplete = PETSC_FALSE;
   if (body->state.incomplete && !BodyHasStopped(body)) {
     PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
     PetscCall(PetscTime(&begin));

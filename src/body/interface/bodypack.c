@@ -179,7 +179,7 @@ PetscErrorCode BodyUnpack(Body body, Tables tables)
   }
   PetscCall(BodyUnpackHistory(body, tables));
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  PetscCall(BodyStateCopy(&body->state, &body->saved));
+  PetscCall(BodyStateCopy(body, &body->state, &body->saved));
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   PetscCall(UnpackPoint(body, rows, tables));
   PetscCall(PetscFree(rows));

@@ -240,6 +240,10 @@ static PetscErrorCode GetSums(Body body, PetscReal sums[BODY_MEASURE_SUMS])
   PetscBool measured;
 
   PetscFunctionBegin;
+  if (BodyIsElsewhere(body)) {
+    PetscCall(PetscArrayzero(sums, BODY_MEASURE_SUMS));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(IsMeasured(body, &measured));
   if (!measured) PetscCall(SumMeasures(body, body->measured.sums));
   PetscCall(PetscArraycpy(sums, body->measured.sums, N_SUMS));
@@ -346,9 +350,10 @@ PetscErrorCode BodyComputeEnergies(PetscInt n, const Body bodies[], PetscReal su
 
     PetscValidHeaderSpecific(body, BODY_CLASSID, 2);
     /* where a step has been undone, the internal force is still that of its end */
-    if (body->state.step == body->saved.step) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+    if (body->state.step == body->saved.step && !BodyIsElsewhere(body))
+      PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
     PetscCall(GetSums(body, sums + BODY_MEASURE_SUMS * b));
-    PetscCall(BodyAddPendingWork(body, sums + BODY_MEASURE_SUMS * b + N_SUMS + 2));
+    if (!BodyIsElsewhere(body)) PetscCall(BodyAddPendingWork(body, sums + BODY_MEASURE_SUMS * b + N_SUMS + 2));
   }
   PetscCall(AddRanks(n, bodies, sums));
   for (PetscInt b = 0; b < n; b++) {

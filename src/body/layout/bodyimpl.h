@@ -108,6 +108,7 @@ typedef struct {
   PetscInt  shared;   /* parts of the controller step, at whose ends all bodies have a time in common */
   PetscInt  substeps; /* of one part */
   PetscInt  substep;  /* the one that is being made, 0 to substeps - 1 */
+  PetscBool stepped;  /* in this run: the TS has all vectors that it makes with its first step */
 } BodyTime;
 
 /* What a step starts from and ends with. A member that is NULL in one of two states is left out where one is copied to the other. */
@@ -271,6 +272,15 @@ static inline PetscBool BodyStepsAlone(Body body)
   return (PetscBool)(body->local && !body->rows.n_prescribed && !body->rows.n_robin);
 }
 
+/* Whether another rank has all there is of the body, its mesh and its rows, and makes its steps without this one: then there is nothing to
+   do here but to count them. It stays so as long as the body has the same rows under the same conditions. What is left out here must create
+   no object of PETSc on the communicator of the body, and use no scatter for the first time (BodyUseScatter()): both take a tag from the
+   communicator, of which each rank is to have taken as many. */
+static inline PetscBool BodyIsElsewhere(Body body)
+{
+  return (PetscBool)(BodyStepsAlone(body) && body->rows.at_home && !body->mesh.is_owner && body->time.stepped);
+}
+
 /* Whether a failure ends a step at once. That of a local body others do not know yet: the step is made to its end, good for nothing, so
    that all ranks do the same. */
 static inline PetscBool BodyHasStopped(Body body)
@@ -287,6 +297,7 @@ PETSC_EXTERN PetscLogEvent BODY_Integrate, BODY_Compliance, BODY_InternalForce, 
 
 PETSC_INTERN PetscErrorCode BodySetUpLayout(Body);
 PETSC_INTERN PetscErrorCode BodyAnyRank(Body, PetscBool *);
+PETSC_INTERN PetscErrorCode BodyUseScatter(VecScatter, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyGetLocalDot(Vec, Vec, PetscReal *);
 PETSC_INTERN PetscErrorCode BodyGetNorm(Body, Vec, PetscReal *);
 PETSC_INTERN PetscErrorCode BodyAddPendingWork(Body, PetscReal[2]);
@@ -297,7 +308,7 @@ PETSC_INTERN PetscErrorCode BodyGetLocalSum(Body, Vec, Vec *, PetscScalar *[]);
 PETSC_INTERN PetscErrorCode BodyRestoreLocalSum(Body, Vec, Vec *, PetscScalar *[]);
 PETSC_INTERN PetscErrorCode BodyCreateVec(Body, Vec *);
 PETSC_INTERN PetscErrorCode BodyStateCreate(Body, PetscBool, BodyState *);
-PETSC_INTERN PetscErrorCode BodyStateCopy(const BodyState *, BodyState *);
+PETSC_INTERN PetscErrorCode BodyStateCopy(Body, const BodyState *, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateDestroy(BodyState *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
 PETSC_INTERN PetscErrorCode BodySetUpInertia(Body);

@@ -229,6 +229,16 @@ PetscErrorCode BodyAnyRank(Body body, PetscBool *any)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Uses a scatter that has just been made, on all ranks. PETSc gives its messages a tag the first time, which is the same on all ranks only if
+   they take tags in one order, and later one rank may use it alone. What is in `to` is lost. */
+PetscErrorCode BodyUseScatter(VecScatter scatter, Vec from, Vec to)
+{
+  PetscFunctionBegin;
+  PetscCall(VecScatterBegin(scatter, from, to, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(scatter, from, to, INSERT_VALUES, SCATTER_FORWARD));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The product of this rank's parts of two vectors: as that of vectors of one rank, bit for bit */
 PetscErrorCode BodyGetLocalDot(Vec a, Vec b, PetscReal *dot)
 {
@@ -247,14 +257,19 @@ PetscErrorCode BodyGetLocalDot(Vec a, Vec b, PetscReal *dot)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* 2-norm of a vector laid out as displacements, or one of the massless layer: of a body that steps alone that of this rank's part */
+/* 2-norm of a vector laid out as displacements, or one of the massless layer: of a body that steps alone that of this rank's part. PETSc
+   remembers the norm of a vector that has not changed, which the vectors of a local body have for its own rank alone: there the sum over
+   ranks is made each time. */
 PetscErrorCode BodyGetNorm(Body body, Vec vec, PetscReal *norm)
 {
   PetscFunctionBegin;
-  if (BodyStepsAlone(body)) {
-    PetscCall(BodyGetLocalDot(vec, vec, norm));
-    *norm = PetscSqrtReal(*norm);
-  } else PetscCall(VecNorm(vec, NORM_2, norm));
+  if (!body->local) {
+    PetscCall(VecNorm(vec, NORM_2, norm));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(BodyGetLocalDot(vec, vec, norm));
+  if (!BodyStepsAlone(body)) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, norm, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  *norm = PetscSqrtReal(*norm);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -57,6 +57,7 @@ PetscErrorCode BodyComputeFreeRows(Body body, PetscScalar displacement[])
              "rows get; see BodyHasFreeRows()",
              body->hdr.name);
   StepFailureClear(&body->failure);
+  if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall((*body->integrator->ops.freerows)(body, displacement));
   PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -115,7 +115,7 @@ static PetscErrorCode FactorSolved(Body body)
       c->factor.values[j * c->n_solved + i] = W[place[c->solved[j]] * leading + place[c->solved[i]]] +
                                               (i == j ? c->all_flexibility[c->solved[i]] : 0);
   PetscCall(DenseFactorCompute(&c->factor, &singular));
-  PetscCheck(!singular, PetscObjectComm((PetscObject)body), PETSC_ERR_MAT_LU_ZRPVT,
+  PetscCheck(!singular, body->rows.at_home ? PETSC_COMM_SELF : PetscObjectComm((PetscObject)body), PETSC_ERR_MAT_LU_ZRPVT,
              "The prescribed contact rows of body '%s' are not independent: their compliance is singular; is a node in two contact pairs?",
              body->hdr.name);
   c->factored_state = ComplianceGetState(c->matrices);

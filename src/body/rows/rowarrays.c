@@ -197,6 +197,7 @@ PetscErrorCode BodyReplaceInterface(Body body, Mat B, const PetscInt from[])
   PetscCall(MatDestroy(&rows->matrix));
   rows->matrix = B;
   PetscCall(BodyCreateRowArrays(body));
+  PetscCall(MatMult(rows->matrix, body->saved.u, body->work.rows[0])); /* as BodyUseScatter() does with the scatter of a matrix */
   PetscCall(BodySetUpFreeRows(body));
   PetscCall(MoveTraces(body, from));
   PetscCall(RenewLevels(body));

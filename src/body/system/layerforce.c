@@ -110,6 +110,7 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
   /* no blocks of `dim`: PETSc takes its type for them apart, and allocates memory, in each scatter */
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, layer->n_dofs, dofs, PETSC_OWN_POINTER, &is));
   PetscCall(VecScatterCreate(body->mesh.positions, is, layer->u, NULL, &layer->gather));
+  PetscCall(BodyUseScatter(layer->gather, body->mesh.positions, layer->u));
   PetscCall(ISDestroy(&is));
   PetscCall(PetscMalloc2(layer->n_dofs, &from, layer->n_dofs, &to));
   for (PetscInt i = 0; i < layer->n_dofs; i++) {
@@ -120,6 +121,7 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, from, PETSC_COPY_VALUES, &is));
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, to, PETSC_COPY_VALUES, &to_is));
   PetscCall(VecScatterCreate(layer->f, is, of_layer, to_is, &layer->add));
+  PetscCall(BodyUseScatter(layer->add, layer->f, of_layer));
   PetscCall(ISDestroy(&is));
   PetscCall(ISDestroy(&to_is));
   PetscCall(PetscFree2(from, to));

@@ -13,21 +13,22 @@ PetscErrorCode BodyStateCreate(Body body, PetscBool internal_force, BodyState *s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What both have room for */
-PetscErrorCode BodyStateCopy(const BodyState *from, BodyState *to)
+/* What both have room for; of a body that is elsewhere its time alone */
+PetscErrorCode BodyStateCopy(Body body, const BodyState *from, BodyState *to)
 {
   PetscFunctionBegin;
+  to->external_work = from->external_work;
+  to->damping_work  = from->damping_work;
+  to->time          = from->time;
+  to->step          = from->step;
+  to->incomplete    = from->incomplete;
+  if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCopy(from->u, to->u));
   PetscCall(VecCopy(from->v, to->v));
   PetscCall(VecCopy(from->a, to->a));
   if (from->internal_force && to->internal_force) PetscCall(VecCopy(from->internal_force, to->internal_force));
   if (from->applied && to->applied) PetscCall(VecCopy(from->applied, to->applied));
   if (from->damping && to->damping) PetscCall(VecCopy(from->damping, to->damping));
-  to->external_work = from->external_work;
-  to->damping_work  = from->damping_work;
-  to->time          = from->time;
-  to->step          = from->step;
-  to->incomplete    = from->incomplete;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -63,10 +64,10 @@ PetscErrorCode BodyRestore(Body body)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyStateCopy(&body->saved, &body->state));
+  PetscCall(BodyStateCopy(body, &body->saved, &body->state));
   BodyHistoryRestore(body);
   body->repeats = PETSC_FALSE;
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_SAVED));
+  if (body->integrator->ops.restore && !BodyIsElsewhere(body)) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_SAVED));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
