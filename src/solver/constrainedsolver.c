@@ -107,6 +107,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(ConstrainedSolverChoose(s->ksp, A, dim));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(KSPSetUp(s->ksp));
+  PetscCall(KSPSetUpOnBlocks(s->ksp)); /* now, not with the first solution */
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPPREONLY, &direct));
   if (direct) PetscCall(KSPGetPC(s->ksp, &s->direct));
   PetscCall(ConstrainedSolverCountFlops(s, A));

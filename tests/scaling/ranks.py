@@ -78,6 +78,18 @@ def run_logged(arguments, options, ranks, steps):
         return summary, [{name: float(row[column]) for name, column in COUNTED.items()} for row in events]
 
 
+def run_counting(arguments, options, ranks, steps, event):
+    """How often each rank has made an event of PETSc's log, in all stages."""
+    with tempfile.TemporaryDirectory() as directory:
+        log, made = Path(directory) / "log.csv", [0] * ranks
+        run(arguments, options, ranks, steps, ("-log_view", f":{log}:ascii_csv"))
+        with log.open(encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                if row["Event Name"] == event:
+                    made[int(row["Rank"])] += int(float(row["Count"]))
+        return made
+
+
 def exponent(ranks, values):
     """The power of the number of ranks with which a count grows, by least squares of logarithms; None where there are not two of them."""
     points = [(math.log(r), math.log(v)) for r, v in zip(ranks, values) if r > 1 and v and v > 0]

@@ -25,6 +25,25 @@ static PetscErrorCode RewriteStart(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* New rows, with what has changed in those of all ranks */
+static PetscErrorCode TakeRows(Body body, Mat B, const PetscMPIInt all[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscObjectReference((PetscObject)B));
+  PetscCall(MatDestroy(&body->rows.matrix));
+  body->rows.matrix = B;
+  PetscCall(BodySetUpFreeRows(body));
+  PetscCall(BodyForgetCompliance(body, all));
+  PetscCall((*body->integrator->ops.setrows)(body, all));
+  PetscCall(BodySetRowsOfLevels(body, all));
+  PetscCall(BodyNoteKnownRows(body));
+  if (body->mass.solver) PetscCall(ConstrainedSolverSetRows(body->mass.solver, body->rows.free_matrix, all));
+  body->repeats = PETSC_FALSE;
+  PetscCall(BodySetConstraints(body));
+  PetscCall(RewriteStart(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyUpdateInterface - gives the rows of the interface new entries, as contact surfaces slide and turn
 
@@ -45,22 +64,35 @@ compliance that belong to rows which have changed are discarded.
 @*/
 PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscBool changed[])
 {
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(GatherChanged(body, changed, body->rows.changed));
+  PetscCall(TakeRows(body, B, body->rows.changed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyUpdateInterfaceFrom - as `BodyUpdateInterface()`, for callers who have told all ranks which rows of many bodies have changed
+
+  Collective
+
+  Input Parameters:
++ body    - the `Body`, set up, at the start of a controller step
+. B       - matrix of as many rows as before
+. numbers - for each row of the body, of all ranks, its number in the list of the caller
+- changed - for each row of that list, of all ranks, 1 if its entries differ from those before, else 0; the same on every rank
+
+  Level: developer
+
+.seealso: `Body`, `BodyUpdateInterface()`
+@*/
+PetscErrorCode BodyUpdateInterfaceFrom(Body body, Mat B, const PetscInt numbers[], const int changed[])
+{
   PetscMPIInt *all = body->rows.changed;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(PetscObjectReference((PetscObject)B));
-  PetscCall(MatDestroy(&body->rows.matrix));
-  body->rows.matrix = B;
-  PetscCall(BodySetUpFreeRows(body));
-  PetscCall(GatherChanged(body, changed, all));
-  PetscCall(BodyForgetCompliance(body, all));
-  PetscCall((*body->integrator->ops.setrows)(body, all));
-  PetscCall(BodySetRowsOfLevels(body, all));
-  PetscCall(BodyNoteKnownRows(body));
-  if (body->mass.solver) PetscCall(ConstrainedSolverSetRows(body->mass.solver, body->rows.free_matrix, all));
-  body->repeats = PETSC_FALSE;
-  PetscCall(BodySetConstraints(body));
-  PetscCall(RewriteStart(body));
+  for (PetscInt k = 0; k < body->rows.global; k++) all[k] = changed[numbers[k]];
+  PetscCall(TakeRows(body, B, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

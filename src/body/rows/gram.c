@@ -148,7 +148,8 @@ PetscErrorCode BodySetUpGram(Body body)
   PetscCall(PetscSortIntWithArray(n, gram->nodes, gram->order));
   PetscCall(FindCandidates(body, gram->nodes, gram->order, gram->all, &size, &most));
   body->rows.any_oblique = (PetscBool)(gram->n_runs > 0);
-  PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
+  /* of a body at home its rank alone has rows, and tells the others when they take part: BodySetConstraints() */
+  if (!body->local || !body->rows.at_home) PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
   PetscCall(Grow(most * (most + 5), &gram->work_room, &gram->work));
   PetscCall(Grow(size, &gram->inverse_room, &gram->inverses));
   PetscFunctionReturn(PETSC_SUCCESS);

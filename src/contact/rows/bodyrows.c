@@ -131,15 +131,16 @@ PetscErrorCode ContactCopyAreas(Contact contact)
  */
 PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
 {
+  ContactRanks *ranks = &contact->ranks;
+
   PetscFunctionBegin;
   PetscCall(ContactCopyAreas(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const ContactBodyRows *of = &contact->body_rows[b];
-
-    if (!of->affected) continue;
-    for (PetscInt k = 0; k < of->n; k++) contact->work.flags[k] = changed[of->rows[k]];
-    PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->work.flags));
-  }
+  for (PetscInt i = 0; i < contact->rows.n; i++) ranks->mine_active[i] = changed[i] ? 1 : 0;
+  PetscCallMPI(MPI_Allgatherv(ranks->mine_active, (PetscMPIInt)contact->rows.n, MPI_INT, ranks->all_active, ranks->counts, ranks->offsets,
+                              MPI_INT, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (contact->body_rows[b].affected)
+      PetscCall(BodyUpdateInterfaceFrom(contact->bodies[b], contact->interfaces[b], contact->body_rows[b].all, ranks->all_active));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -158,7 +158,7 @@ static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
 
 /* Room for the entries of the rows of a body, of which each has as many as its transfer tells: PETSc else collects them in a hash table.
    Ties have other rows, and on several ranks nobody knows which columns are those of other ranks. */
-static PetscErrorCode Preallocate(Contact contact, PetscInt b)
+static PetscErrorCode Preallocate(Contact contact, PetscInt b, Mat matrix)
 {
   PetscInt *entries = contact->work.intervals, *counts[2] = {contact->work.entry_counts, contact->work.entry_counts + contact->rows.n};
 
@@ -170,7 +170,7 @@ static PetscErrorCode Preallocate(Contact contact, PetscInt b)
     PetscCall(TransferCountValues(pair->transfer, counts[0], pair->obstacle ? NULL : counts[1]));
     for (PetscInt i = pair->begin; i < pair->end; i++) entries[i - pair->shift[side]] = counts[side][(i - pair->begin) / pair->components];
   }
-  PetscCall(MatSeqAIJSetPreallocation(contact->interfaces[b], 0, entries));
+  PetscCall(MatSeqAIJSetPreallocation(matrix, 0, entries));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,9 +187,44 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
   PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), &contact->interfaces[b]));
   PetscCall(MatSetSizes(contact->interfaces[b], contact->body_rows[b].n, n, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
-  if (contact->ranks.size == 1 && (law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION)) PetscCall(Preallocate(contact, b));
+  if (contact->ranks.size == 1 && (law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION))
+    PetscCall(Preallocate(contact, b, contact->interfaces[b]));
   else PetscCall(MatSetUp(contact->interfaces[b]));
   PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a matrix that has been filled before can get entries in other places without a word of other ranks: one of several ranks has all
+   of the body and of its rows. The same on every rank. */
+static PetscErrorCode CanRenew(Contact contact, PetscInt b, PetscBool *can)
+{
+  const ContactBodyRows *of  = &contact->body_rows[b];
+  const ContactLaw       law = contact->options.law;
+  PetscMPIInt            rank;
+  PetscInt               n, first;
+
+  PetscFunctionBegin;
+  *can = PETSC_FALSE;
+  if (contact->ranks.size == 1 || !(law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->interfaces[b] || of->patterns[0] < 0 || !of->n_all) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetMeshRank(contact->bodies[b], &rank));
+  if (rank < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetSize(contact->interfaces[b], &n, NULL));
+  first = contact->ranks.offsets[rank];
+  *can  = (PetscBool)(n == of->n_all && of->all[0] >= first && of->all[n - 1] < first + contact->ranks.counts[rank]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New room for its entries, in the block of the rank that has all of them. The block of no other rank changes, nor what ranks tell each
+   other in products. */
+static PetscErrorCode Renew(Contact contact, PetscInt b)
+{
+  Mat block;
+
+  PetscFunctionBegin;
+  if (!contact->body_rows[b].n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMPIAIJGetSeqAIJ(contact->interfaces[b], &block, NULL, NULL));
+  PetscCall(Preallocate(contact, b, block));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -218,10 +253,13 @@ PetscErrorCode ContactFillMatrices(Contact contact)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     ContactBodyRows *of = &contact->body_rows[b];
+    PetscBool        can;
 
     if (!of->affected) continue;
     ChooseMatrix(contact, b);
+    PetscCall(CanRenew(contact, b, &can));
     if (of->patterns[0] == of->pattern) PetscCall(MatZeroEntries(contact->interfaces[b]));
+    else if (can && !product) PetscCall(Renew(contact, b));
     else PetscCall(CreateMatrix(contact, b));
     of->patterns[0] = product ? -1 : of->pattern;
   }
