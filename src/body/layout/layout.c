@@ -229,8 +229,8 @@ PetscErrorCode BodyAnyRank(Body body, PetscBool *any)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Uses a scatter that has just been made, on all ranks. PETSc gives its messages a tag the first time, which is the same on all ranks only if
-   they take tags in one order, and later one rank may use it alone. What is in `to` is lost. */
+/* Uses a scatter that has just been made, on all ranks. PETSc gives its messages a tag the first time, which is the same on all ranks only
+   if they take tags in one order, and later one rank may use it alone. What is in `to` is lost. */
 PetscErrorCode BodyUseScatter(VecScatter scatter, Vec from, Vec to)
 {
   PetscFunctionBegin;
