@@ -155,7 +155,7 @@ static void FlowAlongTable(const Plastic *plastic, PetscReal excess, PetscReal s
     *growth += step;
     *strength += *slope * step;
     excess -= (stiffness + *slope) * step;
-    if (step < room) return;
+    if (last || step < room) return;
   }
 }
 

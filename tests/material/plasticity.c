@@ -265,21 +265,51 @@ static void elastic_stress_is_the_derivative_of_the_energy(void **state)
   }
 }
 
-/* An inverted point, and one whose strain is beyond all numbers, have no stress */
+/* An inverted point, and one whose strain is beyond all numbers, have no stress. Small strains know no inversion. */
 static void hopeless_points_are_told(void **state)
 {
+  static const char *const small[] = {
+      "-material_type j2_small -yield_stress 400e6 -hardening_modulus 100e6",
+      "-material_type j2_small -hardening voce -yield_stress 400e6 -saturation_stress 600e6 -saturation_rate 20",
+      "-material_type j2_small -hardening table -hardening_table 0,400e6,0.05,500e6,0.3,550e6",
+  };
   const PetscReal inverted[9] = {-2, 0, 0, 0, 0, 0, 0, 0, 0}, beyond[9] = {1e200, 0, 0, 0, 0, 0, 0, 0, 0};
 
   (void)state;
-  for (size_t m = 0; m < 5; m++) {
+  for (size_t m = 0; m < 5 + PETSC_STATIC_ARRAY_LENGTH(small); m++) {
     MaterialKernels kernels;
-    Material        material   = create(models[m], &kernels);
+    Material        material   = create(m < 5 ? models[m] : small[m - 5], &kernels);
     PetscReal       history[N] = {0}, P[9];
 
     advance(&kernels, inverted, history, history, P);
-    assert_true(isnan(P[0]));
+    if (m < 5) assert_true(isnan(P[0]));
+    for (int i = 0; i < N; i++) history[i] = 0;
     advance(&kernels, beyond, history, history, P);
     assert_true(!isfinite(P[0]));
+    ok(MaterialDestroy(&material));
+  }
+}
+
+/* Where no growth of the plastic strain meets the law, which takes constants of no metal, there is no stress */
+static void flow_that_is_not_found_is_told(void **state)
+{
+  static const char *const laws[] = {
+      "-material_type johnson_cook -yield_stress 90e6 -hardening_modulus 1e300 -hardening_exponent 0.31 -rate_coefficient 1e300 "
+      "-softening_exponent 1.09 -melting_temperature 1356 -specific_heat 383",
+      "-material_type j2 -yield_stress 400e6 -hardening voce -saturation_stress 1e300 -saturation_rate 1e300",
+  };
+  const PetscReal sheared[9] = {0, 0.1, 0, 0, 0, 0, 0, 0, 0}, hardly[9] = {0, 1e-4, 0, 0, 0, 0, 0, 0, 0};
+
+  (void)state;
+  for (size_t m = 0; m < PETSC_STATIC_ARRAY_LENGTH(laws); m++) {
+    MaterialKernels kernels;
+    Material        material   = create(laws[m], &kernels);
+    PetscReal       history[N] = {0}, P[9];
+
+    advance(&kernels, hardly, history, NULL, P);
+    assert_true(isfinite(P[1]));
+    advance(&kernels, sheared, history, NULL, P);
+    assert_true(isnan(P[1]));
     ok(MaterialDestroy(&material));
   }
 }
@@ -294,6 +324,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(rotation_does_nothing),
       cmocka_unit_test(elastic_stress_is_the_derivative_of_the_energy),
       cmocka_unit_test(hopeless_points_are_told),
+      cmocka_unit_test(flow_that_is_not_found_is_told),
   };
 
   return impakt_main(argc, argv, tests);

@@ -1,5 +1,7 @@
 """A copper rod that hits a wall: plastic flow in whole runs."""
 
+import re
+
 import h5py
 import numpy as np
 import pytest
@@ -97,6 +99,48 @@ def test_flat_elements(impakt):
 )
 def test_wrong_constants(more, says, impakt):
     assert says in impakt(TAYLOR + more, expect_failure=True).stderr
+
+
+BLOCK = (
+    "-bodies b -b_dm_plex_dim 3 -b_dm_plex_box_faces 4,2,2 -b_dm_plex_box_upper 0.4,0.2,0.2 -b_density 8930 -b_youngs_modulus 117e9 -b_poissons_ratio 0.35 "
+    "-b_boundary_displacement xmin -b_boundary_displacement_xmin 0,0,0 "
+)
+TABLE = "-b_material_type j2 -b_hardening table -b_hardening_table 0,4e8,0.1,4e8 "
+JOHNSON_COOK = (
+    "-b_material_type johnson_cook -b_yield_stress 90e6 -b_hardening_modulus 292e6 -b_hardening_exponent 0.31 -b_rate_coefficient 0.025 -b_softening_exponent 1.09 "
+    "-b_melting_temperature 1356 -b_specific_heat 383 "
+)
+# Constants of no metal: a strength beyond all numbers where anything flows
+ENDLESS = JOHNSON_COOK + "-b_hardening_modulus 1e300 -b_rate_coefficient 1e300 "
+FAST = "-b_ts_type centraldifference -b_initial_velocity 0,0,-3e5*x -time_step 1e-5 -time_end 1e-4 "
+EXPLICIT = "-b_ts_type centraldifference -b_initial_velocity 0,0,-300*x -time_step 1e-5 -time_end 1e-3 "
+LONG_STEP = "-b_initial_velocity 0,0,-3e3*x -time_step 1e-2 -time_end 1e-1 "
+# Five times what a bar without hardening bears; of Johnson and Cook's, which hardens, more than what it bears at any strain
+PULL = "-b_ts_type static -b_boundary_traction xmax -b_boundary_traction_xmax 2e9*t,0,0 -time_step 1 -time_end 1 "
+
+
+@pytest.mark.parametrize("ranks", [1, pytest.param(3, marks=pytest.mark.long)])
+@pytest.mark.parametrize(
+    ("case", "says"),
+    [
+        (TABLE + FAST, "inverted"),
+        (JOHNSON_COOK + FAST, "inverted"),
+        (ENDLESS + EXPLICIT, "how much it flows was not found"),
+        (TABLE + LONG_STEP, "Newton's method"),
+        (TABLE + PULL, "Newton's method"),
+        (JOHNSON_COOK + PULL, "Newton's method"),
+    ],
+)
+def test_plastic_step_that_fails(case, says, ranks, impakt):
+    """Steps that are too long, loads that nothing can bear, and a law without a solution end the run with an error that names body, element and time."""
+    run = impakt(BLOCK + case, ranks, expect_failure=True)
+    error = " ".join(run.stderr.split())
+    found = re.search(r"[Bb]ody 'b'.* element (\d+) \(rank after rank, from 0\), around \((.*?)\) m of the undeformed mesh", error)
+    assert found, error
+    assert 0 <= int(found[1]) < 16
+    assert all(0 < float(x) < 0.4 for x in found[2].split(", "))
+    assert re.search(r"at time \d", error)
+    assert says in error
 
 
 @pytest.mark.parametrize("shape", ["-rod_dm_plex_dim 1", "-rod_dm_plex_dim 2 -rod_plane_stress true"])

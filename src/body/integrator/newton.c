@@ -277,8 +277,10 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
 {
   SNESConvergedReason reason;
   KSPConvergedReason  linear;
-  PetscInt            iterations;
+  PetscInt            iterations, element;
+  PetscReal           centre[3] = {0}, largest;
   SNES                snes;
+  Vec                 residual;
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
@@ -294,10 +296,15 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
                              body->hdr.name, (double)body->state.time, body->state.step, KSPConvergedReasons[linear],
                              ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
   PetscCall(BodyNoteInverted(body, PETSC_FALSE));
-  PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
-                           "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
-                           "): %s after %" PetscInt_FMT " iterations; choose a smaller -%sts_time_step, or look with -%ssnes_monitor",
-                           body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations,
-                           ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
+  PetscCall(SNESGetFunction(snes, &residual, NULL, NULL));
+  PetscCall(BodyLocateLargest(body, residual, &element, centre, &largest));
+  PetscCall(StepFailureSet(
+      &body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
+      "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
+      " iterations; the force that is farthest from balance, by %g N, is that of a node of "
+      "element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh; choose a "
+      "smaller -%sts_time_step, or look with -%ssnes_monitor",
+      body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations, (double)largest, element,
+      (double)centre[0], (double)centre[1], (double)centre[2], ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
