@@ -106,6 +106,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(KSPSetErrorIfNotConverged(s->ksp, (PetscBool)(compliance != NULL)));
   PetscCall(ConstrainedSolverChoose(s->ksp, A, dim));
   PetscCall(KSPSetFromOptions(s->ksp));
+  PetscCall(ConstrainedSolverAdjust(s->ksp));
   PetscCall(KSPSetUp(s->ksp));
   PetscCall(KSPSetUpOnBlocks(s->ksp)); /* now, not with the first solution */
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPPREONLY, &direct));

@@ -13,6 +13,11 @@ static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
 #define ITERATIVE_TOLERANCE 1e-12
 /* and iterations of it, of which bodies of 10^4 to 3e5 unknowns take 18 to 20 */
 #define ITERATIVE_MAX_IT 1000
+/* Iterations by which the smoothers of multigrid estimate the largest eigenvalue, which they must not underrate. PETSc takes over the
+   estimate of 10 iterations that smoothed the aggregates: too few where stiffnesses jump. Around a core 10^4 times as stiff multigrid
+   became indefinite; 20 iterations were enough for all jumps that were tried, up to 10^6, and so were they in Newton's method. */
+#define ESTIMATE_OPTION     "mg_levels_esteig_ksp_max_it"
+#define ESTIMATE_ITERATIONS "20"
 /* Operations of one solution, in parts of the entries of the factors: a multiplication and an addition each, in both triangles */
 #define FLOPS_OF_ENTRY 4
 /* The same where PETSc does not tell how many entries there are, as with multigrid: in parts of the unknowns, of the order of what 20
@@ -103,6 +108,27 @@ PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
     PetscCall(PCSetType(pc, PCCHOLESKY)); /* all matrices here are symmetric */
     PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
   } else PetscCall(ChooseSequential(pc, n, dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What has to be said of the solver that options have chosen. The iterations of multigrid's estimate can be told by an option alone. */
+PetscErrorCode ConstrainedSolverAdjust(KSP ksp)
+{
+  const char *prefix;
+  char        name[256];
+  PetscBool   multigrid, taken_over, given;
+  PC          pc;
+
+  PetscFunctionBegin;
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCGAMG, &multigrid));
+  PetscCall(KSPGetOptionsPrefix(ksp, &prefix));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-pc_gamg_use_sa_esteig", &taken_over));
+  if (!multigrid || taken_over) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCGAMGSetUseSAEstEig(pc, PETSC_FALSE));
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-" ESTIMATE_OPTION, &given));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "-%s" ESTIMATE_OPTION, prefix ? prefix : ""));
+  if (!given) PetscCall(PetscOptionsSetValue(NULL, name, ESTIMATE_ITERATIONS));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
