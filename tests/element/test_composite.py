@@ -46,16 +46,17 @@ def test_first_order_locks(impakt, tmp_path):
 
 @pytest.mark.parametrize("shape", ["tri6", "tet10"])
 def test_files(impakt, tmp_path, shape):
-    """Both formats, with the middles of edges in other orders, and off the middle by a tenth of an edge: a linear displacement is exact, held at the nodes of
+    """All formats, with the middles of edges in other orders, and off the middle by a tenth of an edge: a linear displacement is exact, held at the nodes of
     a surface or of a node set, which both have the nodes in the middle of edges."""
     dim = dim_of(shape)
     secondorder.write_gmsh(tmp_path / "a.msh", shape)
     secondorder.write_gmsh(tmp_path / "b.msh", shape, binary=True)
     secondorder.write_exodus(tmp_path / "c.exo", shape)
+    secondorder.write_gmsh41(tmp_path / "d.msh", shape)
     gradient = ",".join(["0.1*t*x-0.05*t*y", "0.02*t*x+0.1*t*y", "-0.05*t*x"][:dim])
     others = sides(shape)[1:]
     energies = []
-    for name, end in (("a.msh", "left"), ("b.msh", "7"), ("c.exo", "left"), ("c.exo", "held"), ("c.exo", "3"), ("c.exo", "xmin")):
+    for name, end in (("a.msh", "left"), ("b.msh", "7"), ("d.msh", "left"), ("d.msh", "7"), ("c.exo", "left"), ("c.exo", "held"), ("c.exo", "3"), ("c.exo", "xmin")):
         held = ",".join([end, *others])
         motion = " ".join(f"-b_boundary_displacement_{side} {gradient}" for side in [end, *others])
         run = impakt(f"-bodies b -b_dm_plex_filename {tmp_path / name} {STEEL} -b_boundary_displacement {held} {motion} -b_exact_displacement {gradient} -b_ts_type static -time_step 0.5 -time_end 1")

@@ -44,6 +44,37 @@ def write_gmsh(path, shape, binary=False):
     meshio.write(path, meshio.Mesh(points, [("line3" if dim == 2 else "triangle6", faces), (solidmeshes.SHAPES[shape], cells)], cell_data=data, field_data=groups), file_format="gmsh22", binary=binary)
 
 
+# Gmsh numbers the last two edges of tetrahedra the other way round than VTK, and elements by their own types
+GMSH = {"tri6": (9, [0, 1, 2, 3, 4, 5]), "tet10": (11, [0, 1, 2, 3, 4, 5, 6, 7, 9, 8])}
+GMSH_FACES = {"tri6": 8, "tet10": 9}
+
+
+def write_gmsh41(path, shape):
+    """The same in version 4.1, as text: physical groups belong to entities, the body to two of them, half of its elements each; numbers of nodes and elements have gaps."""
+    points, cells, left, _ = mesh(shape)
+    dim = solidmeshes.dim_of(shape)
+    kind, order = GMSH[shape]
+    faces = np.array([face(shape, cells[e], s) for e, s in left])
+    halves = np.split(cells[:, order], [len(cells) // 2])
+    low, high = (" ".join(map(repr, map(float, end(points, axis=0)))) for end in (np.min, np.max))
+    entities = {dim - 1: [f"4 {low} {high} 1 7 0"], dim: [f"{tag} {low} {high} 1 1 1 4" for tag in (5, 9)]}
+    numbers = 3 * np.arange(len(points)) + 10
+    lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$PhysicalNames", "2", f'{dim - 1} 7 "left"', f'{dim} 1 "all"', "$EndPhysicalNames"]
+    lines += ["$Entities", " ".join(str(len(entities.get(d, []))) for d in range(4)), *entities[dim - 1], *entities[dim], "$EndEntities"]
+    blocks = np.array_split(np.arange(len(points)), 2)
+    lines += ["$Nodes", f"2 {len(points)} {numbers[0]} {numbers[-1]}"]
+    for tag, block in zip((5, 9), blocks, strict=True):
+        lines += [f"{dim} {tag} 0 {len(block)}", *(str(numbers[n]) for n in block), *(" ".join(map(repr, map(float, points[n]))) for n in block)]
+    lines += ["$EndNodes", "$Elements", f"3 {len(faces) + len(cells)} 2 {2 * (len(faces) + len(cells))}"]
+    number = 0
+    for d, tag, of_kind, elements in ((dim - 1, 4, GMSH_FACES[shape], faces), (dim, 5, kind, halves[0]), (dim, 9, kind, halves[1])):
+        lines.append(f"{d} {tag} {of_kind} {len(elements)}")
+        for element in elements:
+            number += 2
+            lines.append(" ".join(map(str, [number, *numbers[element]])))
+    path.write_text("\n".join([*lines, "$EndElements", ""]))
+
+
 def write_exodus(path, shape):
     """Side set "left" (7), node set "held" (3) of the nodes at x = 0, with those in the middle of edges."""
     points, cells, left, held = mesh(shape)
