@@ -82,7 +82,7 @@ def last_frame(run):
         return {name: fields[name][frame][()] for name in ("stress", "contact_pressure", "contact_active")}
 
 
-def check(run, pressure, stress, within=1e-8):
+def check(run, pressure, stress, within=1e-8, stress_within=None):
     """Pressure at all nodes of both surfaces, stress in all elements."""
     frame = last_frame(run)
     active = frame["contact_active"] > 0
@@ -91,7 +91,7 @@ def check(run, pressure, stress, within=1e-8):
     assert not frame["contact_pressure"][~active].any()
     dim = len(stress)
     found = frame["stress"].reshape(-1, 3, 3)[:, :dim, :dim]
-    np.testing.assert_allclose(found, np.broadcast_to(stress, found.shape), rtol=0, atol=within * pressure)
+    np.testing.assert_allclose(found, np.broadcast_to(stress, found.shape), rtol=0, atol=(stress_within or within) * pressure)
     return active.sum()
 
 
@@ -121,12 +121,13 @@ def nodes(pairing):
 @pytest.mark.parametrize("turn", ["aligned", "turned", "over"])
 @pytest.mark.parametrize("pairing", list(PAIRINGS))
 def test_pressed(pairing, turn, law, shared_run):
-    """Any element on any, whatever way the interface faces. Measured: 2e-12 (frictionless), 7e-15 (tied) at most."""
+    """Any element on any, whatever way the interface faces: displacement and stress to 1e-12, and the pressure of tied blocks. That of others, of single nodes, has the round-off of what iterations leave.
+    Measured: pressure 2e-12, stress 4e-13, displacement 1.1e-13 (frictionless); 1e-14 (tied) at most."""
     options, stress = turned(pairing, turn, law)
     run = shared_run(f"{STATIC} -contact_pairs auto {options}")
-    assert check(run, PRESSURE, stress, 1e-10) == nodes(pairing)
+    assert check(run, PRESSURE, stress, 1e-12 if law == "tied" else 1e-11, 1e-12) == nodes(pairing)
     for b in "ab":
-        assert run.summary["bodies"][b]["displacement_error"] <= 1e-10
+        assert run.summary["bodies"][b]["displacement_error"] <= 1e-12
     assert run.summary["schwarz"]["max"] <= 2 and run.summary["schwarz"]["set_changes"] == 0
 
 
