@@ -31,20 +31,26 @@
 /* Of what loops over batches read: a line of the cache, and what vectors want [bytes] */
 #define ALIGNMENT 64
 
-/* Positions of an element's nodes, and of the one in the middle */
-static void GetPositions(Element element, PetscInt e, PetscReal x[COMPOSITE_MAX_NODES + 1][3])
+/* An element where it lies: what is found part by part starts from this */
+typedef struct {
+  const CompositeShape *shape;
+  PetscInt              dim, corners, nodes;
+  PetscReal             x[COMPOSITE_MAX_NODES + 1][3]; /* of its nodes, and of the one in the middle; 0 across the plane [m] */
+} Geometry;
+
+static Geometry GetGeometry(Element element, PetscInt e)
 {
   const Solid    *solid = (const Solid *)element->data;
   const PetscInt *nodes = element->connectivity + e * element->nodes;
-  const PetscInt  dim = element->dim, corners = dim + 1, middles = element->nodes - corners;
+  Geometry        at    = {
+      .shape = ((const Composite *)solid->own)->shape, .dim = element->dim, .corners = element->dim + 1, .nodes = element->nodes};
 
-  for (PetscInt d = 0; d < dim; d++) {
-    x[element->nodes][d] = 0;
-    for (PetscInt a = 0; a < element->nodes; a++) {
-      x[a][d] = solid->coordinates[dim * nodes[a] + d];
-      if (a >= corners) x[element->nodes][d] += x[a][d] / (PetscReal)middles;
+  for (PetscInt d = 0; d < at.dim; d++)
+    for (PetscInt a = 0; a < at.nodes; a++) {
+      at.x[a][d] = solid->coordinates[at.dim * nodes[a] + d];
+      if (a >= at.corners) at.x[at.nodes][d] += at.x[a][d] / (PetscReal)(at.nodes - at.corners);
     }
-  }
+  return at;
 }
 
 /* What a function of the nodes of a part is of those of the element: N[part] of its nodes, added to N of the element's */
@@ -62,14 +68,14 @@ static void AddToNodes(const CompositeShape *shape, PetscInt part, const PetscRe
 }
 
 /* Volume of a part, and the gradients of its barycentric coordinates */
-static PetscReal GetPart(const CompositeShape *shape, PetscInt part, PetscReal x[][3], PetscReal gradient[4][3])
+static PetscReal GetPart(const Geometry *at, PetscInt part, PetscReal gradient[4][3])
 {
-  const PetscInt  dim = shape->solid.dim, *nodes = shape->parts + part * (dim + 1);
+  const PetscInt  dim = at->dim, *nodes = at->shape->parts + part * at->corners;
   PetscReal       edge[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, determinant = 0;
   const PetscReal unit_volume = dim == 2 ? 0.5 : 1. / 6;
 
   for (PetscInt i = 0; i < dim; i++)
-    for (PetscInt d = 0; d < dim; d++) edge[i][d] = x[nodes[i + 1]][d] - x[nodes[0]][d];
+    for (PetscInt d = 0; d < dim; d++) edge[i][d] = at->x[nodes[i + 1]][d] - at->x[nodes[0]][d];
   for (PetscInt i = 0; i < 3; i++)
     for (PetscInt j = 0; j < 3; j++)
       gradient[1 + i][j] = edge[(i + 1) % 3][(j + 1) % 3] * edge[(i + 2) % 3][(j + 2) % 3] -
@@ -116,20 +122,19 @@ static void Solve(PetscInt n, PetscReal M[4][4], PetscInt n_sides, PetscReal b[4
 /* Gradients of the shape functions at the points, and weights, of one element */
 static PetscErrorCode FillElement(Element element, PetscInt e, PetscReal gradients[][COMPOSITE_MAX_NODES][3], PetscReal weights[])
 {
-  const Solid          *solid = (const Solid *)element->data;
-  const CompositeShape *shape = ((const Composite *)solid->own)->shape;
-  const PetscInt        dim = element->dim, corners = dim + 1;
-  PetscReal             x[COMPOSITE_MAX_NODES + 1][3] = {{0}}, lambda[COMPOSITE_MAX_NODES + 1][4], volumes[COMPOSITE_MAX_PARTS], volume = 0;
+  const Geometry        at    = GetGeometry(element, e);
+  const CompositeShape *shape = at.shape;
+  const PetscInt        dim = at.dim, corners = at.corners;
+  PetscReal             lambda[COMPOSITE_MAX_NODES + 1][4], volumes[COMPOSITE_MAX_PARTS], volume = 0;
   PetscReal             of_part[COMPOSITE_MAX_PARTS][COMPOSITE_MAX_NODES][3] = {{{0}}};
   PetscReal             M[4][4] = {{0}}, moments[4] = {0}, b[4][COMPOSITE_MAX_PARTS];
 
   PetscFunctionBegin;
-  GetPositions(element, e, x);
   GetBarycentric(shape, lambda);
   for (PetscInt s = 0; s < shape->n_parts; s++) {
     PetscReal gradient[4][3], sum[4];
 
-    volumes[s] = GetPart(shape, s, x, gradient);
+    volumes[s] = GetPart(&at, s, gradient);
     volume += volumes[s];
     for (PetscInt d = 0; d < dim; d++) {
       PetscReal N[4], nodal[COMPOSITE_MAX_NODES] = {0};
@@ -159,14 +164,14 @@ static PetscErrorCode FillElement(Element element, PetscInt e, PetscReal gradien
                " nodes and with a corner at (%g, %g, %g) m, is inverted or degenerate: one of the %" PetscInt_FMT
                " linear elements that it is made of has the %s %g; mend the mesh, in which mid-side nodes must lie near the "
                "middle of their edges",
-               e, element->nodes, (double)x[0][0], (double)x[0][1], (double)(dim == 3 ? x[0][2] : 0), shape->n_parts,
-               dim == 3 ? "volume" : "area", (double)volumes[s]);
+               e, element->nodes, (double)at.x[0][0], (double)at.x[0][1], (double)at.x[0][2], shape->n_parts, dim == 3 ? "volume" : "area",
+               (double)volumes[s]);
   for (PetscInt g = 0; g < corners; g++) {
     weights[g] = (moments[g] - shape->far * volume) / (shape->near - shape->far);
     PetscCheck(weights[g] > 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "Element %" PetscInt_FMT " of this rank, of %" PetscInt_FMT
                " nodes and with a corner at (%g, %g, %g) m, is too distorted: move its mid-side nodes nearer to the middle of their edges",
-               e, element->nodes, (double)x[0][0], (double)x[0][1], (double)(dim == 3 ? x[0][2] : 0));
+               e, element->nodes, (double)at.x[0][0], (double)at.x[0][1], (double)at.x[0][2]);
   }
   Solve(corners, M, shape->n_parts, b);
   for (PetscInt g = 0; g < corners; g++)
@@ -228,15 +233,14 @@ static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gra
 /* Points at which loads are integrated: those of all parts, near their nodes */
 static PetscErrorCode ElementPoints_Composite(Element element, PetscInt e, PetscReal positions[], PetscReal weights[])
 {
-  const CompositeShape *shape = ((const Composite *)((const Solid *)element->data)->own)->shape;
-  const PetscInt        dim = element->dim, corners = dim + 1;
-  PetscReal             x[COMPOSITE_MAX_NODES + 1][3];
+  const Geometry        at    = GetGeometry(element, e);
+  const CompositeShape *shape = at.shape;
+  const PetscInt        dim = at.dim, corners = at.corners;
 
   PetscFunctionBegin;
-  GetPositions(element, e, x);
   for (PetscInt s = 0; s < shape->n_parts; s++) {
     PetscReal       gradient[4][3];
-    const PetscReal volume = GetPart(shape, s, x, gradient);
+    const PetscReal volume = GetPart(&at, s, gradient);
 
     for (PetscInt g = 0; g < corners; g++) {
       weights[s * corners + g] = element->cross_section * volume / (PetscReal)corners;
@@ -244,7 +248,7 @@ static PetscErrorCode ElementPoints_Composite(Element element, PetscInt e, Petsc
         PetscReal *position = &positions[(s * corners + g) * dim + d];
 
         *position = 0;
-        for (PetscInt k = 0; k < corners; k++) *position += (k == g ? shape->near : shape->far) * x[shape->parts[s * corners + k]][d];
+        for (PetscInt k = 0; k < corners; k++) *position += (k == g ? shape->near : shape->far) * at.x[shape->parts[s * corners + k]][d];
       }
     }
   }
@@ -254,17 +258,17 @@ static PetscErrorCode ElementPoints_Composite(Element element, PetscInt e, Petsc
 /* Exact: products of functions that are linear in each part */
 static PetscErrorCode ElementMass_Composite(Element element, PetscInt e, PetscScalar M[])
 {
-  const CompositeShape *shape = ((const Composite *)((const Solid *)element->data)->own)->shape;
-  const PetscInt        dim = element->dim, corners = dim + 1, nodes = element->nodes, n = nodes * dim;
-  PetscReal             x[COMPOSITE_MAX_NODES + 1][3], density;
+  const Geometry        at    = GetGeometry(element, e);
+  const CompositeShape *shape = at.shape;
+  const PetscInt        dim = at.dim, corners = at.corners, nodes = at.nodes, n = nodes * dim;
+  PetscReal             density;
 
   PetscFunctionBegin;
   PetscCall(MaterialGetDensity(element->material, &density));
-  GetPositions(element, e, x);
   PetscCall(PetscArrayzero(M, n * n));
   for (PetscInt s = 0; s < shape->n_parts; s++) {
     PetscReal       gradient[4][3], of_node[4][COMPOSITE_MAX_NODES] = {{0}};
-    const PetscReal mass = density * element->cross_section * GetPart(shape, s, x, gradient) / (PetscReal)(corners * (corners + 1));
+    const PetscReal mass = density * element->cross_section * GetPart(&at, s, gradient) / (PetscReal)(corners * (corners + 1));
 
     for (PetscInt k = 0; k < corners; k++) {
       PetscReal one[4] = {0};
@@ -285,28 +289,27 @@ static PetscErrorCode ElementMass_Composite(Element element, PetscInt e, PetscSc
 /* In the part that is nearest */
 static PetscErrorCode ElementNearest_Composite(Element element, PetscInt e, const PetscReal point[], PetscReal N[], PetscReal *distance)
 {
-  const CompositeShape *shape = ((const Composite *)((const Solid *)element->data)->own)->shape;
-  const PetscInt        dim = element->dim, corners = dim + 1;
-  PetscReal             x[COMPOSITE_MAX_NODES + 1][3];
+  const Geometry        at    = GetGeometry(element, e);
+  const CompositeShape *shape = at.shape;
+  const PetscInt        dim = at.dim, corners = at.corners;
 
   PetscFunctionBegin;
-  GetPositions(element, e, x);
   *distance = PETSC_MAX_REAL;
   for (PetscInt s = 0; s < shape->n_parts; s++) {
     const PetscInt *nodes = shape->parts + s * corners;
     PetscReal       gradient[4][3], L[4], sum = 0, squares = 0;
 
-    (void)GetPart(shape, s, x, gradient);
+    (void)GetPart(&at, s, gradient);
     for (PetscInt k = 0; k < corners; k++) {
       L[k] = k ? 0 : 1;
-      for (PetscInt d = 0; d < dim; d++) L[k] += gradient[k][d] * (point[d] - x[nodes[0]][d]);
+      for (PetscInt d = 0; d < dim; d++) L[k] += gradient[k][d] * (point[d] - at.x[nodes[0]][d]);
       L[k] = PetscMax(0, L[k]);
       sum += L[k];
     }
     for (PetscInt d = 0; d < dim; d++) {
       PetscReal miss = point[d];
 
-      for (PetscInt k = 0; k < corners; k++) miss -= L[k] / sum * x[nodes[k]][d];
+      for (PetscInt k = 0; k < corners; k++) miss -= L[k] / sum * at.x[nodes[k]][d];
       squares += PetscSqr(miss);
     }
     if (PetscSqrtReal(squares) >= *distance) continue;
