@@ -29,6 +29,7 @@ PetscErrorCode MeshFileDestroy(MeshFile *file)
   PetscCall(PetscFree(file->vertices));
   PetscCall(PetscFree(file->edges));
   PetscCall(PetscFree(file->edge_of_node));
+  PetscCall(PetscFree(file->node_of_edge));
   PetscCall(PetscFree(file->text));
   PetscCall(PetscMemzero(file, sizeof(*file)));
   PetscFunctionReturn(PETSC_SUCCESS);

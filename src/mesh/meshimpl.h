@@ -65,6 +65,7 @@ typedef struct {
   PetscInt  n_edges;
   PetscInt *edges;
   PetscInt *edge_of_node; /* point of the DMPlex; -1: the node is in the middle of none. NULL without such cells */
+  PetscInt *node_of_edge; /* the node in the middle of each edge of the DMPlex, from the first one on; -1: none yet */
   /* memory of a reader, which is freed with the file if reading ends with an error */
   char *text;
 } MeshFile;

@@ -53,7 +53,8 @@ PetscErrorCode MeshFileFindEdges(MeshFile *file, DM dm)
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, NULL));
   PetscCall(DMPlexGetDepthStratum(dm, 1, &start, &end));
   PetscCall(PetscMalloc1(file->n_nodes, &file->edge_of_node));
-  PetscCall(PetscMalloc1(end - start, &node_of_edge));
+  PetscCall(PetscMalloc1(end - start, &file->node_of_edge));
+  node_of_edge = file->node_of_edge;
   for (PetscInt i = 0; i < file->n_nodes; i++) file->edge_of_node[i] = -1;
   for (PetscInt i = 0; i < end - start; i++) node_of_edge[i] = -1;
   for (PetscInt i = 0; i < file->n_edges; i++) {
@@ -73,7 +74,6 @@ PetscErrorCode MeshFileFindEdges(MeshFile *file, DM dm)
     node_of_edge[point - start] = node;
     file->edge_of_node[node]    = point;
   }
-  PetscCall(PetscFree(node_of_edge));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
