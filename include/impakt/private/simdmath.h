@@ -43,21 +43,22 @@ SIMD_INLINE SimdVector SimdExp(SimdVector x)
   const PetscReal  shift  = 6755399441055744.; /* 1.5 2^52: a sum with it is rounded to a whole number, which is in its last bits */
   const SimdVector inside = SimdMax(SimdMin(x, SimdAll(SIMD_LARGEST_EXPONENT)), SimdAll(-SIMD_LARGEST_EXPONENT));
   const SimdVector k = inside * 1.4426950408889634 + shift, whole = k - shift;
-  const SimdVector r   = (inside - whole * 0.693147180369123816490) - whole * 1.90821492927058770002e-10; /* ln 2 in two parts */
-  SimdVector       sum = SimdAll(1. / 6227020800);
+  const SimdVector r      = (inside - whole * 0.693147180369123816490) - whole * 1.90821492927058770002e-10; /* ln 2 in two parts */
+  const SimdVector square = r * r;
+  SimdVector       even = SimdAll(1. / 479001600), odd = SimdAll(1. / 6227020800), sum;
 
-  sum = sum * r + 1. / 479001600;
-  sum = sum * r + 1. / 39916800;
-  sum = sum * r + 1. / 3628800;
-  sum = sum * r + 1. / 362880;
-  sum = sum * r + 1. / 40320;
-  sum = sum * r + 1. / 5040;
-  sum = sum * r + 1. / 720;
-  sum = sum * r + 1. / 120;
-  sum = sum * r + 1. / 24;
-  sum = sum * r + 1. / 6;
-  sum = sum * r + 0.5;
-  sum = sum * r * r + r + 1;
+  /* of the factors of r^2 on, those of even and of odd powers: two chains of half the length, neither of which waits for the other */
+  even = even * square + 1. / 3628800;
+  odd  = odd * square + 1. / 39916800;
+  even = even * square + 1. / 40320;
+  odd  = odd * square + 1. / 362880;
+  even = even * square + 1. / 720;
+  odd  = odd * square + 1. / 5040;
+  even = even * square + 1. / 24;
+  odd  = odd * square + 1. / 120;
+  even = even * square + 0.5;
+  odd  = odd * square + 1. / 6;
+  sum  = (even + r * odd) * square + r + 1;
   return sum * (SimdVector)(((SimdBits)k + 1023) << 52);
 }
 
@@ -71,16 +72,17 @@ SIMD_INLINE SimdVector SimdLog(SimdVector x)
   const SimdVector half = SimdSelect((SimdBits)(mantissa > 1.4142135623730951), SimdAll(0.5), SimdAll(1)); /* so that it lies around 1 */
   const SimdVector e    = exponent - (4503599627370496. + 1023) + 2 * (1 - half);
   const SimdVector m = mantissa * half, z = (m - 1) / (m + 1), y = z * z;
-  SimdVector       sum = SimdAll(1. / 21);
+  const SimdVector square = y * y;
+  SimdVector       even = SimdAll(1. / 19), odd = SimdAll(1. / 21), sum;
 
-  sum = sum * y + 1. / 19;
-  sum = sum * y + 1. / 17;
-  sum = sum * y + 1. / 15;
-  sum = sum * y + 1. / 13;
-  sum = sum * y + 1. / 11;
-  sum = sum * y + 1. / 9;
-  sum = sum * y + 1. / 7;
-  sum = sum * y + 1. / 5;
-  sum = sum * y + 1. / 3;
+  even = even * square + 1. / 15;
+  odd  = odd * square + 1. / 17;
+  even = even * square + 1. / 11;
+  odd  = odd * square + 1. / 13;
+  even = even * square + 1. / 7;
+  odd  = odd * square + 1. / 9;
+  even = even * square + 1. / 3;
+  odd  = odd * square + 1. / 5;
+  sum  = even + y * odd;
   return e * 0.693147180369123816490 + (e * 1.90821492927058770002e-10 + 2 * (z + z * y * sum));
 }
