@@ -22,7 +22,7 @@ PARTS = {"full": 1, "half": 2, "quarter": 4}
 
 
 class Ball:
-    """A disc (of unit thickness) or ball as the options of a run describe it, and what Hertz says of it on a rigid plane."""
+    """A disc (of unit thickness) or ball, of rings too, as the options of a run describe it, and what Hertz says of it on a rigid plane."""
 
     def __init__(self, options, name):
         def option(key, default=None):
@@ -34,7 +34,8 @@ class Ball:
         self.name, self.dim = name, int(option("dm_plex_dim"))
         if option("dm_plex_shape", "box") != "ball":
             raise CannotDraw(f"body {name} is no disc or ball from options")
-        self.parts = PARTS[option("ball_part", "full")]
+        self.rings = option("axisymmetric", "false").lower() in ("true", "1", "yes", "on", "")
+        self.parts = 1 if self.rings else PARTS[option("ball_part", "full")]  # forces of rings are those of the whole
         self.radius = float(option("ball_radius", "1"))
         self.centre = np.array([float(x) for x in option("ball_centre", "0,0,0").split(",")])[: self.dim]
         self.modulus = float(option("youngs_modulus")) / (1 - float(option("poissons_ratio", "0")) ** 2)
@@ -42,7 +43,7 @@ class Ball:
 
     def contact(self, load):
         """Radius of the contact (of a disc: half its width) and largest pressure."""
-        if self.dim == 2:
+        if self.dim == 2 and not self.rings:
             radius = np.sqrt(4 * load * self.radius / (np.pi * self.modulus))
             return radius, 2 * load / (np.pi * radius)
         radius = (3 * load * self.radius / (4 * self.modulus)) ** (1 / 3)
@@ -73,6 +74,7 @@ class Pair(Ball):
 
     def __init__(self, balls):
         self.name, self.dim, self.parts, self.static = " and ".join(ball.name for ball in balls), balls[0].dim, balls[0].parts, balls[0].static
+        self.rings = balls[0].rings
         self.radius, self.modulus = (1 / sum(1 / value for value in values) for values in ([ball.radius for ball in balls], [ball.modulus for ball in balls]))
 
 
@@ -117,7 +119,7 @@ def pressures(ball, path):
         positions = file["mesh/positions"][:, : ball.dim]
         last = max(file["contact_pressure"])
         pressure, active, gap = (file[f"{name}/{last}"][()].ravel() for name in ("contact_pressure", "contact_active", "contact_gap"))
-    if isinstance(ball, Pair):  # on the axis through the origin
+    if isinstance(ball, Pair) or ball.rings:  # on the axis through the origin
         surface = np.isfinite(gap)
     else:
         positions = positions - ball.centre

@@ -1,10 +1,14 @@
 """Rings in contact: rods against bars of one dimension, patch tests, Hertz's sphere, Taylor's bar, tubes on each other; what is refused."""
 
+import os
+import sys
+
 import h5py
 import hertz
 import numpy as np
 import pytest
 from cases import long
+from conftest import ROOT
 
 SPHERE = "-options_file options/hertz-sphere-axisymmetric.opts"
 IMPACT = "-options_file options/hertz-impact-axisymmetric.opts"
@@ -97,6 +101,19 @@ def test_hertz_pressure(impakt):
     assert error.max() <= 0.012
     assert np.sort(error)[-2] <= 0.005
     assert fitted == pytest.approx([1, 1], abs=3e-3)
+
+
+def test_picture_of_rings(impakt, launch, tmp_path):
+    """The program that draws balls beside Hertz knows that rings are whole: the pressures that it draws are those of the theory for their load."""
+    run = impakt(SPHERE)
+    ball, series = hertz.read(run.folder / "history.h5")
+    radius, peak = ball.contact(series["force"][-1])
+    inside = series["touches"] & (series["distance"] < 0.9 * radius)
+    assert inside.sum() > 20
+    assert hertz.fit(series["distance"][inside] / radius, series["pressure"][inside] / peak) == pytest.approx([1, 1], abs=3e-3)
+    done = launch([sys.executable, ROOT / "plots/hertz.py", run.folder / "history.h5", tmp_path / "hertz.png"], env={**os.environ, "MPLBACKEND": "Agg"})
+    assert done.returncode == 0, done.stderr
+    assert (tmp_path / "hertz.png").stat().st_size > 10_000
 
 
 def test_hertz_impact(impakt):
