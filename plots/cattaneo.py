@@ -140,6 +140,14 @@ class Run:
         )
         return float(load), float((2 * self.first - 1) * across / (self.mu * load))
 
+    def half_loop(self, turn, back):
+        """What theory has friction take between two load steps, at which the force across is largest to either side [J]."""
+        (load, q), (_, other) = self.of_rows(turn), self.of_rows(back)
+        return (
+            loop_loss(self.mu * load, self.a[turn], self.compliance, (q - other) / 2)
+            / 2
+        )
+
     def nodes(self, step):
         """Of cylinders, the nodes that touch, of the body that has the rows: positions and tractions by those of theory, whether they slide; element [a]."""
         first, positions, pressure, sliding, traction = self.fields(
@@ -200,8 +208,7 @@ def draw_loop(axes, run):
     turn = int(np.argmax(run.q))
     factor, unit = scale(run.loss[last], "J")
     axes.plot(run.time, run.q, color=BLUE, label="Q/µP")
-    load, q = run.of_rows(turn)
-    theory = loop_loss(run.mu * load, run.a[turn], run.compliance, q)
+    theory = run.half_loop(turn, last)
     other = axes.twinx()
     other.plot(run.time, factor * run.loss, color="0.4", label="taken by friction")
     other.set_ylabel(f"taken by friction [{unit}]")
@@ -229,7 +236,12 @@ def draw(*files, path):
     ):
         (draw_traction if run.dim == 2 else draw_loop)(axes, run)
         axes.grid(color="0.9", linewidth=0.6)
-        axes.legend(frameon=True, framealpha=0.9, edgecolor="0.8")
+        axes.legend(
+            loc="upper left" if run.dim > 2 else "best",
+            frameon=True,
+            framealpha=0.9,
+            edgecolor="0.8",
+        )
     figure.savefig(path, dpi=110)
 
 

@@ -166,10 +166,13 @@ class Results:
 
     @property
     def energy_error(self):
-        """Change of the energy less the work of loads, with what damping has taken, relative to its start, or to the largest energy of what starts at rest."""
-        work = self.total("external_work")
-        total = self.energy - work + sum(body.get("damping_work", 0) for body in self.bodies.values())
-        largest = (self.energy + np.abs(work)).max()
+        """Change of the energy less the work of loads and of obstacles that move along themselves, with what damping, plastic flow and friction have taken,
+        relative to its start, or to the largest energy of what starts at rest."""
+        taken = sum(body.get(key, 0) for body in self.bodies.values() for key in ("damping_work", "plastic_work"))
+        taken = taken + sum(pair.get("friction_loss", 0) for pair in self.pairs.values())
+        driven = sum(pair.get("obstacle_work", 0) for pair in self.pairs.values())
+        total = self.energy - self.total("external_work") - driven + taken
+        largest = (self.energy + sum(np.abs(body["external_work"]) for body in self.bodies.values()) + np.abs(driven)).max()
         start = abs(total[0]) if abs(total[0]) > 1e-9 * largest else largest
         return (total - total[0]) / (start or 1.0)
 

@@ -43,6 +43,25 @@ def test_read(bars):
     assert np.isfinite(bars.gap("left:right")).all()
 
 
+@pytest.mark.parametrize(
+    "options",
+    [
+        "-options_file options/slope.opts",  # what friction takes
+        "-options_file options/capstan.opts",  # the work of a drum that turns
+        "-options_file options/taylor-bar-axisymmetric.opts -time_end 1e-6",  # what plastic flow takes
+        "-options_file options/settling.opts",  # loads, damping
+    ],
+)
+def test_energy_error(options, impakt):
+    """That of the figures is that of the summary: it has all that energy goes to and comes from."""
+    run = impakt(options)
+    system = run.summary["system"]
+    error = impakt_results.read(*files(run)).energy_error
+    assert error[-1] == pytest.approx(system["energy_error_final"], rel=1e-6, abs=1e-12)
+    assert error.max() == pytest.approx(system["energy_error_max"], rel=1e-3, abs=1e-12)  # of what starts at rest relative to the largest energy until then
+    assert error.min() == pytest.approx(system["energy_error_min"], rel=1e-3, abs=1e-12)
+
+
 def test_fields(impakt, tmp_path):
     run = impakt(f"-options_file options/blocks.opts -time_end 1e-5 -output_fields {tmp_path}/f.h5")
     for read in (impakt_results.read(run.folder / "history.h5"), impakt_results.read(tmp_path / "f.xdmf"), impakt_results.read(tmp_path / "f.h5")):

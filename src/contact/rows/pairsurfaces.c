@@ -320,7 +320,7 @@ static PetscErrorCode GetContactModulus(Body body, PetscReal *modulus)
   PetscCall(BodyIsRigid(body, &rigid));
   *modulus = PETSC_INFINITY;
   if (rigid) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetMaterial(body, &material));
+  PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetYoungsModulus(material, modulus));
   PetscCall(MaterialGetPoissonsRatio(material, &poisson));
   *modulus /= 1 - PetscSqr(poisson);
