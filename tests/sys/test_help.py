@@ -11,6 +11,7 @@ ENTRY = re.compile(r"^  -(\S+) \S+\n      \S.*$", re.MULTILINE)
 
 # Options that Impakt looks at, and that are PETSc's own: their table is PETSc's
 OF_PETSC = {"options_file_yaml", "prefix_push", "prefix_pop", 
+    "pc_gamg_use_sa_esteig",
     "snes_type",
     "snes_anderson_m",
     "snes_anderson_beta",

@@ -305,7 +305,7 @@ static PetscErrorCode SetOwner(Contact contact, const ContactPair *pair)
 static PetscBool IsCurved(Contact contact, PetscBool inertia, PetscBool linear)
 {
   if (contact->options.law == CONTACT_LAW_TIED) return PETSC_FALSE;
-  if (!inertia) return PETSC_TRUE;
+  if (!inertia) return (PetscBool)(contact->options.law == CONTACT_LAW_FRICTION);
   return (PetscBool)(!linear && (contact->dim == 2 || contact->options.balance));
 }
 
