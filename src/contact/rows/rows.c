@@ -225,6 +225,9 @@ static PetscErrorCode Renew(Contact contact, PetscInt b)
   if (!contact->body_rows[b].n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatMPIAIJGetSeqAIJ(contact->interfaces[b], &block, NULL, NULL));
   PetscCall(Preallocate(contact, b, block));
+  /* A new matrix, as after a checkpoint, multiplies by groups of rows alike where it has enough of them. One that goes on is to look for
+     them anew too: without this gaps after a checkpoint differed in the last bit. */
+  PetscCall(MatSetOption(block, MAT_USE_INODES, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
