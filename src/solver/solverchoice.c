@@ -7,6 +7,9 @@
 /* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension. In
    more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
 static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
+/* Memory that factors may take beyond what MUMPS expects [%]. Its own 20 were too few on three ranks that divide a ball of which a small part
+   has most elements: what it expects leaves out what moves between ranks as they go. Pages that are not used are not taken. */
+#define MUMPS_MEMORY 100
 /* In three dimensions factors of bodies larger than this take more memory and time than multigrid */
 #define MAX_DIRECT_SIZE_3D 150000
 /* of multigrid: what is left of the residual must not show in energies and momenta */
@@ -37,13 +40,26 @@ static PetscErrorCode IsOnOneRank(Mat A, PetscMPIInt size, PetscBool *one)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Factors of MUMPS. All matrices here are symmetric. */
+static PetscErrorCode ChooseMUMPS(PC pc)
+{
+  Mat F;
+
+  PetscFunctionBegin;
+  PetscCall(PCSetType(pc, PCCHOLESKY));
+  PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+  PetscCall(PCFactorSetUpMatSolverType(pc));
+  PetscCall(PCFactorGetMatrix(pc, &F));
+  PetscCall(MatMumpsSetIcntl(F, 14, MUMPS_MEMORY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Factors of one rank alone */
 static PetscErrorCode ChooseSequential(PC pc, PetscInt n, PetscInt dim)
 {
   PetscFunctionBegin;
   if (n > max_sequential_size[dim]) {
-    PetscCall(PCSetType(pc, PCCHOLESKY)); /* all matrices here are symmetric */
-    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
+    PetscCall(ChooseMUMPS(pc));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PCSetType(pc, PCLU));
@@ -104,10 +120,8 @@ PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
     PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (size > 1) {
-    PetscCall(PCSetType(pc, PCCHOLESKY)); /* all matrices here are symmetric */
-    PetscCall(PCFactorSetMatSolverType(pc, MATSOLVERMUMPS));
-  } else PetscCall(ChooseSequential(pc, n, dim));
+  if (size > 1) PetscCall(ChooseMUMPS(pc));
+  else PetscCall(ChooseSequential(pc, n, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

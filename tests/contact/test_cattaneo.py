@@ -131,3 +131,11 @@ def test_figure(shared_run, launch, tmp_path):
     assert run.returncode == 0, run.stderr
     assert not run.stderr
     assert figure.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
+
+
+@pytest.mark.longest
+def test_spheres_on_ranks(shared_run):
+    """Three ranks that divide graded balls between them: MUMPS ran out of the memory that it had expected to take, and the run ended with its error."""
+    first, other = (shared_run(f"{SPHERES} -time_step 1 -time_end 1 {SWAPPED}", n).summary["contact"] for n in (1, 3))
+    assert other["force_peak"] == pytest.approx(first["force_peak"], rel=1e-10)  # measured: 2e-15
+    assert other["active_max"] == first["active_max"]
