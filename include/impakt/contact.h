@@ -248,7 +248,7 @@ typedef struct {
   PetscInt       limited_steps;     /* made again since contact would have gained energy in them */
   PetscInt       unlimited_steps;   /* of these, in which it gained energy all the same */
   PetscInt64     energy_attempts;   /* how often these were made again */
-  PetscInt64     inner_iterations;  /* of conjugate gradients on the interface */
+  PetscInt64     inner_iterations;  /* of conjugate gradients on the interface, with friction of GMRES */
   PetscReal      friction_least;    /* least energy that friction has taken on a row in a step, by the forces at its ends; 0 or less [J] */
   PetscInt       ambiguous_steps;   /* in which friction may have had more than one solution */
   PetscReal      friction_tilt;     /* most by which normal forces were off along surfaces, in parts of what friction can bear; statics */

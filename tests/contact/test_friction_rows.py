@@ -75,6 +75,15 @@ def test_on_ranks(ranks, integrators, shared_run):
     np.testing.assert_allclose(forces(other), reference, rtol=0, atol=1e-10 * np.abs(reference).max())
 
 
+@pytest.mark.parametrize("integrators", ["", f"{LOWER} {UPPER}"], ids=["II", "EE"])
+def test_preconditioned(integrators, shared_run):
+    """What the Dirichlet side answers with halves the iterations, of implicit bodies and of massless layers; the forces are the same. Measured: 0.47 and 0.44 of them."""
+    run, plain = (shared_run(joined(plates(8, 12, integrators), PRODUCTS, more)) for more in ("", "-friction_pc_type none"))
+    assert 0 < run.summary["schwarz"]["inner_iterations"] <= 0.55 * plain.summary["schwarz"]["inner_iterations"]
+    reference = forces(plain)
+    np.testing.assert_allclose(forces(run), reference, rtol=0, atol=1e-9 * np.abs(reference).max())
+
+
 def test_limit_chooses(shared_run):
     """At the number of rows matrices are dense, one below they are not: the same to what GMRES leaves, not to the last bit."""
     rows = 3 * 9 * 9

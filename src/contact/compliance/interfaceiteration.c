@@ -116,9 +116,11 @@ static PetscErrorCode GetDiagonal(Mat shell, Vec diagonal)
 /* What products take, and what preconditions */
 PetscErrorCode InterfaceOperatorCreateProducts(InterfaceOperator op)
 {
+  const PetscInt dense = op->settings.products ? op->settings.few : op->settings.dense_limit; /* rows that are so without products */
+
   PetscFunctionBegin;
   if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
-  if (op->settings.precondition && !op->matrix && op->contact->rows.n_all > op->settings.dense_limit)
+  if (op->settings.precondition && !op->matrix && op->contact->rows.n_all > dense)
     PetscCall(InterfacePreconditionerCreate(op, &op->preconditioner));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,7 +10,7 @@
    Numerical Methods in Engineering 32, 1991; C. Farhat, J. Mandel, The two-level FETI method for static and dynamic plate problems,
    Computer Methods in Applied Mechanics and Engineering 155, 1998), with none its lumped one. What is far from the surface hardly
    counts, so that j has the dofs of the first layers of elements beside c alone, and what takes a solution with the factors of the
-   body in the former takes a small part of one here.
+   body in the former takes a small part of one here. A massless layer has no j: its P is R K R^T, with its stiffness K.
 */
 #include "interfaceimpl.h"
 #include <solver/constrainedsolver.h>
@@ -31,6 +31,7 @@ typedef struct {
   KSP              factors; /* of A_jj; NULL where no dofs are beside the surface */
   VecScatter       gather;  /* from all dofs to those on the surface */
   Vec              rows, dofs, moved, force, diagonal, depth[2];
+  PetscBool        is_layer; /* A is that of a massless layer, which has the surface alone */
   PetscBool       *moves;   /* per row of this rank that the body has: whether it has a part in R */
   PetscBool       *claimed; /* work space, per dof of this rank */
   PetscReal        mean;    /* of the diagonal of P, which other rows of the Dirichlet side are multiplied with */
@@ -81,8 +82,11 @@ PetscErrorCode InterfacePreconditionerCreate(InterfaceOperator op, InterfacePrec
       dirichlet = (PetscBool)(dirichlet || contact->pairs[k].body[contact->pairs[k].dirichlet] == b);
     PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
     PetscCall(BodyGetComplianceMatrices(contact->bodies[b], &A, NULL));
-    PetscCall(BodyGetLayerMatrices(contact->bodies[b], &layer, NULL)); /* has numbers of its own, and sparse factors of S */
-    if (dirichlet && exact && A && !layer && op->feels[b]) p->slabs[p->n++].body = b;
+    PetscCall(BodyGetLayerMatrices(contact->bodies[b], &layer, NULL));
+    if (!dirichlet || !A || !op->feels[b]) continue;
+    /* layers have sparse factors of S where it is solved with; where it is multiplied with alone a product with K takes next to nothing */
+    if (layer ? !op->settings.products : !exact) continue;
+    p->slabs[p->n++] = (Slab){.body = b, .is_layer = (PetscBool)(layer != NULL)};
   }
   if (p->n) *preconditioner = p;
   else PetscCall(InterfacePreconditionerDestroy(&p));
@@ -179,13 +183,23 @@ static PetscErrorCode ListSurface(const Contact contact, const Slab *slab, IS *i
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which dofs are on the surface and in the layers beside it */
+/* Which dofs are on the surface and in the layers beside it; those of a massless layer are numbered by themselves, and all are on it */
 static PetscErrorCode FindDofs(const Contact contact, Slab *slab, Mat A)
 {
-  IS  reach;
-  Vec mark, work;
+  const MPI_Comm comm = PetscObjectComm((PetscObject)A);
+  IS             reach;
+  Vec            mark, work;
 
   PetscFunctionBegin;
+  if (slab->is_layer) {
+    PetscInt n, begin;
+
+    PetscCall(MatGetLocalSize(A, &n, NULL));
+    PetscCall(MatGetOwnershipRange(A, &begin, NULL));
+    PetscCall(ISCreateStride(comm, n, begin, 1, &slab->surface));
+    PetscCall(ISCreateStride(comm, 0, 0, 1, &slab->layers));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(MatCreateVecs(A, &mark, &work));
   PetscCall(VecSet(mark, -1));
   PetscCall(ListSurface(contact, slab, &reach));

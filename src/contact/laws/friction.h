@@ -60,6 +60,7 @@ typedef struct _n_FrictionSolver *FrictionSolver;
 
 PETSC_INTERN PetscErrorCode FrictionSolverCreate(FrictionSolver *);
 PETSC_INTERN PetscErrorCode FrictionSolverSolve(FrictionSolver, const FrictionProblem *, PetscBool *, PetscBool *);
+PETSC_INTERN PetscInt       FrictionSolverGetIterations(FrictionSolver);
 PETSC_INTERN PetscErrorCode FrictionSolverDestroy(FrictionSolver *);
 PETSC_INTERN void           FrictionLearn(FrictionProblem *);
 PETSC_INTERN PetscErrorCode FrictionSolveNode(PetscInt, const PetscReal[], const PetscReal[], const PetscReal[], PetscReal[]);

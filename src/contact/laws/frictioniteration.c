@@ -27,7 +27,7 @@
 #define NEWTON_ROUND_OFF 1e-10
 #define NEWTON_FALLS     0.3
 /* What a step leaves of that while states change; and in the end, in parts of what Newton's method ends with */
-#define FORCING 1e-3
+#define FORCING 1e-2
 #define LEAVES  0.3
 
 /* y = (of_force + of_opening S) x */
@@ -235,6 +235,7 @@ static PetscErrorCode Step(FrictionSolver solver, PetscReal rtol, PetscReal atol
   const FrictionProblem *problem = solver->problem;
   const PetscScalar     *step;
   PetscScalar           *rhs;
+  PetscInt               iterations;
 
   PetscFunctionBegin;
   PetscCall(ChooseRows(solver));
@@ -244,6 +245,8 @@ static PetscErrorCode Step(FrictionSolver solver, PetscReal rtol, PetscReal atol
   PetscCall(VecRestoreArray(solver->residual, &rhs));
   PetscCall(KSPSetTolerances(solver->ksp, rtol, atol, PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(KSPSolve(solver->ksp, solver->residual, solver->step));
+  PetscCall(KSPGetIterationNumber(solver->ksp, &iterations));
+  solver->iterations += iterations;
   PetscCall(VecGetArrayRead(solver->step, &step));
   for (PetscInt i = 0; i < problem->n; i++) problem->force[i] += step[i];
   PetscCall(VecRestoreArrayRead(solver->step, &step));

@@ -171,6 +171,12 @@ static PetscErrorCode SolveByNodes(FrictionSolver solver, const FrictionProblem 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of GMRES, in the last FrictionSolverSolve(); none where S is a matrix */
+PetscInt FrictionSolverGetIterations(FrictionSolver solver)
+{
+  return solver->iterations;
+}
+
 /* Finds the forces and states of a step. `by_nodes`: Newton's method alone did not; `solved`: false where nothing did. The same on every
  * rank. */
 PetscErrorCode FrictionSolverSolve(FrictionSolver solver, const FrictionProblem *problem, PetscBool *solved, PetscBool *by_nodes)
@@ -180,6 +186,7 @@ PetscErrorCode FrictionSolverSolve(FrictionSolver solver, const FrictionProblem 
 
   PetscFunctionBegin;
   *solved = *by_nodes = PETSC_FALSE;
+  solver->iterations  = 0;
   PetscCall(MakeRoom(solver, problem));
   if (!problem->S) {
     PetscCall(FrictionIterate(solver, problem, solved, by_nodes));

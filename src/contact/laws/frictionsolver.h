@@ -18,6 +18,7 @@ struct _n_FrictionSolver {
   PetscBool             *chosen;         /* rows that are preconditioned */
   const FrictionProblem *problem;        /* that is being solved */
   PetscInt               iterated;       /* rows that there is room for */
+  PetscInt               iterations;     /* of GMRES for the present problem */
 };
 
 PETSC_INTERN PetscErrorCode FrictionOpen(FrictionSolver, const FrictionProblem *);

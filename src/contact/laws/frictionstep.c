@@ -128,6 +128,7 @@ static PetscErrorCode Solve(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(FrictionSolverSolve(step->solver, &step->problem, &solved, &by_nodes));
+  contact->counts.inner_iterations += FrictionSolverGetIterations(step->solver);
   if (by_nodes) contact->counts.set_cycles++;
   if (!solved) PetscCall(FrictionProblemKeepForces(&step->problem, step->atol, &solved));
   if (!solved) PetscCall(Fail(contact, PETSC_FALSE, 0));
