@@ -7,8 +7,8 @@
 /* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension. In
    more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
 static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
-/* Memory that factors may take beyond what MUMPS expects [%]. Its own 20 were too few on three ranks that divide a ball of which a small part
-   has most elements: what it expects leaves out what moves between ranks as they go. Pages that are not used are not taken. */
+/* Memory that factors may take beyond what MUMPS expects [%]. Its own 20 were too few on three ranks that divide a ball of which a small
+   part has most elements: what it expects leaves out what moves between ranks as they go. Pages that are not used are not taken. */
 #define MUMPS_MEMORY 100
 /* In three dimensions factors of bodies larger than this take more memory and time than multigrid */
 #define MAX_DIRECT_SIZE_3D 150000

@@ -32,9 +32,9 @@ typedef struct {
   VecScatter       gather;  /* from all dofs to those on the surface */
   Vec              rows, dofs, moved, force, diagonal, depth[2];
   PetscBool        is_layer; /* A is that of a massless layer, which has the surface alone */
-  PetscBool       *moves;   /* per row of this rank that the body has: whether it has a part in R */
-  PetscBool       *claimed; /* work space, per dof of this rank */
-  PetscReal        mean;    /* of the diagonal of P, which other rows of the Dirichlet side are multiplied with */
+  PetscBool       *moves;    /* per row of this rank that the body has: whether it has a part in R */
+  PetscBool       *claimed;  /* work space, per dof of this rank */
+  PetscReal        mean;     /* of the diagonal of P, which other rows of the Dirichlet side are multiplied with */
 } Slab;
 
 struct _n_InterfacePreconditioner {
