@@ -34,6 +34,8 @@
 /* Energy that friction may bring on a row in a step, in parts of the same; and attempts that look for a step with less */
 #define FRICTION_BRINGS 1e-12
 #define MAX_RUBS        20
+/* Those among them, at first, that start with the force that the last one ended with */
+#define WHOLE_WAYS 2
 /* How often the two kinds of attempts take turns */
 #define MAX_TURNS 4
 
@@ -224,22 +226,23 @@ static PetscBool Rubs(Contact contact, PetscInt i)
 }
 
 /* Nodes on which friction has brought energy, since the force at the start of the step pushes the way that they slide, start nearer to
-   the force across their normal that they end with: with that one friction takes energy, whatever it is. As it answers to the start it is
-   approached by halves. Collective. */
+   the force across their normal that they end with: with that one friction takes energy, whatever it is. It answers to the start, but
+   seldom so much that it turns round; where it does, it is approached by halves. Collective. */
 static PetscErrorCode LimitFriction(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
   for (PetscInt tries = 0; tries < MAX_RUBS && contact->friction.slip; tries++) {
-    int any = 0;
+    const PetscReal way = tries < WHOLE_WAYS ? 1 : 0.5;
+    int             any = 0;
 
     for (PetscInt i = 0; i < contact->rows.n && !any; i++) any = Rubs(contact, i);
     PetscCall(ContactOr(contact, &any));
     if (!any) break;
     if (!energy->changed) PetscCall(ContactBeginAttempts(contact));
     for (PetscInt i = 0; i < contact->rows.n; i++)
-      if (Rubs(contact, i)) energy->start_force[i] += 0.5 * (contact->end.force[i] - energy->start_force[i]);
+      if (Rubs(contact, i)) energy->start_force[i] += way * (contact->end.force[i] - energy->start_force[i]);
     PetscCall(ContactMakeAttempt(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   }
