@@ -25,8 +25,7 @@ void StatisticsInitializeContact(Statistics s)
 }
 
 /* Adds a step of one pair, or of all pairs together */
-static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time,
-                       PetscReal time_step, PetscBool cut)
+static void AddContact(ContactStatistics *contact, ContactMemory *memory, const ContactPairState *state, PetscReal time)
 {
   const PetscBool touches = state->active > 0 ? PETSC_TRUE : PETSC_FALSE;
   /* contact that begins and ends inside a step made in parts leaves its impulse alone */
@@ -37,8 +36,8 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
     if (!memory->touches) contact->onsets++;
     contact->release_time = time;
   }
-  /* the forces at the ends of whole steps do not tell what those in a step that was cut have done */
-  contact->impulse += cut ? state->normal_impulse - memory->impulse : 0.5 * (memory->force + state->force) * time_step;
+  /* the forces at both ends of a step do not tell what those inside have done, where it is cut or bodies have times in common there */
+  contact->impulse += state->normal_impulse - memory->impulse;
   memory->impulse          = state->normal_impulse;
   contact->force_peak      = PetscMax(contact->force_peak, state->force);
   contact->tension_max     = PetscMax(contact->tension_max, state->tension);
@@ -51,7 +50,6 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
   contact->gap_final = state->gap;
   memory->touches    = touches;
-  memory->force      = state->force;
 }
 
 /* Appends time, forces and nodes in contact of a step to the series */
@@ -77,13 +75,12 @@ static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
 /* Adds the contact of a controller step, and the sweeps that were made for it */
 PetscErrorCode StatisticsAddContact(Statistics s, const ControllerFrame *frame)
 {
-  const PetscBool    cut = (PetscBool)(frame->step_cuts > 0);
   StatisticsResults *r   = &s->results;
   ContactPairState   any = {.gap = PETSC_INFINITY};
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < frame->n_pairs; i++) {
-    AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time, frame->time - s->time, cut);
+    AddContact(&r->pairs[i], &s->pair[i], &frame->pairs[i], frame->time);
     any.normal_impulse += frame->pairs[i].normal_impulse;
     any.force += frame->pairs[i].force;
     any.gap = PetscMin(any.gap, frame->pairs[i].gap);
@@ -94,7 +91,7 @@ PetscErrorCode StatisticsAddContact(Statistics s, const ControllerFrame *frame)
     any.obstacle_work += frame->pairs[i].obstacle_work;
     any.tension = PetscMax(any.tension, frame->pairs[i].tension);
   }
-  AddContact(&r->contact, &s->any, &any, frame->time, frame->time - s->time, cut);
+  AddContact(&r->contact, &s->any, &any, frame->time);
   r->steps++;
   r->max_sweeps = PetscMax(r->max_sweeps, frame->sweeps);
   s->total_sweeps += frame->sweeps;

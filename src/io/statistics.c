@@ -192,7 +192,6 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   PetscCall(ContactTimesAdd(s->times, frame));
   PetscCall(LinearLimitsCheck(controller, frame, s->results.bodies));
   if (frame->step > 0) PetscCall(StatisticsAddContact(s, frame));
-  s->time = frame->time;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,7 +280,7 @@ PetscErrorCode StatisticsVisit(Statistics s, Checkpoint checkpoint)
 {
   const PetscInt sizes[] = {s->results.n_pairs, s->results.n_bodies, s->results.n_supports};
   const PetscInt width   = 1 + 2 * s->results.n_pairs;
-  PetscReal     *reals[] = {&s->time, &s->momentum_scale, &s->angular_scale, &s->arm};
+  PetscReal     *reals[] = {&s->momentum_scale, &s->angular_scale, &s->arm};
 
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, "summary"));

@@ -6,7 +6,6 @@
 /* What is remembered of the last step, for each pair and for all pairs together */
 typedef struct {
   PetscBool touches;
-  PetscReal force;   /* at its end [N] */
   PetscReal impulse; /* until then [N s] */
 } ContactMemory;
 
@@ -14,7 +13,6 @@ struct _n_Statistics {
   StatisticsResults  results;
   ContactMemory      any, *pair;
   ContactTimes       times;
-  PetscReal          time; /* of the last frame [s] */
   PetscInt           total_sweeps, contact_sweeps;
   PetscReal         *initial_energy; /* of each body [J] */
   PetscReal         *mass;           /* of each body [kg] */
