@@ -16,9 +16,15 @@
 /* What all rows open by under the forces as they are; overwrites the right-hand side */
 PetscErrorCode FrictionOpen(FrictionSolver solver, const FrictionProblem *problem)
 {
+  PetscBool same = PETSC_TRUE;
+
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < problem->n; i++) solver->rhs[i] = problem->force[i] - problem->base[i];
-  PetscCall(FrictionProblemMultiply(problem, solver->rhs, solver->open));
+  for (PetscInt i = 0; i < problem->n; i++) {
+    solver->rhs[i] = problem->force[i] - problem->base[i];
+    same           = (PetscBool)(same && solver->rhs[i] == 0);
+  }
+  if (same) PetscCall(PetscArrayzero(solver->open, problem->n)); /* as each solution begins, which spares a product */
+  else PetscCall(FrictionProblemMultiply(problem, solver->rhs, solver->open));
   for (PetscInt i = 0; i < problem->n; i++) solver->open[i] += problem->opened[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
