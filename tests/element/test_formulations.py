@@ -176,7 +176,7 @@ def test_refused(impakt, options, message):
 
 def test_tetrahedra_warn(impakt):
     common = "-bodies b -b_dm_plex_dim 3 -b_dm_plex_simplex true -b_density 1 -b_youngs_modulus 1 -time_step 0.1 -time_end 0.1"
-    assert "elements of shape 'tetrahedron' lock where materials flow or Poisson's ratio is larger than 0.4" in impakt(f"{common} -b_poissons_ratio 0.45").stderr
+    assert "body 'b' with a Poisson's ratio of 0.45: elements of shape 'tetrahedron' lock where materials flow or Poisson's ratio is larger than 0.4" in impakt(f"{common} -b_poissons_ratio 0.45").stderr
     assert "lock" not in impakt(f"{common} -b_poissons_ratio 0.4").stderr
 
 

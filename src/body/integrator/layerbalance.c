@@ -23,6 +23,12 @@
 /* Of a material that flows, stiffness changes within a step by orders of magnitude: after so many rounds with the same factors there are
    new ones, where the layer is then */
 #define ROUNDS_OF_FACTORS 8
+/* A round of such a material has gone too far where the force along its way has turned round and is more than this part of what it was:
+   factors of points that flow are too soft for points that do not, and rounds between the two would go on for ever. So often it is sought
+   where less than that is left, and each time this part at least of the bracket goes. */
+#define FORCE_LEFT 0.5
+#define MAX_SEARCH 10
+#define LEAST_PART 0.1
 /* The layer is in balance when its last change is below this part of the largest one in this balance, */
 #define TOLERANCE 1e-12
 /* or below this part of the norm of displacements and reference positions of all nodes, whose round-off is part of any change */
@@ -64,6 +70,13 @@ static PetscErrorCode CopyOrigin(LayerBalance layer, const Factors *from, Factor
   to->step = from->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Of one balance */
+typedef struct {
+  PetscReal time, position;
+  PetscBool contact, outside; /* with contact; with forces of it or from outside */
+  Vec       force;            /* of these, of the body */
+} LoadCase;
 
 /* With contact: under the constraints of the rows; else as if there were no rows */
 static PetscErrorCode SolveLayer(LayerBalance layer, Body body, PetscBool contact)
@@ -155,13 +168,70 @@ PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body, BodySlot slot)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* rhs: what is missing to balance at u. `follows`: forces from outside go with u. */
+static PetscErrorCode ComputeMissing(LayerBalance layer, Body body, const LoadCase *load, PetscBool follows, Vec u)
+{
+  PetscFunctionBegin;
+  if (follows) PetscCall(BodyComputeOutsideForce(body, load->time, load->position, load->contact, u, load->force));
+  if (load->outside) {
+    PetscCall(VecScatterBegin(layer->scatter, load->force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecScatterEnd(layer->scatter, load->force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
+  } else PetscCall(VecZeroEntries(layer->rhs));
+  PetscCall(BodySubtractLayerForce(body, u, layer->rhs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves the layer in u by what a round has found */
+static PetscErrorCode Move(LayerBalance layer, Vec u)
+{
+  PetscFunctionBegin;
+  PetscCall(VecScatterBegin(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes back so much of the last round, with rhs as it is after it, that less force is left along its way, where it has gone too far: what
+   flows has a potential of each step (M. Ortiz, L. Stainier, The variational formulation of viscoplastic constitutive updates, Computer
+   Methods in Applied Mechanics and Engineering 171, 1999), and this is a search for its least value along a line. `before`: force along
+   the way at the start of the round, times the way [J]. */
+static PetscErrorCode TakeBack(LayerBalance layer, Body body, const LoadCase *load, PetscBool follows, PetscReal before, Vec u)
+{
+  PetscReal low = 0, high = 1, of_low = before, of_high, at = 1, left;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &left));
+  of_high = left;
+  if (!(before > 0) || left >= -FORCE_LEFT * before) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt tries = 0; tries < MAX_SEARCH && !(PetscAbsReal(left) <= FORCE_LEFT * before); tries++) {
+    const PetscReal width = high - low;
+    const PetscReal root  = PetscIsInfOrNanReal(of_high) ? 0.5 : of_low / (of_low - of_high);
+    const PetscReal next  = low + width * PetscMin(PetscMax(root, LEAST_PART), 1 - LEAST_PART);
+
+    PetscCall(VecScale(layer->solution, (next - at)));
+    PetscCall(Move(layer, u));
+    PetscCall(VecScale(layer->solution, 1 / (next - at)));
+    PetscCall(ComputeMissing(layer, body, load, follows, u));
+    PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &left));
+    at = next;
+    if (left > 0) {
+      low    = next;
+      of_low = left;
+    } else {
+      high    = next;
+      of_high = left;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Moves the layer in u into balance at a time, with contact or, to see where it would get, as if there were none. Where there are forces
    from outside or of contact, `force` becomes their sum, with Robin rows where they were before the last round; else it is left alone. */
 PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
 {
   const PetscBool outside = BodyHasOutsideForce(body, contact), linear = (PetscBool)(body->model.linear || body->model.linearized),
                   robin = (PetscBool)(contact && body->rows.n_robin);
-  PetscReal       first = 0, previous = PETSC_MAX_REAL, round_off = 0;
+  const LoadCase  load  = {.time = time, .position = position, .contact = contact, .outside = outside, .force = force};
+  PetscReal       first = 0, previous = PETSC_MAX_REAL, round_off = 0, work = 0;
 
   PetscFunctionBegin;
   if (!linear) {
@@ -174,15 +244,11 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     PetscReal change;
 
     if (body->history && contact && round && round % ROUNDS_OF_FACTORS == 0) PetscCall(RefactorAt(layer, body, u));
-    if (round && robin) PetscCall(BodyComputeOutsideForce(body, time, position, contact, u, force));
-    if (outside) {
-      PetscCall(VecScatterBegin(layer->scatter, force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
-      PetscCall(VecScatterEnd(layer->scatter, force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
-    } else PetscCall(VecZeroEntries(layer->rhs));
-    PetscCall(BodySubtractLayerForce(body, u, layer->rhs));
+    PetscCall(ComputeMissing(layer, body, &load, (PetscBool)(round && robin), u));
+    if (body->history && round > 1) PetscCall(TakeBack(layer, body, &load, robin, work, u)); /* the first puts held rows in their places */
     PetscCall(SolveLayer(layer, body, contact));
-    PetscCall(VecScatterBegin(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecScatterEnd(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
+    if (body->history) PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &work));
+    PetscCall(Move(layer, u));
     if (linear) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(BodyGetNorm(body, layer->solution, &change));
     first = PetscMax(first, change);

@@ -300,6 +300,7 @@ PETSC_INTERN PetscErrorCode BodyAnyRank(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyUseScatter(VecScatter, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyGetLocalDot(Vec, Vec, PetscReal *);
 PETSC_INTERN PetscErrorCode BodyGetNorm(Body, Vec, PetscReal *);
+PETSC_INTERN PetscErrorCode BodyGetDot(Body, Vec, Vec, PetscReal *);
 PETSC_INTERN PetscErrorCode BodyAddPendingWork(Body, PetscReal[2]);
 PETSC_INTERN PetscReal      BodyShareOf(Body, PetscReal);
 PETSC_INTERN PetscErrorCode BodyGetLocalRead(Body, Vec, Vec *, const PetscScalar *[]);

@@ -273,6 +273,22 @@ PetscErrorCode BodyGetNorm(Body body, Vec vec, PetscReal *norm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Product of two vectors of this kind */
+PetscErrorCode BodyGetDot(Body body, Vec a, Vec b, PetscReal *dot)
+{
+  PetscScalar value;
+
+  PetscFunctionBegin;
+  if (!body->local) {
+    PetscCall(VecDot(a, b, &value));
+    *dot = PetscRealPart(value);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(BodyGetLocalDot(a, b, dot));
+  if (!BodyStepsAlone(body)) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, dot, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What this rank adds to a sum over all ranks that is to be a number of the body: that of the rank that knows it */
 PetscReal BodyShareOf(Body body, PetscReal value)
 {
