@@ -72,6 +72,20 @@ static PetscErrorCode ReadNumber(MPI_Comm comm, const char prefix[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where elements are composite the grid of nodes is made twice as fine: every second node is a corner, and those between lie in the middle
+   of edges, of those on the surface where the true one is */
+PetscErrorCode BallChooseOrder(const char prefix[], Ball *ball)
+{
+  PetscBool composite;
+
+  PetscFunctionBegin;
+  PetscCall(MeshWantsComposite(prefix, &composite));
+  ball->step = composite && ball->simplex ? 2 : 1; /* other cells are refused when they are to be divided */
+  ball->divisions *= ball->step;
+  ball->layers *= ball->step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
 {
   PetscReal centre[4];
@@ -104,13 +118,34 @@ static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-ball_keep_volume", &ball->keep_volume, NULL));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-axisymmetric", &ball->turned, NULL));
   ball->turned = (PetscBool)(ball->turned && ball->dim == 2 && ball->n_cuts == 1 && ball->centre[0] == 0);
+  PetscCall(BallChooseOrder(prefix, ball));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Begins a run of elements of the order that the ball's have */
+PetscErrorCode BallAddRun(MeshFile *file, const Ball *ball, PetscInt dim, PetscInt n_groups, const PetscInt groups[])
+{
+  static const DMPolytopeType shapes[3][2] = {{DM_POLYTOPE_SEGMENT, DM_POLYTOPE_SEGMENT},
+                                              {DM_POLYTOPE_QUADRILATERAL, DM_POLYTOPE_TRIANGLE},
+                                              {DM_POLYTOPE_HEXAHEDRON, DM_POLYTOPE_TETRAHEDRON}};
+  const DMPolytopeType        shape        = shapes[dim - 1][ball->simplex];
+
+  PetscFunctionBegin;
+  if (ball->step == 1) PetscCall(MeshFileAddRun(file, shape, n_groups, groups));
+  else PetscCall(MeshFileAddSecondOrderRun(file, shape, n_groups, groups));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where a corner is among the 3 x 3 x 3 places of a cell. Bit d of a corner's number is 1 if it is the farther one along axis d. */
+static PetscInt CornerPlace(PetscInt corner)
+{
+  return 2 * (corner & 1) + 6 * (corner >> 1 & 1) + 18 * (corner >> 2);
+}
+
 /* Adds a segment, quadrilateral or hexahedron, or the simplices that fill it: one for each way to walk from its first corner to its last
-   along the axes (Kuhn 1960). Bit d of a corner's number is 1 if it is the farther one along axis d. Blocks have the same axes where they
-   touch, so that common faces are cut along the same diagonal. */
-static PetscErrorCode AddCell(MeshFile *file, PetscInt dim, const PetscInt corner[8], PetscBool mirrored, PetscBool simplex)
+   along the axes (Kuhn 1960). Blocks have the same axes where they touch, so that common faces are cut along the same diagonal. `node` is
+   the node at each of the 3 x 3 x 3 places of the cell; what lies between two of them, in the middle of an edge, is at their mean. */
+static PetscErrorCode AddCell(MeshFile *file, const Ball *ball, PetscInt dim, const PetscInt node[27], PetscBool mirrored)
 {
   static const PetscInt whole[2][8]     = {{0, 1, 3, 2, 4, 5, 7, 6}, {0, 2, 3, 1, 4, 6, 7, 5}};
   static const PetscInt orders[3][6][3] = {{{0}}, {{0, 1}, {1, 0}}, {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
@@ -118,24 +153,46 @@ static PetscErrorCode AddCell(MeshFile *file, PetscInt dim, const PetscInt corne
   PetscInt             *nodes;
 
   PetscFunctionBegin;
-  if (!simplex || dim == 1) {
+  if (!ball->simplex) {
     PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
-    for (PetscInt k = 0; k < 1 << dim; k++) nodes[k] = corner[whole[mirrored && dim > 1][k]];
+    for (PetscInt k = 0; k < 1 << dim; k++) nodes[k] = node[CornerPlace(whole[mirrored && dim > 1][k])];
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt o = 0; o < n_orders; o++) {
     const PetscBool odd = (PetscBool)(o >= n_orders / 2);
+    PetscInt        place[4];
 
     PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
-    for (PetscInt k = 0, place = 0; k <= dim; k++) {
-      nodes[odd == mirrored || k < dim - 1 ? k : 2 * dim - 1 - k] = corner[place]; /* otherwise the last two change places */
-      if (k < dim) place |= 1 << orders[dim - 1][o][k];
+    for (PetscInt k = 0, corner = 0; k <= dim; k++) { /* the last two change places where the element would be mirrored */
+      place[dim == 1 || odd == mirrored || k < dim - 1 ? k : 2 * dim - 1 - k] = CornerPlace(corner);
+      if (k < dim) corner |= 1 << orders[dim - 1][o][k];
     }
+    for (PetscInt k = 0; k <= dim; k++) nodes[k] = node[place[k]];
+    for (PetscInt k = 0; k < dim * (dim + 1) / 2 && ball->step == 2; k++)
+      nodes[dim + 1 + k] = node[(place[MeshSimplexEdges[k][0]] + place[MeshSimplexEdges[k][1]]) / 2];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the cells begin[d] to end[d] - 1 of a block along each axis d, or those faces of these cells that lie along some axes */
+/* The nodes of a cell of a block, or of a face or edge of it that lies along some axes: those at its corners, and those between where the
+   grid has some. A place without a node has -1. */
+static void FindNodes(const BallGrid *grid, const BallBlock *block, PetscInt n_axes, const PetscInt axes[], const PetscInt at[3],
+                      PetscInt node[27])
+{
+  for (PetscInt k = 0; k < 27; k++) {
+    const PetscInt offset[3] = {k % 3 * grid->ball->step, k / 3 % 3 * grid->ball->step, k / 9 * grid->ball->step};
+    PetscInt       place[3]  = {at[0], at[1], at[2]};
+    PetscBool      has       = PETSC_TRUE;
+
+    for (PetscInt i = 0; i < 3; i++) {
+      if (i < n_axes) place[axes[i]] += offset[i] / 2;
+      if (i < n_axes ? offset[i] % 2 : offset[i]) has = PETSC_FALSE;
+    }
+    node[k] = has ? BallGetNode(grid, block, place) : -1;
+  }
+}
+
+/* Adds the elements between the places begin[d] and end[d] of a block along each axis d, or those faces of them that lie along some axes */
 static PetscErrorCode AddRange(const BallGrid *grid, const BallBlock *block, PetscInt n_axes, const PetscInt axes[],
                                const PetscInt begin[3], const PetscInt end[3])
 {
@@ -144,23 +201,19 @@ static PetscErrorCode AddRange(const BallGrid *grid, const BallBlock *block, Pet
   PetscInt        at[3];
 
   PetscFunctionBegin;
-  for (at[2] = begin[2]; at[2] < end[2]; at[2]++)
-    for (at[1] = begin[1]; at[1] < end[1]; at[1]++)
-      for (at[0] = begin[0]; at[0] < end[0]; at[0]++) {
+  for (at[2] = begin[2]; at[2] < end[2]; at[2] += ball->step)
+    for (at[1] = begin[1]; at[1] < end[1]; at[1] += ball->step)
+      for (at[0] = begin[0]; at[0] < end[0]; at[0] += ball->step) {
         const PetscReal *x;
-        PetscInt         corner[8];
+        PetscInt         node[27], corner[8];
 
-        for (PetscInt k = 0; k < 1 << n_axes; k++) {
-          PetscInt place[3] = {at[0], at[1], at[2]};
-
-          for (PetscInt i = 0; i < n_axes; i++) place[axes[i]] += k >> i & 1;
-          corner[k] = BallGetNode(grid, block, place);
-        }
+        FindNodes(grid, block, n_axes, axes, at, node);
+        for (PetscInt k = 0; k < 8; k++) corner[k] = node[CornerPlace(k)];
         PetscCheck(n_axes < ball->dim || ball->simplex || BallCellIsConvex(grid, block, corner, &x), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                    "with %" PetscInt_FMT " divisions, %" PetscInt_FMT " layers and a grading of %g, the element with a corner at (%g, %g, "
                    "%g) is not convex: take more divisions, or a weaker grading",
                    ball->divisions, ball->layers, (double)ball->grading, (double)x[0], (double)x[1], (double)x[2]);
-        PetscCall(AddCell(grid->file, n_axes, corner, mirrored, ball->simplex));
+        PetscCall(AddCell(grid->file, ball, n_axes, node, mirrored));
       }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -173,11 +226,7 @@ static PetscErrorCode AddSurface(MeshFile *file, const Ball *ball, PetscInt numb
   PetscFunctionBegin;
   PetscCall(MeshFileAddGroup(file, MESH_SIDE_SET, ball->dim - 1, number, &group));
   PetscCall(PetscStrncpy(file->groups[group].name, name, sizeof(file->groups[group].name)));
-  PetscCall(MeshFileAddRun(file,
-                           ball->dim == 2  ? DM_POLYTOPE_SEGMENT
-                           : ball->simplex ? DM_POLYTOPE_TRIANGLE
-                                           : DM_POLYTOPE_QUADRILATERAL,
-                           1, &group));
+  PetscCall(BallAddRun(file, ball, ball->dim - 1, 1, &group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -209,8 +258,8 @@ static PetscErrorCode AddBack(MeshFile *file, const Ball *ball, PetscInt sphere)
     PetscReal nearest = -PETSC_MAX_REAL;
     PetscInt *nodes;
 
-    for (PetscInt k = 0; k < run.corners; k++) {
-      const PetscReal *x     = file->coordinates + 3 * file->element_nodes[run.first_node + e * run.corners + k];
+    for (PetscInt k = 0; k < run.nodes; k++) {
+      const PetscReal *x     = file->coordinates + 3 * file->element_nodes[run.first_node + e * run.nodes + k];
       PetscReal        along = 0;
 
       for (PetscInt d = 0; d < ball->dim; d++) along += (x[d] - ball->centre[d]) * ball->pole[d];
@@ -218,7 +267,7 @@ static PetscErrorCode AddBack(MeshFile *file, const Ball *ball, PetscInt sphere)
     }
     if (nearest > BACK_TOLERANCE * ball->radius) continue;
     PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
-    PetscCall(PetscArraycpy(nodes, file->element_nodes + run.first_node + e * run.corners, run.corners));
+    PetscCall(PetscArraycpy(nodes, file->element_nodes + run.first_node + e * run.nodes, run.nodes));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -229,9 +278,7 @@ PetscErrorCode MeshFillBall(BallGrid *grid)
   static const char *const cut_names[] = {"cut_x", "cut_y"};
   const Ball              *ball        = grid->ball;
   const PetscInt           all[3] = {0, 1, 2}, begin[3] = {0};
-  const DMPolytopeType     shapes[2][2] = {{DM_POLYTOPE_QUADRILATERAL, DM_POLYTOPE_TRIANGLE},
-                                           {DM_POLYTOPE_HEXAHEDRON, DM_POLYTOPE_TETRAHEDRON}};
-  const BallBlock         *blocks       = grid->blocks;
+  const BallBlock         *blocks = grid->blocks;
   PetscInt                 sphere;
 
   PetscFunctionBegin;
@@ -243,7 +290,7 @@ PetscErrorCode MeshFillBall(BallGrid *grid)
   for (PetscInt i = 0; i < grid->file->n_nodes; i++)
     for (PetscInt d = 0; d < 3; d++)
       grid->file->coordinates[3 * i + d] = ball->centre[d] + ball->radius * grid->file->coordinates[3 * i + d];
-  PetscCall(MeshFileAddRun(grid->file, shapes[ball->dim - 2][ball->simplex], 0, NULL));
+  PetscCall(BallAddRun(grid->file, ball, ball->dim, 0, NULL));
   for (PetscInt b = 0; b < grid->n_blocks; b++) {
     PetscInt end[3] = {1, 1, 1};
 
@@ -269,8 +316,8 @@ static PetscErrorCode FillBall(void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A disc or a ball from options */
-PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
+/* A disc or a ball from options, and where the nodes in the middle of its edges are, if it has some */
+PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char name[], DM *dm, MeshMiddles *middles)
 {
   Ball           ball;
   MeshFile       file;
@@ -293,7 +340,7 @@ PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char nam
   if (!error && grid.missing > 0 && !ball.keep_volume)
     PetscCall(PetscPrintf(comm, "body '%s' has %.2g %% less volume than the ball of its radius (-%sball_keep_volume false)\n", name,
                           (double)(100 * grid.missing), prefix));
-  if (!error) error = MeshBuild(comm, &file, where, dm, NULL);
+  if (!error) error = MeshBuild(comm, &file, where, dm, middles);
   PetscCall(PetscFree(grid.rim));
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);

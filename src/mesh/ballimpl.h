@@ -3,7 +3,8 @@
 #include "meshimpl.h"
 
 typedef struct {
-  PetscInt  dim, divisions, layers;
+  PetscInt  dim, divisions, layers; /* of the grid of nodes */
+  PetscInt  step;   /* cells of this grid along an edge of an element: 2 where elements have nodes in the middle of their edges */
   PetscInt  n_cuts; /* planes that cut it: x = centre, then y = centre */
   PetscReal radius, centre[3], pole[3], grading;
   PetscBool simplex, keep_volume;
@@ -30,6 +31,8 @@ typedef struct {
 } BallGrid;
 
 PETSC_INTERN PetscErrorCode MeshFillBall(BallGrid *);
+PETSC_INTERN PetscErrorCode BallChooseOrder(const char[], Ball *);
+PETSC_INTERN PetscErrorCode BallAddRun(MeshFile *, const Ball *, PetscInt, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);
 PETSC_INTERN PetscInt       BallGetNode(const BallGrid *, const BallBlock *, const PetscInt[3]);
 PETSC_INTERN PetscBool      BallBlockIsMirrored(const BallBlock *);

@@ -83,7 +83,8 @@ PetscErrorCode BallSetNodes(BallGrid *grid)
     size *= ball->divisions + 1.0;
     /* the corners of all cells of all blocks must be counted in PetscInt; there are most with 6 tetrahedra in each cell */
     PetscCheck(size * (1 + 2.0 * ball->dim * ball->layers / ball->divisions) * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-               "%" PetscInt_FMT " divisions and %" PetscInt_FMT " layers are too many: take fewer", ball->divisions, ball->layers);
+               "%" PetscInt_FMT " divisions and %" PetscInt_FMT " layers are too many: take fewer", ball->divisions / ball->step,
+               ball->layers / ball->step);
     grid->n_core *= grid->n[d] + 1;
   }
   PetscCall(PetscMalloc1(grid->n_core, &grid->rim));

@@ -9,11 +9,13 @@ static PetscInt Number(const MeshFile *file, PetscInt node)
   return file->node_numbers ? file->node_numbers[node] : node + 1;
 }
 
+/* The ends of the edges of a triangle and a tetrahedron, in the order of the nodes in their middle, VTK's; a line has the first */
+const PetscInt MeshSimplexEdges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+
 /* Collects the edges of the cells and the nodes in their middle */
 PetscErrorCode MeshFileCollectEdges(MeshFile *file)
 {
-  static const PetscInt edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
-  PetscInt              per_cell = 0, cell = 0;
+  PetscInt per_cell = 0, cell = 0;
 
   PetscFunctionBegin;
   for (PetscInt r = 0; r < file->n_runs; r++)
@@ -29,7 +31,7 @@ PetscErrorCode MeshFileCollectEdges(MeshFile *file)
         PetscInt      *edge   = file->edges + 3 * (cell * per_cell + k);
         const PetscInt middle = file->element_nodes[run->first_node + e * run->nodes + run->corners + k];
 
-        for (PetscInt i = 0; i < 2; i++) edge[i] = file->cells[cell * file->corners + edges[k][i]];
+        for (PetscInt i = 0; i < 2; i++) edge[i] = file->cells[cell * file->corners + MeshSimplexEdges[k][i]];
         edge[2] = middle;
         PetscCheck(file->vertex_of_node[middle] < 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                    "node %" PetscInt_FMT " is in the middle of an edge of element %" PetscInt_FMT " (%s, %" PetscInt_FMT

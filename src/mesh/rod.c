@@ -73,37 +73,59 @@ static PetscErrorCode ReadRod(MPI_Comm comm, const char prefix[], Rod *rod)
   PetscCall(ReadCount(comm, prefix, "-rod_elements", &rod->elements));
   PetscCall(ReadPart(comm, prefix, &rod->disc));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-rod_keep_volume", &rod->disc.keep_volume, NULL));
+  PetscCall(BallChooseOrder(prefix, &rod->disc));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the simplices that fill what a triangle or a line of the disc becomes between two of its copies: diagonals of its sides lead from
+/* The node of the rod in a section of its nodes: that of a corner of an element of the disc, or in the middle between two of its corners */
+static PetscInt NodeAbove(const MeshFile *disc, const MeshRun *run, const PetscInt flat[], PetscInt a, PetscInt b, PetscInt section)
+{
+  PetscInt node = flat[a];
+
+  for (PetscInt k = 0; k < run->nodes - run->corners; k++) {
+    const PetscInt *ends = MeshSimplexEdges[k];
+
+    if ((a == ends[0] && b == ends[1]) || (a == ends[1] && b == ends[0])) node = flat[run->corners + k];
+  }
+  return section * disc->n_nodes + node;
+}
+
+/* Adds the simplices that fill what a triangle or a line of the disc becomes from one section of nodes on: diagonals of its sides lead from
    the node with the lower number below to that with the higher one above, so that neighbours cut their common side alike */
-static PetscErrorCode AddSimplices(const Rod *rod, PetscInt n, const PetscInt flat[], PetscInt lower, PetscInt upper)
+static PetscErrorCode AddSimplices(const Rod *rod, const MeshFile *disc, const MeshRun *run, const PetscInt flat[], PetscInt lower)
 {
   static const PetscInt parts[2][3][4] = {{{0, 1, 3}, {0, 3, 2}}, {{0, 1, 2, 5}, {1, 0, 4, 5}, {0, 3, 4, 5}}};
-  PetscInt              corners[6], sorted[3];
+  const PetscInt        n = run->corners, step = rod->disc.step;
+  PetscInt              sorted[3];
   PetscBool             mirrored = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCheck(n == 2 || n == 3, PETSC_COMM_SELF, PETSC_ERR_PLIB, "%" PetscInt_FMT " nodes are those of no line or triangle", n);
-  for (PetscInt a = 0; a < n; a++) sorted[a] = flat[a];
+  for (PetscInt a = 0; a < n; a++) sorted[a] = a;
   for (PetscInt a = 1; a < n; a++)
-    for (PetscInt k = a; k > 0 && sorted[k - 1] > sorted[k]; k--) {
-      const PetscInt node = sorted[k];
+    for (PetscInt k = a; k > 0 && flat[sorted[k - 1]] > flat[sorted[k]]; k--) {
+      const PetscInt corner = sorted[k];
 
       sorted[k]     = sorted[k - 1];
-      sorted[k - 1] = node;
+      sorted[k - 1] = corner;
       mirrored      = (PetscBool)!mirrored;
     }
-  for (PetscInt a = 0; a < n; a++) {
-    corners[a]     = lower + sorted[a];
-    corners[n + a] = upper + sorted[a];
-  }
   for (PetscInt part = 0; part < n; part++) {
-    PetscInt *nodes;
+    PetscInt *nodes, corner[4], section[4];
 
     PetscCall(MeshFileAddElement(rod->file, rod->file->n_elements + 1, &nodes));
-    for (PetscInt k = 0; k <= n; k++) nodes[mirrored && k < 2 ? 1 - k : k] = corners[parts[n - 2][part][k]];
+    for (PetscInt k = 0; k <= n; k++) {
+      const PetscInt from = parts[n - 2][part][k], to = mirrored && k < 2 ? 1 - k : k;
+
+      corner[to]  = sorted[from % n];
+      section[to] = lower + step * (from / n);
+    }
+    for (PetscInt k = 0; k <= n; k++) nodes[k] = NodeAbove(disc, run, flat, corner[k], corner[k], section[k]);
+    for (PetscInt k = 0; k < n * (n + 1) / 2 && step == 2; k++) {
+      const PetscInt a = MeshSimplexEdges[k][0], b = MeshSimplexEdges[k][1];
+
+      nodes[n + 1 + k] = NodeAbove(disc, run, flat, corner[a], corner[b], (section[a] + section[b]) / 2);
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -120,16 +142,16 @@ static PetscErrorCode DrawOut(const Rod *rod, const MeshFile *disc, PetscInt r)
 
     PetscCall(MeshFileAddGroup(rod->file, MESH_SIDE_SET, 2, of_disc->number, &group));
     PetscCall(PetscStrncpy(rod->file->groups[group].name, of_disc->name, sizeof(rod->file->groups[group].name)));
-    PetscCall(MeshFileAddRun(rod->file, rod->disc.simplex ? DM_POLYTOPE_TRIANGLE : DM_POLYTOPE_QUADRILATERAL, 1, &group));
-  } else PetscCall(MeshFileAddRun(rod->file, rod->disc.simplex ? DM_POLYTOPE_TETRAHEDRON : DM_POLYTOPE_HEXAHEDRON, 0, NULL));
+    PetscCall(BallAddRun(rod->file, &rod->disc, 2, 1, &group));
+  } else PetscCall(BallAddRun(rod->file, &rod->disc, 3, 0, NULL));
   for (PetscInt k = 0; k < rod->elements; k++)
     for (PetscInt e = 0; e < run->n; e++) {
-      const PetscInt *flat  = disc->element_nodes + run->first_node + e * run->corners;
-      const PetscInt  lower = k * disc->n_nodes, upper = lower + disc->n_nodes;
+      const PetscInt *flat  = disc->element_nodes + run->first_node + e * run->nodes;
+      const PetscInt  lower = k * disc->n_nodes, upper = lower + disc->n_nodes; /* of hexahedra */
       PetscInt       *nodes;
 
       if (rod->disc.simplex) {
-        PetscCall(AddSimplices(rod, run->corners, flat, lower, upper));
+        PetscCall(AddSimplices(rod, disc, run, flat, rod->disc.step * k));
         continue;
       }
       PetscCall(MeshFileAddElement(rod->file, rod->file->n_elements + 1, &nodes));
@@ -143,23 +165,24 @@ static PetscErrorCode DrawOut(const Rod *rod, const MeshFile *disc, PetscInt r)
 
 static PetscErrorCode FillRod(void *ctx)
 {
-  const Rod *rod = (const Rod *)ctx;
-  MeshFile   disc;
-  BallGrid   grid   = {.file = &disc, .ball = &rod->disc};
-  char       back[] = "back";
+  const Rod     *rod = (const Rod *)ctx;
+  MeshFile       disc;
+  BallGrid       grid     = {.file = &disc, .ball = &rod->disc};
+  const PetscInt sections = rod->disc.step * rod->elements + 1; /* of nodes */
+  char           back[]   = "back";
 
   PetscFunctionBegin;
   PetscCall(MeshFileInitialize(&disc, NULL));
   PetscCall(MeshFillBall(&grid));
-  rod->file->n_nodes = disc.n_nodes * (rod->elements + 1);
+  rod->file->n_nodes = disc.n_nodes * sections;
   PetscCall(PetscMalloc1(3 * rod->file->n_nodes, &rod->file->coordinates));
-  for (PetscInt k = 0; k <= rod->elements; k++)
+  for (PetscInt k = 0; k < sections; k++)
     for (PetscInt i = 0; i < disc.n_nodes; i++) {
       PetscReal *x = rod->file->coordinates + 3 * (k * disc.n_nodes + i);
 
       x[0] = disc.coordinates[3 * i];
       x[1] = disc.coordinates[3 * i + 1];
-      x[2] = rod->length * (PetscReal)k / (PetscReal)rod->elements;
+      x[2] = rod->length * (PetscReal)k / (PetscReal)(sections - 1);
     }
   for (PetscInt r = 0; r < disc.n_runs; r++) {
     const MeshRun *run  = &disc.runs[r];
@@ -173,8 +196,8 @@ static PetscErrorCode FillRod(void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A rod from options, along z from 0 */
-PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
+/* A rod from options, along z from 0, and where the nodes in the middle of its edges are, if it has some */
+PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name[], DM *dm, MeshMiddles *middles)
 {
   Rod            rod;
   MeshFile       file;
@@ -187,7 +210,7 @@ PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name
   rod.file = &file;
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape rod", name, prefix));
   error = MeshOnFirstRank(comm, FillRod, &rod, where);
-  if (!error) error = MeshBuild(comm, &file, where, dm, NULL);
+  if (!error) error = MeshBuild(comm, &file, where, dm, middles);
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);
   PetscFunctionReturn(PETSC_SUCCESS);

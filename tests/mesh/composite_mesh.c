@@ -108,6 +108,74 @@ static void middles_of_edges_are_those_of_the_file(void **state)
   ok(DMDestroy(&dm));
 }
 
+/* Distance of a vertex from the centre, or from the axis of a rod */
+static PetscReal distance_of(DM dm, PetscInt vertex, PetscBool rod)
+{
+  PetscReal x[3];
+
+  position_of(dm, vertex, x);
+  return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + (rod ? 0 : x[2] * x[2]));
+}
+
+/* Discs, balls and rods with their nodes on the true surface, corners and those in the middle of edges alike: what they lack of the true
+   volume is that of faces, or chords, twice as short as the edges, and falls with the square of their length, measured: by 3.89 to 3.99.
+   A polygon of 2 m sides lacks 1 - sin(pi / m) m / pi. */
+static void curved_bodies(void **state)
+{
+  const char *const options[] = {"-dm_plex_shape ball -dm_plex_dim 2 -ball_keep_volume false -ball_divisions %d",
+                                 "-dm_plex_shape ball -dm_plex_dim 3 -ball_keep_volume false -ball_divisions %d",
+                                 "-dm_plex_shape rod -dm_plex_dim 3 -rod_keep_volume false -rod_elements 2 -rod_divisions %d"};
+  const PetscReal   volumes[] = {PETSC_PI, 4 * PETSC_PI / 3, PETSC_PI};
+
+  (void)state;
+  for (PetscInt body = 0; body < 3; body++) {
+    PetscReal before = 0;
+
+    for (PetscInt divisions = 2; divisions <= 8; divisions *= 2) {
+      char      text[256];
+      DM        dm;
+      PetscInt  n, *vertices;
+      PetscReal missing;
+
+      (void)snprintf(text, sizeof(text), options[body], (int)divisions);
+      dm      = create_mesh("%s -dm_plex_simplex 1 -element_formulation composite", text);
+      missing = 1 - volume_of(dm) / volumes[body];
+      ok(MeshGetNodeSet(dm, "surface", &n, &vertices));
+      for (PetscInt i = 0; i < n; i++) near(distance_of(dm, vertices[i], (PetscBool)(body == 2)), 1, 1e-14);
+      ok(PetscFree(vertices));
+      if (body != 1) near(missing, 1 - sin(PETSC_PI / (4. * (double)divisions)) * 4 * (double)divisions / PETSC_PI, 1e-13);
+      if (before > 0) between(before / missing, 3.85, 4.05);
+      before = missing;
+      ok(DMDestroy(&dm));
+    }
+  }
+}
+
+/* The surface and its parts are those of the mesh of first order that is twice as fine */
+static void curved_surfaces(void **state)
+{
+  const char *const surfaces[] = {"surface", "cut_x", "back"};
+  const char        ball[] = "-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex 1 -ball_part half -ball_grading 3 -ball_divisions %d%s";
+
+  (void)state;
+  for (PetscInt dim = 2; dim <= 3; dim++) {
+    DM curved = create_mesh(ball, (int)dim, 4, " -element_formulation composite"), fine = create_mesh(ball, (int)dim, 8, "");
+
+    assert_int_equal(count_cells(curved) / (dim == 2 ? 4 : 8), count_cells(fine) / (dim == 2 ? 4 : 8));
+    for (PetscInt k = 0; k < 2; k++) {
+      const SurfaceFacts of = surface_facts(curved, surfaces[k]), as = surface_facts(fine, surfaces[k]);
+
+      assert_int_equal(of.n, as.n);
+      near(of.area, as.area, 1e-12);
+      for (PetscInt d = 0; d < dim; d++) near(of.centre[d], as.centre[d], 1e-12);
+    }
+    between((PetscReal)surface_facts(curved, surfaces[2]).n, 1, (PetscReal)surface_facts(fine, surfaces[2]).n);
+    near(volume_of(curved), (dim == 2 ? PETSC_PI : 4 * PETSC_PI / 3) / 2, 1e-12);
+    ok(DMDestroy(&curved));
+    ok(DMDestroy(&fine));
+  }
+}
+
 static void wrong_middles_are_refused(void **state)
 {
   (void)state;
@@ -126,6 +194,8 @@ int main(int argc, char **argv)
       cmocka_unit_test(cells_are_divided),
       cmocka_unit_test(other_cells_are_refused),
       cmocka_unit_test(middles_of_edges_are_those_of_the_file),
+      cmocka_unit_test(curved_bodies),
+      cmocka_unit_test(curved_surfaces),
       cmocka_unit_test(wrong_middles_are_refused),
   };
 

@@ -5,15 +5,17 @@ import pytest
 
 BODY = "-bodies a -a_dm_plex_shape ball -a_dm_plex_dim {} -a_density 1000 -a_youngs_modulus 1e9 -a_initial_velocity {} -time_step 1e-6 -time_end 1e-6"
 
+CURVED = "-a_dm_plex_simplex true -a_element_formulation composite"  # nodes in the middle of edges, off the chords
+
 
 def mass(run):
     return run.history["body"]["a"]["momentum"][0, 0]
 
 
 @pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("mesh", ["", "-a_dm_plex_simplex true", "-a_ball_grading 8", "-a_ball_part half -a_ball_grading 8"])
+@pytest.mark.parametrize("mesh", ["", "-a_dm_plex_simplex true", "-a_ball_grading 8", "-a_ball_part half -a_ball_grading 8", CURVED, f"{CURVED} -a_ball_part half -a_ball_grading 8"])
 def test_mass(dim, mesh, shared_run):
-    """To round-off, by the integration of the elements themselves. Measured: 5e-14 at most."""
+    """To round-off, by the integration of the elements themselves. Measured: 5.1e-14 at most."""
     run = shared_run(f"{BODY.format(dim, '1,0,0'[: 2 * dim - 1])} {mesh}")
     exact = 1000 * (np.pi if dim == 2 else 4 / 3 * np.pi) / (2 if "half" in mesh else 1)
     assert mass(run) == pytest.approx(exact, rel=1e-12)

@@ -8,6 +8,8 @@ ROD = (
     "-a_initial_velocity 0,0,1 -time_step 1e-6 -time_end 1e-6 "
 )
 
+CURVED = "-a_dm_plex_simplex true -a_element_formulation composite"
+
 
 @pytest.mark.parametrize(
     ("more", "part"),
@@ -15,6 +17,8 @@ ROD = (
         ("", 1),
         ("-a_rod_divisions 2 -a_rod_layers 3 -a_rod_elements 3", 1),
         ("-a_rod_part half", 0.5),
+        (CURVED, 1),
+        (f"{CURVED} -a_rod_part half -a_rod_divisions 2 -a_rod_layers 3", 0.5),
         ("-a_rod_part quarter -a_boundary_displacement cut_x,cut_y -a_boundary_displacement_cut_x 0,free,free -a_boundary_displacement_cut_y free,0,free", 0.25),
     ],
 )
