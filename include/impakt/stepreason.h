@@ -16,7 +16,8 @@
 . `STEP_DIVERGED_NAN`         - a displacement, a gap or a force is not a number
 . `STEP_DIVERGED_OUTER`       - the outer iteration of the contact method did not converge
 . `STEP_DIVERGED_ACTIVE_SET`  - the active set of contact nodes did not settle
-- `STEP_DIVERGED_UNSTABLE`    - elements of an explicit body have become so flat that its substep is not stable any more
+. `STEP_DIVERGED_UNSTABLE`    - elements of an explicit body have become so flat that its substep is not stable any more
+- `STEP_DIVERGED_LINEAR`      - the linear solver of a linear implicit body did not converge
 
    Level: intermediate
 
@@ -33,5 +34,6 @@ typedef enum {
   STEP_DIVERGED_NAN        = -4,
   STEP_DIVERGED_OUTER      = -5,
   STEP_DIVERGED_ACTIVE_SET = -6,
-  STEP_DIVERGED_UNSTABLE   = -7
+  STEP_DIVERGED_UNSTABLE   = -7,
+  STEP_DIVERGED_LINEAR     = -8
 } StepConvergedReason;

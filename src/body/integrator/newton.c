@@ -272,29 +272,47 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes Newton's method that did not converge, with body, time and what to do. A linear body takes one iteration, which cannot fail. */
+/* Notes a linear solver that did not converge, with body, time and what to do */
+static PetscErrorCode CheckLinearSolver(Body body, PetscBool *failed)
+{
+  const KSPConvergedReason reason = ConstrainedSolverTakeFailure(body->solver);
+  const char              *prefix = ((PetscObject)body)->prefix;
+
+  PetscFunctionBegin;
+  *failed = (PetscBool)(reason < 0);
+  if (!*failed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->model.linear)
+    PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_LINEAR, PETSC_ERR_NOT_CONVERGED,
+                             "The linear solver of body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
+                             "): %s; allow more iterations (-%sksp_max_it), or choose another preconditioner or a direct solver "
+                             "(-%spc_type cholesky)",
+                             body->hdr.name, (double)body->state.time, body->state.step, KSPConvergedReasons[reason], prefix, prefix));
+  else
+    PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
+                             "The linear solver in Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
+                             "): %s; choose a smaller -%sts_time_step, or a direct solver (-%spc_type cholesky)",
+                             body->hdr.name, (double)body->state.time, body->state.step, KSPConvergedReasons[reason], prefix, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes Newton's method that did not converge, with body, time and what to do. That of a linear body takes one iteration, in which its
+   solver alone can fail. */
 PetscErrorCode BodyImplicitCheckSubstep(Body body)
 {
   SNESConvergedReason reason;
-  KSPConvergedReason  linear;
   PetscInt            iterations, element;
   PetscReal           centre[3] = {0}, largest;
+  PetscBool           unsolved;
   SNES                snes;
   Vec                 residual;
 
   PetscFunctionBegin;
+  PetscCall(CheckLinearSolver(body, &unsolved));
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TSGetSNES(body->time.ts, &snes));
   PetscCall(SNESGetConvergedReason(snes, &reason));
   PetscCall(SNESGetIterationNumber(snes, &iterations));
-  linear = ConstrainedSolverTakeFailure(body->solver);
-  if (reason >= 0 && linear >= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (linear < 0)
-    PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
-                             "The linear solver in Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
-                             "): %s; choose a smaller -%sts_time_step, or a direct solver (-%spc_type cholesky)",
-                             body->hdr.name, (double)body->state.time, body->state.step, KSPConvergedReasons[linear],
-                             ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
+  if (reason >= 0 && !unsolved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyNoteInverted(body, PETSC_FALSE));
   PetscCall(SNESGetFunction(snes, &residual, NULL, NULL));
   PetscCall(BodyLocateLargest(body, residual, &element, centre, &largest));

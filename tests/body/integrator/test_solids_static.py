@@ -104,3 +104,27 @@ def test_loose(impakt, supports, ranks):
     assert len(lines) == 1, run.stderr
     for words in ("Body 'b' is static", "nothing holds it", "-b_boundary_displacement"):
         assert words in lines[0]
+
+
+HELD = "-block_boundary_displacement zmin -block_boundary_displacement_zmin 0,0,0 -block_boundary_traction zmax -block_boundary_traction_zmax 0,0,1e5 "
+ON_ANOTHER = (
+    "-bodies block,other -contact_pairs block.zmin:other.zmax -block_initial_velocity 0,0,-3 -other_dm_plex_dim 3 -other_dm_plex_box_faces 3,3,3 -other_density 1000 "
+    "-other_youngs_modulus 1e9 -other_poissons_ratio 0.3 -other_dm_plex_box_lower 0,0,-1 -other_dm_plex_box_upper 1,1,-1e-5 "
+)
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize(("case", "time"), [(f"{HELD} -block_ts_type static", "0.0001"), (HELD, "0.0001"), (ON_ANOTHER, "0.0001")])
+def test_linear_solver_that_fails(case, time, ranks, impakt):
+    """Multigrid with too few iterations, with contact and without: the error names body, time, and why the solver has stopped; not that there is a
+    displacement which is not a number."""
+    run = impakt(
+        "-bodies block -block_dm_plex_dim 3 -block_dm_plex_box_faces 4,4,4 -block_density 1000 -block_youngs_modulus 1e9 -block_poissons_ratio 0.3 -block_ksp_type cg "
+        f"-block_pc_type gamg -block_ksp_max_it 2 -controller_step_cuts 0 -time_step 1e-4 -time_end 3e-4 {case}",
+        ranks,
+        expect_failure=True,
+    )
+    error = " ".join(run.stderr.split())
+    assert f"The linear solver of body 'block' did not converge at time {time} s (its step 1): DIVERGED_ITS" in error
+    assert "-block_ksp_max_it" in error and "-block_pc_type cholesky" in error
+    assert "not a number" not in error
