@@ -19,6 +19,7 @@ from figures import BLUE, DASHED, CannotDraw, command_line, history_file, scale
 from matplotlib.figure import Figure
 
 PARTS = {"full": 1, "half": 2, "quarter": 4}
+TRUE = ("true", "1", "yes", "on", "")
 
 
 class Ball:
@@ -34,11 +35,12 @@ class Ball:
         self.name, self.dim = name, int(option("dm_plex_dim"))
         if option("dm_plex_shape", "box") != "ball":
             raise CannotDraw(f"body {name} is no disc or ball from options")
-        self.rings = option("axisymmetric", "false").lower() in ("true", "1", "yes", "on", "")
+        self.rings = option("axisymmetric", "false").lower() in TRUE
         self.parts = 1 if self.rings else PARTS[option("ball_part", "full")]  # forces of rings are those of the whole
         self.radius = float(option("ball_radius", "1"))
         self.centre = np.array([float(x) for x in option("ball_centre", "0,0,0").split(",")])[: self.dim]
-        self.modulus = float(option("youngs_modulus")) / (1 - float(option("poissons_ratio", "0")) ** 2)
+        rigid = option("rigid", "false").lower() in TRUE
+        self.modulus = np.inf if rigid else float(option("youngs_modulus")) / (1 - float(option("poissons_ratio", "0")) ** 2)
         self.static = option("ts_type", "alpha2") == "static"
 
     def contact(self, load):
@@ -70,10 +72,11 @@ class Ball:
 
 
 class Pair(Ball):
-    """Two discs or balls in contact: theory knows one radius, modulus and mass of both."""
+    """Two discs or balls in contact, one of which may be rigid: theory knows one radius, modulus and mass of both."""
 
     def __init__(self, balls):
-        self.name, self.dim, self.parts, self.static = " and ".join(ball.name for ball in balls), balls[0].dim, balls[0].parts, balls[0].static
+        self.name, self.dim, self.parts = " and ".join(ball.name for ball in balls), balls[0].dim, balls[0].parts
+        self.static = any(ball.static for ball in balls)  # a rigid one has no inertia to count if it is led
         self.rings = balls[0].rings
         self.radius, self.modulus = (1 / sum(1 / value for value in values) for values in ([ball.radius for ball in balls], [ball.modulus for ball in balls]))
 

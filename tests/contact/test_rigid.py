@@ -100,6 +100,12 @@ def test_punch(impakt):
     fitted = np.array(hertz.fit(positions[surface, 0] / radius, pressure[surface] / peak))
     assert surface.sum() > 10
     assert fitted == pytest.approx([1, 1], abs=1e-2)  # measured: +4.8e-3, -3.1e-3
+    # the picture of both, whose theory is that of two balls of which one is rigid
+    pair, series = hertz.read(run.folder / "history.h5")
+    assert series["force"][-1] == pytest.approx(load, rel=1e-4)  # of sizes, across the axis too: +3.3e-5
+    assert pair.contact(load) == pytest.approx((radius, peak), rel=1e-12)
+    hertz.draw(run.folder / "history.h5", path=run.folder / "figure.png")
+    assert (run.folder / "figure.png").read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
 PLATE = (
