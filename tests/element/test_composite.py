@@ -181,10 +181,10 @@ def test_wrong_cells(impakt):
 @pytest.mark.long
 def test_taylor(impakt):
     """A quarter of the copper rod that meets a wall at 227 m/s, elements of 0.8 x 0.8 x 1 mm: Foulk et al. (2021) converge to 7.226 and 21.43 mm, and have 7.282 mm with composite tetrahedra of 0.75 mm
-    (+0.8 %). Measured: 7.307 mm, +1.13 %, and 21.455 mm, +0.12 %; energy to 1e-4."""
+    (+0.8 %). Measured: 7.289 mm, +0.87 %, and 21.456 mm, +0.12 %; energy to 1e-4. All cells are cut in tetrahedra the same way, and the foot is wider along the axes than between them: from 7.289 to 6.963 mm."""
     run = impakt("-options_file options/taylor-bar-composite.opts -output_fields fields.h5 -output_fields_interval 100000")
     with h5py.File(run.folder / "fields.h5") as fields:
         positions = fields["mesh/positions"][()] + fields["displacement"][max(fields["displacement"])][()]
-    assert np.hypot(positions[:, 0], positions[:, 1]).max() == pytest.approx(7.226e-3, rel=1.5e-2)
+    assert np.hypot(positions[:, 0], positions[:, 1]).max() == pytest.approx(7.226e-3, rel=1e-2)
     assert np.ptp(positions[:, 2]) == pytest.approx(21.43e-3, rel=3e-3)
     assert abs(run.summary["system"]["energy_error_final"]) <= 1e-3
