@@ -166,9 +166,10 @@ bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 $(BUILD)/yards
 	$(PYTHON) tests/scaling/bench.py --build $(BUILD) --json out/bench/bars.json
 	$(PYTHON) tests/scaling/solids.py --build $(BUILD) --json out/bench/solids.json $(BENCH)
 	$(PYTHON) tests/scaling/shapes.py --build $(BUILD) --json out/bench/shapes.json $(BENCH)
+	$(PYTHON) tests/scaling/formulations.py --build $(BUILD) --json out/bench/formulations.json
 	$(PYTHON) tests/scaling/contact.py --build $(BUILD) --json out/bench/contact.json $(BENCH)
 	$(PYTHON) tests/scaling/discs.py --build $(BUILD) --json out/bench/discs.json
-	$(PYTHON) tests/scaling/benchreport.py --program $(BUILD)/impakt --out out/bench out/bench/bars.json out/bench/solids.json out/bench/shapes.json out/bench/contact.json out/bench/discs.json
+	$(PYTHON) tests/scaling/benchreport.py --program $(BUILD)/impakt --out out/bench out/bench/bars.json out/bench/solids.json out/bench/shapes.json out/bench/formulations.json out/bench/contact.json out/bench/discs.json
 
 bench-compare: ## what got slower since an earlier report: make bench-compare OLD.json, a copy of its out/bench/report.json
 	@$(PYTHON) tests/scaling/benchreport.py --out out/bench --compare $(or $(firstword $(filter %.json,$(MAKECMDGOALS))),OLD.json)
