@@ -153,8 +153,8 @@ static PetscErrorCode SetPrefix(DM dm, const char prefix[])
   Without grading the elements at the surface of a ball have the size h = pi R / (2 n). With grading they have the size h / sqrt(g) at the
   pole, and sqrt(g) h opposite to it. If that is not small beside the radius, the ball is a coarse polyhedron there.
 
-  Composite elements (`-<body>_element_formulation composite`) of balls and rods are curved: nodes in the middle of edges lie where those of a
-  mesh of twice as many divisions and layers do, of which every second node is a corner. Surface and volume are those of that mesh.
+  Composite elements (`-<body>_element_formulation composite`) of balls and rods are curved: nodes in the middle of edges lie where those of
+  a mesh of twice as many divisions and layers do, of which every second node is a corner. Surface and volume are those of that mesh.
 
   A box of bars, quadrilaterals or hexahedra is cut in two across its longest edge, again and again, until each rank has a brick, which it
   makes itself. Edges along the normals of surfaces that may touch another body are cut less often, as far as the most elements, contact
