@@ -165,6 +165,7 @@ static PetscErrorCode AddCell(MeshFile *file, const Ball *ball, PetscInt dim, co
     PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
     for (PetscInt k = 0, corner = 0; k <= dim; k++) { /* the last two change places where the element would be mirrored */
       place[dim == 1 || odd == mirrored || k < dim - 1 ? k : 2 * dim - 1 - k] = CornerPlace(corner);
+      /* NOLINTNEXTLINE(clang-analyzer-core.UndefinedBinaryOperatorResult): dim is 1 to 3 */
       if (k < dim) corner |= 1 << orders[dim - 1][o][k];
     }
     for (PetscInt k = 0; k <= dim; k++) nodes[k] = node[place[k]];
