@@ -344,7 +344,7 @@ PETSC_EXTERN PetscErrorCode ContactStepBack(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetStepLevel(Contact, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt, PetscInt);
-PETSC_EXTERN PetscErrorCode ContactGetOverlap(Contact, PetscInt, PetscReal *, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactGetOverlap(Contact, PetscInt, const ContactPairState *, PetscReal *, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetUnresolvedEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);

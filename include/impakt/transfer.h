@@ -59,14 +59,22 @@ typedef struct {
   PetscInt64 segments;   /* pairs of faces that lie opposite, in the last build */
 } TransferCounts;
 
+/* Numbers of each rank that parts of an update hand to the next one, summed up and the largest of all ranks */
+#define TRANSFER_SUMS    4
+#define TRANSFER_LARGEST 3
+
 PETSC_EXTERN PetscErrorCode TransferInitializePackage(void);
 PETSC_EXTERN PetscErrorCode TransferFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
 PETSC_EXTERN PetscErrorCode TransferSetMoved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetOwner(Transfer, PetscMPIInt);
+PETSC_EXTERN PetscErrorCode TransferGetOwner(Transfer, PetscMPIInt *);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferBeginUpdate(Transfer, Vec, Vec, PetscReal, PetscReal[TRANSFER_SUMS]);
+PETSC_EXTERN PetscErrorCode TransferCompareMotion(Transfer, const PetscReal[TRANSFER_SUMS], PetscReal[TRANSFER_LARGEST]);
+PETSC_EXTERN PetscErrorCode TransferEndUpdate(Transfer, Vec, Vec, PetscReal, const PetscReal[TRANSFER_LARGEST], PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscReal, PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSave(Transfer);
 PETSC_EXTERN PetscErrorCode TransferRestore(Transfer);

@@ -153,6 +153,10 @@ PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
+/* What ContactUpdatePairs() says of the rows of a pair */
+enum { ROWS_STAY, ROWS_FOLLOWED, ROWS_REBUILT };
+
+PETSC_INTERN PetscErrorCode ContactUpdatePairs(Contact, PetscReal);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpSavedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroySavedRows(Contact);

@@ -159,8 +159,7 @@ PetscReal TransferPresentGap(Transfer transfer, PetscInt row)
    it as a straight line, and slip along that; where it ends now a build tells. */
 static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscBool *any)
 {
-  const RowSet *set   = &transfer->rows;
-  int           found = 0;
+  const RowSet *set = &transfer->rows;
 
   PetscFunctionBegin;
   if (!transfer->columns_present) {
@@ -172,11 +171,9 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
 
     transfer->followed[row] = (PetscBool)(set->opposite[row] && n <= FOLLOW_MAX &&
                                           (touches[row] || TransferPresentGap(transfer, row) <= reach));
-    if (transfer->followed[row]) found = 1;
+    if (transfer->followed[row]) *any = PETSC_TRUE;
     else transfer->follow.known[row] = PETSC_FALSE;
   }
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));
-  *any = (PetscBool)found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -200,7 +197,7 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 /*@
   TransferFollow - lets rows near contact follow the surfaces, without building them again
 
-  Collective
+  Neighborwise Collective
 
   Input Parameters:
 + transfer - the `Transfer`, between two surfaces, after `TransferUpdate()`
@@ -212,7 +209,7 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 - last     - from the last update to this one [s]
 
   Output Parameter:
-. any - whether any row on any rank has followed; which, `TransferRows` tells
+. any - whether any row of this rank has followed; which, `TransferRows` tells
 
   Level: developer
 
@@ -225,7 +222,9 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns,
                               PetscReal step, PetscReal last, PetscBool *any)
 {
-  Follow *follow = &transfer->follow;
+  Follow     *follow = &transfer->follow;
+  PetscBool   found = PETSC_FALSE;
+  PetscMPIInt size;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
@@ -243,19 +242,15 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   if (transfer->idle) PetscFunctionReturn(PETSC_SUCCESS);
   follow->scale = follow->step > 0 ? step / follow->step : 1;
   PetscCall(NoteMotion(transfer));
-  PetscCall(MarkFollowers(transfer, touches, reach, any));
-  if (*any) {
-    int found = 0;
-
+  PetscCall(MarkFollowers(transfer, touches, reach, &found));
+  PetscCallMPI(MPI_Comm_size(transfer->comm, &size));
+  /* rows of another rank may follow where those of this one do not */
+  if (found || size > 1) PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    if (!transfer->followed[row]) continue;
     transfer->saved.same = PETSC_FALSE;
-
-    PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
-    for (PetscInt row = 0; row < transfer->n; row++) {
-      if (transfer->followed[row]) PetscCall(FollowRow(transfer, row, still, turns, step / last));
-      if (transfer->followed[row]) found = 1;
-    }
-    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_MAX, transfer->comm));
-    *any = (PetscBool)found;
+    PetscCall(FollowRow(transfer, row, still, turns, step / last));
+    *any = (PetscBool)(*any || transfer->followed[row]);
   }
   follow->step = step;
   PetscFunctionReturn(PETSC_SUCCESS);

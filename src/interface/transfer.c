@@ -171,7 +171,7 @@ PetscErrorCode TransferSetMoved(Transfer transfer, PetscBool moved)
   From then on what an update finds, whether rows have been built and whether any has followed, that rank alone knows; and updates are
 collective no more. Gaps must not be turned.
 
-.seealso: `Transfer`, `TransferUpdate()`, `TransferFollow()`, `TransferSetBalance()`
+.seealso: `Transfer`, `TransferGetOwner()`, `TransferUpdate()`, `TransferFollow()`, `TransferSetBalance()`
 @*/
 PetscErrorCode TransferSetOwner(Transfer transfer, PetscMPIInt rank)
 {
@@ -184,6 +184,30 @@ PetscErrorCode TransferSetOwner(Transfer transfer, PetscMPIInt rank)
   transfer->comm  = PETSC_COMM_SELF;
   transfer->owner = rank;
   transfer->idle  = (PetscBool)(mine != rank);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferGetOwner - which rank has all of both surfaces
+
+  Not Collective
+
+  Input Parameter:
+. transfer - the `Transfer`
+
+  Output Parameter:
+. rank - as `TransferSetOwner()` was told; `PETSC_DECIDE`: there may be several
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferSetOwner()`
+@*/
+PetscErrorCode TransferGetOwner(Transfer transfer, PetscMPIInt *rank)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscAssertPointer(rank, 2);
+  *rank = transfer->owner;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -31,20 +31,14 @@ static PetscReal LargestMotion(const SurfaceData *data, const PetscReal built[],
 }
 
 /* How far any node of each side that this rank owns has moved since the last build [m]. Between two surfaces the mean motion of all nodes
-   is subtracted. */
-static PetscErrorCode GetMotion(Transfer transfer, PetscReal largest[])
+   of all ranks is subtracted: rows do not change if both surfaces move together; an obstacle does not move. */
+static void GetMotion(Transfer transfer, const PetscReal sums[4], PetscReal largest[2])
 {
   const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
-  PetscReal          sums[4] = {0}, mean[3] = {0};
+  PetscReal          mean[3] = {0};
 
-  PetscFunctionBegin;
-  if (data[1]) { /* rows do not change if both surfaces move together; an obstacle does not move */
-    for (PetscInt side = 0; side < 2; side++) SumMotion(data[side], transfer->built_x[side], sums);
-    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, transfer->comm));
-    for (PetscInt d = 0; d < 3; d++) mean[d] = sums[3] > 0 ? sums[d] / sums[3] : 0;
-  }
+  for (PetscInt d = 0; d < 3 && sums[3] > 0; d++) mean[d] = sums[d] / sums[3];
   for (PetscInt side = 0; side < 2; side++) largest[side] = data[side] ? LargestMotion(data[side], transfer->built_x[side], mean) : 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* sum_j P_ij x_j - x_i with the present positions [m] */
@@ -116,24 +110,6 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     transfer->keep[row] = within;
     if (!within) *slipped = PETSC_TRUE;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether on any rank the surfaces have moved so far since the last build that other faces may lie opposite, or that a row near contact is
-   beyond the bounds */
-static PetscErrorCode HasMoved(Transfer transfer, PetscBool *moved)
-{
-  PetscReal largest[3]; /* motions of both sides, slip */
-  PetscBool slipped;
-
-  PetscFunctionBegin;
-  *moved = PETSC_FALSE;
-  if (transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetMotion(transfer, largest));
-  PetscCall(HasSlipped(transfer, &slipped));
-  largest[2] = slipped;
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, largest, 3, MPIU_REAL, MPIU_MAX, transfer->comm));
-  *moved = (PetscBool)(largest[0] + largest[1] > FAR_MOTION * transfer->smallest_size || largest[2] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,6 +203,134 @@ PetscErrorCode TransferSleep(Transfer transfer)
 }
 
 /*@
+  TransferBeginUpdate - the part of `TransferUpdate()` before the ranks add up the motion of both surfaces, which callers do for many transfers
+  at once
+
+  Not Collective
+
+  Input Parameters:
++ transfer    - the `Transfer`
+. u_dirichlet - displacements of the body of the Dirichlet side; `NULL`: none
+. u_neumann   - of the Neumann side; `NULL`: none, or an obstacle
+- near        - partners at least this close must be known; `PETSC_MAX_REAL`: at any distance [m]
+
+  Output Parameter:
+. sums - of this rank, to be added up over all ranks and given to `TransferCompareMotion()`
+
+  Level: developer
+
+  Note:
+  Collective if the surfaces are not where they are yet, see `TransferSetMoved()`.
+
+.seealso: `Transfer`, `TransferUpdate()`, `TransferCompareMotion()`, `TransferEndUpdate()`
+@*/
+PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscReal sums[TRANSFER_SUMS])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  if (u_dirichlet) PetscValidHeaderSpecific(u_dirichlet, VEC_CLASSID, 2);
+  if (u_neumann) PetscValidHeaderSpecific(u_neumann, VEC_CLASSID, 3);
+  PetscAssertPointer(sums, 5);
+  PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
+             (double)near);
+  if (!transfer->moved) {
+    PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
+    if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
+  }
+  for (PetscInt k = 0; k < TRANSFER_SUMS; k++) sums[k] = 0;
+  transfer->columns_present = PETSC_FALSE;
+  transfer->looks           = PETSC_FALSE;
+  if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
+  transfer->due    = (PetscBool)(!transfer->built || transfer->sleeps || near > transfer->built_near);
+  transfer->looks  = (PetscBool)(!transfer->due && transfer->dim > 1);
+  transfer->sleeps = PETSC_FALSE;
+  PetscCall(PetscArrayzero(transfer->keep, transfer->n));
+  if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
+  if (!transfer->looks || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
+  SumMotion(&transfer->dirichlet->data, transfer->built_x[0], sums);
+  SumMotion(&transfer->neumann->data, transfer->built_x[1], sums);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferCompareMotion - the next part, after `TransferBeginUpdate()`: how far surfaces have moved relative to each other since the last build
+
+  Neighborwise Collective
+
+  Input Parameters:
++ transfer - the `Transfer`
+- sums     - of all ranks
+
+  Output Parameter:
+. largest - of this rank, of which the largest of all ranks are to be given to `TransferEndUpdate()`
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferUpdate()`, `TransferBeginUpdate()`, `TransferEndUpdate()`
+@*/
+PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRANSFER_SUMS], PetscReal largest[TRANSFER_LARGEST])
+{
+  PetscBool slipped;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscAssertPointer(sums, 2);
+  PetscAssertPointer(largest, 3);
+  for (PetscInt k = 0; k < TRANSFER_LARGEST; k++) largest[k] = 0;
+  if (!transfer->looks) PetscFunctionReturn(PETSC_SUCCESS);
+  GetMotion(transfer, sums, largest);
+  PetscCall(HasSlipped(transfer, &slipped));
+  largest[2] = slipped;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferEndUpdate - the rest of `TransferUpdate()`, after `TransferCompareMotion()`: builds the rows again where that is needed
+
+  Collective
+
+  Input Parameters:
++ transfer    - the `Transfer`
+. u_dirichlet - displacements of the body of the Dirichlet side, as `TransferBeginUpdate()` got them
+. u_neumann   - of the Neumann side
+. near        - partners at least this close must be known [m]
+- largest     - of all ranks
+
+  Output Parameter:
+. rebuilt - whether the rows have been built
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferUpdate()`, `TransferBeginUpdate()`, `TransferCompareMotion()`
+@*/
+PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near,
+                                 const PetscReal largest[TRANSFER_LARGEST], PetscBool *rebuilt)
+{
+  PetscReal reach;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscAssertPointer(largest, 5);
+  PetscAssertPointer(rebuilt, 6);
+  *rebuilt = PETSC_FALSE;
+  if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
+  *rebuilt = transfer->due;
+  if (transfer->looks) *rebuilt = (PetscBool)(largest[0] + largest[1] > FAR_MOTION * transfer->smallest_size || largest[2] > 0);
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->follow.known && transfer->follow.known[row] && !transfer->keep[row]);
+    transfer->followed[row] = PETSC_FALSE;
+  }
+  if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetReach(transfer, near, &reach));
+  if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
+  else PetscCall(TransferBuildObstacleRows(transfer, reach));
+  for (PetscInt row = 0; row < transfer->n; row++) /* a gap that is that of the surfaces again has no turn in it */
+    if (transfer->balance.n && transfer->rows.changed[row] && !transfer->goes_on[row]) transfer->balance.turned[row] = 0;
+  PetscCall(Remember(transfer, reach));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferUpdate - moves both surfaces to where they are, unless `TransferSetMoved()` says that they are there, and builds the rows again
   where that is needed
 
@@ -252,42 +356,21 @@ PetscErrorCode TransferSleep(Transfer transfer)
   A build looks ahead of a node as far as `near`, or four faces further than the distance of the boxes about both surfaces, if that is more;
   and behind the node as far as the two bodies can overlap at all.
 
-.seealso: `Transfer`, `TransferSetBounds()`, `TransferGetRows()`
+.seealso: `Transfer`, `TransferSetBounds()`, `TransferGetRows()`, `TransferBeginUpdate()`
 @*/
 PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscBool *rebuilt)
 {
-  PetscReal reach;
+  PetscReal sums[TRANSFER_SUMS], largest[TRANSFER_LARGEST];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  if (u_dirichlet) PetscValidHeaderSpecific(u_dirichlet, VEC_CLASSID, 2);
-  if (u_neumann) PetscValidHeaderSpecific(u_neumann, VEC_CLASSID, 3);
   PetscValidLogicalCollectiveReal(transfer, near, 4);
   PetscAssertPointer(rebuilt, 5);
-  PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
-             (double)near);
-  if (!transfer->moved) {
-    PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
-    if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
-  }
-  *rebuilt                  = PETSC_FALSE;
-  transfer->columns_present = PETSC_FALSE;
-  if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
-  *rebuilt         = (PetscBool)(!transfer->built || transfer->sleeps || near > transfer->built_near);
-  transfer->sleeps = PETSC_FALSE;
-  PetscCall(PetscArrayzero(transfer->keep, transfer->n));
-  if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
-  if (!*rebuilt) PetscCall(HasMoved(transfer, rebuilt));
-  for (PetscInt row = 0; row < transfer->n; row++) {
-    transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->follow.known && transfer->follow.known[row] && !transfer->keep[row]);
-    transfer->followed[row] = PETSC_FALSE;
-  }
-  if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetReach(transfer, near, &reach));
-  if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
-  else PetscCall(TransferBuildObstacleRows(transfer, reach));
-  for (PetscInt row = 0; row < transfer->n; row++) /* a gap that is that of the surfaces again has no turn in it */
-    if (transfer->balance.n && transfer->rows.changed[row] && !transfer->goes_on[row]) transfer->balance.turned[row] = 0;
-  PetscCall(Remember(transfer, reach));
+  PetscCall(TransferBeginUpdate(transfer, u_dirichlet, u_neumann, near, sums));
+  if (transfer->looks && transfer->neumann)
+    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, TRANSFER_SUMS, MPIU_REAL, MPIU_SUM, transfer->comm));
+  PetscCall(TransferCompareMotion(transfer, sums, largest));
+  if (transfer->looks) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, largest, TRANSFER_LARGEST, MPIU_REAL, MPIU_MAX, transfer->comm));
+  PetscCall(TransferEndUpdate(transfer, u_dirichlet, u_neumann, near, largest, rebuilt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -145,28 +145,27 @@ static PetscErrorCode LookAtBody(Body body, const BodyStatistics *statistics, Ve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const StatisticsResults *results, Verdict *verdict)
+static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairState *state, const StatisticsResults *results,
+                                 Verdict *verdict)
 {
-  const char      *name;
-  ContactLaw       law;
-  PetscReal        depth;
-  PetscBool        inside;
-  PetscInt         side;
-  ContactPairState state;
+  const char *name;
+  ContactLaw  law;
+  PetscReal   depth;
+  PetscBool   inside;
+  PetscInt    side;
 
   PetscFunctionBegin;
   PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
   PetscCall(ContactGetLaw(contact, &law));
-  PetscCall(ContactGetOverlap(contact, p, &depth, &inside));
+  PetscCall(ContactGetOverlap(contact, p, state, &depth, &inside));
   if (law == CONTACT_LAW_TIED && !results->pairs[p].active_max)
     PetscCall(Add(verdict, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
-  PetscCall(ContactGetPairState(contact, p, &state));
-  if (state.beyond_impulse > BEYOND * PetscAbsReal(state.normal_impulse)) { /* ties pull as well as push */
+  if (state->beyond_impulse > BEYOND * PetscAbsReal(state->normal_impulse)) { /* ties pull as well as push */
     PetscCall(ContactGetPairRowSide(contact, p, &side));
     PetscCall(Add(verdict,
                   "nodes beyond the end of the partner bear %.3g %% of the impulse of %s, as if it reached there: what hangs over may not "
                   "tip; set -contact_rows %s, or refine the surface",
-                  (double)(100 * state.beyond_impulse / PetscAbsReal(state.normal_impulse)), name, side ? "first" : "second"));
+                  (double)(100 * state->beyond_impulse / PetscAbsReal(state->normal_impulse)), name, side ? "first" : "second"));
   }
   if (inside) PetscCall(Add(verdict, "%s end %.3g m inside each other", name, (double)depth));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -186,8 +185,9 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const StatisticsRe
 */
 PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *results, Verdict *verdict)
 {
-  Contact     contact;
-  const Body *bodies;
+  Contact           contact;
+  ContactPairState *states;
+  const Body       *bodies;
 
   PetscFunctionBegin;
   verdict->n = 0;
@@ -195,7 +195,11 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(LookAtSteps(controller, contact, results, verdict));
   for (PetscInt b = 0; b < results->n_bodies; b++) PetscCall(LookAtBody(bodies[b], &results->bodies[b], verdict));
-  for (PetscInt p = 0; p < results->n_pairs && results->steps; p++) PetscCall(LookAtPair(contact, p, results, verdict));
+  if (!results->steps || !results->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(results->n_pairs, &states));
+  PetscCall(ContactGetPairStates(contact, states));
+  for (PetscInt p = 0; p < results->n_pairs; p++) PetscCall(LookAtPair(contact, p, &states[p], results, verdict));
+  PetscCall(PetscFree(states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -317,8 +317,9 @@ static PetscErrorCode FillBall(void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A disc or a ball from options, and where the nodes in the middle of its edges are, if it has some */
-PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char name[], DM *dm, MeshMiddles *middles)
+/* A disc or a ball from options, all of it on a rank; `PETSC_DECIDE`: on the first one. And where the nodes in the middle of its edges are,
+   if it has some */
+PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm, MeshMiddles *middles)
 {
   Ball           ball;
   MeshFile       file;
@@ -329,9 +330,10 @@ PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char nam
   PetscFunctionBegin;
   PetscCall(ReadBall(comm, prefix, &ball));
   PetscCall(MeshFileInitialize(&file, NULL));
+  file.rank = PetscMax(rank, 0);
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape ball", name, prefix));
-  error = MeshOnFirstRank(comm, FillBall, &grid, where);
-  PetscCallMPI(MPI_Bcast(&grid.missing, 1, MPIU_REAL, 0, comm));
+  error = MeshOnRank(comm, file.rank, FillBall, &grid, where);
+  PetscCallMPI(MPI_Bcast(&grid.missing, 1, MPIU_REAL, file.rank, comm));
   if (!error && grid.missing > 0 && ball.keep_volume)
     PetscCall(
         PetscFPrintf(comm, stderr,

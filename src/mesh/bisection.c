@@ -244,7 +244,7 @@ PetscErrorCode MeshSpreadContact(DM dm, const char prefix[], const char name[], 
   PetscCall(MeshReadContact(comm, prefix, name, &b.n_names, &b.names, &b.cost));
   if (!has && b.size > 1 && b.n_names && b.cost > 0) {
     PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', division of its mesh", name));
-    error = MeshOnFirstRank(comm, Compare, &b, where);
+    error = MeshOnRank(comm, 0, Compare, &b, where);
     found = b.found;
     if (!error) PetscCallMPI(MPI_Bcast(&found, 1, MPI_INT, 0, comm));
     if (!error && found) error = SetParts(&b);

@@ -223,7 +223,7 @@ static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const MeshBox *box, const 
   PetscFunctionBegin;
   PetscCall(MeshFileInitialize(&file, NULL));
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_box_faces", name, prefix));
-  error = MeshOnFirstRank(comm, DivideBox, &division, where);
+  error = MeshOnRank(comm, file.rank, DivideBox, &division, where);
   if (!error) error = MeshBuild(comm, &file, where, dm, NULL);
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);

@@ -1,4 +1,4 @@
-/* From the cells, vertices and groups of a mesh file on the first rank to a DMPlex with labels. */
+/* From the cells, vertices and groups of a mesh file on one rank to a DMPlex with labels. */
 #include "meshimpl.h"
 
 typedef struct {
@@ -18,23 +18,23 @@ static PetscErrorCode KeepMessage(MPI_Comm comm, int line, const char *function,
   return code;
 }
 
-/* Calls a function on the first rank alone. An error there becomes an error on all ranks, with `where` before its message. */
-PetscErrorCode MeshOnFirstRank(MPI_Comm comm, PetscErrorCode (*work)(void *), void *ctx, const char where[])
+/* Calls a function on one rank alone. An error there becomes an error on all ranks, with `where` before its message. */
+PetscErrorCode MeshOnRank(MPI_Comm comm, PetscMPIInt rank, PetscErrorCode (*work)(void *), void *ctx, const char where[])
 {
   char        message[1024] = "unknown error";
   int         code          = 0;
-  PetscMPIInt rank;
+  PetscMPIInt mine;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank) {
+  PetscCallMPI(MPI_Comm_rank(comm, &mine));
+  if (mine == rank) {
     PetscCall(PetscPushErrorHandler(KeepMessage, message));
     code = (int)(*work)(ctx);
     PetscCall(PetscPopErrorHandler());
   }
-  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(&code, 1, MPI_INT, rank, comm));
   if (!code) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Bcast(message, sizeof(message), MPI_CHAR, 0, comm));
+  PetscCallMPI(MPI_Bcast(message, sizeof(message), MPI_CHAR, rank, comm));
   SETERRQ(comm, (PetscErrorCode)code, "%s: %s", where, message);
 }
 
@@ -55,30 +55,46 @@ static PetscErrorCode LabelGroups(void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A DMPlex, all of it on the first rank, from a file that a reader has filled there; and where the nodes in the middle of edges are, where
+/* What DMPlexCreateFromCellListPetsc() does of cells that are on the first rank, of a given dimension and number of corners on all ranks */
+static PetscErrorCode CreatePlex(MPI_Comm comm, const PetscInt sizes[2], const MeshFile *file, DM *dm)
+{
+  DM cells, plex;
+
+  PetscFunctionBegin;
+  PetscCall(DMCreate(comm, &cells));
+  PetscCall(DMSetType(cells, DMPLEX));
+  PetscCall(DMSetDimension(cells, sizes[0]));
+  PetscCall(DMPlexBuildFromCellList(cells, file->n_cells, file->n_vertices, sizes[1], file->cells));
+  PetscCall(DMPlexInterpolate(cells, &plex));
+  PetscCall(DMDestroy(&cells));
+  PetscCall(DMPlexBuildCoordinatesFromCellList(plex, sizes[0], file->vertices));
+  *dm = plex;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A DMPlex, all of it on the rank of the file that a reader has filled there; and where the nodes in the middle of edges are, where
    there can be some. Frees the file's arrays. */
 PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *dm, MeshMiddles *middles)
 {
   PetscInt    sizes[2];
   Labelling   labelling;
-  PetscMPIInt rank;
+  PetscMPIInt mine;
 
   PetscFunctionBegin;
-  PetscCall(MeshOnFirstRank(comm, SelectCells, file, where));
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  if (!rank && file->path) PetscCall(MeshFileDoubt(file, where));
+  PetscCall(MeshOnRank(comm, file->rank, SelectCells, file, where));
+  PetscCallMPI(MPI_Comm_rank(comm, &mine));
+  if (mine == file->rank && file->path) PetscCall(MeshFileDoubt(file, where));
   sizes[0] = file->dim;
   sizes[1] = file->corners;
-  PetscCallMPI(MPI_Bcast(sizes, 2, MPIU_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(sizes, 2, MPIU_INT, file->rank, comm));
   for (PetscInt c = 0; c < file->n_cells; c++)
     PetscCall(DMPlexInvertCell(file->shape, file->cells + c * file->corners)); /* DMPLEX numbers the base of a cell as seen from outside */
-  PetscCall(DMPlexCreateFromCellListPetsc(comm, sizes[0], file->n_cells, file->n_vertices, sizes[1], PETSC_TRUE, file->cells, sizes[0],
-                                          file->vertices, dm));
+  PetscCall(CreatePlex(comm, sizes, file, dm));
   PetscCall(PetscFree(file->cells));
   PetscCall(PetscFree(file->vertices));
   labelling.file = file;
   labelling.dm   = *dm;
-  PetscCall(MeshOnFirstRank(comm, LabelGroups, &labelling, where));
+  PetscCall(MeshOnRank(comm, file->rank, LabelGroups, &labelling, where));
   if (middles) PetscCall(MeshFileGetMiddles(file, *dm, middles));
   PetscCall(PetscFree(file->coordinates));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -71,7 +71,7 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   PetscCall(ReadWanted(prefix, &file));
   PetscCall(FindReader(path, &reading.read));
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', mesh file '%s'", name, path));
-  error = MeshOnFirstRank(comm, ReadFile, &reading, where);
+  error = MeshOnRank(comm, file.rank, ReadFile, &reading, where);
   if (!error) error = MeshBuild(comm, &file, where, dm, middles);
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);
@@ -212,8 +212,8 @@ PetscErrorCode MeshCreateOnRank(MPI_Comm comm, const char prefix[], const char n
   if (!from_file) PetscCall(MeshIsBall(prefix, &ball));
   if (!from_file) PetscCall(MeshIsRod(prefix, &rod));
   if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm, &middles));
-  else if (rod) PetscCall(MeshCreateRod(comm, prefix, name, dm, &middles));
-  else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, dm, &middles));
+  else if (rod) PetscCall(MeshCreateRod(comm, prefix, name, rank, dm, &middles));
+  else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, rank, dm, &middles));
   else PetscCall(MeshCreateBox(comm, prefix, name, (PetscBool)(rank >= 0), dm, &first));
   PetscCall(SetPrefix(*dm, prefix));
   if (rank >= 0) PetscCall(DMPlexDistributeSetDefault(*dm, PETSC_FALSE));
@@ -223,7 +223,8 @@ PetscErrorCode MeshCreateOnRank(MPI_Comm comm, const char prefix[], const char n
 #endif
   if (!middles.section) PetscCall(DMSetFromOptions(*dm)); /* distributes it */
   else if (rank < 0) PetscCall(MeshDistributeWithMiddles(dm, prefix, &middles));
-  if (rank >= 0) PetscCall(MeshMoveToRank(rank, dm, &middles));
+  if (rank >= 0 && (rod || ball)) PetscCall(MeshTellLabels(rank, *dm)); /* these are there already */
+  else if (rank >= 0) PetscCall(MeshMoveToRank(rank, dm, &middles));
   PetscCall(PetscObjectSetName((PetscObject)*dm, name));
   if (!from_file) PetscCall(MeshMarkSides(*dm));
   PetscCall(MeshWantsComposite(prefix, &composite));

@@ -31,9 +31,10 @@ typedef struct {
   PetscBool      chosen; /* they are cells of this body */
 } MeshRun;
 
-/* A mesh file as it is read, on the first rank alone, whatever its format */
+/* A mesh file as it is read, whatever its format, or a mesh that is made as one */
 typedef struct {
   const char *path;
+  PetscMPIInt rank; /* that alone has what follows: the first one, or the one that a mesh is made for */
   /* options: which blocks make the body; none: all */
   PetscInt n_wanted;
   char   **wanted;
@@ -115,9 +116,10 @@ PETSC_INTERN PetscErrorCode MeshDistributeWithMiddles(DM *, const char[], MeshMi
 PETSC_INTERN PetscErrorCode MeshDivideWithMiddles(DM *, MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshMakeComposite(DM *, const char[], const char[], MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshWantsComposite(const char[], PetscBool *);
-PETSC_INTERN PetscErrorCode MeshOnFirstRank(MPI_Comm, PetscErrorCode (*)(void *), void *, const char[]);
+PETSC_INTERN PetscErrorCode MeshOnRank(MPI_Comm, PetscMPIInt, PetscErrorCode (*)(void *), void *, const char[]);
 PETSC_INTERN PetscErrorCode MeshCreateFromFile(MPI_Comm, const char[], const char[], const char[], DM *, MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], PetscBool, DM *, PetscBool *);
+PETSC_INTERN PetscErrorCode MeshTellLabels(PetscMPIInt, DM);
 PETSC_INTERN PetscErrorCode MeshMoveToRank(PetscMPIInt, DM *, MeshMiddles *);
 PETSC_INTERN PetscInt       MeshBoxSideNumber(PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode MeshHasSurface(DM, const char[], PetscBool *);
@@ -129,9 +131,9 @@ PETSC_INTERN PetscErrorCode MeshBoxMarkContact(MPI_Comm, const char[], const cha
 PETSC_INTERN PetscErrorCode MeshBricksChoose(MPI_Comm, MeshBox *, PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBricks(MPI_Comm, const MeshBox *, DM *);
 PETSC_INTERN PetscErrorCode MeshIsRod(const char[], PetscBool *);
-PETSC_INTERN PetscErrorCode MeshCreateRod(MPI_Comm, const char[], const char[], DM *, MeshMiddles *);
+PETSC_INTERN PetscErrorCode MeshCreateRod(MPI_Comm, const char[], const char[], PetscMPIInt, DM *, MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshIsBall(const char[], PetscBool *);
-PETSC_INTERN PetscErrorCode MeshCreateBall(MPI_Comm, const char[], const char[], DM *, MeshMiddles *);
+PETSC_INTERN PetscErrorCode MeshCreateBall(MPI_Comm, const char[], const char[], PetscMPIInt, DM *, MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshReadNumbers(MPI_Comm, const char[], const char[], PetscInt, const char[], PetscReal[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshBuild(MPI_Comm, MeshFile *, const char[], DM *, MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshMarkSides(DM);

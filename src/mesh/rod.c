@@ -196,8 +196,9 @@ static PetscErrorCode FillRod(void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A rod from options, along z from 0, and where the nodes in the middle of its edges are, if it has some */
-PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name[], DM *dm, MeshMiddles *middles)
+/* A rod from options, along z from 0, all of it on a rank; `PETSC_DECIDE`: on the first one. And where the nodes in the middle of its edges
+   are, if it has some */
+PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm, MeshMiddles *middles)
 {
   Rod            rod;
   MeshFile       file;
@@ -207,9 +208,10 @@ PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name
   PetscFunctionBegin;
   PetscCall(ReadRod(comm, prefix, &rod));
   PetscCall(MeshFileInitialize(&file, NULL));
+  file.rank = PetscMax(rank, 0);
   rod.file = &file;
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape rod", name, prefix));
-  error = MeshOnFirstRank(comm, FillRod, &rod, where);
+  error = MeshOnRank(comm, file.rank, FillRod, &rod, where);
   if (!error) error = MeshBuild(comm, &file, where, dm, middles);
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);

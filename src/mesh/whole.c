@@ -147,6 +147,31 @@ PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The labels of a mesh that was made on one rank, on the others too, which have nothing of it: groups have the same names on all ranks */
+PetscErrorCode MeshTellLabels(PetscMPIInt rank, DM dm)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)dm);
+  PetscMPIInt mine;
+  PetscInt    n;
+  char      (*names)[MESH_NAME_LENGTH];
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &mine));
+  PetscCall(DMGetNumLabels(dm, &n));
+  PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, rank, comm));
+  PetscCall(PetscMalloc1(n, &names));
+  for (PetscInt l = 0; l < n && mine == rank; l++) {
+    const char *name;
+
+    PetscCall(DMGetLabelName(dm, l, &name));
+    PetscCall(PetscStrncpy(names[l], name, sizeof(names[l])));
+  }
+  PetscCallMPI(MPI_Bcast(names, (PetscMPIInt)(n * (PetscInt)sizeof(names[0])), MPI_CHAR, rank, comm));
+  for (PetscInt l = 0; l < n; l++) PetscCall(DMCreateLabel(dm, names[l])); /* does nothing where there is one */
+  PetscCall(PetscFree(names));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Moves a mesh from the first rank, which has all of it, and the positions in the middle of its edges, if there are any, to another one */
 PetscErrorCode MeshMoveToRank(PetscMPIInt rank, DM *dm, MeshMiddles *middles)
 {

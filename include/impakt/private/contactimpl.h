@@ -422,7 +422,8 @@ typedef struct {
   PetscInt      *intervals;    /* to a body */
   PetscInt      *entry_counts; /* two numbers per row */
   PetscReal     *rest;         /* to a body */
-  int           *updated;      /* per pair: what has become of its rows, see rowsupdate.c */
+  int           *updated;      /* per pair: what has become of its rows, see pairsupdate.c */
+  PetscReal     *motion;       /* per pair: how far its surfaces have moved, see pairsupdate.c */
   BodyCondition *conditions;   /* to a body */
 } ContactWork;
 

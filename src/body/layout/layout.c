@@ -304,7 +304,8 @@ PetscErrorCode BodyCreateVec(Body body, Vec *vec)
                  ghosts = (body->mesh.local_nodes - body->mesh.owned_nodes) * body->mesh.dim;
 
   PetscFunctionBegin;
-  if (body->rows.size == 1) PetscCall(VecCreateSeq(comm, owned, vec));
+  if (body->mesh.positions) PetscCall(VecDuplicate(body->mesh.positions, vec)); /* ranks need not tell each other their sizes again */
+  else if (body->rows.size == 1) PetscCall(VecCreateSeq(comm, owned, vec));
   else if (!body->mesh.ghosted) PetscCall(VecCreateMPI(comm, owned, PETSC_DETERMINE, vec));
   else PetscCall(VecCreateGhost(comm, owned, PETSC_DETERMINE, ghosts, body->mesh.ghost_dofs, vec));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -258,9 +258,9 @@ static PetscErrorCode EvaluateFactor(MomentsProblem *problem, const PetscReal co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first of these sets of conditions that can be satisfied gives the factor. What is given up, in this order: in two
-   dimensions, moments of second order that no rotation needs; moments of inertia; the centre. */
-static PetscErrorCode FindFactor(MomentsProblem *problem)
+/* The first of these sets of conditions that can be satisfied gives the coefficients of the factor. What is given up, in this order: in two
+   dimensions, moments of second order that no rotation needs; moments of inertia; the centre. None: they are zero. */
+static PetscErrorCode FindCoefficients(MomentsProblem *problem, PetscReal coefficients[MAX_MOMENTS])
 {
   const struct {
     PetscInt  dim; /* 0: in all dimensions */
@@ -274,7 +274,6 @@ static PetscErrorCode FindFactor(MomentsProblem *problem)
   /* in one dimension nothing turns, and no ring does */
   const PetscBool centre_alone = (PetscBool)(dim == 1 || problem->body->model.element->axisymmetric ||
                                              problem->body->mass.moments == BODY_MASS_CENTRE);
-  PetscReal       coefficients[MAX_MOMENTS], moments[MAX_MOMENTS];
   PetscBool       converged = PETSC_FALSE;
 
   PetscFunctionBegin;
@@ -285,6 +284,21 @@ static PetscErrorCode FindFactor(MomentsProblem *problem)
     PetscCall(MomentsSolve(problem, coefficients, &converged));
   }
   if (!converged) PetscCall(PetscArrayzero(coefficients, MAX_MOMENTS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The factor. Of a mesh that is whole, its rank finds the coefficients by itself and tells them. */
+static PetscErrorCode FindFactor(MomentsProblem *problem)
+{
+  Body           body = problem->body;
+  const PetscInt dim  = body->mesh.dim;
+  PetscReal      coefficients[MAX_MOMENTS], moments[MAX_MOMENTS];
+
+  PetscFunctionBegin;
+  problem->alone = body->mesh.whole;
+  if (!problem->alone || body->mesh.is_owner) PetscCall(FindCoefficients(problem, coefficients));
+  if (problem->alone) PetscCallMPI(MPI_Bcast(coefficients, MAX_MOMENTS, MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  problem->alone = PETSC_FALSE;
   PetscCall(EvaluateFactor(problem, coefficients));
   PetscCall(MomentsCompute(problem, coefficients, moments, NULL));
   for (PetscInt a = 0; a < dim; a++)

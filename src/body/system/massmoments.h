@@ -10,6 +10,7 @@
 /* The conditions, and what they are made of */
 typedef struct {
   Body      body;
+  PetscBool alone;                               /* this rank has all of the mass, and what is computed is its own */
   PetscInt  n_fields, n_moments;                 /* moments: phi_a' M phi_b for a <= b */
   PetscInt  pair[MAX_MOMENTS][2];                /* a and b of a moment */
   PetscReal axes[3][3];                          /* of the fields of first order, axis . (x - centre) / size */

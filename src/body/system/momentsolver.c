@@ -71,8 +71,9 @@ PetscErrorCode MomentsCompute(const MomentsProblem *problem, const PetscReal coe
       for (PetscInt l = 0; l < n; l++) slope[l * n + k] += weight * psi[l];
     }
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(n_moments + (slopes ? n * n : 0)), MPIU_REAL, MPIU_SUM,
-                             PetscObjectComm((PetscObject)problem->body)));
+  if (!problem->alone)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(n_moments + (slopes ? n * n : 0)), MPIU_REAL, MPIU_SUM,
+                               PetscObjectComm((PetscObject)problem->body)));
   PetscCall(PetscArraycpy(moments, sums, n_moments));
   if (slopes) PetscCall(PetscArraycpy(slopes, slope, n * n));
   PetscFunctionReturn(PETSC_SUCCESS);

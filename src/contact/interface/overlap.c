@@ -54,7 +54,8 @@ PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
 
   Input Parameters:
 + contact - the `Contact`, set up
-- pair    - 0 to the number of pairs - 1
+. pair    - 0 to the number of pairs - 1
+- state   - its state, as `ContactGetPairStates()` tells it
 
   Output Parameters:
 + depth  - the largest at any contact node, 0 or positive [m]
@@ -62,19 +63,18 @@ PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactGetPairState()`
+.seealso: `Contact`, `ContactGetPairStates()`
 @*/
-PetscErrorCode ContactGetOverlap(Contact contact, PetscInt pair, PetscReal *depth, PetscBool *inside)
+PetscErrorCode ContactGetOverlap(Contact contact, PetscInt pair, const ContactPairState *state, PetscReal *depth, PetscBool *inside)
 {
-  ContactPairState state;
-  PetscReal        least;
+  PetscReal least;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(depth, 3);
-  PetscAssertPointer(inside, 4);
-  PetscCall(ContactGetPairState(contact, pair, &state));
-  *depth = PetscMax(-state.gap, 0);
+  PetscAssertPointer(state, 3);
+  PetscAssertPointer(depth, 4);
+  PetscAssertPointer(inside, 5);
+  *depth = PetscMax(-state->gap, 0);
   if (contact->neighbours.come_and_go) {
     least = PETSC_MAX_REAL;
     for (PetscInt b = 0; b < contact->n_bodies; b++) least = PetscMin(least, contact->neighbours.edge[b]);

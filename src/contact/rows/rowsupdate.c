@@ -12,12 +12,6 @@
 #define PARALLEL 0.9
 /* Surfaces are looked for in the next controller step within this many times the way that bodies can make in it at their present speeds */
 #define AHEAD 2
-/* Rows stay as they are while the partner slips [parts of a face] and the normal turns [rad] by less. Bars that meet head on far above the
-   load at which they buckle would do so from round-off. */
-#define STILL 1e-6
-/* The same between two linear bodies, whose displacements are small: with rows of the undeformed state pressures agree with closed forms to
-   1e-8, and energy is kept to 1e-6. Linear bodies that turn do not keep angular momentum themselves. */
-#define STILL_LINEAR 0.05
 
 /* Cosine of the angle between the normals of two rows */
 static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
@@ -264,29 +258,6 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of two bodies with inertia follow their surfaces, so that neither angular momentum nor energy is lost as they slide and turn. Rows
-   of static bodies are built anew at the place where they are, and merged rows are means of several. */
-static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *any)
-{
-  PetscBool linear = PETSC_TRUE;
-
-  PetscFunctionBegin;
-  *any = PETSC_FALSE;
-  if (pair->obstacle || contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt side = 0; side < 2; side++) {
-    PetscBool is_static, is_linear;
-
-    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    if (is_static) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
-    linear = (PetscBool)(linear && is_linear);
-  }
-  PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,
-                           contact->step, contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
-  if (contact->turns.n) PetscCall(TransferBalance(pair->transfer, contact->start.force + pair->begin, near, any));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The rows of a pair have got new entries, in other places if they have been built again */
 static void Affect(Contact contact, const ContactPair *pair, PetscBool rebuilt)
 {
@@ -296,52 +267,6 @@ static void Affect(Contact contact, const ContactPair *pair, PetscBool rebuilt)
     of->affected = of->rewritten = PETSC_TRUE;
     if (rebuilt) of->pattern++;
   }
-}
-
-/* The rows of a pair where its bodies are; none, where they are far apart */
-static PetscErrorCode UpdatePair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *rebuilt)
-{
-  Vec u[2] = {NULL, NULL};
-
-  PetscFunctionBegin;
-  if (pair->far) {
-    PetscCall(TransferSleep(pair->transfer));
-    *rebuilt = PETSC_TRUE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
-  PetscCall(TransferUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, rebuilt));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What has become of the rows of a pair */
-enum { ROWS_STAY, ROWS_FOLLOWED, ROWS_REBUILT };
-
-/* Builds the rows of those pairs again whose surfaces have slid or turned far enough, and lets those near contact follow: what has become
-   of them, for each pair, the same on all ranks */
-static PetscErrorCode UpdatePairs(Contact contact, PetscReal near)
-{
-  int *updated = contact->work.updated;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair     = &contact->pairs[p];
-    PetscBool    followed = PETSC_FALSE, rebuilt, logged;
-
-    updated[p] = ROWS_STAY;
-    if (pair->bonded || (pair->far && pair->was_far)) continue;
-    PetscCall(StageBegin(STAGE_SEARCH, &logged));
-    PetscCall(UpdatePair(contact, pair, near, &rebuilt));
-    PetscCall(StageEnd(logged));
-    if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
-    updated[p] = rebuilt ? ROWS_REBUILT : followed ? ROWS_FOLLOWED : ROWS_STAY;
-  }
-  /* of a pair that one rank has to itself it alone knows */
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, updated, (PetscMPIInt)contact->n_pairs, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough, and lets those
@@ -371,7 +296,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactMoveSurfaces(contact));
   PetscCall(ContactFindFarPairs(contact, near));
   PetscCall(StageEnd(logged));
-  PetscCall(UpdatePairs(contact, near));
+  PetscCall(ContactUpdatePairs(contact, near));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const PetscBool rebuilt = (PetscBool)(contact->work.updated[p] == ROWS_REBUILT);
 

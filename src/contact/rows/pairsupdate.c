@@ -1,0 +1,147 @@
+/*
+   Pairs whose rows are built again, and those whose rows follow. How far the surfaces of a pair have moved relative to each other takes the
+   motion of all of their nodes: ranks add it up for all pairs at once.
+*/
+#include <contact/parts.h>
+#include <sys/stages.h>
+
+/* Rows stay as they are while the partner slips [parts of a face] and the normal turns [rad] by less. Bars that meet head on far above the
+   load at which they buckle would do so from round-off. */
+#define STILL 1e-6
+/* The same between two linear bodies, whose displacements are small: with rows of the undeformed state pressures agree with closed forms to
+   1e-8, and energy is kept to 1e-6. Linear bodies that turn do not keep angular momentum themselves. */
+#define STILL_LINEAR 0.05
+
+/* Rows of two bodies with inertia follow their surfaces, so that neither angular momentum nor energy is lost as they slide and turn. Rows
+   of static bodies are built anew at the place where they are, and merged rows are means of several. */
+static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *any)
+{
+  PetscBool linear = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  *any = PETSC_FALSE;
+  if (pair->obstacle || contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt side = 0; side < 2; side++) {
+    PetscBool is_static, is_linear;
+
+    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
+    if (is_static) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
+    linear = (PetscBool)(linear && is_linear);
+  }
+  PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,
+                           contact->step, contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
+  if (contact->turns.n) PetscCall(TransferBalance(pair->transfer, contact->start.force + pair->begin, near, any));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacements of the bodies of a pair */
+static PetscErrorCode GetDisplacements(Contact contact, const ContactPair *pair, Vec u[2])
+{
+  PetscFunctionBegin;
+  u[0] = u[1] = NULL;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
+    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether there is anything to update */
+static PetscBool MayChange(const ContactPair *pair)
+{
+  return (PetscBool)(!pair->bonded && !pair->far);
+}
+
+/* Numbers of the pairs that have surfaces on several ranks, over all of these: `each` for each pair */
+static PetscErrorCode ReduceMotion(Contact contact, PetscInt each, MPI_Op operation, PetscReal values[])
+{
+  PetscReal *packed = contact->work.motion;
+  PetscInt   n      = 0;
+
+  PetscFunctionBegin;
+  if (contact->ranks.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt pass = 0; pass < 2; pass++) {
+    n = 0;
+    for (PetscInt p = 0; p < contact->n_pairs; p++) {
+      PetscMPIInt owner;
+
+      if (!MayChange(&contact->pairs[p])) continue;
+      PetscCall(TransferGetOwner(contact->pairs[p].transfer, &owner));
+      if (owner >= 0) continue;
+      PetscCall(PetscArraycpy(pass ? values + each * p : packed + n, pass ? packed + n : values + each * p, each));
+      n += each;
+    }
+    if (!pass && n)
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, packed, (PetscMPIInt)n, MPIU_REAL, operation, PetscObjectComm((PetscObject)contact)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far the surfaces of each pair have moved since its rows were built, of all pairs at once */
+static PetscErrorCode CompareMotion(Contact contact, PetscReal near)
+{
+  PetscReal *sums = contact->work.motion + TRANSFER_SUMS * contact->n_pairs, *largest = sums + TRANSFER_SUMS * contact->n_pairs;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    Vec                u[2];
+
+    if (!MayChange(pair)) continue;
+    PetscCall(GetDisplacements(contact, pair, u));
+    PetscCall(TransferBeginUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, sums + TRANSFER_SUMS * p));
+  }
+  PetscCall(ReduceMotion(contact, TRANSFER_SUMS, MPIU_SUM, sums));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (MayChange(&contact->pairs[p]))
+      PetscCall(TransferCompareMotion(contact->pairs[p].transfer, sums + TRANSFER_SUMS * p, largest + TRANSFER_LARGEST * p));
+  PetscCall(ReduceMotion(contact, TRANSFER_LARGEST, MPIU_MAX, largest));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows of a pair where its bodies are; none, where they are far apart */
+static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscReal near, PetscBool *rebuilt)
+{
+  const PetscReal   *largest = contact->work.motion + 2 * TRANSFER_SUMS * contact->n_pairs + TRANSFER_LARGEST * p;
+  const ContactPair *pair    = &contact->pairs[p];
+  Vec                u[2];
+
+  PetscFunctionBegin;
+  if (pair->far) {
+    PetscCall(TransferSleep(pair->transfer));
+    *rebuilt = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(GetDisplacements(contact, pair, u));
+  PetscCall(TransferEndUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, largest, rebuilt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Builds the rows of those pairs again whose surfaces have slid or turned far enough, and lets those near contact follow: what has become
+   of them, for each pair, the same on all ranks */
+PetscErrorCode ContactUpdatePairs(Contact contact, PetscReal near)
+{
+  int      *updated = contact->work.updated;
+  PetscBool logged;
+
+  PetscFunctionBegin;
+  PetscCall(StageBegin(STAGE_SEARCH, &logged));
+  PetscCall(CompareMotion(contact, near));
+  PetscCall(StageEnd(logged));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair     = &contact->pairs[p];
+    PetscBool    followed = PETSC_FALSE, rebuilt;
+
+    updated[p] = ROWS_STAY;
+    if (pair->bonded || (pair->far && pair->was_far)) continue;
+    PetscCall(StageBegin(STAGE_SEARCH, &logged));
+    PetscCall(UpdatePair(contact, p, near, &rebuilt));
+    PetscCall(StageEnd(logged));
+    if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
+    updated[p] = rebuilt ? ROWS_REBUILT : followed ? ROWS_FOLLOWED : ROWS_STAY;
+  }
+  /* of its own rows, and of a pair that it has to itself, each rank alone knows */
+  if (contact->ranks.size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, updated, (PetscMPIInt)contact->n_pairs, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
