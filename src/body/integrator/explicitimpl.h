@@ -3,6 +3,12 @@
 #include <body/layout/bodyimpl.h>
 
 typedef struct _n_LayerBalance *LayerBalance;
+typedef struct _n_LayerRows    *LayerRows;
+
+PETSC_INTERN PetscErrorCode LayerRowsCreate(Body, IS, LayerRows *);
+PETSC_INTERN PetscErrorCode LayerRowsUpdate(LayerRows, Body);
+PETSC_INTERN Mat            LayerRowsGetMatrix(LayerRows);
+PETSC_INTERN PetscErrorCode LayerRowsDestroy(LayerRows *);
 
 PETSC_INTERN PetscErrorCode LayerBalanceCreate(Body, LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceDestroy(LayerBalance *);

@@ -51,10 +51,7 @@ struct _n_LayerBalance {
   IS         dofs;          /* of the layer, numbers in the vectors of the body */
   Vec        rhs, solution; /* of the layer */
   VecScatter scatter;       /* from a vector of the body */
-  Mat        rows;          /* the rows of the interface, on the dofs of the layer */
-  RowPattern pattern;       /* of these */
-  PetscBool  same;          /* as of the rows before */
-  PetscBool *in_layer;      /* per entry of the rows of the body: the layer has it too */
+  LayerRows  rows;
   PetscReal  reach;         /* norm of the reference positions of all nodes [m] */
   Factors    now, aside[BODY_SLOTS];
   PetscInt   n_made;
@@ -286,91 +283,11 @@ PetscErrorCode LayerBalanceApplyUnit(LayerBalance layer, Body body, PetscInt row
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which entries of the rows of the body are in the layer: a copy of the rows has ones there, and else zeros */
-static PetscErrorCode MarkEntries(LayerBalance layer, Body body)
-{
-  const RowPattern *pattern = &body->rows.pattern;
-  PetscScalar      *in;
-  Vec               mask;
-  Mat               marks;
-
-  PetscFunctionBegin;
-  PetscCall(PetscFree(layer->in_layer));
-  PetscCall(PetscMalloc1(pattern->offsets[pattern->n], &layer->in_layer));
-  PetscCall(VecDuplicate(body->state.u, &mask));
-  PetscCall(VecZeroEntries(mask));
-  PetscCall(VecGetArray(mask, &in));
-  for (PetscInt i = 0; i < body->layer.n_dofs; i++) in[body->layer.dofs[i]] = 1;
-  PetscCall(VecRestoreArray(mask, &in));
-  PetscCall(MatDuplicate(body->rows.free_matrix, MAT_DO_NOT_COPY_VALUES, &marks));
-  for (PetscInt i = 0; i < pattern->n; i++) {
-    const PetscInt row = body->rows.begin + i;
-
-    for (PetscInt k = pattern->offsets[i]; k < pattern->offsets[i + 1]; k++)
-      PetscCall(MatSetValue(marks, row, pattern->columns[k], 1, INSERT_VALUES));
-  }
-  PetscCall(MatAssemblyBegin(marks, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(marks, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatDiagonalScale(marks, NULL, mask));
-  for (PetscInt i = 0; i < pattern->n; i++) {
-    const PetscScalar *values;
-    PetscInt           n;
-
-    PetscCall(MatGetRow(marks, body->rows.begin + i, &n, NULL, &values));
-    for (PetscInt k = 0; k < n; k++) layer->in_layer[pattern->offsets[i] + k] = (PetscBool)(PetscRealPart(values[k]) != 0);
-    PetscCall(MatRestoreRow(marks, body->rows.begin + i, &n, NULL, &values));
-  }
-  PetscCall(MatDestroy(&marks));
-  PetscCall(VecDestroy(&mask));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The rows of the interface as the layer sees them */
-static PetscErrorCode CreateRows(LayerBalance layer, Body body)
-{
-  IS       rows;
-  PetscInt row_begin;
-
-  PetscFunctionBegin;
-  PetscCall(MatDestroy(&layer->rows));
-  PetscCall(MatGetOwnershipRange(body->rows.free_matrix, &row_begin, NULL));
-  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, row_begin, 1, &rows));
-  PetscCall(MatCreateSubMatrix(body->rows.free_matrix, rows, layer->dofs, MAT_INITIAL_MATRIX, &layer->rows));
-  PetscCall(MatSetOption(layer->rows, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  PetscCall(MatSetOption(layer->rows, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE)); /* assembled again, it needs no word of other ranks */
-  PetscCall(ISDestroy(&rows));
-  PetscCall(RowPatternNote(&layer->pattern, layer->rows, &layer->same));
-  PetscCall(MarkEntries(layer, body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* New values for these rows, whose entries are where they were. The dofs of the layer are in the order of those of the body. */
-static PetscErrorCode FillRows(LayerBalance layer, Body body)
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < body->rows.local; i++) {
-    const PetscBool   *in_layer = layer->in_layer + body->rows.pattern.offsets[i];
-    const PetscInt     row      = body->rows.begin + i;
-    const PetscInt    *column   = layer->pattern.columns + layer->pattern.offsets[i];
-    const PetscScalar *values;
-    PetscInt           n;
-
-    PetscCall(MatGetRow(body->rows.free_matrix, row, &n, NULL, &values));
-    for (PetscInt k = 0; k < n; k++)
-      if (in_layer[k]) PetscCall(MatSetValue(layer->rows, row, *column++, values[k], INSERT_VALUES));
-    PetscCall(MatRestoreRow(body->rows.free_matrix, row, &n, NULL, &values));
-  }
-  PetscCall(MatAssemblyBegin(layer->rows, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(layer->rows, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode LayerBalanceSetRows(LayerBalance layer, Body body, const PetscMPIInt changed[])
 {
   PetscFunctionBegin;
-  if (body->rows.same_pattern) PetscCall(FillRows(layer, body));
-  else PetscCall(CreateRows(layer, body));
-  PetscCall(ConstrainedSolverSetRows(body->solver, layer->rows, changed));
+  PetscCall(LayerRowsUpdate(layer->rows, body));
+  PetscCall(ConstrainedSolverSetRows(body->solver, LayerRowsGetMatrix(layer->rows), changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -396,9 +313,9 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscCall(VecDuplicate(layer->rhs, &layer->solution));
   PetscCall(BodySetUpLayerElements(body, layer->rhs));
   PetscCall(BodyCreateLayerMatrix(body, &K));
-  PetscCall(CreateRows(layer, body));
+  PetscCall(LayerRowsCreate(body, layer->dofs, &layer->rows));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(K, layer->rows, body->mesh.dim, prefix, BodyGetSharedCompliance(body), &body->solver));
+  PetscCall(ConstrainedSolverCreate(K, LayerRowsGetMatrix(layer->rows), body->mesh.dim, prefix, BodyGetSharedCompliance(body), &body->solver));
   PetscCall(VecNorm(body->mesh.positions, NORM_2, &layer->reach));
   PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
   PetscCall(BodyUseScatter(layer->scatter, body->state.u, layer->rhs));
@@ -484,9 +401,7 @@ PetscErrorCode LayerBalanceDestroy(LayerBalance *layer)
     PetscCall(PetscFree((*layer)->aside[slot].memory));
   }
   PetscCall(VecScatterDestroy(&(*layer)->scatter));
-  PetscCall(MatDestroy(&(*layer)->rows));
-  PetscCall(RowPatternDestroy(&(*layer)->pattern));
-  PetscCall(PetscFree((*layer)->in_layer));
+  PetscCall(LayerRowsDestroy(&(*layer)->rows));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

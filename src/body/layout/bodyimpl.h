@@ -144,7 +144,8 @@ typedef struct {
   Mat              matrix;      /* B: rows of all ranks x displacements */
   Mat              free_matrix; /* without held dofs; the same matrix where none is held */
   RowPattern       pattern;
-  PetscBool        same_pattern; /* the last new rows have entries where those before had them */
+  PetscBool        same_pattern; /* the last new rows have entries where those before had them; on this rank, if its body is local */
+  PetscInt64       laid_out;     /* how often there have been other rows */
   Vec              free_dofs;    /* 1, 0 on held dofs; NULL until needed */
   PetscMPIInt     *changed;      /* work space, per row of all ranks */
   PetscMPIInt      size;         /* ranks */
@@ -436,7 +437,7 @@ PETSC_INTERN PetscErrorCode BodyCreateTraces(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyTraces(Body);
 PETSC_INTERN PetscErrorCode BodyCreateRowArrays(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyRowArrays(Body);
-PETSC_INTERN PetscErrorCode RowPatternNote(RowPattern *, Mat, PetscBool *);
+PETSC_INTERN PetscErrorCode RowPatternNote(RowPattern *, Mat, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode RowPatternDestroy(RowPattern *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
 PETSC_INTERN PetscErrorCode BodySetUpGram(Body);

@@ -33,8 +33,8 @@ static PetscErrorCode Compare(const RowPattern *pattern, Mat matrix, PetscBool *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes where a matrix has entries. `same`: on every rank where the last one had them; then nothing is allocated. Collective. */
-PetscErrorCode RowPatternNote(RowPattern *pattern, Mat matrix, PetscBool *same)
+/* Notes where a matrix has entries. `same`: where the last one had them; then nothing is allocated. `agree`: on every rank, collective */
+PetscErrorCode RowPatternNote(RowPattern *pattern, Mat matrix, PetscBool agree, PetscBool *same)
 {
   PetscInt    begin, end, count = 0;
   int         differs;
@@ -44,7 +44,7 @@ PetscErrorCode RowPatternNote(RowPattern *pattern, Mat matrix, PetscBool *same)
   PetscCall(Compare(pattern, matrix, same));
   differs = *same ? 0 : 1;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)matrix), &size));
-  if (size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)matrix)));
+  if (agree && size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &differs, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)matrix)));
   *same = (PetscBool)!differs;
   if (*same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RowPatternDestroy(pattern));

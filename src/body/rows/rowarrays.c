@@ -64,6 +64,7 @@ PetscErrorCode BodyCreateRowArrays(Body body)
   PetscCall(BodyHandoverCreate(rows->local, &rows->handover));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(rows->matrix, NULL, &body->work.rows[k]));
   rows->n_prescribed = rows->n_forced = rows->n_robin = 0;
+  rows->laid_out++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

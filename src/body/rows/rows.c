@@ -62,7 +62,8 @@ PetscErrorCode BodySetUpFreeRows(Body body)
   BodyRows *rows = &body->rows;
 
   PetscFunctionBegin;
-  PetscCall(RowPatternNote(&rows->pattern, rows->matrix, &rows->same_pattern));
+  /* the layer of a local body needs no other rank for its rows, but a copy of them without held dofs is made on all */
+  PetscCall(RowPatternNote(&rows->pattern, rows->matrix, (PetscBool)(!body->local || body->held.any), &rows->same_pattern));
   if (body->held.any) PetscCall(FillFreeRows(body));
   else {
     PetscCall(PetscObjectReference((PetscObject)rows->matrix));

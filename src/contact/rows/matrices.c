@@ -1,0 +1,200 @@
+/* The matrices of the rows of each body, and how they get entries in other places as rows are built again. */
+#include <contact/parts.h>
+
+/* Room for the entries of the rows of a body, of which each has as many as its transfer tells: PETSc else collects them in a hash table.
+   Ties have other rows, and where ranks share a body nobody knows which columns are those of other ranks. */
+static PetscErrorCode Preallocate(Contact contact, PetscInt b, Mat matrix)
+{
+  PetscInt *entries = contact->work.intervals, *counts[2] = {contact->work.entry_counts, contact->work.entry_counts + contact->rows.n};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
+    const ContactPair *pair = &contact->pairs[contact->body_rows[b].pairs[k]];
+    const PetscInt     side = pair->body[0] == b ? 0 : 1;
+
+    PetscCall(TransferCountValues(pair->transfer, counts[0], pair->obstacle ? NULL : counts[1]));
+    for (PetscInt i = pair->begin; i < pair->end; i++) entries[i - pair->shift[side]] = counts[side][(i - pair->begin) / pair->components];
+  }
+  PetscCall(MatSeqAIJSetPreallocation(matrix, 0, entries));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
+{
+  const ContactLaw law = contact->options.law;
+  Vec              positions;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
+  PetscCall(VecGetLocalSize(positions, &n));
+  PetscCall(MatDestroy(&contact->interfaces[b]));
+  PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), &contact->interfaces[b]));
+  PetscCall(MatSetSizes(contact->interfaces[b], contact->body_rows[b].n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
+  if (contact->ranks.size == 1 && (law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION))
+    PetscCall(Preallocate(contact, b, contact->interfaces[b]));
+  else PetscCall(MatSetUp(contact->interfaces[b]));
+  PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether one of several ranks has all of a body: then all entries of a rank's rows are in one block of the matrix, that of the columns
+   that this rank has or that of the columns which others have. The same on every rank, as is whether all rows are there too. */
+static PetscErrorCode IsWhole(Contact contact, PetscInt b, PetscBool *whole, PetscBool *at_home, PetscMPIInt *rank)
+{
+  const ContactBodyRows *of  = &contact->body_rows[b];
+  const ContactLaw       law = contact->options.law;
+  PetscInt               first;
+
+  PetscFunctionBegin;
+  *whole = *at_home = PETSC_FALSE;
+  if (contact->ranks.size == 1 || !(law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyGetMeshRank(contact->bodies[b], rank));
+  if (*rank < 0 || !of->n_all) PetscFunctionReturn(PETSC_SUCCESS);
+  *whole   = PETSC_TRUE;
+  first    = contact->ranks.offsets[*rank];
+  *at_home = (PetscBool)(of->all[0] >= first && of->all[of->n_all - 1] < first + contact->ranks.counts[*rank]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nodes of a body that may touch, on the rank that has it: the first dof of each, some twice */
+static PetscErrorCode ListContactDofs(Contact contact, PetscInt b, PetscInt *n, PetscInt *dofs[])
+{
+  const ContactBodyRows *of = &contact->body_rows[b];
+  PetscInt               count;
+
+  PetscFunctionBegin;
+  for (PetscInt pass = 0; pass < 2; pass++) {
+    count = 0;
+    for (PetscInt k = 0; k < of->n_pairs; k++) {
+      const ContactPair *pair = &contact->pairs[of->pairs[k]];
+      const SurfaceData *data;
+
+      PetscCall(SurfaceGetData(pair->surfaces[pair->body[0] == b ? 0 : 1], &data));
+      if (pass) PetscCall(PetscArraycpy(*dofs + count, data->dofs, data->n_owned));
+      count += data->n_owned;
+    }
+    if (!pass) PetscCall(PetscMalloc1(count, dofs));
+  }
+  *n = count;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Has a new matrix know, on the ranks that have rows of the body but nothing of the body itself, all columns in which these will ever have
+   entries: zeros in the first row. So what ranks tell each other in products stays as it is, and so does the matrix, when rows get entries in
+   other places. */
+static PetscErrorCode ShareColumns(Contact contact, PetscInt b, PetscMPIInt rank)
+{
+  MPI_Comm comm   = PetscObjectComm((PetscObject)contact);
+  Mat      matrix = contact->interfaces[b];
+  PetscInt n, *dofs = NULL, row;
+
+  PetscFunctionBegin;
+  if (contact->ranks.rank == rank) PetscCall(ListContactDofs(contact, b, &n, &dofs));
+  PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, rank, comm));
+  if (!dofs) PetscCall(PetscMalloc1(n, &dofs));
+  PetscCallMPI(MPI_Bcast(dofs, (PetscMPIInt)n, MPIU_INT, rank, comm));
+  PetscCall(MatGetOwnershipRange(matrix, &row, NULL));
+  for (PetscInt k = 0; k < n && contact->body_rows[b].n && contact->ranks.rank != rank; k++)
+    for (PetscInt d = 0; d < contact->dim; d++) PetscCall(MatSetValue(matrix, row, dofs[k] + d, 0, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE)); /* it asks no other rank when it is assembled again */
+  PetscCall(PetscFree(dofs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* New room for the entries of the rows of a whole body, without a word of other ranks */
+static PetscErrorCode Renew(Contact contact, PetscInt b, PetscMPIInt rank)
+{
+  Mat blocks[2];
+
+  PetscFunctionBegin;
+  if (!contact->body_rows[b].n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMPIAIJGetSeqAIJ(contact->interfaces[b], &blocks[0], &blocks[1], NULL));
+  PetscCall(Preallocate(contact, b, blocks[contact->ranks.rank == rank ? 0 : 1]));
+  /* A new matrix, as after a checkpoint, multiplies by groups of rows alike where it has enough of them, in the block of its own columns. One that goes on is to look for
+     them anew too: without this gaps after a checkpoint differed in the last bit. */
+  if (contact->ranks.rank == rank) PetscCall(MatSetOption(blocks[0], MAT_USE_INODES, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A matrix for entries in other places than those it has, or of new rows */
+static PetscErrorCode PrepareMatrix(Contact contact, PetscInt b)
+{
+  ContactBodyRows *of = &contact->body_rows[b];
+  PetscBool        whole, at_home;
+  PetscMPIInt      rank = -1;
+
+  PetscFunctionBegin;
+  PetscCall(IsWhole(contact, b, &whole, &at_home, &rank));
+  if (!whole || !contact->interfaces[b] || of->patterns[0] < 0) {
+    PetscCall(CreateMatrix(contact, b));
+    if (!whole || at_home) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(ShareColumns(contact, b, rank));
+  }
+  PetscCall(Renew(contact, b, rank));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which of the two matrices of a body is filled. The body keeps the rows of the last accepted step until this one is accepted, since
+   contact forces go over from them; the rows of a step that has failed are of no use any more. */
+static void ChooseMatrix(Contact contact, PetscInt b)
+{
+  ContactBodyRows *of      = &contact->body_rows[b];
+  const PetscInt64 pattern = of->patterns[0];
+  const Mat        matrix  = contact->interfaces[b];
+
+  if (of->filled) return;
+  contact->interfaces[b] = contact->spares[b];
+  contact->spares[b]     = matrix;
+  of->patterns[0]        = of->patterns[1];
+  of->patterns[1]        = pattern;
+  of->filled             = PETSC_TRUE;
+}
+
+/* Fills the matrices of the bodies whose rows are affected: in place if they have entries where those that were filled last have them,
+   which is so until rows are built again. Rows that are merged or turned come from products of matrices, which are made anew. */
+PetscErrorCode ContactFillMatrices(Contact contact)
+{
+  const PetscBool product = (PetscBool)(contact->held.merger || (contact->options.law == CONTACT_LAW_BONDED && contact->dim > 1));
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    ContactBodyRows *of = &contact->body_rows[b];
+
+    if (!of->affected) continue;
+    ChooseMatrix(contact, b);
+    if (of->patterns[0] == of->pattern) PetscCall(MatZeroEntries(contact->interfaces[b]));
+    else if (product) PetscCall(CreateMatrix(contact, b));
+    else PetscCall(PrepareMatrix(contact, b));
+    of->patterns[0] = product ? -1 : of->pattern;
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair     = &contact->pairs[p];
+    PetscInt           begin[2] = {0, 0};
+    Mat                rows[2]  = {NULL, NULL};
+    PetscBool          any      = PETSC_FALSE;
+
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+      begin[side] = contact->body_rows[pair->body[side]].begin + pair->begin - pair->shift[side];
+      if (!contact->body_rows[pair->body[side]].affected) continue;
+      rows[side] = contact->interfaces[pair->body[side]];
+      any        = PETSC_TRUE;
+    }
+    if (any && contact->options.law == CONTACT_LAW_FRICTION)
+      PetscCall(TransferSetDirectedValues(pair->transfer, begin, pair->components, contact->rows.normal + 3 * pair->begin, rows));
+    else if (any) PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    if (!contact->body_rows[b].affected) continue;
+    PetscCall(MatAssemblyBegin(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
+    PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
+    /* values in the same places need no word of other ranks when they are assembled again */
+    PetscCall(MatSetOption(contact->interfaces[b], MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+    PetscCall(ContactTurnMatrix(contact, b));
+    PetscCall(ContactMergeMatrix(contact, b));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
