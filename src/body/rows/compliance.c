@@ -15,9 +15,9 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree6(c->roles, c->mine, c->base_displacement, c->base_force, c->all_roles, c->all_flexibility));
+  PetscCall(PetscFree4(c->roles, c->base_displacement, c->all_roles, c->all_flexibility));
   PetscCall(PetscFree2(c->solved, c->unknown));
-  PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
+  PetscCall(PetscFree4(c->known_displacement, c->force, c->displacement, c->rhs));
   PetscCall(DenseFactorDestroy(&c->factor));
   PetscCall(ComplianceDestroy(&c->matrices));
   PetscCall(PetscFree(body->compliance));
@@ -36,8 +36,10 @@ PetscErrorCode BodyCreateCompliance(Body body)
   c = body->compliance;
   PetscCall(
       ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->time.substeps, &c->matrices));
-  PetscCall(PetscCalloc6(rows->local, &c->roles, levels, &c->mine, levels, &c->base_displacement, levels, &c->base_force, rows->global,
-                         &c->all_roles, rows->global, &c->all_flexibility));
+  PetscCall(PetscCalloc4(rows->local, &c->roles, 3 * levels, &c->base_displacement, rows->global, &c->all_roles, rows->global,
+                         &c->all_flexibility));
+  c->base_force = c->base_displacement + levels;
+  c->mine       = c->base_force + levels;
   PetscCall(PetscMalloc2(rows->global, &c->solved, rows->global, &c->unknown));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -192,37 +192,40 @@ static PetscErrorCode MakeRoom(Body body)
   if (n <= c->room) PetscFunctionReturn(PETSC_SUCCESS);
   c->room = PetscMin(body->rows.global, PetscMax(n, 2 * c->room));
   size    = body->time.substeps * c->room;
-  PetscCall(PetscFree6(c->known_displacement, c->known_force, c->input, c->force, c->displacement, c->rhs));
-  PetscCall(PetscMalloc6(size, &c->known_displacement, size, &c->known_force, size, &c->input, size, &c->force, size, &c->displacement,
-                         c->room, &c->rhs));
+  PetscCall(PetscFree4(c->known_displacement, c->force, c->displacement, c->rhs));
+  PetscCall(PetscMalloc4(3 * size, &c->known_displacement, size, &c->force, size, &c->displacement, c->room, &c->rhs));
   c->base_gathered = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What comes in, on the known rows of every rank: displacements of prescribed rows, forces of forced ones, right-hand sides of Robin rows
- */
+/* What comes in, on the known rows of every rank: displacements of prescribed rows, forces of forced ones, right-hand sides of Robin rows.
+   Where the base is not known there yet, ranks tell it with that. */
 static PetscErrorCode GatherInputs(Body body)
 {
   const PetscBool         alone = body->rows.at_home;
   struct _BodyCompliance *c     = body->compliance;
-  const PetscInt          local = body->rows.local;
+  const PetscInt          local = body->rows.local, substeps = body->time.substeps;
   PetscScalar            *displacement, *force;
+  PetscInt                n;
 
   PetscFunctionBegin;
   PetscCall(MakeRoom(body));
-  if (!c->base_gathered || c->gathered_state != ComplianceGetState(c->matrices)) {
-    PetscCall(ComplianceGather(c->matrices, alone, body->time.substeps, c->base_displacement, c->known_displacement));
-    PetscCall(ComplianceGather(c->matrices, alone, body->time.substeps, c->base_force, c->known_force));
-    c->base_gathered  = PETSC_TRUE;
-    c->gathered_state = ComplianceGetState(c->matrices);
-  }
-  for (PetscInt k = 0; k < body->time.substeps; k++) {
+  for (PetscInt k = 0; k < substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement_in, k + 1, &displacement));
     PetscCall(TraceGetLevel(body->traces.force_in, k + 1, &force));
     for (PetscInt i = 0; i < local; i++)
       c->mine[k * local + i] = c->roles[i] == BODY_PRESCRIBED ? displacement[i] : c->roles[i] == BODY_FREE ? 0 : force[i];
   }
-  PetscCall(ComplianceGather(c->matrices, alone, body->time.substeps, c->mine, c->input));
+  if (c->base_gathered && c->gathered_state == ComplianceGetState(c->matrices)) {
+    PetscCall(ComplianceGather(c->matrices, alone, substeps, c->mine, c->input));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  ComplianceGetRows(c->matrices, &n, NULL, NULL);
+  c->known_force = c->known_displacement + substeps * n;
+  c->input       = c->known_force + substeps * n;
+  PetscCall(ComplianceGather(c->matrices, alone, 3 * substeps, c->base_displacement, c->known_displacement));
+  c->base_gathered  = PETSC_TRUE;
+  c->gathered_state = ComplianceGetState(c->matrices);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

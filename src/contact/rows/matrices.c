@@ -120,6 +120,17 @@ static PetscErrorCode Renew(Contact contact, PetscInt b, PetscMPIInt rank)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The second of the two matrices of a whole body, as the first: ranks need not find out anew what they tell each other in products */
+static PetscErrorCode CopyMatrix(Contact contact, PetscInt b)
+{
+  PetscFunctionBegin;
+  PetscCall(MatDestroy(&contact->interfaces[b]));
+  PetscCall(MatDuplicate(contact->spares[b], MAT_DO_NOT_COPY_VALUES, &contact->interfaces[b]));
+  PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+  PetscCall(MatSetOption(contact->interfaces[b], MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A matrix for entries in other places than those it has, or of new rows */
 static PetscErrorCode PrepareMatrix(Contact contact, PetscInt b)
 {
@@ -129,7 +140,8 @@ static PetscErrorCode PrepareMatrix(Contact contact, PetscInt b)
 
   PetscFunctionBegin;
   PetscCall(IsWhole(contact, b, &whole, &at_home, &rank));
-  if (!whole || !contact->interfaces[b] || of->patterns[0] < 0) {
+  if (whole && of->patterns[0] < 0 && of->patterns[1] >= 0) PetscCall(CopyMatrix(contact, b));
+  else if (!whole || of->patterns[0] < 0) {
     PetscCall(CreateMatrix(contact, b));
     if (!whole || at_home) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ShareColumns(contact, b, rank));
