@@ -247,6 +247,9 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
   if (b) {
     PetscCheck(a->data.dim == b->data.dim, PetscObjectComm((PetscObject)a->dm), PETSC_ERR_USER_INPUT,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", a->data.dim, b->data.dim);
+  }
+  if (!keep_a && !keep_b) PetscFunctionReturn(PETSC_SUCCESS);
+  if (b) {
     PetscCall(PetscMalloc1(2, &directions));
     for (PetscInt side = 0; side < 2; side++)
       PetscCall(GetDirections(PetscObjectComm((PetscObject)surfaces[side]->dm), surfaces[side], &directions[side]));

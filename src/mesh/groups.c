@@ -163,29 +163,34 @@ static PetscErrorCode CollectFaces(DM dm, DMLabel boundary, const Selection *sel
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Labels the faces on the sides of the bounding box as xmin, xmax, ... A side without faces gets no label. */
+/* Labels the faces on the sides of the bounding box as xmin, xmax, ... A side without faces on any rank gets no label. */
 PetscErrorCode MeshMarkSides(DM dm)
 {
-  DMLabel  boundary;
-  PetscInt dim;
+  DMLabel   boundary;
+  PetscReal lower[3], upper[3];
+  PetscInt  dim, n[6], any[6], *faces[6];
 
   PetscFunctionBegin;
   PetscCall(DMGetCoordinateDim(dm, &dim));
+  PetscCall(DMGetBoundingBox(dm, lower, upper));
   PetscCall(MarkBoundary(dm, &boundary));
   for (PetscInt side = 0; side < 2 * dim; side++) {
     Selection selection = {.side = -1};
-    PetscInt  n, total, *faces;
-    DMLabel   label;
 
-    PetscCall(FindSide(dm, side, &selection));
-    PetscCall(CollectFaces(dm, boundary, &selection, &n, &faces));
-    PetscCallMPI(MPI_Allreduce(&n, &total, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)dm)));
-    if (total) {
+    UseSide(side, lower, upper, &selection);
+    PetscCall(CollectFaces(dm, boundary, &selection, &n[side], &faces[side]));
+    any[side] = n[side];
+  }
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, (PetscMPIInt)(2 * dim), MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
+  for (PetscInt side = 0; side < 2 * dim; side++) {
+    DMLabel label;
+
+    if (any[side]) {
       PetscCall(DMCreateLabel(dm, sides[side]));
       PetscCall(DMGetLabel(dm, sides[side], &label));
-      for (PetscInt i = 0; i < n; i++) PetscCall(DMLabelSetValue(label, faces[i], 1));
+      for (PetscInt i = 0; i < n[side]; i++) PetscCall(DMLabelSetValue(label, faces[side][i], 1));
     }
-    PetscCall(PetscFree(faces));
+    PetscCall(PetscFree(faces[side]));
   }
   PetscCall(DMLabelDestroy(&boundary));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -254,7 +254,8 @@ PetscErrorCode ContactMoveSurfaces(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces of a pair. `extent` becomes the largest coordinate of their meshes, without sign, if it was smaller [m]. */
+/* Surfaces of a pair. `extent` becomes the largest coordinate of their meshes, without sign, if it was smaller [m]. Where pairs come and go
+   it is that of all bodies already. */
 PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscReal *extent)
 {
   PetscInt  dims[2]  = {contact->dim, contact->dim};
@@ -269,6 +270,7 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
     PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
     PetscCall(DMGetCoordinateDim(dm, &dims[side]));
     PetscCall(TakeSurface(contact, pair, side, (PetscBool)!faces[side]));
+    if (contact->neighbours.come_and_go) continue;
     PetscCall(DMGetBoundingBox(dm, lower, upper));
     for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
   }

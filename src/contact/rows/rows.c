@@ -138,22 +138,33 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 }
 
 /* Ends with an error if all rows of a pair that have a partner opposite are held: then the pair would have no contact at all */
-static PetscErrorCode CheckHeld(Contact contact, const ContactPair *pair)
+static PetscErrorCode CheckHeld(Contact contact)
 {
-  TransferRows rows;
-  int          any[2] = {0, 0};
+  int *any; /* for each pair: rows with a partner opposite, and those that are not held */
 
   PetscFunctionBegin;
-  PetscCall(TransferGetRows(pair->transfer, &rows));
-  for (PetscInt i = 0; i < rows.n; i++) any[0] |= rows.opposite[i];
-  for (PetscInt i = pair->begin; i < pair->end; i++) any[1] |= contact->rows.opposite[i];
-  PetscCall(ContactOr(contact, &any[0]));
-  PetscCall(ContactOr(contact, &any[1]));
-  PetscCheck(!any[0] || any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
-             "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
-             pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name,
-             pair->turned ? "set -contact_rows first" : "name that body second", ((PetscObject)contact->bodies[pair->body[0]])->name);
+  PetscCall(PetscCalloc1(2 * contact->n_pairs, &any));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    TransferRows       rows;
+
+    PetscCall(TransferGetRows(pair->transfer, &rows));
+    for (PetscInt i = 0; i < rows.n; i++) any[2 * p] |= rows.opposite[i];
+    for (PetscInt i = pair->begin; i < pair->end; i++) any[2 * p + 1] |= contact->rows.opposite[i];
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, any, (PetscMPIInt)(2 * contact->n_pairs), MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    PetscCheck(!any[2 * p] || any[2 * p + 1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
+               "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
+               pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name,
+               pair->turned ? "set -contact_rows first" : "name that body second", ((PetscObject)contact->bodies[pair->body[0]])->name);
+  }
+  PetscCall(PetscFree(any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -181,8 +192,8 @@ PetscErrorCode ContactSetUpRows(Contact contact)
 
     PetscCall(ContactMeasureTies(contact, &contact->pairs[p], PETSC_FALSE, &changed));
     PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
-    PetscCall(CheckHeld(contact, &contact->pairs[p]));
   }
+  PetscCall(CheckHeld(contact));
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactFindSharedNodes(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
