@@ -223,7 +223,7 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
                               PetscReal step, PetscReal last, PetscBool *any)
 {
   Follow     *follow = &transfer->follow;
-  PetscBool   found = PETSC_FALSE;
+  PetscBool   found  = PETSC_FALSE;
   PetscMPIInt size;
 
   PetscFunctionBegin;

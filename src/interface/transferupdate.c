@@ -203,8 +203,7 @@ PetscErrorCode TransferSleep(Transfer transfer)
 }
 
 /*@
-  TransferBeginUpdate - the part of `TransferUpdate()` before the ranks add up the motion of both surfaces, which callers do for many transfers
-  at once
+  TransferBeginUpdate - the part of `TransferUpdate()` before ranks add up motions, which callers do for many transfers at once
 
   Not Collective
 
@@ -253,7 +252,7 @@ PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neu
 }
 
 /*@
-  TransferCompareMotion - the next part, after `TransferBeginUpdate()`: how far surfaces have moved relative to each other since the last build
+  TransferCompareMotion - the part of `TransferUpdate()` after that: how far surfaces have moved since the last build
 
   Neighborwise Collective
 

@@ -79,7 +79,7 @@ PetscErrorCode MeshFileFindEdges(MeshFile *file, DM dm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Positions of the nodes in the middle of edges, on the first rank; NULL where the cells have none. Collective. */
+/* Positions of the nodes in the middle of edges, on the rank that has the mesh; NULL where the cells have none. Collective. */
 PetscErrorCode MeshFileGetMiddles(const MeshFile *file, DM dm, MeshMiddles *middles)
 {
   MPI_Comm     comm = PetscObjectComm((PetscObject)dm);
@@ -88,7 +88,7 @@ PetscErrorCode MeshFileGetMiddles(const MeshFile *file, DM dm, MeshMiddles *midd
   PetscScalar *x;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Bcast(&any, 1, MPI_INT, 0, comm));
+  PetscCallMPI(MPI_Bcast(&any, 1, MPI_INT, file->rank, comm));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMGetCoordinateDim(dm, &dim));
   PetscCall(DMPlexGetChart(dm, &chart[0], &chart[1]));

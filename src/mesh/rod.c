@@ -209,7 +209,7 @@ PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name
   PetscCall(ReadRod(comm, prefix, &rod));
   PetscCall(MeshFileInitialize(&file, NULL));
   file.rank = PetscMax(rank, 0);
-  rod.file = &file;
+  rod.file  = &file;
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape rod", name, prefix));
   error = MeshOnRank(comm, file.rank, FillRod, &rod, where);
   if (!error) error = MeshBuild(comm, &file, where, dm, middles);

@@ -153,7 +153,7 @@ PetscErrorCode MeshTellLabels(PetscMPIInt rank, DM dm)
   MPI_Comm    comm = PetscObjectComm((PetscObject)dm);
   PetscMPIInt mine;
   PetscInt    n;
-  char      (*names)[MESH_NAME_LENGTH];
+  char (*names)[MESH_NAME_LENGTH];
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &mine));

@@ -90,6 +90,18 @@ def run_counting(arguments, options, ranks, steps, event):
         return made
 
 
+def all_reductions(arguments, options, ranks, steps):
+    """Reductions of a whole run on the rank with most of them, set-up and output included."""
+    with tempfile.TemporaryDirectory() as directory:
+        log, made = Path(directory) / "log.csv", [0] * ranks
+        run(arguments, options, ranks, steps, ("-log_view", f":{log}:ascii_csv"))
+        with log.open(encoding="utf-8") as file:
+            for row in csv.DictReader(file):
+                if row["Event Name"] == "summary":
+                    made[int(row["Rank"])] += float(row["Num Reductions"])
+        return max(made)
+
+
 def exponent(ranks, values):
     """The power of the number of ranks with which a count grows, by least squares of logarithms; None where there are not two of them."""
     points = [(math.log(r), math.log(v)) for r, v in zip(ranks, values) if r > 1 and v and v > 0]

@@ -52,7 +52,7 @@ struct _n_LayerBalance {
   Vec        rhs, solution; /* of the layer */
   VecScatter scatter;       /* from a vector of the body */
   LayerRows  rows;
-  PetscReal  reach;         /* norm of the reference positions of all nodes [m] */
+  PetscReal  reach; /* norm of the reference positions of all nodes [m] */
   Factors    now, aside[BODY_SLOTS];
   PetscInt   n_made;
   PetscInt   n_history; /* numbers of that history */
@@ -315,7 +315,8 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscCall(BodyCreateLayerMatrix(body, &K));
   PetscCall(LayerRowsCreate(body, layer->dofs, &layer->rows));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(K, LayerRowsGetMatrix(layer->rows), body->mesh.dim, prefix, BodyGetSharedCompliance(body), &body->solver));
+  PetscCall(
+      ConstrainedSolverCreate(K, LayerRowsGetMatrix(layer->rows), body->mesh.dim, prefix, BodyGetSharedCompliance(body), &body->solver));
   PetscCall(VecNorm(body->mesh.positions, NORM_2, &layer->reach));
   PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
   PetscCall(BodyUseScatter(layer->scatter, body->state.u, layer->rhs));

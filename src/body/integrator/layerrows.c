@@ -1,16 +1,16 @@
 /*
-   The rows of the interface as the massless layer of an explicit body sees them: on the dofs of the layer. Where one of several ranks has all
-   of the body, each knows which dofs these are, and needs no other to have its rows get entries in other places.
+   The rows of the interface as the massless layer of an explicit body sees them: on the dofs of the layer. Where one of several ranks has
+   all of the body, each knows which dofs these are, and needs no other to have its rows get entries in other places.
 */
 #include "explicitimpl.h"
 
 struct _n_LayerRows {
-  Mat         matrix;
-  IS          dofs;     /* of the layer, numbers in the vectors of the body */
-  PetscInt    n;        /* of a body that one of several ranks has: how many, */
-  PetscInt   *list;     /* and all of them, ascending; else NULL */
-  PetscInt   *column;   /* per entry of the rows of the body: its column, or -1 where the layer does not have it */
-  PetscInt64  laid_out; /* what the rows of the body counted when the matrix was made */
+  Mat        matrix;
+  IS         dofs;     /* of the layer, numbers in the vectors of the body */
+  PetscInt   n;        /* of a body that one of several ranks has: how many, */
+  PetscInt  *list;     /* and all of them, ascending; else NULL */
+  PetscInt  *column;   /* per entry of the rows of the body: its column, or -1 where the layer does not have it */
+  PetscInt64 laid_out; /* what the rows of the body counted when the matrix was made */
 };
 
 Mat LayerRowsGetMatrix(LayerRows rows)

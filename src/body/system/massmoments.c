@@ -274,7 +274,7 @@ static PetscErrorCode FindCoefficients(MomentsProblem *problem, PetscReal coeffi
   /* in one dimension nothing turns, and no ring does */
   const PetscBool centre_alone = (PetscBool)(dim == 1 || problem->body->model.element->axisymmetric ||
                                              problem->body->mass.moments == BODY_MASS_CENTRE);
-  PetscBool       converged = PETSC_FALSE;
+  PetscBool       converged    = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(coefficients, MAX_MOMENTS));

@@ -82,8 +82,8 @@ static PetscErrorCode ListContactDofs(Contact contact, PetscInt b, PetscInt *n, 
 }
 
 /* Has a new matrix know, on the ranks that have rows of the body but nothing of the body itself, all columns in which these will ever have
-   entries: zeros in the first row. So what ranks tell each other in products stays as it is, and so does the matrix, when rows get entries in
-   other places. */
+   entries: zeros in the first row. So what ranks tell each other in products stays as it is, and so does the matrix, when rows get entries
+   in other places. */
 static PetscErrorCode ShareColumns(Contact contact, PetscInt b, PetscMPIInt rank)
 {
   MPI_Comm comm   = PetscObjectComm((PetscObject)contact);
@@ -114,8 +114,8 @@ static PetscErrorCode Renew(Contact contact, PetscInt b, PetscMPIInt rank)
   if (!contact->body_rows[b].n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatMPIAIJGetSeqAIJ(contact->interfaces[b], &blocks[0], &blocks[1], NULL));
   PetscCall(Preallocate(contact, b, blocks[contact->ranks.rank == rank ? 0 : 1]));
-  /* A new matrix, as after a checkpoint, multiplies by groups of rows alike where it has enough of them, in the block of its own columns. One that goes on is to look for
-     them anew too: without this gaps after a checkpoint differed in the last bit. */
+  /* A new matrix, as after a checkpoint, multiplies by groups of rows alike where it has enough of them, in the block of its own columns.
+     One that goes on is to look for them anew too: without this gaps after a checkpoint differed in the last bit. */
   if (contact->ranks.rank == rank) PetscCall(MatSetOption(blocks[0], MAT_USE_INODES, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -158,11 +158,12 @@ static PetscErrorCode CheckHeld(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    PetscCheck(!any[2 * p] || any[2 * p + 1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
-               "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
-               pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name,
-               pair->turned ? "set -contact_rows first" : "name that body second", ((PetscObject)contact->bodies[pair->body[0]])->name);
+    PetscCheck(
+        !any[2 * p] || any[2 * p + 1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
+        "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
+        pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, pair->turned ? "set -contact_rows first" : "name that body second",
+        ((PetscObject)contact->bodies[pair->body[0]])->name);
   }
   PetscCall(PetscFree(any));
   PetscFunctionReturn(PETSC_SUCCESS);
