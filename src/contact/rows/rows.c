@@ -137,10 +137,23 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode RefuseHeld(Contact contact, const ContactPair *pair)
+{
+  Body body = contact->bodies[pair->body[0]];
+
+  PetscFunctionBegin;
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+          "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
+          "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
+          pair->name, ((PetscObject)body)->name, pair->turned ? "set -contact_rows first" : "name that body second",
+          ((PetscObject)body)->name);
+}
+
 /* Ends with an error if all rows of a pair that have a partner opposite are held: then the pair would have no contact at all */
 static PetscErrorCode CheckHeld(Contact contact)
 {
-  int *any; /* for each pair: rows with a partner opposite, and those that are not held */
+  PetscInt held = 0;
+  int     *any; /* for each pair: rows with a partner opposite, and those that are not held */
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(2 * contact->n_pairs, &any));
@@ -155,17 +168,9 @@ static PetscErrorCode CheckHeld(Contact contact)
   if (contact->ranks.size > 1)
     PetscCallMPI(
         MPI_Allreduce(MPI_IN_PLACE, any, (PetscMPIInt)(2 * contact->n_pairs), MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    PetscCheck(
-        !any[2 * p] || any[2 * p + 1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-        "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
-        "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
-        pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, pair->turned ? "set -contact_rows first" : "name that body second",
-        ((PetscObject)contact->bodies[pair->body[0]])->name);
-  }
+  while (held < contact->n_pairs && !(any[2 * held] && !any[2 * held + 1])) held++;
   PetscCall(PetscFree(any));
+  if (held < contact->n_pairs) PetscCall(RefuseHeld(contact, &contact->pairs[held]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
