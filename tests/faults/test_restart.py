@@ -443,7 +443,7 @@ def test_flow_goes_on_from_a_state(run_in, folder, same_runs):
 
 def test_state_with_other_sides(run_in, folder):
     """Blocks in contact by the nodes of the first overlap by 6.6e-7 m for the nodes of the second, which is no reason to refuse them: the depth is no blow.
-    Seen: energy to 1.9e-6, and 6e-4 from the impulse with the sides as they were."""
+    Seen: energy to 1.9e-6, and 6e-6 from the impulse with the sides as they were, whose forces put all nodes where they were to the last bit."""
     where = folder("run")
     case = "-options_file options/blocks.opts -time_end 3e-4"
     run_in(case, where, 1, "-checkpoint", "c.h5", "-output_fields", "f.h5", fields=False)
@@ -453,7 +453,7 @@ def test_state_with_other_sides(run_in, folder):
         found = summary(where)
         assert max(abs(found["system"][f"energy_error_{end}"]) for end in ("min", "max")) < 1e-5
         impulses.append(found["contact"]["impulse"])
-    assert impulses[1] == pytest.approx(impulses[0], rel=2e-3)
+    assert impulses[1] == pytest.approx(impulses[0], rel=5e-5)
 
 
 def test_state_of_another_mesh(run_in, folder):

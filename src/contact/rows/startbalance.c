@@ -354,7 +354,7 @@ static PetscErrorCode IsNeeded(Contact contact, PetscBool *needed)
 PetscErrorCode ContactBalanceStart(Contact contact)
 {
   PetscReal    first = 0;
-  PetscBool    needed, linear = PETSC_TRUE;
+  PetscBool    needed, linear = PETSC_TRUE, out = PETSC_FALSE; /* of balance without forces */
   StartBalance start;
 
   PetscFunctionBegin;
@@ -379,12 +379,13 @@ PetscErrorCode ContactBalanceStart(Contact contact)
         MAX_ROUNDS);
     PetscCall(Relax(&start));
     if (round == 0 && start.change == 0) break;
+    out = PETSC_TRUE;
     PetscCall(SolveRows(&start));
     PetscCall(Move(&start));
     first = PetscMax(first, start.change);
     if (linear || start.change <= SMALL * first) break;
   }
-  if (first > 0) PetscCall(Finish(&start));
+  if (out) PetscCall(Finish(&start)); /* also where forces put all nodes back where they were, as with the state of a run that goes on */
   PetscCall(Destroy(&start));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
