@@ -113,6 +113,10 @@ PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, Petsc
 PETSC_EXTERN PetscErrorCode BodyHasFreeRows(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeFreeRows(Body, PetscScalar[]);
 
+/* Matrices of rows of a body that one of several ranks has all of, which is that rank's `owner` */
+PETSC_EXTERN PetscErrorCode BodyWholeRowsTellColumns(Mat, PetscBool, PetscInt, const PetscInt[]);
+PETSC_EXTERN PetscErrorCode BodyWholeRowsRenew(Mat, PetscBool, const PetscInt[]);
+
 /* Static bodies that contact or ties alone hold */
 PETSC_EXTERN PetscErrorCode BodyIsFloating(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyResetSprings(Body);

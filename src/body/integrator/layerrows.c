@@ -112,10 +112,11 @@ static PetscErrorCode Extract(LayerRows rows, Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A matrix for as many rows as the body has now, of which each rank that has nothing of the body itself knows all columns: so it can have
-   entries in any of them, and ranks tell each other the same in products whichever these are. Collective. */
+/* A matrix for as many rows as the body has now, with entries anywhere. Collective. */
 static PetscErrorCode CreateWhole(LayerRows rows, Body body)
 {
+  PetscInt *columns;
+
   PetscFunctionBegin;
   PetscCall(MatDestroy(&rows->matrix));
   PetscCall(MatCreate(PetscObjectComm((PetscObject)body), &rows->matrix));
@@ -123,21 +124,19 @@ static PetscErrorCode CreateWhole(LayerRows rows, Body body)
   PetscCall(MatSetType(rows->matrix, MATAIJ));
   PetscCall(MatSetUp(rows->matrix));
   PetscCall(MatSetOption(rows->matrix, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  for (PetscInt k = 0; k < rows->n && body->rows.local && !body->mesh.is_owner; k++)
-    PetscCall(MatSetValue(rows->matrix, body->rows.begin, k, 0, INSERT_VALUES));
-  PetscCall(MatAssemblyBegin(rows->matrix, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(rows->matrix, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatSetOption(rows->matrix, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  PetscCall(PetscMalloc1(rows->n, &columns));
+  for (PetscInt k = 0; k < rows->n; k++) columns[k] = k;
+  PetscCall(BodyWholeRowsTellColumns(rows->matrix, body->mesh.is_owner, rows->n, columns));
+  PetscCall(PetscFree(columns));
   rows->laid_out = body->rows.laid_out;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for the entries that the layer has of the rows of this rank: all of them are in one block of the matrix */
+/* Room for the entries that the layer has of the rows of this rank */
 static PetscErrorCode MakeEntries(LayerRows rows, Body body)
 {
   const RowPattern *pattern = &body->rows.pattern;
   PetscInt         *counts;
-  Mat               blocks[2];
 
   PetscFunctionBegin;
   PetscCall(MakeRoom(rows, pattern));
@@ -148,12 +147,7 @@ static PetscErrorCode MakeEntries(LayerRows rows, Body body)
       if (rows->column[k] < 0) rows->column[k] = -1;
       else counts[i]++;
     }
-  if (pattern->n) {
-    PetscCall(MatMPIAIJGetSeqAIJ(rows->matrix, &blocks[0], &blocks[1], NULL));
-    PetscCall(MatSeqAIJSetPreallocation(blocks[body->mesh.is_owner ? 0 : 1], 0, counts));
-    /* groups of rows alike, as in a matrix that is made anew, after a checkpoint */
-    if (body->mesh.is_owner) PetscCall(MatSetOption(blocks[0], MAT_USE_INODES, PETSC_TRUE));
-  }
+  PetscCall(BodyWholeRowsRenew(rows->matrix, body->mesh.is_owner, counts));
   PetscCall(PetscFree(counts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,11 +1,11 @@
 /* The matrices of the rows of each body, and how they get entries in other places as rows are built again. */
 #include <contact/parts.h>
 
-/* Room for the entries of the rows of a body, of which each has as many as its transfer tells: PETSc else collects them in a hash table.
-   Ties have other rows, and where ranks share a body nobody knows which columns are those of other ranks. */
-static PetscErrorCode Preallocate(Contact contact, PetscInt b, Mat matrix)
+/* Entries of each row of a body, as its transfer tells. Ties have other rows, and where ranks share a body nobody knows which columns are
+   those of other ranks. */
+static PetscErrorCode CountEntries(Contact contact, PetscInt b, PetscInt entries[])
 {
-  PetscInt *entries = contact->work.intervals, *counts[2] = {contact->work.entry_counts, contact->work.entry_counts + contact->rows.n};
+  PetscInt *counts[2] = {contact->work.entry_counts, contact->work.entry_counts + contact->rows.n};
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
@@ -15,7 +15,6 @@ static PetscErrorCode Preallocate(Contact contact, PetscInt b, Mat matrix)
     PetscCall(TransferCountValues(pair->transfer, counts[0], pair->obstacle ? NULL : counts[1]));
     for (PetscInt i = pair->begin; i < pair->end; i++) entries[i - pair->shift[side]] = counts[side][(i - pair->begin) / pair->components];
   }
-  PetscCall(MatSeqAIJSetPreallocation(matrix, 0, entries));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -32,15 +31,15 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
   PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), &contact->interfaces[b]));
   PetscCall(MatSetSizes(contact->interfaces[b], contact->body_rows[b].n, n, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
-  if (contact->ranks.size == 1 && (law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION))
-    PetscCall(Preallocate(contact, b, contact->interfaces[b]));
-  else PetscCall(MatSetUp(contact->interfaces[b]));
+  if (contact->ranks.size == 1 && (law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION)) {
+    PetscCall(CountEntries(contact, b, contact->work.intervals)); /* or PETSc collects them in a hash table */
+    PetscCall(MatSeqAIJSetPreallocation(contact->interfaces[b], 0, contact->work.intervals));
+  } else PetscCall(MatSetUp(contact->interfaces[b]));
   PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether one of several ranks has all of a body: then all entries of a rank's rows are in one block of the matrix, that of the columns
-   that this rank has or that of the columns which others have. The same on every rank, as is whether all rows are there too. */
+/* Whether one of several ranks has all of a body, and which. The same on every rank, as is whether all rows are there too. */
 static PetscErrorCode IsWhole(Contact contact, PetscInt b, PetscBool *whole, PetscBool *at_home, PetscMPIInt *rank)
 {
   const ContactBodyRows *of  = &contact->body_rows[b];
@@ -58,7 +57,7 @@ static PetscErrorCode IsWhole(Contact contact, PetscInt b, PetscBool *whole, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes of a body that may touch, on the rank that has it: the first dof of each, some twice */
+/* Dofs of the nodes of a body that may touch, on the rank that has it, some twice */
 static PetscErrorCode ListContactDofs(Contact contact, PetscInt b, PetscInt *n, PetscInt *dofs[])
 {
   const ContactBodyRows *of = &contact->body_rows[b];
@@ -72,8 +71,9 @@ static PetscErrorCode ListContactDofs(Contact contact, PetscInt b, PetscInt *n, 
       const SurfaceData *data;
 
       PetscCall(SurfaceGetData(pair->surfaces[pair->body[0] == b ? 0 : 1], &data));
-      if (pass) PetscCall(PetscArraycpy(*dofs + count, data->dofs, data->n_owned));
-      count += data->n_owned;
+      for (PetscInt i = 0; i < contact->dim * data->n_owned && pass; i++)
+        (*dofs)[count + i] = data->dofs[i / contact->dim] + i % contact->dim;
+      count += contact->dim * data->n_owned;
     }
     if (!pass) PetscCall(PetscMalloc1(count, dofs));
   }
@@ -81,42 +81,19 @@ static PetscErrorCode ListContactDofs(Contact contact, PetscInt b, PetscInt *n, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Has a new matrix know, on the ranks that have rows of the body but nothing of the body itself, all columns in which these will ever have
-   entries: zeros in the first row. So what ranks tell each other in products stays as it is, and so does the matrix, when rows get entries
-   in other places. */
+/* Has a new matrix know all columns in which the rows of other ranks than that of the body will ever have entries */
 static PetscErrorCode ShareColumns(Contact contact, PetscInt b, PetscMPIInt rank)
 {
-  MPI_Comm comm   = PetscObjectComm((PetscObject)contact);
-  Mat      matrix = contact->interfaces[b];
-  PetscInt n, *dofs = NULL, row;
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  PetscInt n, *dofs = NULL;
 
   PetscFunctionBegin;
   if (contact->ranks.rank == rank) PetscCall(ListContactDofs(contact, b, &n, &dofs));
   PetscCallMPI(MPI_Bcast(&n, 1, MPIU_INT, rank, comm));
   if (!dofs) PetscCall(PetscMalloc1(n, &dofs));
   PetscCallMPI(MPI_Bcast(dofs, (PetscMPIInt)n, MPIU_INT, rank, comm));
-  PetscCall(MatGetOwnershipRange(matrix, &row, NULL));
-  for (PetscInt k = 0; k < n && contact->body_rows[b].n && contact->ranks.rank != rank; k++)
-    for (PetscInt d = 0; d < contact->dim; d++) PetscCall(MatSetValue(matrix, row, dofs[k] + d, 0, INSERT_VALUES));
-  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE)); /* it asks no other rank when it is assembled again */
+  PetscCall(BodyWholeRowsTellColumns(contact->interfaces[b], (PetscBool)(contact->ranks.rank == rank), n, dofs));
   PetscCall(PetscFree(dofs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* New room for the entries of the rows of a whole body, without a word of other ranks */
-static PetscErrorCode Renew(Contact contact, PetscInt b, PetscMPIInt rank)
-{
-  Mat blocks[2];
-
-  PetscFunctionBegin;
-  if (!contact->body_rows[b].n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMPIAIJGetSeqAIJ(contact->interfaces[b], &blocks[0], &blocks[1], NULL));
-  PetscCall(Preallocate(contact, b, blocks[contact->ranks.rank == rank ? 0 : 1]));
-  /* A new matrix, as after a checkpoint, multiplies by groups of rows alike where it has enough of them, in the block of its own columns.
-     One that goes on is to look for them anew too: without this gaps after a checkpoint differed in the last bit. */
-  if (contact->ranks.rank == rank) PetscCall(MatSetOption(blocks[0], MAT_USE_INODES, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -146,7 +123,8 @@ static PetscErrorCode PrepareMatrix(Contact contact, PetscInt b)
     if (!whole || at_home) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ShareColumns(contact, b, rank));
   }
-  PetscCall(Renew(contact, b, rank));
+  PetscCall(CountEntries(contact, b, contact->work.intervals));
+  PetscCall(BodyWholeRowsRenew(contact->interfaces[b], (PetscBool)(contact->ranks.rank == rank), contact->work.intervals));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,0 +1,63 @@
+/*
+   Matrices of rows of a body that one of several ranks has all of. All entries of a rank's rows are in one block of such a matrix: that of
+   the columns which it has, of the owner, or that of the columns which others have. So rows can get entries in other places without a word
+   of other ranks, once each rank knows all columns that these will ever be in.
+*/
+#include <body/layout/bodyimpl.h>
+
+/*
+  BodyWholeRowsTellColumns - has the ranks that have rows, but nothing of the body itself, know the columns in which these will ever have
+  entries
+
+  Collective
+
+  Input Parameters:
++ matrix  - rows by dofs, new
+. owner   - whether this rank has the body
+. n       - number of columns, the same on all ranks
+- columns - which they are
+
+  Note:
+  There are zeros in the first row. What ranks tell each other in products stays as it is when rows get entries in other places, and so does
+  the matrix. Assembled again, it asks no other rank.
+*/
+PetscErrorCode BodyWholeRowsTellColumns(Mat matrix, PetscBool owner, PetscInt n, const PetscInt columns[])
+{
+  PetscInt begin, end;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRange(matrix, &begin, &end));
+  for (PetscInt k = 0; k < n && end > begin && !owner; k++) PetscCall(MatSetValue(matrix, begin, columns[k], 0, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatSetOption(matrix, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  BodyWholeRowsRenew - new room for the entries of this rank's rows
+
+  Not Collective
+
+  Input Parameters:
++ matrix - of which all ranks know the columns
+. owner  - whether this rank has the body
+- counts - entries of each row of this rank, at most
+
+  Note:
+  A new matrix, as after a checkpoint, multiplies by groups of rows alike where it has enough of them, in the block of its own columns. One
+  that goes on is to look for them anew too: without this gaps after a checkpoint differed in the last bit.
+*/
+PetscErrorCode BodyWholeRowsRenew(Mat matrix, PetscBool owner, const PetscInt counts[])
+{
+  PetscInt n;
+  Mat      blocks[2];
+
+  PetscFunctionBegin;
+  PetscCall(MatGetLocalSize(matrix, &n, NULL));
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMPIAIJGetSeqAIJ(matrix, &blocks[0], &blocks[1], NULL));
+  PetscCall(MatSeqAIJSetPreallocation(blocks[owner ? 0 : 1], 0, counts));
+  if (owner) PetscCall(MatSetOption(blocks[0], MAT_USE_INODES, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
