@@ -12,6 +12,7 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverFreeRows(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverForgetColumns(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverGetMatrices(ConstrainedSolver, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverChoose(KSP, Mat, PetscInt);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverChooseMUMPS(PC);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverAdjust(KSP);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[], const PetscReal[]);

@@ -8,7 +8,8 @@
    more dimensions factors fill in more, and MUMPS has the better kernels and orderings. */
 static const PetscInt max_sequential_size[] = {50000, 50000, 5000, 1500};
 /* Memory that factors may take beyond what MUMPS expects [%]. Its own 20 were too few on three ranks that divide a ball of which a small
-   part has most elements: what it expects leaves out what moves between ranks as they go. Pages that are not used are not taken. */
+   part has most elements: what it expects leaves out what moves between ranks as they go, and what pivots of indefinite matrices take.
+   Pages that are not used are not taken. */
 #define MUMPS_MEMORY 100
 /* In three dimensions factors of bodies larger than this take more memory and time than multigrid */
 #define MAX_DIRECT_SIZE_3D 150000
@@ -40,8 +41,8 @@ static PetscErrorCode IsOnOneRank(Mat A, PetscMPIInt size, PetscBool *one)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Factors of MUMPS. All matrices here are symmetric. */
-static PetscErrorCode ChooseMUMPS(PC pc)
+/* Factors of MUMPS, of the matrix that a preconditioner has. All matrices here are symmetric. */
+PetscErrorCode ConstrainedSolverChooseMUMPS(PC pc)
 {
   Mat F;
 
@@ -59,7 +60,7 @@ static PetscErrorCode ChooseSequential(PC pc, PetscInt n, PetscInt dim)
 {
   PetscFunctionBegin;
   if (n > max_sequential_size[dim]) {
-    PetscCall(ChooseMUMPS(pc));
+    PetscCall(ConstrainedSolverChooseMUMPS(pc));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PCSetType(pc, PCLU));
@@ -120,7 +121,7 @@ PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
     PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (size > 1) PetscCall(ChooseMUMPS(pc));
+  if (size > 1) PetscCall(ConstrainedSolverChooseMUMPS(pc));
   else PetscCall(ChooseSequential(pc, n, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

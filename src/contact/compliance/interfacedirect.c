@@ -11,9 +11,8 @@
    place, with zeros in C_b and one in D, so that the factors have the same pattern while rows join and leave.
 */
 #include "interfaceimpl.h"
+#include <solver/constrainedsolver.h>
 
-/* Memory that pivots may take beyond what MUMPS expects [%] */
-#define PIVOT_MEMORY 100
 /* Solutions by conjugate gradients that take as long as the factors: 2401 rows of hexahedra took 2.4 */
 #define SOLUTIONS_OF_FACTORS 3
 /* Part of the right-hand side that the first solution with new factors may leave: more is left where rows depend on each other, which
@@ -256,17 +255,12 @@ static PetscErrorCode FillMatrix(InterfaceOperator op)
 static PetscErrorCode CreateFactors(InterfaceOperator op)
 {
   InterfaceDirect d = op->direct;
-  Mat             F;
 
   PetscFunctionBegin;
   PetscCall(MatCreateVecs(d->matrix, &d->solution, &d->rhs));
   PetscCall(PCCreate(PetscObjectComm((PetscObject)op->contact), &d->factors));
   PetscCall(PCSetOperators(d->factors, d->matrix, d->matrix));
-  PetscCall(PCSetType(d->factors, PCCHOLESKY));
-  PetscCall(PCFactorSetMatSolverType(d->factors, MATSOLVERMUMPS));
-  PetscCall(PCFactorSetUpMatSolverType(d->factors));
-  PetscCall(PCFactorGetMatrix(d->factors, &F));
-  PetscCall(MatMumpsSetIcntl(F, 14, PIVOT_MEMORY));
+  PetscCall(ConstrainedSolverChooseMUMPS(d->factors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
