@@ -200,11 +200,10 @@ static PetscErrorCode TakeBack(LayerBalance layer, Body body, const LoadCase *lo
   of_high = left;
   if (!(before > 0) || left >= -FORCE_LEFT * before) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt tries = 0; tries < MAX_SEARCH && !(PetscAbsReal(left) <= FORCE_LEFT * before); tries++) {
-    const PetscReal width = high - low;
-    const PetscReal root  = PetscIsInfOrNanReal(of_high) ? 0.5 : of_low / (of_low - of_high);
-    const PetscReal next  = low + width * PetscMin(PetscMax(root, LEAST_PART), 1 - LEAST_PART);
+    const PetscReal root = PetscIsInfOrNanReal(of_high) ? 0.5 : of_low / (of_low - of_high);
+    const PetscReal next = low + (high - low) * PetscMin(PetscMax(root, LEAST_PART), 1 - LEAST_PART);
 
-    PetscCall(VecScale(layer->solution, (next - at)));
+    PetscCall(VecScale(layer->solution, next - at));
     PetscCall(Move(layer, u));
     PetscCall(VecScale(layer->solution, 1 / (next - at)));
     PetscCall(ComputeMissing(layer, body, load, follows, u));

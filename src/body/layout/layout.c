@@ -257,23 +257,7 @@ PetscErrorCode BodyGetLocalDot(Vec a, Vec b, PetscReal *dot)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* 2-norm of a vector laid out as displacements, or one of the massless layer: of a body that steps alone that of this rank's part. PETSc
-   remembers the norm of a vector that has not changed, which the vectors of a local body have for its own rank alone: there the sum over
-   ranks is made each time. */
-PetscErrorCode BodyGetNorm(Body body, Vec vec, PetscReal *norm)
-{
-  PetscFunctionBegin;
-  if (!body->local) {
-    PetscCall(VecNorm(vec, NORM_2, norm));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(BodyGetLocalDot(vec, vec, norm));
-  if (!BodyStepsAlone(body)) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, norm, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  *norm = PetscSqrtReal(*norm);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Product of two vectors of this kind */
+/* Product of two vectors laid out as displacements, or of the massless layer: of a body that steps alone that of this rank's part */
 PetscErrorCode BodyGetDot(Body body, Vec a, Vec b, PetscReal *dot)
 {
   PetscScalar value;
@@ -286,6 +270,20 @@ PetscErrorCode BodyGetDot(Body body, Vec a, Vec b, PetscReal *dot)
   }
   PetscCall(BodyGetLocalDot(a, b, dot));
   if (!BodyStepsAlone(body)) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, dot, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 2-norm of a vector of this kind. PETSc remembers the norm of a vector that has not changed, which the vectors of a local body have for
+   its own rank alone: there the sum over ranks is made each time. */
+PetscErrorCode BodyGetNorm(Body body, Vec vec, PetscReal *norm)
+{
+  PetscFunctionBegin;
+  if (!body->local) {
+    PetscCall(VecNorm(vec, NORM_2, norm));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(BodyGetDot(body, vec, vec, norm));
+  *norm = PetscSqrtReal(*norm);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
