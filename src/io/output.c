@@ -1,5 +1,6 @@
 /* What a run writes and prints: the class, its options, report and end. */
 #include "outputimpl.h"
+#include "outputpaths.h"
 #include "report.h"
 #include "stopsignals.h"
 #include "summary.h"
@@ -179,6 +180,9 @@ PetscErrorCode OutputSetFromOptions(Output output)
                                (PetscEnum)precision, (PetscEnum *)&precision, NULL));
   }
   PetscOptionsEnd();
+  PetscCall(OutputPathDrop(history, &has_history));
+  PetscCall(OutputPathDrop(summary, &has_summary));
+  PetscCall(OutputPathDrop(fields, &has_fields));
   PetscCall(OutputCheckPaths(PetscObjectComm((PetscObject)output), summary, history, fields, ""));
   PetscCall(PetscStrcmp(exact, "none", &none));
   if (!none) PetscCall(OutputSetExact(output, exact));

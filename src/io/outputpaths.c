@@ -146,6 +146,24 @@ static PetscErrorCode Compare(PetscInt n, const char *const options[], const cha
 }
 
 /*
+  OutputPathDrop - takes "none" for a path that an option has given as its absence: so a command line overrules an options file
+
+  Not Collective
+
+  Input/Output Parameters:
++ path  - what the option has; empty for none
+- given - whether it has a file
+*/
+PetscErrorCode OutputPathDrop(char path[], PetscBool *given)
+{
+  PetscFunctionBegin;
+  if (strcmp(path, "none")) PetscFunctionReturn(PETSC_SUCCESS);
+  path[0] = 0;
+  *given  = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
   OutputPathsCheck - stops with an error if two outputs are one file, or an output is one that the run reads
 
   Collective

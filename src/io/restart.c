@@ -1,5 +1,6 @@
 /* Runs that are continued from a checkpoint, and the options of all this. */
 #include "outputimpl.h"
+#include "outputpaths.h"
 #include <body/interface/bodyvisit.h>
 #include <contact/interface/contactvisit.h>
 #include <controller/controllervisit.h>
@@ -266,6 +267,7 @@ PetscErrorCode OutputReadCheckpoints(Output output)
   PetscCall(PetscOptionsString("-max_wall_time", "Minutes, or h:mm:ss, after which the run ends", "OutputSetMaxWallTime", limit, limit,
                                sizeof(limit), &has_limit));
   PetscOptionsEnd();
+  PetscCall(OutputPathDrop(path, &has));
   PetscCheck(!has_interval || interval > 0, comm, PETSC_ERR_USER_INPUT,
              "-checkpoint_interval %" PetscInt_FMT " must be a number of controller steps, 1 or more", interval);
   PetscCheck(!has_minutes || minutes > 0, comm, PETSC_ERR_USER_INPUT, "-checkpoint_wall_interval %.6g must be a positive number of minutes",

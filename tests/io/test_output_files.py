@@ -149,3 +149,14 @@ def test_closed_pipe(folder):
     assert done.returncode == 0 and done.stderr == ""
     assert done.stdout.startswith("time ")
     check_whole(folder / "d")
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_none_overrules_an_options_file(ranks, folder):
+    files = ["-output_history h.h5", "-output_summary s.json", "-output_fields f.h5", "-output_fields_interval 5", "-checkpoint c.h5", "-checkpoint_interval 5"]
+    (folder / "my.opts").write_text("\n".join(files) + "\n")
+    done = run(folder, *SHORT, "-options_file", "my.opts", "-output_history", "none", "-output_fields", "none", "-checkpoint", "none", ranks=ranks)
+    assert done.returncode == 0, done.stderr
+    assert not done.stderr
+    assert sorted(path.name for path in folder.iterdir()) == ["my.opts", "options", "s.json"]
+    assert json.loads((folder / "s.json").read_text())["run"]["complete"] is True
