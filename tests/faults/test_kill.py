@@ -1,6 +1,7 @@
 """Runs that are killed, or asked to end, at any moment: continued by the same command they end with the bits of one that was not interrupted."""
 
 import contextlib
+import json
 import os
 import random
 import re
@@ -142,8 +143,13 @@ def test_end_in_good_order(run_in, folder, same_runs, number):
     assert found
     with h5py.File(other / "h.h5") as history:
         assert len(history["time"]) == int(found[1]) + 1
-    assert (other / "s.json").exists()
+    figures = json.loads((other / "s.json").read_text())["run"]
+    assert figures["complete"] is False
+    assert figures["controller_steps"] == int(found[1])
+    with h5py.File(other / "h.h5") as history:
+        assert figures["time"] == pytest.approx(history["time"][-1], rel=1e-14)  # the same product, added up in other places
     run_in(SLOW, other, 1, "-restart", "c.h5", "-checkpoint", "c.h5")
+    assert json.loads((other / "s.json").read_text())["run"] == json.loads((whole / "s.json").read_text())["run"]
     same_runs(whole, other)
 
 

@@ -39,6 +39,7 @@ CONTACT = {
 PAIR = {**CONTACT, "impulse_vector": list}
 SUMMARY = {
     "version": str,
+    "run": {"complete": bool, "controller_steps": int, "time": float},
     "contact": {"type": str, **CONTACT},
     "pairs": {"left:right": PAIR},
     "schwarz": {
