@@ -157,7 +157,7 @@ static PetscErrorCode Compare(PetscInt n, const char *const options[], const cha
 PetscErrorCode OutputPathDrop(char path[], PetscBool *given)
 {
   PetscFunctionBegin;
-  if (strcmp(path, "none")) PetscFunctionReturn(PETSC_SUCCESS);
+  if (strcmp(path, "none") != 0) PetscFunctionReturn(PETSC_SUCCESS);
   path[0] = 0;
   *given  = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
