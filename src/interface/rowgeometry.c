@@ -4,6 +4,10 @@
 /* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: the partner's nodes lie within 1e-4
    of the face size of a line or of a point */
 #define NOTHING_NEW 1e-8
+/* How far outside the partner's nodes the place of a row may lie, in parts of what they are apart, for its weights to follow it. Of a node
+   at an edge these may lie on the partner's edge alone, which is all but straight, and then the place comes to lie beside the line as the
+   bodies bulge; weights that make up for that are the larger the straighter it is. Such a force keeps its moment about the line. */
+#define FARTHEST 1
 /* Square of the chord of the angle, 50 degrees, by which the normal of a node may differ from the mean of a row if the surface is bent
    there rather than has an edge */
 #define BENT_CHORD 0.715
@@ -12,13 +16,54 @@
 #define BENT 0.985
 #define EDGE 0.95
 
+/* What the conditions of RowCorrect() say of a point of the partner */
+static void FindConditions(const PetscReal x[], PetscReal tangents[2][3], PetscReal size, const PetscReal point[], PetscReal condition[3])
+{
+  const PetscReal from[3] = {point[0] - x[0], point[1] - x[1], point[2] - x[2]};
+
+  condition[0] = 1;
+  condition[1] = Dot(from, tangents[0]) / size;
+  condition[2] = Dot(from, tangents[1]) / size;
+}
+
+/* The a-th condition less what those before it say already */
+static PetscReal Remainder(PetscInt a, PetscReal lower[3][3], const PetscReal condition[3])
+{
+  PetscReal rest[3];
+
+  for (PetscInt k = 0; k <= a; k++) {
+    rest[k] = condition[k];
+    for (PetscInt b = 0; b < k; b++) rest[k] -= lower[k][b] * rest[b];
+  }
+  return rest[a];
+}
+
+/* Whether the place of a row is too far from the partner's nodes, along the a-th condition, for weights to make up for it */
+static PetscBool IsFar(PetscInt a, PetscReal lower[3][3], PetscInt n, const PetscReal x[], PetscReal tangents[2][3], PetscReal size,
+                       const PetscReal *partners[], const PetscReal weights[])
+{
+  const PetscReal place[3] = {1, 0, 0}, there = Remainder(a, lower, place);
+  PetscReal       least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
+
+  for (PetscInt j = 0; j < n; j++) {
+    PetscReal condition[3], rest;
+
+    if (weights[j] == 0) continue;
+    FindConditions(x, tangents, size, partners[j], condition);
+    rest  = Remainder(a, lower, condition);
+    least = PetscMin(least, rest);
+    most  = PetscMax(most, rest);
+  }
+  return (PetscBool)(PetscMax(least - there, there - most) > FARTHEST * (most - least));
+}
+
 /* Changes the weights by as little as possible, each in proportion to its size, such that they sum to one and sum_j P_j x_j - x is along
    the normal: then a force along the normal has the same resultant and the same moment on both sides. Along a tangent in which the
-   partner's nodes do not differ nothing can be changed. */
+   partner's nodes do not differ, or by too little, nothing is changed. */
 void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size,
                 PetscReal weights[])
 {
-  PetscReal tangents[2][3] = {{0}}, gram[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
+  PetscReal tangents[2][3] = {{0}}, gram[3][3] = {{0}}, lower[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
   PetscInt  thinnest = 0;
 
   if (dim == 1) return;
@@ -34,25 +79,24 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     Cross(normal, tangents[0], tangents[1]);
   }
   for (PetscInt j = 0; j < n; j++) {
-    const PetscReal from[3]      = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
-    const PetscReal condition[3] = {1, Dot(from, tangents[0]) / size, Dot(from, tangents[1]) / size};
+    PetscReal condition[3];
 
+    FindConditions(x, tangents, size, partners[j], condition);
     for (PetscInt a = 0; a < dim; a++) {
       rest[a] -= weights[j] * condition[a];
       for (PetscInt b = 0; b < dim; b++) gram[a][b] += PetscAbsReal(weights[j]) * condition[a] * condition[b];
     }
   }
   for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
-    if (gram[a][a] < NOTHING_NEW) {
+    if (gram[a][a] < NOTHING_NEW || (a && IsFar(a, lower, n, x, tangents, size, partners, weights))) {
       for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
       rest[a] = 0;
       continue;
     }
     for (PetscInt r = a + 1; r < dim; r++) {
-      const PetscReal factor = gram[r][a] / gram[a][a];
-
-      for (PetscInt b = a; b < dim; b++) gram[r][b] -= factor * gram[a][b];
-      rest[r] -= factor * rest[a];
+      lower[r][a] = gram[r][a] / gram[a][a];
+      for (PetscInt b = a; b < dim; b++) gram[r][b] -= lower[r][a] * gram[a][b];
+      rest[r] -= lower[r][a] * rest[a];
     }
   }
   for (PetscInt a = dim - 1; a >= 0; a--) {
@@ -61,10 +105,10 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     factors[a] /= gram[a][a];
   }
   for (PetscInt j = 0; j < n; j++) {
-    const PetscReal from[3] = {partners[j][0] - x[0], partners[j][1] - x[1], partners[j][2] - x[2]};
+    PetscReal condition[3];
 
-    weights[j] += PetscAbsReal(weights[j]) *
-                  (factors[0] + factors[1] * Dot(from, tangents[0]) / size + factors[2] * Dot(from, tangents[1]) / size);
+    FindConditions(x, tangents, size, partners[j], condition);
+    weights[j] += PetscAbsReal(weights[j]) * (factors[0] + factors[1] * condition[1] + factors[2] * condition[2]);
   }
 }
 

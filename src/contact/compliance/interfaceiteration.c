@@ -116,7 +116,8 @@ static PetscErrorCode GetDiagonal(Mat shell, Vec diagonal)
 /* What products take, and what preconditions */
 PetscErrorCode InterfaceOperatorCreateProducts(InterfaceOperator op)
 {
-  const PetscInt dense = op->settings.products ? op->settings.few : op->settings.dense_limit; /* rows that are so without products */
+  /* rows whose matrix is dense where there are neither products nor sparse factors */
+  const PetscInt dense = op->settings.products || op->direct ? op->settings.few : op->settings.dense_limit;
 
   PetscFunctionBegin;
   if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));

@@ -84,8 +84,8 @@ PetscErrorCode InterfacePreconditionerCreate(InterfaceOperator op, InterfacePrec
     PetscCall(BodyGetComplianceMatrices(contact->bodies[b], &A, NULL));
     PetscCall(BodyGetLayerMatrices(contact->bodies[b], &layer, NULL));
     if (!dirichlet || !A || !op->feels[b]) continue;
-    /* layers have sparse factors of S where it is solved with; where it is multiplied with alone a product with K takes next to nothing */
-    if (layer ? !op->settings.products : !exact) continue;
+    /* with a massless layer the surface is all that there is, and a product with K takes next to nothing */
+    if (!layer && !exact) continue;
     p->slabs[p->n++] = (Slab){.body = b, .is_layer = (PetscBool)(layer != NULL)};
   }
   if (p->n) *preconditioner = p;
