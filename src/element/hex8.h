@@ -77,7 +77,7 @@ SIMD_INLINE void VolumeGradient(SimdVector x[DIM][MODES], PetscInt i, SimdVector
   for (PetscInt k = 0; k < 3; k++) {
     const PetscInt l = (k + 1) % 3, m = (k + 2) % 3;
 
-    d[k] = 8 * (v[l] * w[m] - v[m] * w[l] - (bv[l] * bw[m] - bv[m] * bw[l]) / 3);
+    d[k] = 8 * (v[l] * w[m] - v[m] * w[l] - (1. / 3) * (bv[l] * bw[m] - bv[m] * bw[l]));
     b[k] = -8. / 3 * (v[l] * bw[m] - v[m] * bw[l] + bv[l] * w[m] - bv[m] * w[l]);
   }
   d[3] = b[2];

@@ -26,25 +26,23 @@ typedef struct {
 SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[],
                           SimdVector modes[SIMD_PARTS][DIM][MODES])
 {
-  SimdReal nodal[DIM][NODES];
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    const PetscInt *element[SIMD_WIDTH / SIMD_PARTS];
+    SimdVector      nodal[DIM][NODES];
 
-  for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-    const PetscInt *nodes = connectivity + NODES * PetscMin(first + p, count - 1);
-
-    for (PetscInt a = 0; a < NODES; a++) {
-      const PetscReal *of_node = values + (size_t)(DIM * nodes[a]);
-
-      for (PetscInt i = 0; i < DIM; i++) nodal[i][a][p] = of_node[i];
-    }
-  }
-  for (PetscInt part = 0; part < SIMD_PARTS; part++)
-    for (PetscInt i = 0; i < DIM; i++) {
-      SimdVector n[NODES];
-
+    for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++)
+      element[p] = connectivity + NODES * PetscMin(first + SIMD_WIDTH / SIMD_PARTS * part + p, count - 1);
 #pragma GCC unroll 8
-      for (PetscInt a = 0; a < NODES; a++) n[a] = SimdGetParts(nodal[i][a])[part];
-      ModesOfNodes(n, modes[part][i]);
+    for (PetscInt a = 0; a < NODES; a++) {
+      size_t at[SIMD_WIDTH / SIMD_PARTS];
+
+      for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) at[p] = DIM * (size_t)element[p][a];
+#pragma GCC unroll 3
+      for (PetscInt i = 0; i < DIM; i++) nodal[i][a] = SimdGather(values + i, at);
     }
+#pragma GCC unroll 3
+    for (PetscInt i = 0; i < DIM; i++) ModesOfNodes(nodal[i], modes[part][i]);
+  }
 }
 
 /* Cofactors of a matrix, and its determinant */
