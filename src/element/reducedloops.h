@@ -31,6 +31,23 @@ SIMD_INLINE PetscInt Without(PetscInt k)
   return DIM == 2 ? 2 : k == 2 ? 3 : 4 + k;
 }
 
+/* 1 / s of each by one division, which takes as long as ten products */
+SIMD_INLINE void InvertAll(SimdVector s[DIM])
+{
+#if DIM == 2
+  const SimdVector inverse = 1 / (s[0] * s[1]), first = s[0];
+
+  s[0] = inverse * s[1];
+  s[1] = inverse * first;
+#else
+  const SimdVector xy = s[0] * s[1], inverse = 1 / (xy * s[2]), yz = s[1] * s[2], zx = s[2] * s[0];
+
+  s[0] = inverse * yz;
+  s[1] = inverse * zx;
+  s[2] = inverse * xy;
+#endif
+}
+
 SIMD_INLINE void GetUndeformed(SimdVector X[DIM][MODES], Undeformed *shape)
 {
   SimdVector volume = {0};
@@ -43,12 +60,11 @@ SIMD_INLINE void GetUndeformed(SimdVector X[DIM][MODES], Undeformed *shape)
   shape->inverse = 1 / volume;
 #pragma GCC unroll 3
   for (PetscInt k = 0; k < DIM; k++) {
-    SimdVector square = X[0][k] * X[0][k];
-
+    shape->squares[k] = X[0][k] * X[0][k];
 #pragma GCC unroll 3
-    for (PetscInt i = 1; i < DIM; i++) square += X[i][k] * X[i][k];
-    shape->squares[k] = 1 / square;
+    for (PetscInt i = 1; i < DIM; i++) shape->squares[k] += X[i][k] * X[i][k];
   }
+  InvertAll(shape->squares);
 }
 
 /* The mean displacement gradient */
@@ -67,11 +83,11 @@ SIMD_INLINE void GetMeanGradient(PetscInt part, const Undeformed *shape, SimdVec
     }
 }
 
-/* The derivatives of the energy by c_ka, and twice the energy */
-SIMD_INLINE void GetHourglassForces(const Hourglass *constants, const Undeformed *shape, SimdVector c[DIM][HOURGLASSES],
+/* The derivatives of the energy by c_ka, and twice the energy, times a scale */
+SIMD_INLINE void GetHourglassForces(const Hourglass *constants, const Undeformed *shape, PetscReal scale, SimdVector c[DIM][HOURGLASSES],
                                     SimdVector s[DIM][HOURGLASSES], SimdVector *twice)
 {
-  const SimdVector third = shape->volume * (1. / 3);
+  const SimdVector third = shape->volume * (scale / 3);
 
 #if DIM == 2
   *twice = 0 * third;
@@ -80,7 +96,7 @@ SIMD_INLINE void GetHourglassForces(const Hourglass *constants, const Undeformed
     *twice += s[k][0] * c[k][0];
   }
 #else
-  const SimdVector ninth = shape->volume * (1. / 9);
+  const SimdVector ninth = shape->volume * (scale / 9);
   SimdVector       twist[3];
 
   /* about coordinate m; a number of an hourglass is that of the coordinate that it leaves out, and 3 that of all */
@@ -107,10 +123,17 @@ SIMD_INLINE void GetHourglassForces(const Hourglass *constants, const Undeformed
 #endif
 }
 
-/* Adds the forces of the hourglasses to F, and takes what they add to the stress, times the volume, off it; returns twice their energy */
-SIMD_INLINE void AddHourglasses(PetscBool linear, PetscInt part, const Hourglass *constants, const Undeformed *shape,
-                                SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], SimdReal H[9], SimdVector F[DIM][MODES],
-                                SimdVector stress[DIM][DIM], SimdVector *twice)
+/* The mode that is hourglass a */
+SIMD_INLINE PetscInt ModeOf(PetscInt a)
+{
+  return DIM == 3 && a == 3 ? 6 : Without(a);
+}
+
+/* The forces F of the hourglasses times a scale, and what the stress, times the volume and the scale, has less for them; twice their energy
+ */
+SIMD_INLINE void GetHourglasses(PetscBool linear, PetscInt part, const Hourglass *constants, const Undeformed *shape,
+                                SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], SimdReal H[9], PetscReal scale,
+                                SimdVector F[DIM][MODES], SimdVector stress[DIM][DIM], SimdVector *twice)
 {
   SimdVector q[DIM][HOURGLASSES], c[DIM][HOURGLASSES], s[DIM][HOURGLASSES], x[DIM][DIM];
 
@@ -123,36 +146,38 @@ SIMD_INLINE void AddHourglasses(PetscBool linear, PetscInt part, const Hourglass
     }
 #pragma GCC unroll 4
     for (PetscInt a = 0; a < HOURGLASSES; a++) {
-      const PetscInt mode = DIM == 3 && a == 3 ? 6 : Without(a);
-
-      q[i][a] = U[i][mode];
+      q[i][a] = U[i][ModeOf(a)];
 #pragma GCC unroll 3
-      for (PetscInt j = 0; j < DIM; j++) q[i][a] -= SimdGetParts(H[3 * i + j])[part] * X[j][mode];
+      for (PetscInt j = 0; j < DIM; j++) q[i][a] -= SimdGetParts(H[3 * i + j])[part] * X[j][ModeOf(a)];
     }
-  }
 #pragma GCC unroll 3
-  for (PetscInt k = 0; k < DIM; k++)
+    for (PetscInt k = 0; k < DIM; k++)
 #pragma GCC unroll 4
-    for (PetscInt a = 0; a < HOURGLASSES; a++) {
-      c[k][a] = x[0][k] * q[0][a];
-#pragma GCC unroll 3
-      for (PetscInt i = 1; i < DIM; i++) c[k][a] += x[i][k] * q[i][a];
-    }
-  GetHourglassForces(constants, shape, c, s, twice);
+      for (PetscInt a = 0; a < HOURGLASSES; a++) c[k][a] = i == 0 ? x[0][k] * q[0][a] : c[k][a] + x[i][k] * q[i][a];
+  }
+  GetHourglassForces(constants, shape, scale, c, s, twice);
 #pragma GCC unroll 3
   for (PetscInt i = 0; i < DIM; i++) {
+    SimdVector g[HOURGLASSES];
+
 #pragma GCC unroll 4
     for (PetscInt a = 0; a < HOURGLASSES; a++) {
-      const PetscInt mode = DIM == 3 && a == 3 ? 6 : Without(a);
-      SimdVector     g    = s[0][a] * x[i][0];
-
+      g[a] = s[0][a] * x[i][0];
 #pragma GCC unroll 3
-      for (PetscInt k = 1; k < DIM; k++) g += s[k][a] * x[i][k];
+      for (PetscInt k = 1; k < DIM; k++) g[a] += s[k][a] * x[i][k];
+      F[i][ModeOf(a)] = g[a];
+    }
 #pragma GCC unroll 3
-      for (PetscInt k = 0; k < DIM && !linear; k++) F[i][k] += s[k][a] * q[i][a];
-      F[i][mode] += g;
+    for (PetscInt k = 0; k < DIM; k++) {
+      F[i][k] = (SimdVector){0};
+#pragma GCC unroll 4
+      for (PetscInt a = 0; a < HOURGLASSES && !linear; a++) F[i][k] += s[k][a] * q[i][a];
+    }
 #pragma GCC unroll 3
-      for (PetscInt j = 0; j < DIM; j++) stress[i][j] -= g * X[j][mode];
+    for (PetscInt j = 0; j < DIM; j++) {
+      stress[i][j] = g[0] * X[j][ModeOf(0)];
+#pragma GCC unroll 4
+      for (PetscInt a = 1; a < HOURGLASSES; a++) stress[i][j] += g[a] * X[j][ModeOf(a)];
     }
   }
 }
@@ -166,8 +191,8 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
-    SimdVector     stress[SIMD_PARTS][DIM][DIM] = {{{{0}}}}, twice;
+    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES];
+    SimdVector     stress[SIMD_PARTS][DIM][DIM], twice;
     SimdReal       P[9], nodal[DIM][NODES], check;
     Undeformed     shape[SIMD_PARTS];
     PetscInt       bad;
@@ -179,7 +204,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
       GetMeanGradient(part, &shape[part], U[part], H);
     }
     for (PetscInt part = 0; part < SIMD_PARTS; part++)
-      AddHourglasses(linear, part, constants, &shape[part], X[part], U[part], H, F[part], stress[part], &twice);
+      GetHourglasses(linear, part, constants, &shape[part], X[part], U[part], H, scale, F[part], stress[part], &twice);
     (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
     for (PetscInt part = 0; part < SIMD_PARTS; part++) {
       for (PetscInt i = 0; i < DIM; i++) {
@@ -187,12 +212,11 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
 
 #pragma GCC unroll 3
         for (PetscInt j = 0; j < DIM; j++) {
-          const SimdVector p = SimdGetParts(P[3 * i + j])[part] + stress[part][i][j] * shape[part].inverse;
+          const SimdVector p = scale * SimdGetParts(P[3 * i + j])[part] - stress[part][i][j] * shape[part].inverse;
 
 #pragma GCC unroll 8
           for (PetscInt k = 0; k < (DIM == 3 ? 6 : 2); k++) F[part][i][k] += p * shape[part].gradient[j][k];
         }
-        for (PetscInt k = 0; k < MODES; k++) F[part][i][k] *= scale;
         NodesOfModes(F[part][i], n);
 #pragma GCC unroll 8
         for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
@@ -232,7 +256,7 @@ SIMD_CLONES static PetscInt AddEnergies(const Solid *solid, PetscInt count, cons
   *energy = *of_hourglasses = 0;
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[DIM][MODES] = {{{0}}}, stress[DIM][DIM] = {{{0}}}, twice;
+    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[DIM][MODES], stress[DIM][DIM], twice;
     SimdReal       W, volume, hourglass;
     Undeformed     shape;
     PetscInt       bad;
@@ -242,7 +266,7 @@ SIMD_CLONES static PetscInt AddEnergies(const Solid *solid, PetscInt count, cons
     for (PetscInt part = 0; part < SIMD_PARTS; part++) {
       GetUndeformed(X[part], &shape);
       GetMeanGradient(part, &shape, U[part], H);
-      AddHourglasses(solid->linear, part, (const Hourglass *)solid->own, &shape, X[part], U[part], H, F, stress, &twice);
+      GetHourglasses(solid->linear, part, (const Hourglass *)solid->own, &shape, X[part], U[part], H, 1, F, stress, &twice);
       SimdGetParts(volume)[part]    = shape.volume;
       SimdGetParts(hourglass)[part] = 0.5 * twice;
     }
