@@ -4,6 +4,7 @@
 #include "logarithm.h"
 #include "logarithmderivative.h"
 #include <impakt/private/plastic.h>
+#include <impakt/private/simdmath.h>
 #include <math.h>
 
 /* Largest norm of A for the series; beyond, eigenvalues */
@@ -144,8 +145,7 @@ SIMD_INLINE void LoadParts(PetscInt part, const Trial *trial, const PetscReal hi
 /* P = Fe S Fp^-T where M has the axes of C: Fe^-T M Fp^-T. Returns NaN times P where the point is inverted. */
 SIMD_INLINE void StoreStress(PetscInt part, const Trial *trial, const PetscReal history[][8], Symmetric m, PetscReal P[9][8])
 {
-  SimdVector f[9], c[9], g[9], n[9];
-  SimdReal   determinant, inverse;
+  SimdVector f[9], c[9], g[9], n[9], determinant, inverse;
 
   LoadParts(part, trial, history, f, g);
   c[0] = f[4] * f[8] - f[5] * f[7];
@@ -158,13 +158,13 @@ SIMD_INLINE void StoreStress(PetscInt part, const Trial *trial, const PetscReal 
   c[7] = f[2] * f[3] - f[0] * f[5];
   c[8] = f[0] * f[4] - f[1] * f[3];
 
-  SimdGetParts(determinant)[0] = f[0] * c[0] + f[1] * c[1] + f[2] * c[2];
-  for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) inverse[p] = determinant[p] > 0 ? 1 / determinant[p] : NAN;
+  determinant = f[0] * c[0] + f[1] * c[1] + f[2] * c[2];
+  inverse     = SimdSelect((SimdBits)(determinant > 0), 1 / determinant, SimdAll(NAN));
 #pragma GCC unroll 3
   for (PetscInt i = 0; i < 3; i++) {
-    n[3 * i]     = SimdGetParts(inverse)[0] * (c[3 * i] * m.xx + c[3 * i + 1] * m.xy + c[3 * i + 2] * m.zx);
-    n[3 * i + 1] = SimdGetParts(inverse)[0] * (c[3 * i] * m.xy + c[3 * i + 1] * m.yy + c[3 * i + 2] * m.yz);
-    n[3 * i + 2] = SimdGetParts(inverse)[0] * (c[3 * i] * m.zx + c[3 * i + 1] * m.yz + c[3 * i + 2] * m.zz);
+    n[3 * i]     = inverse * (c[3 * i] * m.xx + c[3 * i + 1] * m.xy + c[3 * i + 2] * m.zx);
+    n[3 * i + 1] = inverse * (c[3 * i] * m.xy + c[3 * i + 1] * m.yy + c[3 * i + 2] * m.yz);
+    n[3 * i + 2] = inverse * (c[3 * i] * m.zx + c[3 * i + 1] * m.yz + c[3 * i + 2] * m.zz);
 #pragma GCC unroll 3
     for (PetscInt j = 0; j < 3; j++)
       SimdGetParts(P[3 * i + j])[part] = n[3 * i] * g[3 * j] + n[3 * i + 1] * g[3 * j + 1] + n[3 * i + 2] * g[3 * j + 2];
@@ -211,18 +211,16 @@ SIMD_INLINE void StoreTurnedStress(PetscInt part, const Trial *trial, const Pets
                                    PetscReal P[9][8])
 {
   const Symmetric S = SymmetricLogDerivative(SymmetricGet(trial->A, part), m, norm);
-  SimdVector      f[9], g[9], n[9];
-  SimdReal        determinant, defined;
+  SimdVector      f[9], g[9], n[9], determinant, defined;
 
   LoadParts(part, trial, history, f, g);
-  SimdGetParts(determinant)[0] = f[0] * (f[4] * f[8] - f[5] * f[7]) + f[1] * (f[5] * f[6] - f[3] * f[8]) +
-                                 f[2] * (f[3] * f[7] - f[4] * f[6]);
-  for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) defined[p] = determinant[p] > 0 ? 1 : NAN;
+  determinant = f[0] * (f[4] * f[8] - f[5] * f[7]) + f[1] * (f[5] * f[6] - f[3] * f[8]) + f[2] * (f[3] * f[7] - f[4] * f[6]);
+  defined     = SimdSelect((SimdBits)(determinant > 0), SimdAll(1), SimdAll(NAN));
 #pragma GCC unroll 3
   for (PetscInt i = 0; i < 3; i++) {
-    n[3 * i]     = SimdGetParts(defined)[0] * (f[3 * i] * S.xx + f[3 * i + 1] * S.xy + f[3 * i + 2] * S.zx);
-    n[3 * i + 1] = SimdGetParts(defined)[0] * (f[3 * i] * S.xy + f[3 * i + 1] * S.yy + f[3 * i + 2] * S.yz);
-    n[3 * i + 2] = SimdGetParts(defined)[0] * (f[3 * i] * S.zx + f[3 * i + 1] * S.yz + f[3 * i + 2] * S.zz);
+    n[3 * i]     = defined * (f[3 * i] * S.xx + f[3 * i + 1] * S.xy + f[3 * i + 2] * S.zx);
+    n[3 * i + 1] = defined * (f[3 * i] * S.xy + f[3 * i + 1] * S.yy + f[3 * i + 2] * S.yz);
+    n[3 * i + 2] = defined * (f[3 * i] * S.zx + f[3 * i + 1] * S.yz + f[3 * i + 2] * S.zz);
 #pragma GCC unroll 3
     for (PetscInt j = 0; j < 3; j++)
       SimdGetParts(P[3 * i + j])[part] = n[3 * i] * g[3 * j] + n[3 * i + 1] * g[3 * j + 1] + n[3 * i + 2] * g[3 * j + 2];
