@@ -224,7 +224,7 @@ PetscErrorCode SchwarzPrepareCondensed(Contact contact)
   PetscFunctionBegin;
   if (!schwarz->have_base) {
     PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(MakeBase(contact, b));
+    for (PetscInt k = 0; k < contact->n_bodies; k++) PetscCall(MakeBase(contact, contact->ranks.visits[k]));
     PetscCall(ContactAgree(contact));
     schwarz->have_base = PETSC_TRUE;
   }
@@ -261,8 +261,7 @@ PetscErrorCode SchwarzFinishCondensed(Contact contact)
     PetscCall(ContactLoadReleased(contact, b));
   }
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactIntegrateBody(contact, b));
-  PetscCall(ContactAgree(contact));
+  PetscCall(ContactIntegrateBodies(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
