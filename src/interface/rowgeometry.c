@@ -4,10 +4,10 @@
 /* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: the partner's nodes lie within 1e-4
    of the face size of a line or of a point */
 #define NOTHING_NEW 1e-8
-/* How far outside the partner's nodes the place of a row may lie, in parts of what they are apart, for its weights to follow it. Of a node
-   at an edge these may lie on the partner's edge alone, which is all but straight, and then the place comes to lie beside the line as the
-   bodies bulge; weights that make up for that are the larger the straighter it is. Such a force keeps its moment about the line. */
-#define FARTHEST 1
+/* Of a node at an edge the partner's nodes may lie on its edge alone, which is straight to less than this part of the face, and as the
+   bodies bulge its place comes to lie beside that line by more than the line is bent. Weights that make up for that are the larger the
+   straighter it is: there a force keeps its moment about the line. */
+#define LINE 0.1
 /* Square of the chord of the angle, 50 degrees, by which the normal of a node may differ from the mean of a row if the surface is bent
    there rather than has an edge */
 #define BENT_CHORD 0.715
@@ -38,9 +38,9 @@ static PetscReal Remainder(PetscInt a, PetscReal lower[3][3], const PetscReal co
   return rest[a];
 }
 
-/* Whether the place of a row is too far from the partner's nodes, along the a-th condition, for weights to make up for it */
-static PetscBool IsFar(PetscInt a, PetscReal lower[3][3], PetscInt n, const PetscReal x[], PetscReal tangents[2][3], PetscReal size,
-                       const PetscReal *partners[], const PetscReal weights[])
+/* Whether the partner's nodes lie all but on a line across what the a-th condition is about, and the place of a row beside it */
+static PetscBool IsBesideLine(PetscInt a, PetscReal lower[3][3], PetscInt n, const PetscReal x[], PetscReal tangents[2][3], PetscReal size,
+                              const PetscReal *partners[], const PetscReal weights[])
 {
   const PetscReal place[3] = {1, 0, 0}, there = Remainder(a, lower, place);
   PetscReal       least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
@@ -54,7 +54,7 @@ static PetscBool IsFar(PetscInt a, PetscReal lower[3][3], PetscInt n, const Pets
     least = PetscMin(least, rest);
     most  = PetscMax(most, rest);
   }
-  return (PetscBool)(PetscMax(least - there, there - most) > FARTHEST * (most - least));
+  return (PetscBool)(most - least < LINE && PetscMax(least - there, there - most) > most - least);
 }
 
 /* Changes the weights by as little as possible, each in proportion to its size, such that they sum to one and sum_j P_j x_j - x is along
@@ -88,7 +88,7 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     }
   }
   for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
-    if (gram[a][a] < NOTHING_NEW || (a && IsFar(a, lower, n, x, tangents, size, partners, weights))) {
+    if (gram[a][a] < NOTHING_NEW || (a && IsBesideLine(a, lower, n, x, tangents, size, partners, weights))) {
       for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
       rest[a] = 0;
       continue;

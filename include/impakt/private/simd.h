@@ -33,9 +33,3 @@ SIMD_INLINE SimdVector *SimdGetParts(PetscReal values[])
 {
   return (SimdVector *)values;
 }
-
-/* Numbers that lie apart, straight into a register: written one by one and read as one they would have to go through the cache */
-SIMD_INLINE SimdVector SimdGather(const PetscReal values[], const size_t at[SIMD_WIDTH / SIMD_PARTS])
-{
-  return (SimdVector){values[at[0]], values[at[1]], values[at[2]], values[at[3]]};
-}

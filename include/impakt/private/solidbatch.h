@@ -22,6 +22,12 @@ typedef struct {
   SimdReal   determinant;
 } Gradients;
 
+/* Numbers that lie apart, straight into a register: written one by one and read as one they would have to go through the cache */
+SIMD_INLINE SimdVector Gather(const PetscReal values[], const size_t at[SIMD_WIDTH / SIMD_PARTS])
+{
+  return (SimdVector){values[at[0]], values[at[1]], values[at[2]], values[at[3]]};
+}
+
 /* Values at the nodes of a batch of elements, as coefficients of monomials; past the last element, it is taken again */
 SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscInt count, const PetscReal values[],
                           SimdVector modes[SIMD_PARTS][DIM][MODES])
@@ -38,7 +44,7 @@ SIMD_INLINE void GetModes(const PetscInt connectivity[], PetscInt first, PetscIn
 
       for (PetscInt p = 0; p < SIMD_WIDTH / SIMD_PARTS; p++) at[p] = DIM * (size_t)element[p][a];
 #pragma GCC unroll 3
-      for (PetscInt i = 0; i < DIM; i++) nodal[i][a] = SimdGather(values + i, at);
+      for (PetscInt i = 0; i < DIM; i++) nodal[i][a] = Gather(values + i, at);
     }
 #pragma GCC unroll 3
     for (PetscInt i = 0; i < DIM; i++) ModesOfNodes(nodal[i], modes[part][i]);
