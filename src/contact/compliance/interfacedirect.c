@@ -14,7 +14,7 @@
 #include <solver/constrainedsolver.h>
 
 /* Solutions by conjugate gradients that take as long as the factors: 961 rows of hexahedra took 2.9, 3721 rows 7.2 */
-#define SOLUTIONS_OF_FACTORS 5
+#define SOLUTIONS_OF_FACTORS 3
 /* Part of the right-hand side that the first solution with new factors may leave: more is left where rows depend on each other, which
    conjugate gradients do not mind */
 #define MOST_LEFT 1e-8
