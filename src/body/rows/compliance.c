@@ -162,7 +162,7 @@ PetscErrorCode BodyTakeCompliance(Body body)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->compliance) ComplianceTakeWaiting(body->compliance->matrices);
+  ComplianceTakeWaiting(body->compliance->matrices);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

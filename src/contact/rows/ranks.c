@@ -35,9 +35,9 @@ PetscErrorCode ContactOrderVisits(Contact contact)
   for (PetscInt pass = 0; pass < 2; pass++)
     for (PetscInt b = 0; b < contact->n_bodies; b++) {
       PetscMPIInt rank;
-      PetscBool   at_home = PETSC_TRUE;
+      PetscBool   at_home = PETSC_FALSE;
 
-      if (contact->ranks.size > 1) PetscCall(ContactIsAtHome(contact, b, &rank, &at_home));
+      PetscCall(ContactIsAtHome(contact, b, &rank, &at_home));
       if (at_home == (PetscBool)pass) contact->ranks.visits[n++] = b;
     }
   PetscFunctionReturn(PETSC_SUCCESS);
