@@ -170,10 +170,8 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
     PetscInt n;
 
     PetscCall(ListKnownRows(op, b, &n));
-    PetscCall(BodyProposeCompliance(contact->bodies[b], n, op->body_rows, &contact->work.words[b]));
+    if (n) PetscCall(BodyExtendCompliance(contact->bodies[b], n, op->body_rows));
   }
-  PetscCall(ContactTellWords(contact, contact->work.words));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeCompliance(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -210,10 +210,8 @@ PetscErrorCode SchwarzSetRoles(Contact contact)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     ContactGetConditions(contact, SchwarzConditions((const Schwarz *)contact->data), b, contact->work.conditions);
-    PetscCall(BodyProposeRoles(contact->bodies[b], contact->work.conditions, &contact->work.words[b]));
+    PetscCall(BodySetRoles(contact->bodies[b], contact->work.conditions));
   }
-  PetscCall(ContactTellWords(contact, contact->work.words));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeRoles(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -191,7 +191,7 @@ static PetscErrorCode Fit(Contact contact)
 {
   Secants       *secants = &((Schwarz *)contact->data)->secants;
   const PetscInt size    = secants->size;
-  PetscScalar   *f       = secants->vectors, *basis[SCHWARZ_MAX_SECANTS];
+  PetscScalar   *f = secants->vectors, *basis[SCHWARZ_MAX_SECANTS];
   PetscScalar    upper[SCHWARZ_MAX_SECANTS][SCHWARZ_MAX_SECANTS], *c = secants->factors, squares;
   PetscInt       n = 0;
 

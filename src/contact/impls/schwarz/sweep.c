@@ -298,24 +298,6 @@ static PetscErrorCode Answer(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What ranks have to know of the inputs of bodies that several of them have, of all bodies at once */
-static PetscErrorCode TellInputs(Contact contact)
-{
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    BodyWord *word = &contact->work.words[b];
-
-    word->n = 0;
-    if (schwarz->groups.rests[b]) continue;
-    if (schwarz->step == STEP_CONDENSED) PetscCall(BodyProposeInputs(contact->bodies[b], word));
-    else PetscCall(BodyProposeRepeat(contact->bodies[b], word));
-  }
-  PetscCall(ContactTellWords(contact, contact->work.words));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* All bodies that do not rest, each after those whose answer it waits for */
 static PetscErrorCode SweepBodies(Contact contact, const PetscScalar x[])
 {
@@ -331,7 +313,6 @@ static PetscErrorCode SweepBodies(Contact contact, const PetscScalar x[])
     if (known) PetscCall(SchwarzReportByForce(contact, b)); /* to partners that come later */
     else PetscCall(Answer(contact, b));
   }
-  if (known) PetscCall(TellInputs(contact));
   for (PetscInt k = 0; k < contact->n_bodies && known; k++)
     if (!rests[contact->ranks.visits[k]]) PetscCall(Answer(contact, contact->ranks.visits[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
