@@ -224,7 +224,7 @@ PetscErrorCode SchwarzPrepareCondensed(Contact contact)
   PetscFunctionBegin;
   if (!schwarz->have_base) {
     PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-    for (PetscInt k = 0; k < contact->n_bodies; k++) PetscCall(MakeBase(contact, contact->ranks.visits[k]));
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(MakeBase(contact, b));
     PetscCall(ContactAgree(contact));
     schwarz->have_base = PETSC_TRUE;
   }
@@ -261,7 +261,8 @@ PetscErrorCode SchwarzFinishCondensed(Contact contact)
     PetscCall(ContactLoadReleased(contact, b));
   }
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-  PetscCall(ContactIntegrateBodies(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactIntegrateBody(contact, b));
+  PetscCall(ContactAgree(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,7 +17,8 @@ static PetscErrorCode IntegrateTrial(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
-  PetscCall(ContactIntegrateBodies(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactIntegrateBody(contact, b));
+  PetscCall(ContactAgree(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

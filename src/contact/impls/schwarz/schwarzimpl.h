@@ -48,11 +48,7 @@ typedef struct {
   PetscInt     n_listed, *listed;
   PetscInt     used, which[SCHWARZ_MAX_SECANTS];
   PetscScalar  factors[SCHWARZ_MAX_SECANTS];
-  /* work space of a fit */
-  PetscBool    whole;       /* each rank has the unknowns of all ranks that take part, as it has those of a dense Jacobian */
-  PetscInt     size, room;  /* unknowns of a vector; of how many there is room for */
-  PetscInt    *at;          /* per listed unknown: its number among these */
-  PetscScalar *vectors;     /* F, and the changes of F from the newest on */
+  PetscScalar *gathered, *basis[SCHWARZ_MAX_SECANTS]; /* work space, of listed unknowns */
 } Secants;
 
 /* What a group of bodies that touch each other does, see groups.c */
