@@ -1,5 +1,10 @@
 #include "compliance.h"
 
+/* A column that ranks have still to add up: the place of its row, at how many levels, on how many rows */
+typedef struct {
+  PetscInt place, levels, n;
+} Waiting;
+
 struct _n_Compliance {
   MPI_Comm     comm;
   PetscMPIInt  size;
@@ -12,8 +17,13 @@ struct _n_Compliance {
   PetscScalar *matrices;                     /* levels of them, room x room by columns [m/N] */
   PetscScalar *ramp;                         /* room x room; made when asked for */
   PetscBool    ramp_valid;
-  PetscScalar *column; /* work space: levels x room */
-  PetscInt64   state;  /* counts changes of what is known */
+  PetscInt64   state; /* counts changes of what is known */
+  /* columns that have been set since ComplianceWait(), one after the other, level by level */
+  PetscBool    waits;
+  PetscInt     n_waiting, most_waiting; /* how many; how many there is room for */
+  Waiting     *waiting;
+  PetscInt     n_values, most_values;
+  PetscScalar *values;
 };
 
 /* For `local` rows of this rank from number `begin` on, of `global` rows in all */
@@ -43,7 +53,9 @@ PetscErrorCode ComplianceDestroy(Compliance *compliance)
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(c->place));
   PetscCall(PetscFree3(c->rows, c->known, c->from));
-  PetscCall(PetscFree3(c->matrices, c->ramp, c->column));
+  PetscCall(PetscFree2(c->matrices, c->ramp));
+  PetscCall(PetscFree(c->waiting));
+  PetscCall(PetscFree(c->values));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -53,42 +65,37 @@ PetscErrorCode ComplianceReserve(Compliance c, PetscInt more)
 {
   const PetscInt old = c->room, room = PetscMin(c->global, PetscMax(c->n + more, 2 * old));
   PetscInt      *rows, *known, *from;
-  PetscScalar   *matrices, *ramp, *column;
+  PetscScalar   *matrices, *ramp;
 
   PetscFunctionBegin;
   if (c->n + more <= old) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc3(room, &rows, room, &known, room, &from));
-  PetscCall(PetscMalloc3(c->levels * room * room, &matrices, room * room, &ramp, c->levels * room, &column));
+  PetscCall(PetscMalloc2(c->levels * room * room, &matrices, room * room, &ramp));
   PetscCall(PetscArraycpy(rows, c->rows, c->n));
   PetscCall(PetscArraycpy(known, c->known, c->n));
   for (PetscInt k = 0; k < c->levels; k++)
     for (PetscInt j = 0; j < c->n; j++) PetscCall(PetscArraycpy(matrices + (k * room + j) * room, c->matrices + (k * old + j) * old, c->n));
   PetscCall(PetscFree3(c->rows, c->known, c->from));
-  PetscCall(PetscFree3(c->matrices, c->ramp, c->column));
+  PetscCall(PetscFree2(c->matrices, c->ramp));
   c->rows       = rows;
   c->known      = known;
   c->from       = from;
   c->matrices   = matrices;
   c->ramp       = ramp;
-  c->column     = column;
   c->room       = room;
   c->ramp_valid = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Values of this rank's rows, for some levels one after the other, on the known rows of every rank; or `alone`: of this one, which has all
-   of them */
-PetscErrorCode ComplianceGather(Compliance c, PetscBool alone, PetscInt levels, const PetscScalar mine[], PetscScalar all[])
+/* Values of this rank's rows, for some levels one after the other, on the known rows of every rank: to be added up over these */
+void ComplianceSpread(Compliance c, PetscInt levels, const PetscScalar mine[], PetscScalar all[])
 {
-  PetscFunctionBegin;
   for (PetscInt k = 0; k < levels; k++)
     for (PetscInt i = 0; i < c->n; i++) {
       const PetscInt local = c->rows[i] - c->begin;
 
       all[k * c->n + i] = local >= 0 && local < c->local ? mine[k * c->local + local] : 0;
     }
-  if (c->size > 1 && !alone) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(levels * c->n), MPIU_SCALAR, MPIU_SUM, c->comm));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A place for a row that has none: all it does to others is unknown, and zero until it is */
@@ -110,6 +117,54 @@ static PetscErrorCode AddRow(Compliance c, PetscInt row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Room for another column that waits */
+static PetscErrorCode MakeWaitingRoom(Compliance c, PetscInt size)
+{
+  PetscFunctionBegin;
+  if (c->n_waiting == c->most_waiting) {
+    c->most_waiting = PetscMax(c->room, 2 * c->most_waiting);
+    PetscCall(PetscRealloc(c->most_waiting * sizeof(*c->waiting), &c->waiting));
+  }
+  if (c->n_values + size > c->most_values) {
+    c->most_values = PetscMax(c->n_values + size, PetscMax(c->levels * c->room, 2 * c->most_values));
+    PetscCall(PetscRealloc(c->most_values * sizeof(*c->values), &c->values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Columns that are set from now on wait until ranks have added them up, which callers do for many bodies at once: each with the values of
+   the rank's own rows until then */
+void ComplianceWait(Compliance c)
+{
+  c->waits = PETSC_TRUE;
+}
+
+/* What is to be added up over all ranks, in place */
+void ComplianceGetWaiting(Compliance c, PetscInt *n, PetscScalar *values[])
+{
+  *n      = c->size > 1 ? c->n_values : 0;
+  *values = c->values;
+}
+
+/* The columns that have waited, of all ranks */
+void ComplianceTakeWaiting(Compliance c)
+{
+  const PetscScalar *value = c->values;
+
+  for (PetscInt w = 0; w < c->n_waiting; w++) {
+    const Waiting *column = &c->waiting[w];
+    const PetscInt j      = column->place;
+
+    for (PetscInt k = 0; k < column->levels; k++) {
+      PetscScalar *matrix = c->matrices + k * c->room * c->room;
+
+      for (PetscInt i = 0; i < column->n; i++) matrix[j * c->room + i] = matrix[i * c->room + j] = *value++;
+    }
+  }
+  c->n_waiting = c->n_values = 0;
+  c->waits                   = PETSC_FALSE;
+}
+
 /* Displacements of this rank's rows under a unit force on a row, at the first `levels` of the levels; collective */
 PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, const PetscScalar mine[])
 {
@@ -118,15 +173,16 @@ PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, 
   PetscFunctionBegin;
   if (c->place[row] < 0) PetscCall(AddRow(c, row));
   j = c->place[row];
-  PetscCall(ComplianceGather(c, PETSC_FALSE, levels, mine, c->column));
-  for (PetscInt k = 0; k < levels; k++) {
-    PetscScalar *matrix = c->matrices + k * c->room * c->room;
-
-    for (PetscInt i = 0; i < c->n; i++) matrix[j * c->room + i] = matrix[i * c->room + j] = c->column[k * c->n + i];
-  }
+  PetscCall(MakeWaitingRoom(c, levels * c->n));
+  ComplianceSpread(c, levels, mine, c->values + c->n_values);
+  c->waiting[c->n_waiting++] = (Waiting){.place = j, .levels = levels, .n = c->n};
+  c->n_values += levels * c->n;
   c->known[j]   = PetscMax(c->known[j], levels);
   c->ramp_valid = PETSC_FALSE;
   c->state++;
+  if (c->waits) PetscFunctionReturn(PETSC_SUCCESS);
+  if (c->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->values, (PetscMPIInt)c->n_values, MPIU_SCALAR, MPIU_SUM, c->comm));
+  ComplianceTakeWaiting(c);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

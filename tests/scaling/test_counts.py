@@ -111,15 +111,17 @@ def test_small_bodies_are_whole_on_ranks():
     assert divided["halo"] > 0
 
 
-def test_small_bodies_in_contact_on_ranks():
+@pytest.mark.parametrize(("material", "most", "more"), [("linear_elastic", 33, 1.05), ("neo_hookean", 62, 1.15)])
+def test_small_bodies_in_contact_on_ranks(material, most, more):
     """Discs that fly at each other in rows of 4, twice as many rows on two ranks: what ranks tell each other goes with the pairs between them, of which there
-    are as many, and not with the bodies in contact nor with rows that are built anew. Measured: 39 both times; 160 discs had 129, and now have 40, before
-    motion was added up for all pairs at once and rows were built anew without a word of other ranks."""
+    are as many, and not with the bodies in contact nor with rows that are built anew. Measured: 30 both times. It was 39 when each body between ranks told its
+    roles and inputs by itself, and 129 with 160 discs when each pair told its motion. Of neo-Hookean discs 52 and 55, whose sweeps are 3.9 and 4.2: it was 214
+    and 256 when each product of secants, each new column of a compliance and each body between ranks had a word of its own."""
     arguments = SimpleNamespace(build=BUILD, mpiexec=MPIEXEC, time_limit=300)
-    few, many = (counts_of(arguments, discs(n, 5e-4), 2, (20, 40)) for n in (32, 64))
+    few, many = (counts_of(arguments, discs(n, 5e-4) | {f"d{i}_material_type": material for i in range(n)}, 2, (20, 40)) for n in (32, 64))
     assert many["steps_in_contact"] > 20
-    assert many["reductions"] <= 45
-    assert many["reductions"] <= 1.05 * few["reductions"]
+    assert many["reductions"] <= most
+    assert many["reductions"] <= more * few["reductions"]
 
 
 def test_setup_of_small_bodies_on_ranks():

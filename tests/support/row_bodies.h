@@ -118,10 +118,15 @@ static inline void set_row_conditions(RowBody *b, const BodyCondition conditions
 static inline PetscErrorCode set_roles(RowBody *b, const BodyCondition roles[])
 {
   BodyCondition mine[MOST_ROWS];
+  BodyWord      word;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < b->rows.local; i++) mine[i] = roles[b->rows.which[i]];
-  PetscCall(BodySetRoles(b->body, mine));
+  PetscCall(BodyProposeRoles(b->body, mine, &word));
+  if (word.n)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, word.values, (PetscMPIInt)word.n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)b->body)));
+  PetscCall(BodyTakeRoles(b->body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -90,6 +90,11 @@ PETSC_EXTERN PetscErrorCode BodyNoteKnownRows(Body);
 PETSC_EXTERN PetscErrorCode BodyKeep(Body);
 PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
+/* Numbers of a body that ranks add up, in place, before it goes on: for many bodies at once */
+typedef struct {
+  PetscInt     n; /* the same on every rank; 0: there is nothing to tell */
+  PetscScalar *values;
+} BodyWord;
 /* What the ranks add up of the conditions of a body: how many rows are prescribed, forced and Robin ones, and whether any is another one */
 #define BODY_CONDITION_COUNTS 4
 PETSC_EXTERN PetscErrorCode BodyProposeConditions(Body, const BodyCondition[], PetscInt[BODY_CONDITION_COUNTS]);
@@ -107,6 +112,7 @@ PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrateRows(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyCompleteStep(Body, StepConvergedReason *);
+PETSC_EXTERN PetscErrorCode BodyProposeRepeat(Body, BodyWord *);
 PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
@@ -128,6 +134,8 @@ PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);
 PETSC_EXTERN PetscErrorCode BodyGetComplianceMatrices(Body, Mat *, Mat *);
 PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);
+PETSC_EXTERN PetscErrorCode BodyProposeCompliance(Body, PetscInt, const PetscInt[], BodyWord *);
+PETSC_EXTERN PetscErrorCode BodyTakeCompliance(Body);
 PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
 PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
@@ -137,7 +145,9 @@ PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
 PETSC_EXTERN PetscErrorCode BodySetBase(Body);
 PETSC_EXTERN PetscErrorCode BodySetFreeBase(Body);
 PETSC_EXTERN PetscErrorCode BodySetRestBase(Body);
-PETSC_EXTERN PetscErrorCode BodySetRoles(Body, const BodyCondition[]);
+PETSC_EXTERN PetscErrorCode BodyProposeRoles(Body, const BodyCondition[], BodyWord *);
+PETSC_EXTERN PetscErrorCode BodyTakeRoles(Body);
+PETSC_EXTERN PetscErrorCode BodyProposeInputs(Body, BodyWord *);
 PETSC_EXTERN PetscErrorCode BodyRespond(Body);
 PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
 

@@ -236,6 +236,7 @@ typedef struct {
   PetscMPIInt *counts;      /* per rank: number of rows */
   PetscMPIInt *offsets;     /* per rank: number of its first row */
   PetscInt    *row_pair;    /* per row of all ranks: number of its pair */
+  PetscInt    *visits;      /* the bodies in the order in which they are integrated where any will do, see ContactOrderVisits() */
   int         *mine_active; /* work space: what this rank sends of its rows */
   int         *all_active;  /* work space: what has been gathered of all rows */
 } ContactRanks;
@@ -411,6 +412,9 @@ typedef struct {
   PetscReal     *speeds;       /* per body */
   PetscReal     *traces;       /* six numbers per body, see ContactGetBodyTraces() */
   PetscInt      *counts;       /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
+  BodyWord      *words;        /* per body: see ContactTellWords() */
+  PetscScalar   *told;         /* all words at once */
+  PetscInt       most_told;    /* numbers that there is room for in these */
   PetscReal     *boxes;        /* per surface: lower corner, and the upper one with its sign changed [m] */
   int           *hands_over;   /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;        /* to a body */
@@ -505,6 +509,7 @@ PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 /* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
    can: ContactFailed() tells. */
 PETSC_EXTERN PetscErrorCode ContactIntegrateBody(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactIntegrateBodies(Contact);
 PETSC_EXTERN PetscErrorCode ContactAgree(Contact);
 PETSC_EXTERN PetscErrorCode ContactCompleteBodies(Contact);
 PETSC_EXTERN PetscErrorCode ContactRejectResidual(Vec);

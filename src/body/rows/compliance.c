@@ -15,7 +15,7 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree4(c->roles, c->base_displacement, c->all_roles, c->all_flexibility));
+  PetscCall(PetscFree5(c->roles, c->base_displacement, c->all_roles, c->told_roles, c->all_flexibility));
   PetscCall(PetscFree2(c->solved, c->unknown));
   PetscCall(PetscFree4(c->known_displacement, c->force, c->displacement, c->rhs));
   PetscCall(DenseFactorDestroy(&c->factor));
@@ -36,8 +36,8 @@ PetscErrorCode BodyCreateCompliance(Body body)
   c = body->compliance;
   PetscCall(
       ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->time.substeps, &c->matrices));
-  PetscCall(PetscCalloc4(rows->local, &c->roles, 3 * levels, &c->base_displacement, rows->global, &c->all_roles, rows->global,
-                         &c->all_flexibility));
+  PetscCall(PetscCalloc5(rows->local, &c->roles, 3 * levels, &c->base_displacement, rows->global, &c->all_roles, rows->global,
+                         &c->told_roles, rows->global, &c->all_flexibility));
   c->base_force = c->base_displacement + levels;
   c->mine       = c->base_force + levels;
   PetscCall(PetscMalloc2(rows->global, &c->solved, rows->global, &c->unknown));
@@ -96,20 +96,73 @@ static PetscErrorCode ProbeCompliance(Body body, PetscInt n, const PetscInt rows
 @*/
 PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[])
 {
+  BodyWord word;
+
+  PetscFunctionBegin;
+  PetscCall(BodyProposeCompliance(body, n, rows, &word));
+  if (word.n)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, word.values, (PetscMPIInt)word.n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(BodyTakeCompliance(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyProposeCompliance - the part of `BodyExtendCompliance()` before ranks tell each other, which callers do for many bodies at once
+
+  Collective
+
+  Input Parameters:
++ body - the `Body`, set up
+. n    - number of rows
+- rows - rows of any rank, the same on every rank; those that are known already cost nothing
+
+  Output Parameter:
+. word - what ranks have to add up before `BodyTakeCompliance()`, columns of the compliance [m/N]; it stays with the body
+
+  Level: developer
+
+.seealso: `Body`, `BodyExtendCompliance()`, `BodyTakeCompliance()`
+@*/
+PetscErrorCode BodyProposeCompliance(Body body, PetscInt n, const PetscInt rows[], BodyWord *word)
+{
   PetscInt  count = 0;
   PetscBool logged;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(word, 4);
   PetscCheck(body->compliance, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  word->n = 0;
   for (PetscInt i = 0; i < n; i++) count += !ComplianceKnows(body->compliance->matrices, rows[i]);
   if (!count) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StageBegin(STAGE_INTERFACE, &logged));
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
   PetscCall(ComplianceReserve(body->compliance->matrices, count));
+  ComplianceWait(body->compliance->matrices);
   PetscCall(ProbeCompliance(body, n, rows));
+  ComplianceGetWaiting(body->compliance->matrices, &word->n, &word->values);
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   PetscCall(StageEnd(logged));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyTakeCompliance - the rest of `BodyExtendCompliance()`, after `BodyProposeCompliance()`, the word of which has been added up
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+.seealso: `Body`, `BodyExtendCompliance()`, `BodyProposeCompliance()`
+@*/
+PetscErrorCode BodyTakeCompliance(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->compliance) ComplianceTakeWaiting(body->compliance->matrices);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

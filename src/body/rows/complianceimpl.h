@@ -16,6 +16,7 @@ struct _BodyCompliance {
   /* what each row is in BodyRespond() */
   BodyCondition *roles;             /* of this rank's rows */
   PetscMPIInt   *all_roles;         /* of all ranks' */
+  PetscScalar   *told_roles;        /* the same, as ranks add them up */
   PetscReal     *all_flexibility;   /* of Robin rows [m/N] */
   PetscInt       n_solved, *solved; /* prescribed and Robin rows, whose force follows from the others */
   PetscInt      *unknown;           /* work space: rows that become known */
@@ -24,5 +25,6 @@ struct _BodyCompliance {
   /* known rows, for each substep: base, inputs, forces, displacements */
   PetscInt     room;
   PetscScalar *known_displacement, *known_force, *input, *force, *displacement;
+  PetscBool    told; /* inputs are those that BodyRespond() is to answer */
   PetscScalar *rhs;
 };

@@ -122,14 +122,57 @@ static PetscErrorCode FactorSolved(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetRoles - says which rows are prescribed and which are loaded in `BodyRespond()`
+/* Whether this rank takes part in what rows answer, and whether several do */
+static PetscBool TakesPart(Body body)
+{
+  return (PetscBool)(!body->rows.at_home || body->mesh.is_owner);
+}
 
-  Collective
+static PetscBool IsShared(Body body)
+{
+  return (PetscBool)(body->rows.size > 1 && !body->rows.at_home);
+}
+
+/*@
+  BodyProposeRoles - says which rows of this rank are prescribed and which are loaded in `BodyRespond()`
+
+  Not Collective
 
   Input Parameters:
 + body  - the `Body`, all rows with a role being known to its compliance
 - roles - for each row of this rank; Robin rows have the springs of `BodySetRobin()`
+
+  Output Parameter:
+. word - what ranks have to add up before `BodyTakeRoles()`; it stays with the body
+
+  Level: developer
+
+.seealso: `Body`, `BodyTakeRoles()`, `BodyRespond()`, `BodyExtendCompliance()`
+@*/
+PetscErrorCode BodyProposeRoles(Body body, const BodyCondition roles[], BodyWord *word)
+{
+  struct _BodyCompliance *c    = body->compliance;
+  const BodyRows         *rows = &body->rows;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(word, 3);
+  word->n      = IsShared(body) ? rows->global : 0;
+  word->values = c->told_roles;
+  if (!TakesPart(body)) PetscFunctionReturn(PETSC_SUCCESS); /* no other rank responds */
+  PetscCall(PetscArraycpy(c->roles, roles, rows->local));
+  PetscCall(PetscArrayzero(c->told_roles, rows->global));
+  for (PetscInt i = 0; i < rows->local; i++) c->told_roles[rows->begin + i] = (PetscReal)roles[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyTakeRoles - the roles of the rows of all ranks in `BodyRespond()`
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodyProposeRoles()`, the word of which has been added up
 
   Level: developer
 
@@ -137,9 +180,9 @@ static PetscErrorCode FactorSolved(Body body)
   Factors the compliance of the prescribed and Robin rows, if they are others than in the last call or have changed. The conditions under
 which `BodyIntegrate()` integrates stay as they are.
 
-.seealso: `Body`, `BodyRespond()`, `BodyExtendCompliance()`
+.seealso: `Body`, `BodyProposeRoles()`, `BodyRespond()`
 @*/
-PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
+PetscErrorCode BodyTakeRoles(Body body)
 {
   struct _BodyCompliance *c    = body->compliance;
   const BodyRows         *rows = &body->rows;
@@ -149,15 +192,10 @@ PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (rows->at_home && !body->mesh.is_owner) PetscFunctionReturn(PETSC_SUCCESS); /* no other rank responds */
-  PetscCall(PetscArraycpy(c->roles, roles, rows->local));
-  PetscCall(PetscArrayzero(c->all_roles, rows->global));
-  for (PetscInt i = 0; i < rows->local; i++) c->all_roles[rows->begin + i] = (PetscMPIInt)roles[i];
-  if (rows->size > 1 && !rows->at_home)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, c->all_roles, (PetscMPIInt)rows->global, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  if (!TakesPart(body)) PetscFunctionReturn(PETSC_SUCCESS);
   ComplianceGetRows(c->matrices, NULL, NULL, &place);
   for (PetscInt i = 0; i < rows->global; i++) {
+    c->all_roles[i] = (PetscMPIInt)PetscRealPart(c->told_roles[i]);
     if (c->all_roles[i] == BODY_FREE) continue;
     PetscCheck(ComplianceKnows(c->matrices, i), PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
                "Row %" PetscInt_FMT " of body '%s' is not known to its compliance; call BodyExtendCompliance() first", i, body->hdr.name);
@@ -172,8 +210,8 @@ PetscErrorCode BodySetRoles(Body body, const BodyCondition roles[])
   PetscCall(PetscArrayzero(c->all_flexibility, rows->global));
   if (robin) {
     for (PetscInt i = 0; i < rows->local; i++)
-      if (roles[i] == BODY_ROBIN) c->all_flexibility[rows->begin + i] = 1 / body->rows.robin[i];
-    if (rows->size > 1 && !rows->at_home)
+      if (c->roles[i] == BODY_ROBIN) c->all_flexibility[rows->begin + i] = 1 / body->rows.robin[i];
+    if (IsShared(body))
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->all_flexibility, (PetscMPIInt)rows->global, MPIU_REAL, MPIU_SUM,
                                  PetscObjectComm((PetscObject)body)));
   }
@@ -198,17 +236,35 @@ static PetscErrorCode MakeRoom(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What comes in, on the known rows of every rank: displacements of prescribed rows, forces of forced ones, right-hand sides of Robin rows.
-   Where the base is not known there yet, ranks tell it with that. */
-static PetscErrorCode GatherInputs(Body body)
+/*@
+  BodyProposeInputs - what comes in along the rows of this rank, which all ranks that have rows are to know before `BodyRespond()`
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodySetBase()` in this controller step, and `BodyTakeRoles()`
+
+  Output Parameter:
+. word - what ranks have to add up: displacements of prescribed rows [m], forces of forced ones and right-hand sides of Robin rows [N], and
+         the base where it is not known yet; it stays with the body. Ranks that are not asked here ask each other in `BodyRespond()`.
+
+  Level: developer
+
+.seealso: `Body`, `BodyRespond()`
+@*/
+PetscErrorCode BodyProposeInputs(Body body, BodyWord *word)
 {
-  const PetscBool         alone = body->rows.at_home;
   struct _BodyCompliance *c     = body->compliance;
   const PetscInt          local = body->rows.local, substeps = body->time.substeps;
   PetscScalar            *displacement, *force;
   PetscInt                n;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(word, 2);
+  PetscCheck(c && c->has_base, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetBase() first");
+  word->n = 0;
+  if (!TakesPart(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MakeRoom(body));
   for (PetscInt k = 0; k < substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement_in, k + 1, &displacement));
@@ -216,16 +272,22 @@ static PetscErrorCode GatherInputs(Body body)
     for (PetscInt i = 0; i < local; i++)
       c->mine[k * local + i] = c->roles[i] == BODY_PRESCRIBED ? displacement[i] : c->roles[i] == BODY_FREE ? 0 : force[i];
   }
-  if (c->base_gathered && c->gathered_state == ComplianceGetState(c->matrices)) {
-    PetscCall(ComplianceGather(c->matrices, alone, substeps, c->mine, c->input));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   ComplianceGetRows(c->matrices, &n, NULL, NULL);
-  c->known_force = c->known_displacement + substeps * n;
-  c->input       = c->known_force + substeps * n;
-  PetscCall(ComplianceGather(c->matrices, alone, 3 * substeps, c->base_displacement, c->known_displacement));
-  c->base_gathered  = PETSC_TRUE;
-  c->gathered_state = ComplianceGetState(c->matrices);
+  word->n = substeps * n;
+  if (c->base_gathered && c->gathered_state == ComplianceGetState(c->matrices)) {
+    ComplianceSpread(c->matrices, substeps, c->mine, c->input);
+    word->values = c->input;
+  } else {
+    c->known_force = c->known_displacement + substeps * n;
+    c->input       = c->known_force + substeps * n;
+    ComplianceSpread(c->matrices, 3 * substeps, c->base_displacement, c->known_displacement);
+    c->base_gathered  = PETSC_TRUE;
+    c->gathered_state = ComplianceGetState(c->matrices);
+    word->n *= 3;
+    word->values = c->known_displacement;
+  }
+  if (!IsShared(body)) word->n = 0;
+  c->told = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -276,7 +338,7 @@ static PetscErrorCode RespondSubstep(Body body, PetscInt k)
   Collective
 
   Input Parameter:
-. body - the `Body`, after `BodySetBase()` in this controller step, and `BodySetRoles()`
+. body - the `Body`, after `BodySetBase()` in this controller step, and `BodyTakeRoles()`
 
   Level: developer
 
@@ -285,7 +347,7 @@ static PetscErrorCode RespondSubstep(Body body, PetscInt k)
   prescribed and Robin ones; the state of the body stays as it is. For linear bodies with massless contact nodes the same as
 `BodyIntegrate()`, up to round-off.
 
-.seealso: `Body`, `BodySetBase()`, `BodyIntegrate()`
+.seealso: `Body`, `BodySetBase()`, `BodyProposeInputs()`, `BodyIntegrate()`
 @*/
 PetscErrorCode BodyRespond(Body body)
 {
@@ -296,9 +358,16 @@ PetscErrorCode BodyRespond(Body body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(c && c->has_base, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetBase() first");
-  if (rows->at_home && !body->mesh.is_owner) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GatherInputs(body));
+  if (!TakesPart(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!c->told) {
+    BodyWord word;
+
+    PetscCall(BodyProposeInputs(body, &word));
+    if (word.n)
+      PetscCallMPI(
+          MPI_Allreduce(MPI_IN_PLACE, word.values, (PetscMPIInt)word.n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  }
+  c->told = PETSC_FALSE;
   for (PetscInt k = 0; k < body->time.substeps; k++) PetscCall(RespondSubstep(body, k));
   ComplianceGetRows(c->matrices, &n, NULL, &place);
   for (PetscInt k = 0; k < body->time.substeps; k++) {

@@ -147,11 +147,21 @@ PetscErrorCode ContactIntegrateBody(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All bodies, whose rows are loaded, through the controller step */
+PetscErrorCode ContactIntegrateBodies(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < contact->n_bodies; k++) PetscCall(ContactIntegrateBody(contact, contact->ranks.visits[k]));
+  PetscCall(ContactAgree(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What the bodies have left undone in the sweeps of a controller step, once it has been made */
 PetscErrorCode ContactCompleteBodies(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies && !ContactFailed(contact); b++) {
+  for (PetscInt k = 0; k < contact->n_bodies && !ContactFailed(contact); k++) {
+    const PetscInt      b = contact->ranks.visits[k];
     StepConvergedReason reason;
 
     PetscCall(BodyCompleteStep(contact->bodies[b], &reason));
@@ -184,11 +194,8 @@ PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
   PetscCall(PetscArrayzero(contact->end.force, contact->rows.n));
   PetscCall(ContactTurn(contact, NULL));
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES)); /* of rows that are let go, as none is active */
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(ContactLoadReleased(contact, b));
-    PetscCall(ContactIntegrateBody(contact, b));
-  }
-  PetscCall(ContactAgree(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactLoadReleased(contact, b));
+  PetscCall(ContactIntegrateBodies(contact));
   *penetrating = PETSC_FALSE;
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactComputeGaps(contact));

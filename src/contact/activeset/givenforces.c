@@ -52,11 +52,8 @@ PetscErrorCode ContactIntegrateForces(Contact contact, const PetscReal force[])
   if (contact->rows.n) PetscAssertPointer(force, 2);
   PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(LoadRows(contact, b, force));
-    PetscCall(ContactIntegrateBody(contact, b));
-  }
-  PetscCall(ContactAgree(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(LoadRows(contact, b, force));
+  PetscCall(ContactIntegrateBodies(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     contact->end.force[i]  = force[i];

@@ -36,11 +36,8 @@ PetscErrorCode ForcesIntegrate(Contact contact, Forces *forces, const PetscScala
     from[i] = contact->start.force[i];
     to[i]   = factor * end[i];
   }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(SetBodyForces(contact, b, forces->trace));
-    PetscCall(ContactIntegrateBody(contact, b));
-  }
-  PetscCall(ContactAgree(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(SetBodyForces(contact, b, forces->trace));
+  PetscCall(ContactIntegrateBodies(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   contact->counts.sweeps++;
   PetscCall(PetscTime(&finish));

@@ -170,8 +170,11 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
     PetscInt n;
 
     PetscCall(ListKnownRows(op, b, &n));
-    if (n) PetscCall(BodyExtendCompliance(contact->bodies[b], n, op->body_rows));
+    contact->work.words[b].n = 0;
+    if (n) PetscCall(BodyProposeCompliance(contact->bodies[b], n, op->body_rows, &contact->work.words[b]));
   }
+  PetscCall(ContactTellWords(contact, contact->work.words));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeCompliance(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

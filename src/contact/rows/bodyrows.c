@@ -138,9 +138,12 @@ PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
   for (PetscInt i = 0; i < contact->rows.n; i++) ranks->mine_active[i] = changed[i] ? 1 : 0;
   PetscCallMPI(MPI_Allgatherv(ranks->mine_active, (PetscMPIInt)contact->rows.n, MPI_INT, ranks->all_active, ranks->counts, ranks->offsets,
                               MPI_INT, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
+  for (PetscInt k = 0; k < contact->n_bodies; k++) {
+    const PetscInt b = ranks->visits[k];
+
     if (contact->body_rows[b].affected)
       PetscCall(BodyUpdateInterfaceFrom(contact->bodies[b], contact->interfaces[b], contact->body_rows[b].all, ranks->all_active));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -42,18 +42,13 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
 /* Whether one of several ranks has all of a body, and which. The same on every rank, as is whether all rows are there too. */
 static PetscErrorCode IsWhole(Contact contact, PetscInt b, PetscBool *whole, PetscBool *at_home, PetscMPIInt *rank)
 {
-  const ContactBodyRows *of  = &contact->body_rows[b];
-  const ContactLaw       law = contact->options.law;
-  PetscInt               first;
+  const ContactLaw law = contact->options.law;
 
   PetscFunctionBegin;
   *whole = *at_home = PETSC_FALSE;
   if (contact->ranks.size == 1 || !(law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetMeshRank(contact->bodies[b], rank));
-  if (*rank < 0 || !of->n_all) PetscFunctionReturn(PETSC_SUCCESS);
-  *whole   = PETSC_TRUE;
-  first    = contact->ranks.offsets[*rank];
-  *at_home = (PetscBool)(of->all[0] >= first && of->all[of->n_all - 1] < first + contact->ranks.counts[*rank]);
+  PetscCall(ContactIsAtHome(contact, b, rank, at_home));
+  *whole = (PetscBool)(*rank >= 0 && contact->body_rows[b].n_all);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

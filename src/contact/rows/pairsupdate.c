@@ -116,6 +116,23 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscReal near, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What becomes of the rows of a pair in this step */
+static PetscErrorCode RenewPair(Contact contact, PetscInt p, PetscReal near, int *updated)
+{
+  const ContactPair *pair     = &contact->pairs[p];
+  PetscBool          followed = PETSC_FALSE, rebuilt, logged;
+
+  PetscFunctionBegin;
+  *updated = ROWS_STAY;
+  if (pair->bonded || (pair->far && pair->was_far)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(StageBegin(STAGE_SEARCH, &logged));
+  PetscCall(UpdatePair(contact, p, near, &rebuilt));
+  PetscCall(StageEnd(logged));
+  if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
+  *updated = rebuilt ? ROWS_REBUILT : followed ? ROWS_FOLLOWED : ROWS_STAY;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Builds the rows of those pairs again whose surfaces have slid or turned far enough, and lets those near contact follow: what has become
    of them, for each pair, the same on all ranks */
 PetscErrorCode ContactUpdatePairs(Contact contact, PetscReal near)
@@ -127,18 +144,14 @@ PetscErrorCode ContactUpdatePairs(Contact contact, PetscReal near)
   PetscCall(StageBegin(STAGE_SEARCH, &logged));
   PetscCall(CompareMotion(contact, near));
   PetscCall(StageEnd(logged));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair     = &contact->pairs[p];
-    PetscBool    followed = PETSC_FALSE, rebuilt;
+  /* those of several ranks first, which wait for each other there, and would for what each has to do by itself */
+  for (PetscInt pass = 0; pass < 2; pass++)
+    for (PetscInt p = 0; p < contact->n_pairs; p++) {
+      PetscMPIInt owner;
 
-    updated[p] = ROWS_STAY;
-    if (pair->bonded || (pair->far && pair->was_far)) continue;
-    PetscCall(StageBegin(STAGE_SEARCH, &logged));
-    PetscCall(UpdatePair(contact, p, near, &rebuilt));
-    PetscCall(StageEnd(logged));
-    if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
-    updated[p] = rebuilt ? ROWS_REBUILT : followed ? ROWS_FOLLOWED : ROWS_STAY;
-  }
+      PetscCall(TransferGetOwner(contact->pairs[p].transfer, &owner));
+      if ((owner >= 0) == (pass > 0)) PetscCall(RenewPair(contact, p, near, &updated[p]));
+    }
   /* of its own rows, and of a pair that it has to itself, each rank alone knows */
   if (contact->ranks.size > 1)
     PetscCallMPI(

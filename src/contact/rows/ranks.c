@@ -8,3 +8,58 @@ PetscErrorCode ContactOr(Contact contact, int *flag)
   if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Which rank has all of a body, or a negative number; and whether all of its rows are there too. The same on every rank. */
+PetscErrorCode ContactIsAtHome(Contact contact, PetscInt b, PetscMPIInt *rank, PetscBool *at_home)
+{
+  const ContactBodyRows *of = &contact->body_rows[b];
+  PetscInt               first;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetMeshRank(contact->bodies[b], rank));
+  *at_home = (PetscBool)(*rank >= 0);
+  if (*rank < 0 || !of->n_all) PetscFunctionReturn(PETSC_SUCCESS);
+  first    = contact->ranks.offsets[*rank];
+  *at_home = (PetscBool)(of->all[0] >= first && of->all[of->n_all - 1] < first + contact->ranks.counts[*rank]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The order in which bodies are integrated that do not wait for each other: those first that take a word of several ranks, since these wait
+   for each other there. In any other order a rank would wait for another one that still has bodies of its own to integrate before. */
+PetscErrorCode ContactOrderVisits(Contact contact)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_bodies, &contact->ranks.visits));
+  for (PetscInt pass = 0; pass < 2; pass++)
+    for (PetscInt b = 0; b < contact->n_bodies; b++) {
+      PetscMPIInt rank;
+      PetscBool   at_home = PETSC_TRUE;
+
+      if (contact->ranks.size > 1) PetscCall(ContactIsAtHome(contact, b, &rank, &at_home));
+      if (at_home == (PetscBool)pass) contact->ranks.visits[n++] = b;
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds up over all ranks what these have to tell of each body, `words` in the order of the bodies, in place and at once */
+PetscErrorCode ContactTellWords(Contact contact, const BodyWord words[])
+{
+  ContactWork *work = &contact->work;
+  PetscInt     n    = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) n += words[b].n;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (n > work->most_told) {
+    work->most_told = PetscMax(n, 2 * work->most_told);
+    PetscCall(PetscRealloc(work->most_told * sizeof(*work->told), &work->told));
+  }
+  n = 0;
+  for (PetscInt b = 0; b < contact->n_bodies; n += words[b++].n) PetscCall(PetscArraycpy(work->told + n, words[b].values, words[b].n));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, work->told, (PetscMPIInt)n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  n = 0;
+  for (PetscInt b = 0; b < contact->n_bodies; n += words[b++].n) PetscCall(PetscArraycpy(words[b].values, work->told + n, words[b].n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

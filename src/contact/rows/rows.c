@@ -58,6 +58,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCallMPI(MPI_Allgatherv(contact->rows.pair, mine, MPIU_INT, contact->ranks.row_pair, contact->ranks.counts, contact->ranks.offsets,
                               MPIU_INT, comm));
   PetscCall(ContactNumberBodyRows(contact));
+  PetscCall(ContactOrderVisits(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,6 +263,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->work.moved, contact->work.flags, contact->work.rest));
   PetscCall(PetscFree2(contact->work.updated, contact->work.motion));
   PetscCall(ContactDestroyBodyRows(contact));
+  PetscCall(PetscFree(contact->ranks.visits));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(PetscFree3(contact->ties.holds, contact->ties.distance, contact->work.entry_counts));
   PetscCall(ContactDestroySavedRows(contact));

@@ -55,9 +55,8 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->forces, lagrange->forces.mine));
     PetscCall(BodyAddImpulse(contact->bodies[b], lagrange->forces.mine));
-    PetscCall(ContactIntegrateBody(contact, b));
   }
-  PetscCall(ContactAgree(contact));
+  PetscCall(ContactIntegrateBodies(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     contact->end.force[i]  = lagrange->forces.forces[i];
     contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || contact->end.force[i] > 0);

@@ -210,8 +210,10 @@ PetscErrorCode SchwarzSetRoles(Contact contact)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     ContactGetConditions(contact, SchwarzConditions((const Schwarz *)contact->data), b, contact->work.conditions);
-    PetscCall(BodySetRoles(contact->bodies[b], contact->work.conditions));
+    PetscCall(BodyProposeRoles(contact->bodies[b], contact->work.conditions, &contact->work.words[b]));
   }
+  PetscCall(ContactTellWords(contact, contact->work.words));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeRoles(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -224,7 +226,7 @@ PetscErrorCode SchwarzPrepareCondensed(Contact contact)
   PetscFunctionBegin;
   if (!schwarz->have_base) {
     PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(MakeBase(contact, b));
+    for (PetscInt k = 0; k < contact->n_bodies; k++) PetscCall(MakeBase(contact, contact->ranks.visits[k]));
     PetscCall(ContactAgree(contact));
     schwarz->have_base = PETSC_TRUE;
   }
@@ -261,8 +263,7 @@ PetscErrorCode SchwarzFinishCondensed(Contact contact)
     PetscCall(ContactLoadReleased(contact, b));
   }
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactIntegrateBody(contact, b));
-  PetscCall(ContactAgree(contact));
+  PetscCall(ContactIntegrateBodies(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,8 +17,7 @@ static PetscErrorCode IntegrateTrial(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactIntegrateBody(contact, b));
-  PetscCall(ContactAgree(contact));
+  PetscCall(ContactIntegrateBodies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -45,10 +45,14 @@ typedef struct {
   Vec      *dx, *df;
   Vec       last_x, last_f, rest;
   /* of the last fit: the unknowns of this rank and the pairs that took part, and factors of these */
-  PetscInt     n_listed, *listed;
-  PetscInt     used, which[SCHWARZ_MAX_SECANTS];
-  PetscScalar  factors[SCHWARZ_MAX_SECANTS];
-  PetscScalar *gathered, *basis[SCHWARZ_MAX_SECANTS]; /* work space, of listed unknowns */
+  PetscInt    n_listed, *listed;
+  PetscInt    used, which[SCHWARZ_MAX_SECANTS];
+  PetscScalar factors[SCHWARZ_MAX_SECANTS];
+  /* work space of a fit */
+  PetscBool    whole;      /* each rank has the unknowns of all ranks that take part, as it has those of a dense Jacobian */
+  PetscInt     size, room; /* unknowns of a vector; of how many there is room for */
+  PetscInt    *at;         /* per listed unknown: its number among these */
+  PetscScalar *vectors;    /* F, and the changes of F from the newest on */
 } Secants;
 
 /* What a group of bodies that touch each other does, see groups.c */

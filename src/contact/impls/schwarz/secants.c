@@ -17,6 +17,17 @@
 /* where the groups that still move have less than this of a pair, it is of a sweep in which others moved */
 #define OF_OTHERS 1e-9
 
+/* For so many unknowns in the vectors of a fit, which all ranks together may have more of than this one */
+static PetscErrorCode MakeRoom(Secants *secants, PetscInt size)
+{
+  PetscFunctionBegin;
+  if (size <= secants->room) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFree(secants->vectors));
+  secants->room = PetscMax(size, 2 * secants->room);
+  PetscCall(PetscMalloc1((1 + SCHWARZ_MAX_SECANTS) * secants->room, &secants->vectors));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchwarzSetUpSecants(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
@@ -36,8 +47,8 @@ PetscErrorCode SchwarzSetUpSecants(Contact contact)
     PetscCall(VecZeroEntries(secants->df[i]));
   }
   PetscCall(VecGetLocalSize(schwarz->outer.x, &unknowns));
-  PetscCall(PetscMalloc2(unknowns, &secants->listed, unknowns, &secants->gathered));
-  for (PetscInt i = 0; i < SCHWARZ_MAX_SECANTS; i++) PetscCall(PetscMalloc1(unknowns, &secants->basis[i]));
+  PetscCall(PetscMalloc2(unknowns, &secants->listed, unknowns, &secants->at));
+  PetscCall(MakeRoom(secants, unknowns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -48,8 +59,9 @@ PetscErrorCode SchwarzDestroySecants(Contact contact)
   PetscFunctionBegin;
   PetscCall(VecDestroyVecs(SCHWARZ_MAX_SECANTS, &secants->dx));
   PetscCall(VecDestroyVecs(SCHWARZ_MAX_SECANTS, &secants->df));
-  PetscCall(PetscFree2(secants->listed, secants->gathered));
-  for (PetscInt i = 0; i < SCHWARZ_MAX_SECANTS; i++) PetscCall(PetscFree(secants->basis[i]));
+  PetscCall(PetscFree2(secants->listed, secants->at));
+  PetscCall(PetscFree(secants->vectors));
+  secants->room = 0;
   PetscCall(VecDestroy(&secants->last_x));
   PetscCall(VecDestroy(&secants->last_f));
   PetscCall(VecDestroy(&secants->rest));
@@ -81,15 +93,16 @@ static PetscErrorCode AddPair(Secants *secants, Vec X, Vec F)
 }
 
 /* Over the unknowns of all ranks that take part */
-static PetscErrorCode Dot(Contact contact, PetscInt n, const PetscScalar a[], const PetscScalar b[], PetscScalar *sum)
+static PetscErrorCode Dot(Contact contact, const PetscScalar a[], const PetscScalar b[], PetscScalar *sum)
 {
-  const PetscBLASInt one = 1;
+  const Secants     *secants = &((const Schwarz *)contact->data)->secants;
+  const PetscBLASInt one     = 1;
   PetscBLASInt       size;
 
   PetscFunctionBegin;
-  PetscCall(PetscBLASIntCast(n, &size));
+  PetscCall(PetscBLASIntCast(secants->size, &size));
   PetscCallBLAS("BLASdot", *sum = BLASdot_(&size, a, &one, b, &one));
-  if (contact->ranks.size > 1)
+  if (contact->ranks.size > 1 && !secants->whole)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sum, 1, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,49 +119,110 @@ static PetscErrorCode Add(PetscInt n, PetscScalar s, const PetscScalar b[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The unknowns that take part: those of groups that rest, which have nothing to say, are most of those of many bodies */
-static PetscErrorCode Gather(const Secants *secants, Vec v, PetscScalar listed[])
+/* Unknowns that take part, of all ranks; those of this one are listed, in the same order */
+static void ListOfAllRanks(Contact contact)
 {
-  const PetscScalar *values;
+  const Schwarz  *schwarz  = (const Schwarz *)contact->data;
+  const Jacobian *jacobian = &schwarz->jacobian;
+  Secants        *secants  = &((Schwarz *)contact->data)->secants;
+
+  secants->size = secants->n_listed = 0;
+  for (PetscInt j = 0; j < jacobian->n; j++) {
+    const PetscInt p = contact->ranks.row_pair[jacobian->rows[j]], i = jacobian->rows[j] - contact->rows.begin;
+
+    if (!SchwarzPairMoves(contact, p)) continue;
+    for (PetscInt k = 0; k < schwarz->room[p]; k++, secants->size++) {
+      if (i < 0 || i >= contact->rows.n) continue;
+      secants->listed[secants->n_listed] = schwarz->offset[i] + k;
+      secants->at[secants->n_listed++]   = secants->size;
+    }
+  }
+  /* turns, which all move with the pairs that they belong to; the first rank has them */
+  for (PetscInt t = 0; t < contact->turns.n; t++, secants->size++) {
+    if (schwarz->turns.offset < 0) continue;
+    secants->listed[secants->n_listed] = schwarz->turns.offset + t;
+    secants->at[secants->n_listed++]   = secants->size;
+  }
+}
+
+/* Which unknowns take part: those of groups that rest, which have nothing to say, are most of those of many bodies. With a dense Jacobian
+   each rank has what all ranks know of them, which takes one word instead of one for each product. */
+static PetscErrorCode ListUnknowns(Contact contact)
+{
+  Secants *secants = &((Schwarz *)contact->data)->secants;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(v, &values));
-  for (PetscInt i = 0; i < secants->n_listed; i++) listed[i] = values[secants->listed[i]];
-  PetscCall(VecRestoreArrayRead(v, &values));
+  secants->whole = (PetscBool)(contact->ranks.size > 1 && ((const Schwarz *)contact->data)->jacobian.dense);
+  if (secants->whole) ListOfAllRanks(contact);
+  else {
+    PetscCall(SchwarzListMoving(contact, &secants->n_listed, secants->listed));
+    secants->size = secants->n_listed;
+    for (PetscInt i = 0; i < secants->size; i++) secants->at[i] = i;
+  }
+  PetscCall(MakeRoom(secants, secants->size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f -= Y c, and c; `used` of the pairs, `which` of them, take part. Listed unknowns alone. */
-static PetscErrorCode Fit(Contact contact, PetscScalar f[])
+/* The pair that is so many sweeps old */
+static PetscInt Slot(const Secants *secants, PetscInt age)
+{
+  return (secants->next - 1 - age + 2 * SCHWARZ_MAX_SECANTS) % SCHWARZ_MAX_SECANTS;
+}
+
+/* What takes part of F and of its changes */
+static PetscErrorCode GatherVectors(Contact contact, Vec F)
 {
   Secants       *secants = &((Schwarz *)contact->data)->secants;
-  const PetscInt size    = secants->n_listed;
+  const PetscInt n       = (1 + secants->n) * secants->size;
+
+  PetscFunctionBegin;
+  if (secants->whole) PetscCall(PetscArrayzero(secants->vectors, n));
+  for (PetscInt k = 0; k <= secants->n; k++) {
+    const Vec          vec    = k ? secants->df[Slot(secants, k - 1)] : F;
+    PetscScalar       *vector = secants->vectors + k * secants->size;
+    const PetscScalar *values;
+
+    PetscCall(VecGetArrayRead(vec, &values));
+    for (PetscInt i = 0; i < secants->n_listed; i++) vector[secants->at[i]] = values[secants->listed[i]];
+    PetscCall(VecRestoreArrayRead(vec, &values));
+  }
+  if (secants->whole)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, secants->vectors, (PetscMPIInt)n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* F -= Y c, and c; `used` of the pairs, `which` of them, take part. Of the vectors that have been gathered. */
+static PetscErrorCode Fit(Contact contact)
+{
+  Secants       *secants = &((Schwarz *)contact->data)->secants;
+  const PetscInt size    = secants->size;
+  PetscScalar   *f       = secants->vectors, *basis[SCHWARZ_MAX_SECANTS];
   PetscScalar    upper[SCHWARZ_MAX_SECANTS][SCHWARZ_MAX_SECANTS], *c = secants->factors, squares;
   PetscInt       n = 0;
 
   PetscFunctionBegin;
   for (PetscInt age = 0; age < secants->n; age++) {
-    const PetscInt slot   = (secants->next - 1 - age + 2 * SCHWARZ_MAX_SECANTS) % SCHWARZ_MAX_SECANTS;
-    PetscScalar   *newest = secants->basis[n];
-    PetscReal      whole, left;
+    PetscScalar *newest = f + (1 + age) * size;
+    PetscReal    whole, left;
 
-    PetscCall(Gather(secants, secants->df[slot], newest));
-    PetscCall(Dot(contact, size, newest, newest, &squares));
+    PetscCall(Dot(contact, newest, newest, &squares));
     whole = PetscSqrtReal(PetscRealPart(squares));
     for (PetscInt i = 0; i < n; i++) {
-      PetscCall(Dot(contact, size, newest, secants->basis[i], &upper[i][n]));
-      PetscCall(Add(size, -upper[i][n], secants->basis[i], newest));
+      PetscCall(Dot(contact, newest, basis[i], &upper[i][n]));
+      PetscCall(Add(size, -upper[i][n], basis[i], newest));
     }
-    PetscCall(Dot(contact, size, newest, newest, &squares));
+    PetscCall(Dot(contact, newest, newest, &squares));
     left = PetscSqrtReal(PetscRealPart(squares));
     if (whole < OF_OTHERS || left < INDEPENDENT * whole) continue;
     for (PetscInt i = 0; i < size; i++) newest[i] *= 1 / left;
     upper[n][n]         = left;
-    secants->which[n++] = slot;
+    basis[n]            = newest;
+    secants->which[n++] = Slot(secants, age);
   }
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(Dot(contact, size, f, secants->basis[i], &c[i]));
-    PetscCall(Add(size, -c[i], secants->basis[i], f));
+    PetscCall(Dot(contact, f, basis[i], &c[i]));
+    PetscCall(Add(size, -c[i], basis[i], f));
   }
   for (PetscInt i = n - 1; i >= 0; i--) {
     for (PetscInt j = i + 1; j < n; j++) c[i] -= upper[i][j] * c[j];
@@ -169,12 +243,12 @@ PetscErrorCode SchwarzApplySecants(Contact contact, Vec F, Vec *rest)
   PetscFunctionBegin;
   PetscCall(SNESGetSolution(schwarz->outer.snes, &X));
   PetscCall(AddPair(secants, X, F));
-  PetscCall(SchwarzListMoving(contact, &secants->n_listed, secants->listed));
-  PetscCall(Gather(secants, F, secants->gathered));
-  PetscCall(Fit(contact, secants->gathered));
+  PetscCall(ListUnknowns(contact));
+  PetscCall(GatherVectors(contact, F));
+  PetscCall(Fit(contact));
   PetscCall(VecCopy(F, secants->rest));
   PetscCall(VecGetArray(secants->rest, &values));
-  for (PetscInt i = 0; i < secants->n_listed; i++) values[secants->listed[i]] = secants->gathered[i];
+  for (PetscInt i = 0; i < secants->n_listed; i++) values[secants->listed[i]] = secants->vectors[secants->at[i]];
   PetscCall(VecRestoreArray(secants->rest, &values));
   *rest = secants->rest;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -278,6 +278,65 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether what comes in along all rows is known before any body is integrated: of pairs of bodies forces alone are the unknowns */
+static PetscBool KnowsInputs(Contact contact)
+{
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!contact->pairs[p].obstacle && !contact->pairs[p].by_force && SchwarzPairTells(contact, p)) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
+/* What a body makes of what comes in along its rows */
+static PetscErrorCode Answer(Contact contact, PetscInt b)
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[b]));
+  else PetscCall(ContactIntegrateBody(contact, b));
+  if (schwarz->has_forces) PetscCall(SchwarzReportByForce(contact, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What ranks have to know of the inputs of bodies that several of them have, of all bodies at once */
+static PetscErrorCode TellInputs(Contact contact)
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    BodyWord *word = &contact->work.words[b];
+
+    word->n = 0;
+    if (schwarz->groups.rests[b]) continue;
+    if (schwarz->step == STEP_CONDENSED) PetscCall(BodyProposeInputs(contact->bodies[b], word));
+    else PetscCall(BodyProposeRepeat(contact->bodies[b], word));
+  }
+  PetscCall(ContactTellWords(contact, contact->work.words));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All bodies that do not rest, each after those whose answer it waits for */
+static PetscErrorCode SweepBodies(Contact contact, const PetscScalar x[])
+{
+  const PetscBool *rests = ((const Schwarz *)contact->data)->groups.rests;
+  const PetscBool  known = KnowsInputs(contact);
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < contact->n_bodies; k++) {
+    const PetscInt b = contact->order[k];
+
+    if (rests[b]) continue;
+    PetscCall(LoadBody(contact, b, x));
+    if (known) PetscCall(SchwarzReportByForce(contact, b)); /* to partners that come later */
+    else PetscCall(Answer(contact, b));
+  }
+  if (known) PetscCall(TellInputs(contact));
+  for (PetscInt k = 0; k < contact->n_bodies && known; k++)
+    if (!rests[contact->ranks.visits[k]]) PetscCall(Answer(contact, contact->ranks.visits[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* F = x - G(x); not a number where a body's step fails */
 PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
 {
@@ -293,13 +352,7 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(PetscTime(&begin));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(SchwarzTakeTurns(contact, x));
-  for (PetscInt k = 0; k < contact->n_bodies; k++) {
-    if (schwarz->groups.rests[contact->order[k]]) continue;
-    PetscCall(LoadBody(contact, contact->order[k], x));
-    if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[contact->order[k]]));
-    else PetscCall(ContactIntegrateBody(contact, contact->order[k]));
-    if (schwarz->has_forces) PetscCall(SchwarzReportByForce(contact, contact->order[k]));
-  }
+  PetscCall(SweepBodies(contact, x));
   PetscCall(ContactAgree(contact));
   if (ContactFailed(contact)) PetscCall(ContactRejectResidual(F));
   else {
