@@ -4,17 +4,34 @@
 /* Controller steps from look to look at the elements. A look at each step would cost an explicit body with strong strains 16 to 19 % of its
    time. */
 #define LOOK_EVERY 16
+/* Bodies of which a run tells while it goes on; the verdict at its end has the number of all */
+#define MOST_TOLD 3
 
-/* Notes how far a body has turned, and tells where a linear one goes too far; once */
-static PetscErrorCode CheckRotation(Body body, const ControllerFrame *frame, const PetscReal rotation[3], BodyStatistics *statistics)
+/* Whether a run tells of one more body, with so many before it */
+static PetscErrorCode Tells(Body body, PetscInt before, PetscBool *tells)
+{
+  PetscFunctionBegin;
+  *tells = (PetscBool)(before < MOST_TOLD);
+  if (before == MOST_TOLD)
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)body), stderr,
+                           "impakt: warning: the same is true of more bodies from now on; their number is told at the end\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Notes how far a body has turned, and tells where a linear one goes too far; once. `far`: bodies that have. */
+static PetscErrorCode CheckRotation(Body body, const ControllerFrame *frame, const PetscReal rotation[3], BodyStatistics *statistics,
+                                    PetscInt *far)
 {
   const PetscReal angle  = PetscSqrtReal(PetscSqr(rotation[0]) + PetscSqr(rotation[1]) + PetscSqr(rotation[2]));
   const PetscReal before = statistics->rotation_max;
   const char     *name;
+  PetscBool       tells;
 
   PetscFunctionBegin;
   statistics->rotation_max = PetscMax(before, angle);
   if (before > STATISTICS_FAR_TURN || angle <= STATISTICS_FAR_TURN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Tells(body, (*far)++, &tells));
+  if (!tells) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
   PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)body), stderr,
                          "impakt: warning: body '%s' has turned by %.3g rad at time %g s: its linear material counts rotations as strains, "
@@ -24,12 +41,14 @@ static PetscErrorCode CheckRotation(Body body, const ControllerFrame *frame, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells where elements of a linear body are inside out; once. Those of nonlinear ones fail a step. */
-static PetscErrorCode CheckElements(Body body, const ControllerFrame *frame, PetscReal potential, BodyStatistics *statistics)
+/* Tells where elements of a linear body are inside out; once. Those of nonlinear ones fail a step. `torn`: bodies of which some are. */
+static PetscErrorCode CheckElements(Body body, const ControllerFrame *frame, PetscReal potential, BodyStatistics *statistics,
+                                    PetscInt *torn)
 {
   PetscReal   centre[3];
   PetscInt    number, before;
   const char *name;
+  PetscBool   tells;
 
   PetscFunctionBegin;
   if (frame->step % LOOK_EVERY && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
@@ -37,6 +56,8 @@ static PetscErrorCode CheckElements(Body body, const ControllerFrame *frame, Pet
   before                   = statistics->inverted_max;
   statistics->inverted_max = PetscMax(before, number);
   if (before || !number) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Tells(body, (*torn)++, &tells));
+  if (!tells) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
   PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)body), stderr,
                          "impakt: warning: body '%s' has %" PetscInt_FMT " element%s inside out at time %g s, around (%g, %g, %g) m of the "
@@ -60,12 +81,17 @@ static PetscErrorCode CheckElements(Body body, const ControllerFrame *frame, Pet
 PetscErrorCode LinearLimitsCheck(Controller controller, const ControllerFrame *frame, BodyStatistics statistics[])
 {
   const Body *bodies;
+  PetscInt    far = 0, torn = 0;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetBodies(controller, NULL, &bodies));
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
-    PetscCall(CheckRotation(bodies[i], frame, frame->bodies[i].rotation, &statistics[i]));
-    PetscCall(CheckElements(bodies[i], frame, frame->bodies[i].potential, &statistics[i]));
+    far += statistics[i].rotation_max > STATISTICS_FAR_TURN;
+    torn += statistics[i].inverted_max > 0;
+  }
+  for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    PetscCall(CheckRotation(bodies[i], frame, frame->bodies[i].rotation, &statistics[i], &far));
+    PetscCall(CheckElements(bodies[i], frame, frame->bodies[i].potential, &statistics[i], &torn));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,17 +26,55 @@
 /* The same of a moment of inertia, relative: 71 % in a plate that is two elements thick and may touch on both sides */
 #define INERTIA_CHANGE 0.2
 
-/* Adds a sentence while there is room */
+/* Adds a sentence */
 static PetscErrorCode Add(Verdict *verdict, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 static PetscErrorCode Add(Verdict *verdict, const char format[], ...)
 {
   va_list arguments;
 
   PetscFunctionBegin;
-  if (verdict->n == VERDICT_MAX) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(verdict->n < VERDICT_MAX, PETSC_COMM_SELF, PETSC_ERR_PLIB, "There are more than %d sentences on a run", VERDICT_MAX);
   va_start(arguments, format);
   PetscCall(PetscVSNPrintf(verdict->text[verdict->n++], VERDICT_SIZE, format, NULL, arguments));
   va_end(arguments);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds a sentence on one of many bodies or pairs: of each kind the first few, and the others are counted */
+static PetscErrorCode AddOfKind(Verdict *verdict, VerdictKind kind, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+static PetscErrorCode AddOfKind(Verdict *verdict, VerdictKind kind, const char format[], ...)
+{
+  va_list arguments;
+
+  PetscFunctionBegin;
+  if (verdict->found[kind]++ >= VERDICT_OF_A_KIND) PetscFunctionReturn(PETSC_SUCCESS);
+  va_start(arguments, format);
+  PetscCall(PetscVSNPrintf(verdict->text[verdict->n++], VERDICT_SIZE, format, NULL, arguments));
+  va_end(arguments);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How many more there are of each kind */
+static PetscErrorCode AddNumbers(Verdict *verdict)
+{
+  static const char *const kinds[][3] = {
+      [VERDICT_CENTRE]   = {"body", "bodies", "whose centre of mass massless contact nodes move"},
+      [VERDICT_INERTIA]  = {"body", "bodies", "whose moments of inertia massless contact nodes change"},
+      [VERDICT_TURNED]   = {"linear body", "linear bodies", "that turned too far"},
+      [VERDICT_INVERTED] = {"linear body", "linear bodies", "of which elements were inside out"},
+      [VERDICT_UNTIED]   = {"pair", "pairs", "the ties of which tie nothing"},
+      [VERDICT_BEYOND]   = {"pair", "pairs", "of which nodes beyond the end of the partner bear much"},
+      [VERDICT_INSIDE]   = {"pair", "pairs", "that end inside each other"},
+  };
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < VERDICT_KINDS; k++) {
+    const PetscInt more = verdict->found[k] - VERDICT_OF_A_KIND;
+
+    if (more > 0)
+      PetscCall(
+          Add(verdict, "as above, there %s %" PetscInt_FMT " more %s %s", more == 1 ? "is" : "are", more, kinds[k][more > 1], kinds[k][2]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -114,16 +152,17 @@ static PetscErrorCode LookAtMass(Body body, const char name[], Verdict *verdict)
     thickness = PetscMin(thickness, upper[d] - lower[d]);
   }
   if (PetscSqrtReal(square) > CENTRE_SHIFT * thickness)
-    PetscCall(Add(verdict,
+    PetscCall(
+        AddOfKind(verdict, VERDICT_CENTRE,
                   "massless contact nodes move the centre of mass of body '%s' by %.3g m, %.3g %% of its least extent: refine it across, "
                   "or set -%s_mass_redistribute near",
                   name, (double)PetscSqrtReal(square), (double)(100 * PetscSqrtReal(square) / thickness), name));
   else if (inertia > INERTIA_CHANGE)
-    PetscCall(
-        Add(verdict,
-            "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; refine it "
-            "across, or set -%s_mass_redistribute near",
-            name, (double)(100 * inertia), name));
+    PetscCall(AddOfKind(
+        verdict, VERDICT_INERTIA,
+        "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; refine it "
+        "across, or set -%s_mass_redistribute near",
+        name, (double)(100 * inertia), name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -137,11 +176,12 @@ static PetscErrorCode LookAtBody(Body body, const BodyStatistics *statistics, Ve
   PetscCall(LookAtMass(body, name, verdict));
   PetscCall(BodyIsLinear(body, &linear));
   if (linear && statistics->rotation_max > STATISTICS_FAR_TURN)
-    PetscCall(Add(verdict, "linear body '%s' has turned by %.3g rad: set a nonlinear -%s_material_type", name,
-                  (double)statistics->rotation_max, name));
+    PetscCall(AddOfKind(verdict, VERDICT_TURNED, "linear body '%s' has turned by %.3g rad: set a nonlinear -%s_material_type", name,
+                        (double)statistics->rotation_max, name));
   if (!statistics->inverted_max) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Add(verdict, "up to %" PetscInt_FMT " elements of linear body '%s' were inside out: its figures mean nothing from then on",
-                statistics->inverted_max, name));
+  PetscCall(AddOfKind(verdict, VERDICT_INVERTED,
+                      "up to %" PetscInt_FMT " elements of linear body '%s' were inside out: its figures mean nothing from then on",
+                      statistics->inverted_max, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -159,15 +199,16 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   PetscCall(ContactGetLaw(contact, &law));
   PetscCall(ContactGetOverlap(contact, p, state, &depth, &inside));
   if (law == CONTACT_LAW_TIED && !results->pairs[p].active_max)
-    PetscCall(Add(verdict, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
+    PetscCall(AddOfKind(verdict, VERDICT_UNTIED, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
   if (state->beyond_impulse > BEYOND * PetscAbsReal(state->normal_impulse)) { /* ties pull as well as push */
     PetscCall(ContactGetPairRowSide(contact, p, &side));
-    PetscCall(Add(verdict,
+    PetscCall(
+        AddOfKind(verdict, VERDICT_BEYOND,
                   "nodes beyond the end of the partner bear %.3g %% of the impulse of %s, as if it reached there: what hangs over may not "
                   "tip; set -contact_rows %s, or refine the surface",
                   (double)(100 * state->beyond_impulse / PetscAbsReal(state->normal_impulse)), name, side ? "first" : "second"));
   }
-  if (inside) PetscCall(Add(verdict, "%s end %.3g m inside each other", name, (double)depth));
+  if (inside) PetscCall(AddOfKind(verdict, VERDICT_INSIDE, "%s end %.3g m inside each other", name, (double)depth));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,16 +231,18 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
   const Body       *bodies;
 
   PetscFunctionBegin;
-  verdict->n = 0;
+  PetscCall(PetscMemzero(verdict, sizeof(*verdict)));
   PetscCall(ControllerGetBodies(controller, NULL, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(LookAtSteps(controller, contact, results, verdict));
   for (PetscInt b = 0; b < results->n_bodies; b++) PetscCall(LookAtBody(bodies[b], &results->bodies[b], verdict));
-  if (!results->steps || !results->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(results->n_pairs, &states));
-  PetscCall(ContactGetPairStates(contact, states));
-  for (PetscInt p = 0; p < results->n_pairs; p++) PetscCall(LookAtPair(contact, p, &states[p], results, verdict));
-  PetscCall(PetscFree(states));
+  if (results->steps && results->n_pairs) {
+    PetscCall(PetscMalloc1(results->n_pairs, &states));
+    PetscCall(ContactGetPairStates(contact, states));
+    for (PetscInt p = 0; p < results->n_pairs; p++) PetscCall(LookAtPair(contact, p, &states[p], results, verdict));
+    PetscCall(PetscFree(states));
+  }
+  PetscCall(AddNumbers(verdict));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

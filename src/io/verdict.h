@@ -2,12 +2,26 @@
 #pragma once
 #include "statistics.h"
 
-#define VERDICT_MAX  8
-#define VERDICT_SIZE 256
+/* What may be amiss with each of many bodies or pairs */
+typedef enum {
+  VERDICT_CENTRE,
+  VERDICT_INERTIA,
+  VERDICT_TURNED,
+  VERDICT_INVERTED,
+  VERDICT_UNTIED,
+  VERDICT_BEYOND,
+  VERDICT_INSIDE,
+  VERDICT_KINDS
+} VerdictKind;
+
+#define VERDICT_OF_A_KIND 3 /* sentences of one kind; one more has the number of the others */
+#define VERDICT_OF_RUN    10
+#define VERDICT_MAX       (VERDICT_OF_RUN + VERDICT_KINDS * (VERDICT_OF_A_KIND + 1))
+#define VERDICT_SIZE      256
 
 /* One sentence for each thing that is amiss */
 typedef struct {
-  PetscInt n;
+  PetscInt n, found[VERDICT_KINDS];
   char     text[VERDICT_MAX][VERDICT_SIZE];
 } Verdict;
 
