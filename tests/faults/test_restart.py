@@ -277,7 +277,8 @@ RANKS_AMID = {
     "ties": ("-options_file options/cantilever-tied.opts", 1, 2, 0.55),
     "bars": ("-options_file options/peer-bars.opts", 1, 3, 0.55),
     "stack": ("-options_file options/stack.opts -time_end 0.12", 2, 1, 0.8),
-    "slides": ("-options_file options/sliding-flat.opts", 1, 3, 0.55),
+    # over 5 widths of elements, not 20: forces of a block that has moved by u are known to E u times round-off, 4e-7 N in 1 m, where 6600 N press it
+    "slides": ("-options_file options/sliding-flat.opts -block_boundary_displacement_ymax 0.5*max(0,t-0.1),-5e-6*min(1,10*t)", 1, 3, 0.55),
     "discs": ("-options_file options/discs.opts -time_end 3.3e-4", 1, 3, 0.9095),
     "friction": ("-options_file options/slope.opts", 1, 2, 0.55),
     "sides swapped": (HEAD_ON, 1, 2, 0.55),
@@ -319,7 +320,7 @@ def goes_on(run_in, folder, options, before, after, part, tolerance=1e-10):
 @pytest.mark.long
 @pytest.mark.parametrize("case", RANKS_AMID)
 def test_other_ranks_amid_contact(run_in, folder, case):
-    """10^-10 is what was asked for; seen: 8e-11 of the sliding block, 5e-12 of the stack, 2e-13 of the discs, which were 1.3e-9 in the velocity of contact
+    """10^-10 is what was asked for; seen: 2e-11 of the sliding block, 5e-12 of the stack, 2e-13 of the discs, which were 1.3e-9 in the velocity of contact
     while secants, known compliance and the points of factors were found anew."""
     goes_on(run_in, folder, *RANKS_AMID[case])
 
