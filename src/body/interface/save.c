@@ -1,0 +1,150 @@
+/* States that a body goes back to: the start of a controller step, and an end of it that is kept. */
+#include <body/layout/bodyimpl.h>
+
+/*@
+  BodySave - takes the current state as the start of the next controller step
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+.seealso: `Body`, `BodyRestore()`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodySave(Body body)
+{
+  const PetscBool stepped = (PetscBool)(body->state.step != body->saved.step), here = (PetscBool)!BodyIsElsewhere(body);
+  PetscScalar    *start, *end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->rows.local && stepped) {
+    const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+
+    for (PetscInt i = 0; i < 4; i++) {
+      PetscCall(TraceGetLevel(traces[i], 0, &start));
+      PetscCall(TraceGetLevel(traces[i], body->time.substeps, &end));
+      PetscCall(PetscArraycpy(start, end, body->rows.local));
+    }
+  }
+  /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
+  if (here && body->loads && body->time.substeps == 1 && stepped) PetscCall(BodyAddWork(body, body->substep_start.u));
+  if (here && body->time.substeps == 1 && stepped) PetscCall(BodyAddDampingWork(body));
+  /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
+  if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
+  PetscCall(BodyStateCopy(body, &body->state, &body->saved));
+  BodyHistorySave(body);
+  if (stepped) PetscCall(BodyUpdateStableStep(body));
+  body->start.changed = PETSC_FALSE;
+  /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
+  PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
+  if (here && body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
+  PetscCall(BodyHandoverEnd(body));
+  body->iterate.known = PETSC_FALSE;
+  body->repeats       = PETSC_FALSE;
+  if (stepped) body->time.accepted_level = body->time.level;
+  PetscCall(BodyNoteKnownRows(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All levels but the first, which belongs to the saved state */
+static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
+{
+  const Trace    traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  const PetscInt n        = body->time.substeps * body->rows.local;
+  PetscScalar   *values;
+
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 4; t++) {
+    PetscCall(TraceGetLevel(traces[t], 1, &values));
+    if (keep) PetscCall(PetscArraycpy(body->rows.kept_traces + t * n, values, n));
+    else PetscCall(PetscArraycpy(values, body->rows.kept_traces + t * n, n));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyKeep - puts the state at the end of the controller step aside, for `BodyReinstate()`
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, integrated
+
+  Level: developer
+
+  Note:
+  For an integration under other conditions, tried to see what it would bring.
+
+.seealso: `Body`, `BodyReinstate()`, `BodySave()`
+@*/
+PetscErrorCode BodyKeep(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyStateCopy(body, &body->state, &body->kept));
+  if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyHistoryKeep(body, PETSC_FALSE));
+  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_KEPT));
+  PetscCall(CopyOutputTraces(body, PETSC_TRUE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyReinstate - brings the state and the output traces of the last `BodyKeep()` back
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, in the same controller step
+
+  Level: developer
+
+.seealso: `Body`, `BodyKeep()`
+@*/
+PetscErrorCode BodyReinstate(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(BodyStateCopy(body, &body->kept, &body->state));
+  body->repeats = PETSC_FALSE;
+  if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyHistoryKeep(body, PETSC_TRUE));
+  if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_KEPT));
+  PetscCall(CopyOutputTraces(body, PETSC_FALSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyResetTraces - sets the output traces, at all times of the controller step, to their values at its start
+
+  Logically Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+  Note:
+  What the first sweep of a controller step starts from.
+
+.seealso: `Body`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodyResetTraces(Body body)
+{
+  const Trace  traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
+  PetscScalar *start, *values;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  for (PetscInt t = 0; t < 4; t++) {
+    PetscCall(TraceGetLevel(traces[t], 0, &start));
+    for (PetscInt level = 1; level <= body->time.substeps; level++) {
+      PetscCall(TraceGetLevel(traces[t], level, &values));
+      PetscCall(PetscArraycpy(values, start, body->rows.local));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
