@@ -16,7 +16,7 @@
    of static bodies are built anew at the place where they are, and merged rows are means of several. */
 static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *any)
 {
-  PetscBool linear = PETSC_TRUE;
+  PetscBool *touches = contact->work.flags, linear = PETSC_TRUE; /* of each node, which has several rows with friction */
 
   PetscFunctionBegin;
   *any = PETSC_FALSE;
@@ -29,8 +29,10 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
     PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
     linear = (PetscBool)(linear && is_linear);
   }
-  PetscCall(TransferFollow(pair->transfer, contact->start.active + pair->begin, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,
-                           contact->step, contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
+  for (PetscInt i = pair->begin; i < pair->end; i += pair->components)
+    touches[(i - pair->begin) / pair->components] = contact->start.active[i];
+  PetscCall(TransferFollow(pair->transfer, touches, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear, contact->step,
+                           contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
   if (contact->turns.n) PetscCall(TransferBalance(pair->transfer, contact->start.force + pair->begin, near, any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
