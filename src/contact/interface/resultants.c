@@ -80,7 +80,7 @@ static PetscErrorCode SumNormalForces(Contact contact, const ContactPair *pair, 
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
 
-    *force += (contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : 1) * row[i];
+    *force += (contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0) * row[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
