@@ -7,6 +7,8 @@ typedef struct {
   PetscInt  step;   /* cells of this grid along an edge of an element: 2 where elements have nodes in the middle of their edges */
   PetscInt  n_cuts; /* planes that cut it: x = centre, then y = centre */
   PetscReal radius, centre[3], pole[3], grading;
+  PetscReal length;   /* of a rod that the disc is drawn out to, along z */
+  PetscInt  sections; /* cells of its grid along it; 0: it is no rod */
   PetscBool simplex, keep_volume;
   PetscBool turned; /* half a disc that becomes a ball as it is turned about x = 0 */
 } Ball;
@@ -24,6 +26,7 @@ typedef struct {
   const Ball *ball;
   PetscInt    n[3], stride[3]; /* elements along the axes of the central block */
   PetscInt    n_core, n_rim;   /* nodes of the central block, and of its rim */
+  PetscInt    n_section;       /* nodes of a disc, from one section of a rod to the next */
   PetscInt   *rim;             /* per node of the central block: its number on the rim, -1 inside */
   PetscInt    n_blocks;
   BallBlock   blocks[7]; /* the central one first */
@@ -32,9 +35,10 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode MeshFillBall(BallGrid *);
 PETSC_INTERN PetscErrorCode BallChooseOrder(const char[], Ball *);
-PETSC_INTERN PetscErrorCode BallAddRun(MeshFile *, const Ball *, PetscInt, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);
 PETSC_INTERN PetscInt       BallGetNode(const BallGrid *, const BallBlock *, const PetscInt[3]);
+PETSC_INTERN PetscErrorCode BallDrawOut(BallGrid *);
 PETSC_INTERN PetscBool      BallBlockIsMirrored(const BallBlock *);
+PETSC_INTERN PetscInt       BallFirstCorner(const Ball *, const BallBlock *, PetscInt, const PetscInt[], const PetscInt[3]);
 PETSC_INTERN PetscBool      BallCellIsConvex(const BallGrid *, const BallBlock *, const PetscInt[], const PetscReal *[]);
 PETSC_INTERN PetscErrorCode BallKeepVolume(BallGrid *);

@@ -89,7 +89,8 @@ PetscErrorCode BallSetNodes(BallGrid *grid)
   }
   PetscCall(PetscMalloc1(grid->n_core, &grid->rim));
   for (PetscInt core = 0; core < grid->n_core; core++) grid->rim[core] = OnRim(grid, core) ? grid->n_rim++ : -1;
-  grid->file->n_nodes = grid->n_core + ball->layers * grid->n_rim;
+  grid->n_section     = grid->n_core + ball->layers * grid->n_rim;
+  grid->file->n_nodes = grid->n_section;
   PetscCall(PetscCalloc1(3 * grid->file->n_nodes, &grid->file->coordinates));
   for (PetscInt core = 0; core < grid->n_core; core++)
     for (PetscInt layer = 0; layer <= (grid->rim[core] < 0 ? 0 : ball->layers); layer++) SetNode(grid, core, layer);
@@ -99,13 +100,14 @@ PetscErrorCode BallSetNodes(BallGrid *grid)
 /* The number of the node at a place of a block */
 PetscInt BallGetNode(const BallGrid *grid, const BallBlock *block, const PetscInt place[3])
 {
-  PetscInt core = 0, layer = 0;
+  const PetscInt before = grid->ball->dim == 2 ? place[2] * grid->n_section : 0; /* of other sections of a rod */
+  PetscInt       core = 0, layer = 0;
 
   for (PetscInt d = 0; d < grid->ball->dim; d++) {
     if (d == block->axis) layer = place[d];
     core += grid->stride[d] * (d != block->axis ? place[d] : block->side ? grid->n[d] : 0);
   }
-  return layer ? grid->n_core + (layer - 1) * grid->n_rim + grid->rim[core] : core;
+  return before + (layer ? grid->n_core + (layer - 1) * grid->n_rim + grid->rim[core] : core);
 }
 
 /* Whether the axes of a block are left-handed: layers go outward */

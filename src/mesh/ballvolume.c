@@ -13,7 +13,7 @@
 /* Faces of the sphere, and by how much its nodes move outward, in the order of the rim of the central block */
 typedef struct {
   PetscInt   n_faces, corners, n_nodes;
-  PetscInt  *faces;     /* per face: its nodes, in the order of the bits of a corner's number */
+  PetscInt  *faces;     /* per face: its nodes, in the order of the bits of a corner's number, from that where simplices cut it on */
   PetscReal *direction; /* per node: from the centre, of length 1 */
   PetscReal *move;      /* per node: the way outward that its faces ask for [radii] */
 } Sphere;
@@ -126,10 +126,13 @@ static PetscErrorCode FindFaces(const BallGrid *grid, Sphere *sphere)
     for (PetscInt j = 0; j < (dim == 3 ? grid->n[axes[1]] : 1); j++)
       for (PetscInt i = 0; i < grid->n[axes[0]]; i++)
         for (PetscInt k = 0; k < sphere->corners; k++) {
-          PetscInt place[3] = {0, 0, 0};
+          PetscInt place[3] = {0, 0, 0}, corner = k;
 
-          place[axes[0]] = i + (k & 1);
-          if (dim == 3) place[axes[1]] = j + (k >> 1);
+          if (dim == 3) place[axes[1]] = j;
+          place[axes[0]] = i;
+          if (grid->ball->simplex) corner ^= BallFirstCorner(grid->ball, block, n_axes, axes, place);
+          place[axes[0]] += corner & 1;
+          if (dim == 3) place[axes[1]] += corner >> 1;
           place[block->axis]    = grid->ball->layers;
           sphere->faces[next++] = BallGetNode(grid, block, place) - outer;
         }

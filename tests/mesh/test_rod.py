@@ -36,6 +36,8 @@ def test_mass(more, part, ranks, impakt):
         ("-a_rod_length -1", "-a_rod_length -1.: must be positive"),
         ("-a_rod_elements 0", "-a_rod_elements 0: there must be at least 1"),
         ("-a_rod_part half -a_rod_divisions 3", "-a_rod_divisions 3: must be even"),
+        (f"{CURVED} -a_rod_elements 2000000000", "-a_rod_elements 2000000000 are too many: take fewer"),
+        ("-a_rod_elements 80000000", "4 divisions, 2 layers and 80000000 elements along it are too many: take fewer"),
         ("-a_dm_plex_dim 2 -a_initial_velocity 0,0", "-dm_plex_shape rod has 3 dimensions"),
     ],
 )
