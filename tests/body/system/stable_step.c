@@ -133,10 +133,74 @@ static void is_a_close_bound(void **state)
   assert_int_equal(remove(path), 0);
 }
 
+/* Moves the nodes of a bar of 1 m x 1 m along x: one in the middle of an edge at the far end by `aside` along y, and the first metre is
+   pressed to `pressed` of its length */
+static void deform(Body body, PetscReal length, PetscReal aside, PetscReal pressed)
+{
+  const PetscScalar *x;
+  PetscScalar       *u;
+  PetscInt           n, moved = 0;
+
+  ok(VecGetLocalSize(body->state.u, &n));
+  ok(VecGetArrayRead(body->mesh.positions, &x));
+  ok(VecGetArray(body->state.u, &u));
+  for (PetscInt i = 0; i < n; i += 3) {
+    const PetscReal at[3]  = {PetscRealPart(x[i]), PetscRealPart(x[i + 1]), PetscRealPart(x[i + 2])};
+    const PetscBool middle = (PetscBool)(PetscAbsReal(at[0] - length) + PetscAbsReal(at[1] - 0.5) + PetscAbsReal(at[2]) < 1e-9);
+
+    u[i]     = (pressed - 1) * PetscMin(at[0], 1);
+    u[i + 1] = middle ? aside : 0;
+    u[i + 2] = 0;
+    moved += middle;
+  }
+  ok(VecRestoreArray(body->state.u, &u));
+  ok(VecRestoreArrayRead(body->mesh.positions, &x));
+  assert_int_equal(moved, 1);
+}
+
+/* The stable step of a body that is being deformed, which is found anew only now and then, is not above the true one, but for what it is
+   trusted to anyway (a quarter), whatever became thin before: here first a part of one composite element far away, which is no less stable
+   for it, and then others as a whole. Measured: 1.006 of the true one at most, and 1.88 where the thinnest part was taken for its element.
+ */
+static void what_was_thin_before_hides_nothing(void **state)
+{
+  PetscOptions options = options_begin(
+      "-prefix_push s_ -dm_plex_dim 3 -dm_plex_simplex 1 -dm_plex_box_faces 3,1,1 -dm_plex_box_upper 3,1,1 "
+      "-element_formulation composite -density 3 -youngs_modulus 200 -poissons_ratio 0.3 -material_type "
+      "neo_hookean -mass_type lumped -ts_type centraldifference -prefix_pop");
+  PetscReal undeformed, exact;
+  Body      body;
+
+  (void)state;
+  ok(BodyCreate(PETSC_COMM_WORLD, "s", &body));
+  ok(BodySetFromOptions(body));
+  ok(BodySetControllerStep(body, 0, 1e-3));
+  ok(BodySetUp(body));
+  ok(BodyGetStableStep(body, &undeformed));
+  body->time.whole_step = 0.45 * undeformed * body->time.substeps;
+  deform(body, 3, 0.4, 1);
+  ok(BodyUpdateStableStep(body));
+  between(body->time.stable_now, 0.25 * undeformed, undeformed);
+  for (PetscReal pressed = 0.9; pressed > 0.2; pressed -= 0.1) {
+    const PetscScalar *u;
+    Vec                local;
+
+    deform(body, 3, 0, pressed);
+    ok(BodyUpdateStableStep(body));
+    ok(BodyGetLocalRead(body, body->state.u, &local, &u));
+    ok(BodyComputeStableStepAt(body, u, PETSC_FALSE, &exact));
+    ok(BodyRestoreLocalRead(body, body->state.u, &local, &u));
+    if (exact < 1.25 * 0.45 * undeformed) between(body->time.stable_now, 0, 1.25 * exact);
+  }
+  ok(BodyDestroy(&body));
+  options_end(options);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(is_a_close_bound),
+      cmocka_unit_test(what_was_thin_before_hides_nothing),
   };
 
   return impakt_main(argc, argv, tests);
