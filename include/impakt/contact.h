@@ -328,6 +328,8 @@ PETSC_EXTERN PetscErrorCode ContactSetStartEnergies(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactSetEnergyCap(Contact, PetscBool, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyCap(Contact, PetscBool *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetTolerance(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSetSeparation(Contact, PetscBool);
+PETSC_EXTERN PetscErrorCode ContactGetSeparation(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetTieDistance(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetTieDistance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetTolerance(Contact, PetscReal *);

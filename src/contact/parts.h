@@ -124,6 +124,7 @@ PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
 PETSC_INTERN PetscErrorCode ContactTurnMatrix(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactBond(Contact);
+PETSC_INTERN void           ContactHoldTogether(Contact);
 PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);

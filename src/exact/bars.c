@@ -166,6 +166,7 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
   Body         sides[2];
   Contact      contact;
   ContactLaw   law;
+  PetscBool    separation;
   const char  *pair;
   BodyMeasures measures[2];
   ExactBar    *bars = exact->bars;
@@ -190,6 +191,10 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
   PetscCheck(law != CONTACT_LAW_TIED && law != CONTACT_LAW_BONDED, comm, PETSC_ERR_USER_INPUT,
              "-exact %s is known for bars that part again, and -contact_law %s does not let them; leave one of the options out",
              exact->type, law == CONTACT_LAW_TIED ? "tied" : "bonded");
+  PetscCall(ContactGetSeparation(contact, &separation));
+  PetscCheck(separation, comm, PETSC_ERR_USER_INPUT,
+             "-exact %s is known for bars that part again, and -contact_separation false does not let them; leave one of the options out",
+             exact->type);
   PetscCall(ControllerGetTimes(controller, &exact->start, NULL, NULL));
   exact->frame_velocity  = (bars[0].mass * bars[0].velocity + bars[1].mass * bars[1].velocity) / (bars[0].mass + bars[1].mass);
   exact->impact          = exact->start + (bars[1].lower - bars[0].upper) / (bars[0].velocity - bars[1].velocity);

@@ -190,6 +190,10 @@ static const KnownOption options[] = {
      "rows in contact up to which steps with friction have dense matrices, default 300, and 2000 where products take longer; beyond, "
      "forces "
      "come from GMRES"},
+    {"contact", OPTION_OF_RUN, "contact_separation", "true|false",
+     "whether surfaces that have met may come apart again, default true; false, of frictionless ones under schwarz: they slide on each "
+     "other, "
+     "pushed or pulled"},
     {"contact", OPTION_OF_RUN, "contact_tie_distance", "d",
      "gap or overlap at the start up to which nodes are tied, in parts of a face, default 0.01; more is an error"},
     {"contact", OPTION_OF_RUN, "contact_constraint", "gap|gap_rate|both", "what contact forces keep from becoming negative, default gap"},

@@ -41,6 +41,7 @@ VARIANTS = {
     "cut steps, penalty": BLOCKS + "-time_step 4e-5 -contact_type penalty",
     "augmented Lagrangian": BLOCKS + "-contact_type augmented_lagrangian",
     "bonded": BLOCKS + "-contact_law bonded",
+    "held together": BLOCKS + "-contact_separation false",
     "friction": BLOCKS + "-contact_law coulomb -contact_friction 0.3",
     "friction, products": BLOCKS + "-contact_law coulomb -contact_friction 0.3 -contact_friction_dense_limit 0",
     "nonlinear, friction, products": NONLINEAR + "-contact_law coulomb -contact_friction 0.3 -contact_friction_dense_limit 0",

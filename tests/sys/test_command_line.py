@@ -225,6 +225,7 @@ SENSELESS = {
     "exact in two dimensions": ([BLOCKS, "-exact", "impact", "-left_poissons_ratio", "0.3"], ["-exact", "'left'", "-left_poissons_ratio 0"]),
     "exact beside each other": (["options/impact-solids.opts", "-exact", "impact", "-right_translate", "0,0.005,0"], ["-exact", "'right'", "end faces"]),
     "exact and never apart": (["options/impact-solids.opts", "-exact", "impact", "-contact_law", "bonded"], ["-exact", "-contact_law bonded", "part again"]),
+    "exact and held together": (["options/impact-high-speed.opts", "-exact", "impact", "-contact_separation", "false"], ["-exact", "-contact_separation false", "part again"]),
     "exact with loads": (["options/impact-high-speed.opts", "-right_body_force", "1e3"], ["-exact", "'right'", "body forces"]),
 }
 

@@ -112,6 +112,7 @@ typedef struct {
   ContactConstraint    constraint;
   ContactStabilization stabilization;
   ContactRowSide       row_side;         /* which body of a pair has the rows, unless the pair says otherwise */
+  PetscBool            separation;       /* surfaces that have met may come apart again */
   PetscBool            facing;           /* pairs of whole bodies keep only the faces that see each other at the start */
   PetscReal            slip_bound;       /* slip after which rows are built again [parts of a face] */
   PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */

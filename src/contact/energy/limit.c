@@ -61,6 +61,7 @@ static PetscErrorCode MarkLeaving(Contact contact, PetscInt g, PetscBool *any)
       continue;
     }
     if (energy->leaves[i] || energy->group[contact->pairs[contact->rows.pair[i]].body[0]] != g) continue;
+    if (!contact->options.separation && contact->rows.tied[i]) continue; /* pulled, it does not leave */
     if ((energy->last_force[i] > 0 || energy->accepted_force[i] > 0) && contact->end.force[i] <= 0) {
       energy->leaves[i] = PETSC_TRUE;
       found             = 1;

@@ -41,6 +41,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
   PetscCallMPI(MPI_Comm_rank(comm, &(*contact)->ranks.rank));
   (*contact)->attempt.failed           = PETSC_INT_MAX;
+  (*contact)->options.separation       = PETSC_TRUE;
   (*contact)->options.facing           = PETSC_TRUE;
   (*contact)->options.shared_times     = PETSC_TRUE;
   (*contact)->options.balanced_start   = PETSC_TRUE;
@@ -186,6 +187,7 @@ PetscErrorCode ContactStep(Contact contact)
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscCall(ContactBond(contact));
   PetscCall(ContactUpdateRows(contact));
+  ContactHoldTogether(contact);
   PetscCall(ContactDriveFriction(contact));
   if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
   PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
@@ -293,6 +295,8 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)
     PetscCall(PetscViewerASCIIPrintf(
         viewer, "  law %s\n", contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law]));
+  if (!contact->options.separation)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  surfaces that have met slide on each other and do not come apart\n"));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  constraint %s\n", ContactConstraints[contact->options.constraint]));
   if (contact->options.stabilization != CONTACT_STABILIZATION_NONE)

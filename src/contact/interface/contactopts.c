@@ -59,6 +59,8 @@ static PetscErrorCode ReadSettings(Contact contact)
                              ContactConstraints, (PetscEnum)contact->options.constraint, (PetscEnum *)&contact->options.constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetStabilization", ContactStabilizations,
                              (PetscEnum)contact->options.stabilization, (PetscEnum *)&contact->options.stabilization, NULL));
+  PetscCall(PetscOptionsBool("-contact_separation", "Surfaces that have met may come apart again", "ContactSetSeparation",
+                             contact->options.separation, &contact->options.separation, NULL));
   PetscCall(PetscOptionsReal("-contact_tie_distance", "Gap or overlap up to which nodes are tied, parts of a face", "ContactSetTieDistance",
                              contact->options.tie_distance, &contact->options.tie_distance, NULL));
   PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start",
@@ -197,6 +199,7 @@ static PetscErrorCode ReadRowSides(Contact contact)
 . -contact_friction mu, -contact_friction_<pair> mu             - coefficient of friction of all pairs; of one
 . -contact_friction_kinetic mu, -contact_friction_decay d       - what it falls to with the speed v of sliding, as exp(-d v)
 . -contact_friction_dense_limit n                               - rows up to which steps with friction have dense matrices
+. -contact_separation (true|false)                              - whether surfaces that have met may come apart again
 . -contact_tie_distance d                                      - gap or overlap up to which nodes are tied [parts of a face], default 0.01
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
                                                                  start (default); false where bodies move round each other, as balls do
@@ -220,7 +223,7 @@ static PetscErrorCode ReadRowSides(Contact contact)
 .seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
           `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
           `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`,
-          `ContactSetTieDistance()`, `ContactSetBalance()`, `ContactSetRowSide()`
+          `ContactSetTieDistance()`, `ContactSetSeparation()`, `ContactSetBalance()`, `ContactSetRowSide()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

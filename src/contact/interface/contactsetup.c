@@ -126,6 +126,11 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCheck(contact->options.law != CONTACT_LAW_BONDED || contact->prescribes, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law bonded works with -contact_type schwarz alone, not with %s; choose that, or -contact_law frictionless or tied",
              ((PetscObject)contact)->type_name);
+  PetscCheck(contact->options.separation || (contact->prescribes && contact->options.law == CONTACT_LAW_FRICTIONLESS),
+             PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_separation false works with -contact_type schwarz and -contact_law frictionless alone, not with %s and %s",
+             ((PetscObject)contact)->type_name,
+             contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law]);
   PetscCall(ContactSetUpScales(contact));
   PetscCall(ShareControllerStep(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {

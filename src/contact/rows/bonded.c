@@ -96,3 +96,65 @@ PetscErrorCode ContactBond(Contact contact)
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  ContactSetSeparation - sets whether surfaces that have met may come apart again
+
+  Logically Collective
+
+  Input Parameters:
++ contact    - the `Contact`, not yet set up
+- separation - `PETSC_TRUE`, the default: they only push; `PETSC_FALSE`: nodes that have been in contact at the end of a controller step
+               slide on along the partner from then on, pushed or pulled, until there is no partner opposite any more
+
+  Options Database Key:
+. -contact_separation (true|false) - whether they may
+
+  Level: intermediate
+
+  Note:
+  `PETSC_FALSE` needs `CONTACT_SCHWARZ` and `CONTACT_LAW_FRICTIONLESS`. Other programs call this contact without separation, or sliding.
+
+.seealso: `Contact`, `ContactSetLaw()`, `ContactGetSeparation()`, `ContactSetFromOptions()`
+@*/
+PetscErrorCode ContactSetSeparation(Contact contact, PetscBool separation)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(contact, separation, 2);
+  ContactCheckNotSetUp(contact);
+  contact->options.separation = separation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetSeparation - whether surfaces that have met may come apart again
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`
+
+  Output Parameter:
+. separation - see `ContactSetSeparation()`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetSeparation()`
+@*/
+PetscErrorCode ContactGetSeparation(Contact contact, PetscBool *separation)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(separation, 2);
+  *separation = contact->options.separation;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of a controller step, with its rows: those that were in contact at the end of the last one are held from now on, pushed or
+   pulled, along their normal alone. A row that has no partner opposite any more has been let go. */
+void ContactHoldTogether(Contact contact)
+{
+  if (contact->options.separation) return;
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.tied[i] = contact->start.active[i];
+}

@@ -158,7 +158,7 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
     if (without_inertia[0] && without_inertia[1]) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscBool pushes = (PetscBool)(contact->start.active[i] && contact->start.force[i] > 0);
+      const PetscBool pushes = (PetscBool)(contact->start.active[i] && (contact->start.force[i] > 0 || !contact->options.separation));
       const PetscInt  node   = (i - pair->begin) / pair->components;
 
       if (!contact->rows.changed[i]) continue;

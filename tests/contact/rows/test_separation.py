@@ -1,0 +1,80 @@
+"""-contact_separation false: bodies that have met slide on each other and do not come apart."""
+
+import numpy as np
+import pytest
+from cases import SAME, worst_energy_error
+from test_bonded import INTEGRATORS, box
+
+HELD = "-contact_separation false"
+
+
+def thrown(dim, faces, pairing, across=0.0, more=HELD):
+    return (f"-bodies a,b -contact_pairs a:b {more} -time_step 1e-5 -time_end 6e-3 {INTEGRATORS[pairing]} "
+            f"{box('a', dim, 0, 4, (10, across, 0))} {box('b', dim, 1.002, faces, (-10, -across, 0))}")  # fmt: skip
+
+
+@pytest.mark.parametrize("pairing", INTEGRATORS)
+@pytest.mark.parametrize("faces", [4, 3])
+@pytest.mark.parametrize("dim", [1, 2, 3])
+def test_they_stay_together(dim, faces, pairing, shared_run):
+    """They pull at each other when they would bounce off, and nothing is lost, as where they part. Measured: 2e-13."""
+    run = shared_run(thrown(dim, faces, pairing))
+    pair = run.history["contact/a:b"]
+    active, force = pair["active"][()], pair["force"][()]
+    first = np.flatnonzero(active)[0]
+    assert run.history["time"][first] == pytest.approx(1e-4, abs=1.1e-5)
+    assert (active[first + 1 :] == 5 ** (dim - 1)).all()
+    assert force.max() > 1e6 and force.min() < -1e6
+    assert run.summary["contact"]["onsets"] == 1
+    assert worst_energy_error(run.summary) <= 1e-9
+    assert run.summary["system"]["momentum_error_max"] <= 1e-11
+    assert abs(pair["gap"][first:]).max() <= 4e-12
+    apart = shared_run(thrown(dim, faces, pairing, more="")).history["contact/a:b"]
+    assert apart["force"][()].min() >= 0 and apart["active"][-1] == 0
+
+
+@pytest.mark.parametrize("integrator", ["", "-b_ts_type centraldifference"])
+@pytest.mark.parametrize("mass", ["", "-b_mass_redistribute false -b_mass_type lumped"])
+def test_on_an_obstacle(integrator, mass, shared_run):
+    """A block thrown at a wall stays there and slides along it as fast as it came. Nodes that keep their mass lose its energy as they stop, and no more."""
+    floor = "-obstacles wall -wall_obstacle_type plane -wall_point 1,0 -wall_normal -1,0 -contact_pairs b:wall"
+    run = shared_run(f"-bodies b {HELD} {floor} -time_step 1e-5 -time_end 6e-3 {box('b', 2, -0.001, 4, (10, 3))} {integrator} {mass}")
+    pair, momentum = run.history["contact/b:wall"], run.history["body/b/momentum"][:]
+    first = np.flatnonzero(pair["active"])[0]
+    assert (pair["active"][first:] == 5).all() and pair["force"][()].min() < -1e6
+    assert np.abs(momentum[:, 1] / momentum[0, 1] - 1).max() <= 1e-11
+    position = run.history["body/b/contact_position"][first + 1 :]
+    assert np.abs(position[:, 0] - position[0, 0]).max() <= 1e-12
+    assert np.ptp(position[:, 1]) == pytest.approx(3 * 5.9e-3, rel=0.02)
+    if mass:  # that of half an element of 4, in a lumped layer of 5 nodes: an eighth of the energy along the normal, which is 100 / 109 of it
+        assert run.summary["system"]["energy_error_final"] == pytest.approx(-100 / 109 / 8, rel=0.02)
+    else:
+        assert worst_energy_error(run.summary) <= 1e-9
+
+
+@pytest.mark.parametrize("pairing", ["II", "EE"])
+def test_sliding(pairing, shared_run):
+    """Bodies slide past each other by 0.35 m, and a node that has no partner opposite any more is let go. Measured: what normals that turn take of the momentum across, 2.2e-3, and rows that are
+    built again and let go of the energy, 8.7e-4; 3.9e-4 and 2.7e-4 where they part."""
+    run = shared_run(thrown(2, 3, pairing, across=30))
+    momentum = run.history["body/a/momentum"][:, 1]
+    pair = run.history["contact/a:b"]
+    assert pair["active"][-1] == 4 and pair["active"][()].max() == 5
+    assert np.abs(momentum / momentum[0] - 1).max() < 3e-3
+    assert pair["force"][()].min() < -1e6
+    assert worst_energy_error(run.summary) <= 1e-3
+
+
+@pytest.mark.parametrize("pairing", ["II", "EE"])
+def test_ranks(pairing, shared_run):
+    one, two, three = (shared_run(thrown(2, 3, pairing, across=3), ranks).history["contact/a:b/force"][()] for ranks in (1, 2, 3))
+    np.testing.assert_allclose(one, two, rtol=0, atol=SAME * np.abs(one).max())
+    np.testing.assert_allclose(one, three, rtol=0, atol=SAME * np.abs(one).max())
+
+
+@pytest.mark.parametrize("more", ["-contact_type penalty", "-contact_type lagrange", "-contact_type augmented_lagrangian", "-contact_law tied", "-contact_law bonded", "-contact_law coulomb -contact_friction 0.3"])
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_others_are_refused(more, ranks, impakt):
+    run = impakt(f"{thrown(2, 4, 'II')} {more}", ranks, expect_failure=True)
+    for word in ("-contact_separation false", "-contact_type schwarz", "frictionless", more.split()[1]):
+        assert word in run.stderr
