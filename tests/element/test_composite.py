@@ -179,14 +179,15 @@ def test_wrong_cells(impakt):
 
 
 def rim_and_length(run):
-    """Distances from the axis of the nodes around the foot of the rod, and its length, at the end [m]."""
+    """Distances from the axis of the nodes around the foot of the rod, from x to y, and its length, at the end [m]."""
     with h5py.File(run.folder / "fields.h5") as fields:
         first = fields["mesh/positions"][()]
         last = first + fields["displacement"][max(fields["displacement"])][()]
     anvil = np.flatnonzero(first[:, 2] < -1e-9)  # after the rod
     first, last = first[: anvil[0] if len(anvil) else None], last[: anvil[0] if len(anvil) else None]
     rim = (np.abs(first[:, 2]) < 1e-9) & (np.hypot(first[:, 0], first[:, 1]) > 3.19e-3)
-    return np.hypot(last[rim, 0], last[rim, 1]), np.ptp(last[:, 2])
+    around = np.argsort(np.arctan2(first[rim, 1], first[rim, 0]))
+    return np.hypot(last[rim, 0], last[rim, 1])[around], np.ptp(last[:, 2])
 
 
 TAYLOR = "-options_file options/taylor-bar-composite{}.opts -output_fields fields.h5 -output_fields_interval 100000 {}"
@@ -203,7 +204,7 @@ def test_taylor(impakt):
     assert len(rim) == 9
     assert [rim.mean(), rim.max()] == pytest.approx([7.226e-3] * 2, rel=5e-3)
     assert rim.min() == pytest.approx(7.226e-3, rel=1e-2)
-    assert np.sort(rim)[[0, 2, 4, 7]] == pytest.approx(np.sort(rim)[[1, 3, 5, 8]], rel=1e-6)
+    assert rim == pytest.approx(rim[::-1], rel=1e-6)
     assert length == pytest.approx(21.43e-3, rel=3e-3)
     assert abs(run.summary["system"]["energy_error_final"]) <= 1e-3
 
@@ -212,8 +213,8 @@ def test_taylor(impakt):
 @pytest.mark.parametrize(("case", "loss"), [("", (-1e-3, 1e-3)), ("-wall", (-6.5e-3, -5e-3)), ("-anvil", (-6.5e-3, -5e-3))])
 def test_taylor_on(case, loss, impakt):
     """With elements of 0.53 x 0.53 x 0.68 mm every node of the rim is within 0.5 %: of a foot that is held, on a wall that it does not come off, and on an elastic body of 100 times the rod's
-    impedance. Measured: MEASURED
-    What nodes of the foot had is lost as they stop at the wall."""
+    impedance. Measured: 7.206 mm in the mean, from 7.195 to 7.220 mm, -0.43 to -0.08 %, held and on the wall; 7.209 mm, from 7.199 to 7.224 mm, -0.38 to -0.03 %, on the elastic body; 21.441 and
+    21.455 mm, +0.05 and +0.12 %; energy to 1.4e-4 where it is held. 2.9, 2.8 and 5 minutes of processor time. With all cells cut the same way it was from +0.95 to -3.14 %, and -0.80 % in the mean. What nodes of the foot had is lost as they stop at the wall."""
     run = impakt(TAYLOR.format(case, FINE), timeout=1400)
     rim, length = rim_and_length(run)
     assert len(rim) == 13
