@@ -10,7 +10,6 @@
    that is the first, in which all extents count alike, PETSc divides the mesh as a graph, which makes smoother parts.
 */
 #include "meshimpl.h"
-#include <petscpartitioner.h>
 #include <sys/names.h>
 
 /* Work for a face that two ranks share, in units of the work for an element, as in bricks.c */
@@ -205,50 +204,32 @@ static PetscErrorCode Compare(void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells PETSc which cells go to which rank */
-static PetscErrorCode SetParts(Bisection *b)
-{
-  PetscPartitioner partitioner;
-  PetscInt        *sizes, *next, *points;
-
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc3(b->size, &sizes, b->size + 1, &next, b->n, &points));
-  for (PetscInt c = 0; c < b->n; c++) sizes[b->best[c]]++;
-  for (PetscMPIInt rank = 0; rank < b->size; rank++) next[rank + 1] = next[rank] + sizes[rank];
-  for (PetscInt c = 0; c < b->n; c++) points[next[b->best[c]]++] = c;
-  PetscCall(DMPlexGetPartitioner(b->dm, &partitioner));
-  PetscCall(PetscPartitionerSetType(partitioner, PETSCPARTITIONERSHELL));
-  PetscCall(PetscPartitionerShellSetPartition(partitioner, b->size, sizes, points));
-  PetscCall(PetscFree3(sizes, next, points));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Prepares the division of a mesh that is on the first rank such that contact faces lie on all ranks, if that makes a step cheaper and no
-   option asks for another division */
-PetscErrorCode MeshSpreadContact(DM dm, const char prefix[], const char name[], PetscBool placed)
+/* Prepares the division of a mesh that is on the first rank such that contact faces lie on all ranks that have a part, if that makes a step
+   cheaper and no option asks for another division; spread: it does */
+PetscErrorCode MeshSpreadContact(DM dm, const MeshRanks *ranks, const char prefix[], const char name[], PetscBool placed, PetscBool *spread)
 {
   static const char *const options[] = {"-petscpartitioner_type", "-dm_distribute"};
   MPI_Comm                 comm      = PetscObjectComm((PetscObject)dm);
-  Bisection                b         = {.dm = dm, .prefix = prefix};
+  Bisection                b         = {.dm = dm, .prefix = prefix, .size = ranks->n};
   PetscBool                has       = PETSC_FALSE, rotated;
   PetscErrorCode           error     = PETSC_SUCCESS;
   char                     where[256];
-  int                      found;
+  int                      found = 0;
 
   PetscFunctionBegin;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !has; i++) PetscCall(PetscOptionsHasName(NULL, prefix, options[i], &has));
   if (!has) PetscCall(PetscOptionsHasName(NULL, NULL, options[0], &has));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-rotate", &rotated));
   b.sides = (PetscBool)(placed || !rotated);
-  PetscCallMPI(MPI_Comm_size(comm, &b.size));
   PetscCall(MeshReadContact(comm, prefix, name, &b.n_names, &b.names, &b.cost));
   if (!has && b.size > 1 && b.n_names && b.cost > 0) {
     PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', division of its mesh", name));
     error = MeshOnRank(comm, 0, Compare, &b, where);
     found = b.found;
     if (!error) PetscCallMPI(MPI_Bcast(&found, 1, MPI_INT, 0, comm));
-    if (!error && found) error = SetParts(&b);
+    if (!error && found) error = MeshSetParts(dm, ranks, b.n, b.best);
   }
+  *spread = (PetscBool)(!error && found);
   PetscCall(NamesDestroy(b.n_names, &b.names));
   PetscCall(PetscFree(b.faces));
   PetscCall(PetscFree3(b.centres, b.part, b.best));

@@ -71,23 +71,23 @@ static PetscErrorCode FindOptionOfGraph(const char prefix[], const char **option
 /* Reads the number of bricks along each axis */
 static PetscErrorCode ReadBricks(MPI_Comm comm, const char prefix[], MeshBox *box, PetscBool *set)
 {
-  PetscInt    n = 3, product = 1;
-  PetscMPIInt size;
+  const PetscMPIInt size = box->ranks->n;
+  const char *const of   = box->ranks->list ? " that have a part of the body" : "";
+  PetscInt          n = 3, product = 1;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-mesh_bricks", box->bricks, &n, set));
   if (!*set) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Comm_size(comm, &size));
   for (PetscInt d = 0; d < n; d++) {
     PetscCheck(box->bricks[d] > 0 && box->bricks[d] <= size, comm, PETSC_ERR_USER_INPUT,
-               "-%smesh_bricks: %" PetscInt_FMT " bricks along axis %" PetscInt_FMT "; there are %d ranks", prefix, box->bricks[d], d + 1,
-               size);
+               "-%smesh_bricks: %" PetscInt_FMT " bricks along axis %" PetscInt_FMT "; there are %d ranks%s", prefix, box->bricks[d], d + 1,
+               size, of);
     product *= box->bricks[d];
   }
   PetscCheck(n == box->dim && product == size, comm, PETSC_ERR_USER_INPUT,
              "-%smesh_bricks gives %" PetscInt_FMT " bricks along %" PetscInt_FMT " axes: give one number for each of %" PetscInt_FMT
-             " axes, with the number of ranks, %d, as their product",
-             prefix, product, n, box->dim, size);
+             " axes, with the number of ranks%s, %d, as their product",
+             prefix, product, n, box->dim, of, size);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -108,7 +108,7 @@ static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], const cha
              "-%s%s needs -%smesh_division graph, without -%smesh_bricks", prefix, option ? option + 1 : "", prefix, prefix);
   *bricks = (PetscBool)(!option && !division);
   PetscCall(MeshBoxMarkContact(comm, prefix, name, box));
-  if (*bricks && !given) PetscCall(MeshBricksChoose(comm, box, &balance));
+  if (*bricks && !given) PetscCall(MeshBricksChoose(box, &balance));
   if (*bricks && !given && !set) *bricks = balance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -233,22 +233,24 @@ static PetscErrorCode CreateSimplexBox(MPI_Comm comm, const MeshBox *box, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A box or another of DMPLEX's shapes from options; whole: it is not to be divided; first: there is a mesh now, all of it on the first rank
- */
-PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], PetscBool whole, DM *dm, PetscBool *first)
+/* A box or another of DMPLEX's shapes from options, for these ranks; stage: what there is of the mesh now */
+PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name[], const MeshRanks *ranks, DM *dm, MeshStage *stage)
 {
   MeshBox   box;
   PetscBool bricks = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(ReadBox(comm, prefix, &box));
-  *first = (PetscBool)(box.is_box && box.dim > 1 && box.simplex);
+  box.ranks = ranks;
   if (box.is_box && box.dim > 1 && box.simplex) {
+    *stage = MESH_ON_ONE_RANK;
     PetscCall(CreateSimplexBox(comm, &box, prefix, name, dm));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (box.is_box) PetscCall(ReadDivision(comm, prefix, name, &box, &bricks));
-  if (bricks && !whole) {
+  if (ranks->list && ranks->n == 1) bricks = PETSC_FALSE; /* the same mesh as where no rank is named, and one is to have all */
+  *stage = bricks ? MESH_DIVIDED : MESH_TO_BE_MADE;
+  if (bricks) {
     PetscCall(MeshCreateBricks(comm, &box, dm));
   } else {
     PetscCall(DMCreate(comm, dm));

@@ -124,14 +124,13 @@ static PetscReal FindCost(const MeshBox *box, PetscMPIInt size, PetscReal *most)
 
 /* Chooses how the box is cut; balance: whether the bricks of all ranks are near enough to each other in size if it is cut across its
    longest edges */
-PetscErrorCode MeshBricksChoose(MPI_Comm comm, MeshBox *box, PetscBool *balance)
+PetscErrorCode MeshBricksChoose(MeshBox *box, PetscBool *balance)
 {
-  PetscReal   all = 1, most, least_cost, weight = 1, best = 1;
-  PetscMPIInt size;
-  PetscBool   any = PETSC_FALSE;
+  const PetscMPIInt size = box->ranks->n;
+  PetscReal         all = 1, most, least_cost, weight = 1, best = 1;
+  PetscBool         any = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
   for (PetscInt d = 0; d < box->dim; d++) {
     all *= (PetscReal)box->faces[d];
     box->along[d] = 1;
@@ -347,7 +346,7 @@ static PetscErrorCode LabelSides(const MeshBox *box, const PetscInt places[], DM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of a rank that has no cell, where there are more ranks than cells */
+/* Of a rank that has no cell, where there are more ranks than cells, or others have the body */
 static PetscErrorCode MakeNoPoints(DM dm)
 {
   PetscFunctionBegin;
@@ -356,22 +355,22 @@ static PetscErrorCode MakeNoPoints(DM dm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A box of which each rank makes its own brick */
+/* A box of which each rank that is to have a part of it makes its own brick */
 PetscErrorCode MeshCreateBricks(MPI_Comm comm, const MeshBox *box, DM *dm)
 {
-  PetscMPIInt size, rank;
+  PetscMPIInt rank, part;
   PetscInt   *places = NULL;
   PetscReal   points = 1;
-  Brick       brick;
+  Brick       brick  = {{0, 0, 0}, {0, 0, 0}};
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  part = MeshRanksFind(box->ranks, rank);
   for (PetscInt d = 0; d < box->dim; d++) points *= 2 * (PetscReal)box->faces[d] + 1;
   PetscCheck(points < (PetscReal)PETSC_INT_MAX, comm, PETSC_ERR_USER_INPUT,
              "a box of this size has more points than indices of %d bits can count%s", (int)(8 * sizeof(PetscInt)),
              sizeof(PetscInt) == 4 ? "; build with INDICES=64" : "");
-  brick = box->bricks[0] ? BrickInGrid(box, rank) : CutForRank(box, size, rank);
+  if (part >= 0) brick = box->bricks[0] ? BrickInGrid(box, part) : CutForRank(box, box->ranks->n, part);
   PetscCall(DMCreate(comm, dm));
   PetscCall(DMSetType(*dm, DMPLEX));
   PetscCall(DMSetDimension(*dm, box->dim));

@@ -117,7 +117,7 @@ static PetscErrorCode SetPrefix(DM dm, const char prefix[])
 . -<body>_dm_plex_box_upper x,y,z                     - its upper corner [m]
 . -<body>_dm_plex_simplex (true|false)                - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
 . -<body>_mesh_division (bricks|graph|whole)          - each rank makes its own brick of a box; or a graph is divided; or one rank has all
-. -<body>_mesh_bricks n,n,n                           - bricks of a box along each axis, their product the number of ranks
+. -<body>_mesh_bricks n,n,n                           - bricks of a box along each axis, their product the number of ranks with a part
 . -<body>_mesh_contact_surfaces a,b                   - surfaces that may touch another body, whose faces are spread over the ranks; default
                                                         those that -contact_pairs names
 . -<body>_mesh_contact_cost c                         - work for a face of these, in units of that for an element, default 15
@@ -173,7 +173,7 @@ elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
   PetscFunctionBegin;
-  PetscCall(MeshCreateOnRank(comm, prefix, name, PETSC_DECIDE, dm));
+  PetscCall(MeshCreateOnRanks(comm, prefix, name, 0, NULL, dm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,40 +193,90 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
 
   Level: developer
 
-.seealso: `MeshCreate()`, `MeshEstimate()`, `MeshMayBeWhole()`, `BodySetMeshRank()`
+.seealso: `MeshCreate()`, `MeshCreateOnRanks()`, `MeshEstimate()`, `MeshMayBeWhole()`, `BodySetMeshRank()`
 @*/
 PetscErrorCode MeshCreateOnRank(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm)
 {
-  char        path[PETSC_MAX_PATH_LEN];
-  PetscBool   from_file, blocks, composite, ball = PETSC_FALSE, rod = PETSC_FALSE;
-  PetscBool   first   = PETSC_TRUE; /* all of the mesh is on the first rank */
-  MeshMiddles middles = {NULL, NULL};
+  PetscFunctionBegin;
+  PetscCall(MeshCreateOnRanks(comm, prefix, name, rank >= 0 ? 1 : 0, &rank, dm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Opens a mesh from options, as far as it can be made before DMSetFromOptions(). rank: the one that is to have all of it, or none */
+static PetscErrorCode Begin(MPI_Comm comm, const char prefix[], const char name[], const MeshRanks *ranks, PetscMPIInt rank, DM *dm,
+                            MeshMiddles *middles, MeshStage *stage, PetscBool *there)
+{
+  char      path[PETSC_MAX_PATH_LEN];
+  PetscBool from_file, blocks, ball = PETSC_FALSE, rod = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscAssertPointer(dm, 5);
-  *dm = NULL;
+  *stage = MESH_ON_ONE_RANK;
   PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_filename", path, sizeof(path), &from_file));
   PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_blocks", &blocks));
   PetscCheck(from_file || !blocks, comm, PETSC_ERR_USER_INPUT, "-%smesh_blocks needs a mesh file: give -%sdm_plex_filename", prefix,
              prefix);
   if (!from_file) PetscCall(MeshIsBall(prefix, &ball));
   if (!from_file) PetscCall(MeshIsRod(prefix, &rod));
-  if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm, &middles));
-  else if (rod) PetscCall(MeshCreateRod(comm, prefix, name, rank, dm, &middles));
-  else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, rank, dm, &middles));
-  else PetscCall(MeshCreateBox(comm, prefix, name, (PetscBool)(rank >= 0), dm, &first));
+  if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm, middles));
+  else if (rod) PetscCall(MeshCreateRod(comm, prefix, name, rank, dm, middles));
+  else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, rank, dm, middles));
+  else PetscCall(MeshCreateBox(comm, prefix, name, ranks, dm, stage));
+  *there = (PetscBool)(rank >= 0 && (rod || ball));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  MeshCreateOnRanks - the mesh of a body from options, as `MeshCreate()` makes it, divided among some ranks; others have nothing of it
+
+  Collective
+
+  Input Parameters:
++ comm   - the communicator, on which the mesh is all the same
+. prefix - of its options, such as "left_"
+. name   - of the body, for messages; becomes that of the mesh
+. n      - number of ranks that have a part; 0: all
+- list   - these ranks, ascending
+
+  Output Parameter:
+. dm - a `DMPLEX` with faces and edges; after an error it is `NULL`, or to be destroyed
+
+  Level: developer
+
+  Note:
+  Each of them makes its brick of a box. Other meshes are made on the first rank of the communicator, divided there into `n` parts, and sent;
+  discs, balls and rods of one rank are made there.
+
+.seealso: `MeshCreate()`, `MeshCreateOnRank()`, `BodySetRanks()`
+@*/
+PetscErrorCode MeshCreateOnRanks(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt n, const PetscMPIInt list[], DM *dm)
+{
+  MeshRanks   ranks   = {n, list};
+  MeshMiddles middles = {NULL, NULL};
+  MeshStage   stage   = MESH_TO_BE_MADE;
+  PetscMPIInt size, rank;
+  PetscBool   file, composite, spread, there = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscAssertPointer(dm, 6);
+  *dm = NULL;
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (n) PetscCall(MeshRanksCheck(comm, prefix, size, &ranks));
+  if (!n || n == size) ranks = (MeshRanks){size, NULL};
+  rank = ranks.list && n == 1 ? list[0] : PETSC_DECIDE;
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_filename", &file));
+  PetscCall(Begin(comm, prefix, name, &ranks, rank, dm, &middles, &stage, &there));
   PetscCall(SetPrefix(*dm, prefix));
-  if (rank >= 0) PetscCall(DMPlexDistributeSetDefault(*dm, PETSC_FALSE));
-  else if (first) PetscCall(MeshSpreadContact(*dm, prefix, name, (PetscBool)!from_file));
+  if (ranks.list) PetscCall(DMPlexDistributeSetDefault(*dm, PETSC_FALSE));
+  else if (stage == MESH_ON_ONE_RANK) PetscCall(MeshSpreadContact(*dm, &ranks, prefix, name, (PetscBool)!file, &spread));
 #if defined(PETSC_HAVE_PTSCOTCH)
   SCOTCH_randomReset(); /* what it draws goes on from one mesh to the next: a body's parts would hang on what was divided before it */
 #endif
-  if (!middles.section) PetscCall(DMSetFromOptions(*dm)); /* distributes it */
-  else if (rank < 0) PetscCall(MeshDistributeWithMiddles(dm, prefix, &middles));
-  if (rank >= 0 && (rod || ball)) PetscCall(MeshTellLabels(rank, *dm)); /* these are there already */
-  else if (rank >= 0) PetscCall(MeshMoveToRank(rank, dm, &middles));
+  if (!middles.section) PetscCall(DMSetFromOptions(*dm)); /* distributes it among all ranks */
+  else if (!ranks.list) PetscCall(MeshDistributeWithMiddles(dm, prefix, &middles));
+  if (there) PetscCall(MeshTellLabels(rank, *dm));
+  else if (ranks.list && stage != MESH_DIVIDED) PetscCall(MeshDivideAmong(&ranks, prefix, name, stage, (PetscBool)!file, dm, &middles));
   PetscCall(PetscObjectSetName((PetscObject)*dm, name));
-  if (!from_file) PetscCall(MeshMarkSides(*dm));
+  if (!file) PetscCall(MeshMarkSides(*dm));
   PetscCall(MeshWantsComposite(prefix, &composite));
   if (composite || middles.section) PetscCall(MeshMakeComposite(dm, prefix, name, &middles));
   PetscCall(MeshMiddlesDestroy(&middles));

@@ -80,16 +80,26 @@ typedef struct {
 /* What the label of the edges with the middle nodes of a node set is named, before its name */
 #define MESH_MIDDLES "middles of "
 
+/* The ranks that have a part of a mesh each */
+typedef struct {
+  PetscMPIInt        n;    /* parts */
+  const PetscMPIInt *list; /* the rank of each, ascending; NULL: all ranks */
+} MeshRanks;
+
+/* What there is of a mesh before DMSetFromOptions() */
+typedef enum { MESH_TO_BE_MADE, MESH_ON_ONE_RANK, MESH_DIVIDED } MeshStage;
+
 /* A box as its options describe it */
 typedef struct {
   PetscInt  dim, faces[3];
   PetscReal lower[3], upper[3]; /* [m] */
   PetscBool simplex, is_box;
   /* how it is divided among ranks */
-  PetscInt  bricks[3];    /* bricks along each axis, one for each rank; 0: not given */
-  PetscBool contact[6];   /* sides (xmin, xmax, ymin, ...) that may touch another body */
-  PetscReal contact_cost; /* work for one of their faces, in units of the work for an element */
-  PetscReal along[3];     /* how much the cells along each axis count when the longest edge is looked for, to be cut */
+  const MeshRanks *ranks;        /* that have a part */
+  PetscInt         bricks[3];    /* bricks along each axis, one for each of these ranks; 0: not given */
+  PetscBool        contact[6];   /* sides (xmin, xmax, ymin, ...) that may touch another body */
+  PetscReal        contact_cost; /* work for one of their faces, in units of the work for an element */
+  PetscReal        along[3];     /* how much the cells along each axis count when the longest edge is looked for, to be cut */
 } MeshBox;
 
 PETSC_INTERN PetscErrorCode MeshFileInitialize(MeshFile *, const char[]);
@@ -118,17 +128,20 @@ PETSC_INTERN PetscErrorCode MeshMakeComposite(DM *, const char[], const char[], 
 PETSC_INTERN PetscErrorCode MeshWantsComposite(const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshOnRank(MPI_Comm, PetscMPIInt, PetscErrorCode (*)(void *), void *, const char[]);
 PETSC_INTERN PetscErrorCode MeshCreateFromFile(MPI_Comm, const char[], const char[], const char[], DM *, MeshMiddles *);
-PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], PetscBool, DM *, PetscBool *);
+PETSC_INTERN PetscErrorCode MeshCreateBox(MPI_Comm, const char[], const char[], const MeshRanks *, DM *, MeshStage *);
 PETSC_INTERN PetscErrorCode MeshTellLabels(PetscMPIInt, DM);
-PETSC_INTERN PetscErrorCode MeshMoveToRank(PetscMPIInt, DM *, MeshMiddles *);
+PETSC_INTERN PetscMPIInt    MeshRanksFind(const MeshRanks *, PetscMPIInt);
+PETSC_INTERN PetscErrorCode MeshRanksCheck(MPI_Comm, const char[], PetscMPIInt, const MeshRanks *);
+PETSC_INTERN PetscErrorCode MeshSetParts(DM, const MeshRanks *, PetscInt, const PetscInt[]);
+PETSC_INTERN PetscErrorCode MeshDivideAmong(const MeshRanks *, const char[], const char[], MeshStage, PetscBool, DM *, MeshMiddles *);
 PETSC_INTERN PetscInt       MeshBoxSideNumber(PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode MeshHasSurface(DM, const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCheckContact(DM, const char[]);
 PETSC_INTERN PetscErrorCode MeshReadContact(MPI_Comm, const char[], const char[], PetscInt *, char ***, PetscReal *);
 PETSC_INTERN PetscErrorCode MeshFindSurface(DM, const char[], PetscBool, PetscInt *, PetscInt *[]);
-PETSC_INTERN PetscErrorCode MeshSpreadContact(DM, const char[], const char[], PetscBool);
+PETSC_INTERN PetscErrorCode MeshSpreadContact(DM, const MeshRanks *, const char[], const char[], PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode MeshBoxMarkContact(MPI_Comm, const char[], const char[], MeshBox *);
-PETSC_INTERN PetscErrorCode MeshBricksChoose(MPI_Comm, MeshBox *, PetscBool *);
+PETSC_INTERN PetscErrorCode MeshBricksChoose(MeshBox *, PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBricks(MPI_Comm, const MeshBox *, DM *);
 PETSC_INTERN PetscErrorCode MeshIsRod(const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateRod(MPI_Comm, const char[], const char[], PetscMPIInt, DM *, MeshMiddles *);

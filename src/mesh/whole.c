@@ -1,7 +1,5 @@
-/* Meshes that lie whole on one rank: of which size and where they will be, as options tell before there is a mesh, and how they get there.
- */
+/* Meshes that lie whole on one rank: of which size and where they will be, as options tell before there is a mesh. */
 #include "meshimpl.h"
-#include <petscpartitioner.h>
 
 /* Cells of a section of an O-grid, a disc or that of a rod: the central block, and the four around it */
 static PetscInt SectionCells(PetscInt divisions, PetscInt layers)
@@ -111,8 +109,8 @@ PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal cent
 - prefix - of its options, such as "left_"
 
   Output Parameters:
-+ may  - no option asks for a division
-- asks - `-<body>_mesh_division whole`
++ may  - no option asks for a division, or says which ranks have the mesh
+- asks - `-<body>_mesh_division whole`, and no option says which rank has it
 
   Level: developer
 
@@ -124,7 +122,7 @@ PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may
                                           "-mesh_contact_cost"};
   const char *const        divisions[] = {"bricks", "graph", "whole"};
   PetscInt                 division    = 0;
-  PetscBool                has         = PETSC_FALSE, set, file, ball, rod;
+  PetscBool                has         = PETSC_FALSE, set, file, ball, rod, placed;
 
   PetscFunctionBegin;
   PetscAssertPointer(may, 3);
@@ -138,12 +136,14 @@ PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may
   PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 3, &division, &set));
   PetscCheck(!set || division || !(file || ball || rod), comm, PETSC_ERR_USER_INPUT,
              "-%smesh_division bricks: boxes alone are made of bricks; choose graph or whole, or leave the option out", prefix);
+  PetscCall(PetscOptionsHasName(NULL, prefix, "-ranks", &placed));
   *asks = (PetscBool)(set && division == 2);
   PetscCheck(!*asks || !has, comm, PETSC_ERR_USER_INPUT,
              "-%smesh_division whole: another option divides the mesh (petscpartitioner_type, dm_distribute, mesh_bricks, "
              "mesh_contact_surfaces, ...); leave one of them out",
              prefix);
-  *may = (PetscBool) !(has || set);
+  if (placed) *asks = PETSC_FALSE;
+  *may = (PetscBool) !(has || set || placed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -169,34 +169,5 @@ PetscErrorCode MeshTellLabels(PetscMPIInt rank, DM dm)
   PetscCallMPI(MPI_Bcast(names, (PetscMPIInt)(n * (PetscInt)sizeof(names[0])), MPI_CHAR, rank, comm));
   for (PetscInt l = 0; l < n; l++) PetscCall(DMCreateLabel(dm, names[l])); /* does nothing where there is one */
   PetscCall(PetscFree(names));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Moves a mesh from the first rank, which has all of it, and the positions in the middle of its edges, if there are any, to another one */
-PetscErrorCode MeshMoveToRank(PetscMPIInt rank, DM *dm, MeshMiddles *middles)
-{
-  PetscPartitioner partitioner;
-  PetscInt         start, end, *sizes, *cells;
-  PetscMPIInt      size;
-  DM               moved;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)*dm), &size));
-  PetscCall(DMPlexGetHeightStratum(*dm, 0, &start, &end));
-  PetscCall(PetscCalloc2(size, &sizes, end - start, &cells));
-  for (PetscInt c = start; c < end; c++) cells[c - start] = c - start;
-  sizes[rank] = end - start;
-  PetscCall(DMPlexGetPartitioner(*dm, &partitioner));
-  PetscCall(PetscPartitionerSetType(partitioner, PETSCPARTITIONERSHELL));
-  PetscCall(PetscPartitionerShellSetPartition(partitioner, size, sizes, cells));
-  PetscCall(PetscFree2(sizes, cells));
-  if (middles->section) {
-    PetscCall(MeshDivideWithMiddles(dm, middles));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(DMPlexDistribute(*dm, 0, NULL, &moved));
-  if (!moved) PetscFunctionReturn(PETSC_SUCCESS); /* there is one rank */
-  PetscCall(DMDestroy(dm));
-  *dm = moved;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -36,7 +36,6 @@ PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
   (*body)->mass.redistribute = PETSC_TRUE;
   (*body)->mass.moments      = BODY_MASS_INERTIA;
   (*body)->springs.part      = PETSC_DECIDE;
-  (*body)->mesh.rank         = PETSC_DECIDE;
   PetscCall(ElementCreate(comm, &(*body)->model.element));
   PetscCall(PetscObjectSetName((PetscObject)(*body)->model.element, name)); /* of what warnings speak */
   PetscCall(ElementSetOptionsPrefix((*body)->model.element, prefix));
@@ -319,6 +318,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(PetscFree(b->mesh.coordinates));
   PetscCall(PetscFree(b->mesh.on_axis));
   PetscCall(PetscFree(b->mesh.ghost_dofs));
+  PetscCall(PetscFree(b->mesh.ranks));
   PetscCall(PetscFree(b->mesh.node_of_vertex));
   PetscCall(DMDestroy(&b->mesh.dm));
   PetscCall(PetscHeaderDestroy(body));

@@ -21,8 +21,8 @@ static PetscErrorCode CheckDescribed(Body body)
 static PetscErrorCode CreateMesh(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(
-      MeshCreateOnRank(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, body->mesh.rank, &body->mesh.dm));
+  PetscCall(MeshCreateOnRanks(PetscObjectComm((PetscObject)body), ((PetscObject)body)->prefix, body->hdr.name, body->mesh.n_ranks,
+                              body->mesh.ranks, &body->mesh.dm));
   PetscCall(DMGetCoordinateDim(body->mesh.dm, &body->mesh.dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -133,6 +133,7 @@ static PetscErrorCode ReadStatic(Body body)
 
   Options Database Keys:
 + -<body>_dm_plex_...                                - the mesh: `DMPLEX`'s own options
+. -<body>_ranks list                                 - ranks among which it is divided, see `BodySetRanks()`
 . -<body>_material_type, -<body>_density, ...        - the material, see `MaterialSetFromOptions()`
 . -<body>_<block>_material_type, ...                 - that of a block of the mesh, see `BodySetBlockMaterial()`
 . -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
@@ -167,6 +168,7 @@ PetscErrorCode BodySetFromOptions(Body body)
   PetscCheck(!body->mesh.positions, comm, PETSC_ERR_ARG_WRONGSTATE,
              "Body '%s' has its options, or its loads, already: call BodySetFromOptions() once, and before functions that look at the mesh",
              body->hdr.name);
+  PetscCall(BodyReadRanks(body));
   if (!body->mesh.dm) PetscCall(CheckDescribed(body));
   PetscCall(PetscOptionsHasName(NULL, ((PetscObject)body)->prefix, "-dm_plex_filename", &from_file));
   if (!body->mesh.dm && from_file) PetscCall(CreateMesh(body));

@@ -69,62 +69,6 @@ PetscErrorCode BodySetDM(Body body, DM dm)
 }
 
 /*@
-  BodySetMeshRank - sets the rank that has all of a mesh from options
-
-  Logically Collective
-
-  Input Parameters:
-+ body - the `Body`, before `BodySetFromOptions()`
-- rank - a rank of its communicator; `PETSC_DECIDE` (default): the mesh is divided among all
-
-  Options Database Key:
-. -<body>_mesh_division whole - some rank has it
-
-  Level: intermediate
-
-  Note:
-  `ControllerSetFromOptions()` chooses it for bodies with few elements, where there are many.
-
-.seealso: `Body`, `BodyGetMeshRank()`, `BodySetFromOptions()`, `MeshCreateOnRank()`
-@*/
-PetscErrorCode BodySetMeshRank(Body body, PetscMPIInt rank)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveMPIInt(body, rank, 2);
-  PetscCheck(!body->mesh.dm, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s' has a mesh: call %s() before",
-             body->hdr.name, PETSC_FUNCTION_NAME);
-  PetscCheck(rank == PETSC_DECIDE || (rank >= 0 && rank < body->rows.size), PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
-             "Body '%s' cannot lie on rank %d of %d", body->hdr.name, rank, body->rows.size);
-  body->mesh.rank = rank;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetMeshRank - the rank that has all of the mesh
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, with its mesh numbered: after `BodySetFromOptions()` or `BodySetUpDiscretization()`
-
-  Output Parameter:
-. rank - `PETSC_DECIDE` where several ranks have a part, or may
-
-  Level: intermediate
-
-.seealso: `Body`, `BodySetMeshRank()`
-@*/
-PetscErrorCode BodyGetMeshRank(Body body, PetscMPIInt *rank)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(rank, 2);
-  *rank = body->mesh.positions && !body->mesh.ghosted ? body->mesh.owner : PETSC_DECIDE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   BodySetMaterial - sets the material of a body
 
   Collective

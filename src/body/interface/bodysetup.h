@@ -10,3 +10,5 @@ PETSC_INTERN PetscErrorCode BodyNoteHeld(Body);
 PETSC_INTERN PetscErrorCode BodyAsksForRigid(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyReadRigid(Body, const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode BodyReadPoints(Body);
+PETSC_INTERN PetscErrorCode BodyReadRanks(Body);
+PETSC_INTERN PetscErrorCode BodyViewRanks(Body, PetscViewer);

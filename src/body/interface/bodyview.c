@@ -1,5 +1,6 @@
 /* What a body tells about itself. */
 #include <body/layout/bodyimpl.h>
+#include "bodysetup.h"
 
 /* What there is to tell of bodies in two and three dimensions */
 static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
@@ -72,6 +73,7 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
           ? (body->rows.tied_mass ? ", tied nodes keep theirs" : ", contact layer massless")
           : "",
       type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step));
+  PetscCall(BodyViewRanks(body, viewer));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscCall(BodyViewBlocks(body, viewer));
   PetscCall(ViewLayer(body, viewer));

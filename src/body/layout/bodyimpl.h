@@ -30,7 +30,7 @@ typedef struct {
   PetscReal   cells[2];          /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
   PetscBool  *on_axis;           /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
   PetscBool   touches_axis;      /* there are such nodes on any rank */
-  PetscMPIInt rank;              /* that is to have all of a mesh from options; PETSC_DECIDE: it is divided */
+  PetscMPIInt n_ranks, *ranks;   /* that are to have a mesh from options among them, ascending; 0: all, or as the program has divided it */
   PetscMPIInt owner;             /* the rank that has all cells, where one has; else the first */
   PetscBool   is_owner;          /* it is this one */
   PetscBool   whole;             /* there are several ranks, of which one has all cells */
