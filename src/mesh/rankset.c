@@ -6,7 +6,6 @@
 */
 #include "meshimpl.h"
 #include <petscpartitioner.h>
-#include <sys/petsccompat.h>
 
 /* The part that a rank has; -1: none */
 PetscMPIInt MeshRanksFind(const MeshRanks *ranks, PetscMPIInt rank)
@@ -83,7 +82,7 @@ static PetscErrorCode DivideGraph(DM dm, const MeshRanks *ranks, PetscInt part[]
   PetscCall(PetscPartitionerSetFromOptions(partitioner));
   PetscCall(DMPlexCreatePartitionerGraph(dm, 0, &n, &offsets, &neighbours, &numbering));
   PetscCall(PetscSectionCreate(PetscObjectComm((PetscObject)dm), &section));
-  PetscCall(PetscPartitionerPartition(partitioner, ranks->n, n, offsets, neighbours, NO_WEIGHTS NULL, section, &partition));
+  PetscCall(PetscPartitionerPartition(partitioner, ranks->n, n, offsets, neighbours, NULL, NULL, NULL, section, &partition));
   PetscCall(ISGetIndices(partition, &cells));
   for (PetscInt p = 0; p < ranks->n; p++) {
     PetscInt count, first;

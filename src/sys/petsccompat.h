@@ -44,10 +44,3 @@
 #else
 #  define SF_RANK_COUNT PetscMPIInt
 #endif
-
-/* the arguments of PetscPartitionerPartition() for the weights of vertices and edges */
-#if PETSC_VERSION_LT(3, 22, 0)
-#  define NO_WEIGHTS NULL,
-#else
-#  define NO_WEIGHTS NULL, NULL,
-#endif

@@ -63,7 +63,7 @@ PetscErrorCode BodySetDM(Body body, DM dm)
   PetscCall(PetscObjectSetName((PetscObject)clone, body->hdr.name)); /* of what messages about its surfaces speak */
   PetscCall(DMDestroy(&body->mesh.dm));
   body->mesh.dm = clone;
-  PetscCall(PetscArrayzero(body->mesh.cells, 2));
+  PetscCall(PetscArrayzero(body->mesh.cells, 3));
   body->mesh.dim = dim;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

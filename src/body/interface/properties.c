@@ -107,13 +107,15 @@ PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Measure of all cells (length, area or volume), and their number, on all ranks together */
-static PetscErrorCode SumCells(Body body, PetscReal sums[2])
+/* Measure of all cells (length, area or volume), their number, and how many are simplices, on all ranks together: a rank without cells does
+   not know their shape */
+static PetscErrorCode SumCells(Body body, PetscReal sums[3])
 {
-  PetscInt cstart, cend;
+  PetscBool simplex;
+  PetscInt  cstart, cend;
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(sums, body->mesh.cells, 2));
+  PetscCall(PetscArraycpy(sums, body->mesh.cells, 3));
   if (sums[1] > 0) PetscFunctionReturn(PETSC_SUCCESS);
   sums[0] = 0;
   PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
@@ -123,9 +125,11 @@ static PetscErrorCode SumCells(Body body, PetscReal sums[2])
     PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cell, &measure, NULL, NULL));
     sums[0] += measure;
   }
+  PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
   sums[1] = cend - cstart;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(PetscArraycpy(body->mesh.cells, sums, 2));
+  sums[2] = simplex ? cend - cstart : 0;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscCall(PetscArraycpy(body->mesh.cells, sums, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -146,16 +150,14 @@ static PetscErrorCode SumCells(Body body, PetscReal sums[2])
 @*/
 PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 {
-  PetscReal sums[2];
-  PetscBool simplex;
+  PetscReal sums[3];
   PetscInt  dim;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyGetDimension(body, &dim));
-  PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
   PetscCall(SumCells(body, sums));
-  if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
+  if (sums[2] > 0 && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
   *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -179,8 +181,7 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
 {
   const PetscInt nodes   = body->mesh.cell_nodes;
-  PetscReal      sums[2] = {0, 0};
-  PetscBool      simplex;
+  PetscReal      all[3], sums[2] = {0, 0};
   PetscInt       dim, cstart, cend;
 
   PetscFunctionBegin;
@@ -189,7 +190,7 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
   *size = body->layer.edge;
   if (*size > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetDimension(body, &dim));
-  PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
+  PetscCall(SumCells(body, all));
   PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
   for (PetscInt e = 0; e < cend - cstart; e++) {
     PetscBool touches = PETSC_FALSE;
@@ -202,8 +203,8 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
     sums[1]++;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  if (!(sums[1] > 0)) PetscCall(SumCells(body, sums));
-  if (simplex && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
+  if (!(sums[1] > 0)) PetscCall(PetscArraycpy(sums, all, 2));
+  if (all[2] > 0 && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
   *size = body->layer.edge = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,7 +27,7 @@ typedef struct {
   PetscReal  *coordinates;       /* local_nodes x dim: reference positions [m] */
   PetscInt   *ghost_dofs;        /* global numbers */
   Vec         positions;         /* reference positions of owned nodes, laid out as displacements [m] */
-  PetscReal   cells[2];          /* volume of all cells [m, m^2 or m^3], and their number; 0: not computed */
+  PetscReal   cells[3];          /* volume of all cells [m, m^2 or m^3], their number, and how many are simplices; 0: not computed */
   PetscBool  *on_axis;           /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
   PetscBool   touches_axis;      /* there are such nodes on any rank */
   PetscMPIInt n_ranks, *ranks;   /* that are to have a mesh from options among them, ascending; 0: all, or as the program has divided it */
