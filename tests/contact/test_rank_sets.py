@@ -93,5 +93,5 @@ def test_ranks(name, ranks, which, options, shared_run):
     expected, found = figures(alone), figures(apart)
     assert expected.keys() == found.keys()
     for figure, values in expected.items():
-        assert np.abs(found[figure] - values).max() <= 1e-9 * np.abs(values).max(), figure
+        assert np.abs(found[figure] - values).max() <= 1e-11 * np.abs(values).max(), figure
     assert max(values.max() for figure, values in expected.items() if figure.endswith("active")) > 1

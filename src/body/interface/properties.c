@@ -180,7 +180,7 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 @*/
 PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
 {
-  const PetscInt nodes   = body->mesh.cell_nodes;
+  const PetscInt nodes = body->mesh.cell_nodes;
   PetscReal      all[3], sums[2] = {0, 0};
   PetscInt       dim, cstart, cend;
 

@@ -91,6 +91,21 @@ static void alternation(void **state)
       SetAlternation);
 }
 
+static PetscErrorCode SetSweep(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactSchwarzSetSweepType(contact, SCHWARZ_SWEEP_ADDITIVE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void additive(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(7, 11, 0.3);
+  compare(simulation, "-schwarz_sweep additive", SetSweep);
+}
+
 static PetscErrorCode SetPenalty(Contact contact)
 {
   PetscFunctionBegin;
@@ -135,6 +150,7 @@ static void refusals(void **state)
   create(simulation);
   contact = simulation->contact;
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetRobinParameter(contact, 0));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "order of sweeps", ContactSchwarzSetSweepType(contact, (SchwarzSweepType)2));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetImpedanceParameter(contact, -1));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must not be negative", ContactSchwarzSetDenseLimit(contact, -1));
   for (int value = -1; value <= 4; value += 5) { /* one less and one more than there are, of the largest enum */
@@ -165,8 +181,8 @@ static void refusals(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(schwarz),  simulation_test(alternation), simulation_test(penalty), simulation_test(augmented_lagrangian),
-      simulation_test(refusals),
+      simulation_test(schwarz), simulation_test(alternation),          simulation_test(additive),
+      simulation_test(penalty), simulation_test(augmented_lagrangian), simulation_test(refusals),
   };
 
   return impakt_main(argc, argv, tests);
