@@ -95,3 +95,49 @@ def test_ranks(name, ranks, which, options, shared_run):
     for figure, values in expected.items():
         assert np.abs(found[figure] - values).max() <= 1e-11 * np.abs(values).max(), figure
     assert max(values.max() for figure, values in expected.items() if figure.endswith("active")) > 1
+
+
+@pytest.mark.parametrize("name", ["plane, neo-Hookean, friction", *long("plane, explicit, friction", "space, explicit")])
+def test_restart(name, run_in, folder, same_runs):
+    """With the same ranks to the last bit; on another number of them with others, to round-off (2.8e-14 seen); and not with others on as many."""
+    whole, other = folder("whole"), folder("continued")
+    case, ranks, change = CASES[name], "-left_ranks 0,2 -right_ranks 1", "-restart_allow_changes"
+    for where in (whole, other):
+        run_in(f"{case} {ranks}", where, 3, "-checkpoint", "c.h5", "-checkpoint_interval", 35, fields=False)
+    run_in(f"{case} {ranks}", other, 3, "-restart", "c.prev.h5", fields=False)
+    same_runs(whole, other)
+    for number, sets in ((2, "-left_ranks 1 -right_ranks 0"), (1, "")):
+        run_in(f"{case} {sets}", other, number, "-restart", "c.prev.h5", change, fields=False)
+        assert differences(whole, other, 1e-10) == []
+        assert summary(other)["run"]["complete"]
+    for sets, more, message in (
+        ("-left_ranks 0-1 -right_ranks 2", [], "-left_ranks 0-1 (it had 0,2), -right_ranks 2 (it had 1)"),
+        ("-left_ranks 0-1 -right_ranks 2", [change], "distributed otherwise"),
+    ):
+        assert message in run_in(f"{case} {sets}", other, 3, "-restart", "c.prev.h5", *more, code=None, fields=False).stderr
+    assert "-left_ranks 2: this run has 2 ranks" in run_in(f"{case} {ranks}", other, 2, "-restart", "c.prev.h5", change, code=None, fields=False).stderr
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        ("-left_ranks 0-2", "-left_ranks 0-2: this run has 2 ranks"),
+        ("-left_ranks 0,0", "-left_ranks names rank 0 twice"),
+        ("-left_ranks 0;1", "'0;1' is neither a rank nor a range of ranks"),
+        ("-left_ranks 0-1 -left_mesh_division whole", "-left_ranks names 2"),
+        ("-left_ranks 0 -left_mesh_bricks 2,1", "there are 1 ranks that have a part"),
+        ("-left_ranks 0 -left_dm_distribute_overlap 1", "-left_dm_distribute_overlap"),
+        ("-middle_ranks 0", "-middle_ranks"),
+    ],
+)
+def test_refused(options, message, impakt):
+    """In one line, before anything is written."""
+    run = impakt([*PLANE.split(), *options.split()], 2, expect_failure=True)
+    assert message in run.stderr
+    assert not list(run.folder.glob("*.h5")) and not list(run.folder.glob("*.json"))
+
+
+def test_placed_as_told(impakt):
+    """A body that may be whole on any rank is on the one that is named."""
+    for options, where in (("-left_ranks 1", "1"), ("-left_ranks 1 -left_mesh_division whole", "1"), ("-left_ranks 0-1", "0-1")):
+        assert f"mesh on rank{'s' if '-' in where else ''} {where} of 2" in impakt(PLANE + BOTH + " -time_end 1e-5 " + options, 2).stdout
