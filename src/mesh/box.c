@@ -248,7 +248,6 @@ PetscErrorCode MeshCreateBox(MPI_Comm comm, const char prefix[], const char name
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (box.is_box) PetscCall(ReadDivision(comm, prefix, name, &box, &bricks));
-  if (ranks->list && ranks->n == 1) bricks = PETSC_FALSE; /* the same mesh as where no rank is named, and one is to have all */
   *stage = bricks ? MESH_DIVIDED : MESH_TO_BE_MADE;
   if (bricks) {
     PetscCall(MeshCreateBricks(comm, &box, dm));
