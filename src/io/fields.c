@@ -256,13 +256,26 @@ PetscErrorCode FieldsSync(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The file of the run that is continued, with its first `written` frames; the others become frames that are not there yet */
-static PetscErrorCode TakeUp(Fields fields, PetscInt written)
+/*
+  FieldsTakeUp - takes up the file of the run that is continued, with the frames before its checkpoint, once all of that has been loaded
+
+  Collective
+
+  Input Parameter:
+. fields - the `Fields`, after FieldsVisit(); `NULL`: there are none
+
+  Note:
+  Other frames become such that are not there yet. Does nothing where fields begin with the run.
+*/
+PetscErrorCode FieldsTakeUp(Fields fields)
 {
-  PetscErrorCode error = PETSC_SUCCESS;
+  const PetscInt written = fields ? fields->goes_on : 0;
+  PetscErrorCode error   = PETSC_SUCCESS;
   HDF5Silence    silence;
 
   PetscFunctionBegin;
+  if (!written) PetscFunctionReturn(PETSC_SUCCESS);
+  fields->goes_on = 0;
   HDF5SilenceBegin(&silence);
   if (fields->first_rank) error = FieldsFileCut(fields->path, fields->n_frames, written, fields->times);
   PetscCall(FieldsShareError(fields, error));
@@ -278,7 +291,7 @@ static PetscErrorCode TakeUp(Fields fields, PetscInt written)
 }
 
 /*
-  FieldsVisit - the place in the file, to or from a checkpoint; loading, frames after it are taken out
+  FieldsVisit - the place in the file, to or from a checkpoint; loading, FieldsTakeUp() is to follow
 
   Collective
 
@@ -314,7 +327,7 @@ PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, PetscBool same_ranks, C
              " steps, and this run wants %" PetscInt_FMT ", one every %" PetscInt_FMT
              "; give another path, where the fields begin with the restart, or the same -output_fields_interval and -time_end",
              fields->path, numbers[1], numbers[2], fields->n_frames, fields->interval);
-  PetscCall(TakeUp(fields, numbers[0]));
+  fields->goes_on = numbers[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,3 +13,4 @@ PETSC_INTERN PetscErrorCode      FieldsGetPaths(Fields, const char *[], const ch
 PETSC_INTERN PetscErrorCode      FieldsDestroy(Fields *);
 PETSC_INTERN PetscErrorCode      FieldsSync(Fields);
 PETSC_INTERN PetscErrorCode      FieldsVisit(Fields, MPI_Comm, PetscBool, Checkpoint);
+PETSC_INTERN PetscErrorCode      FieldsTakeUp(Fields);

@@ -13,6 +13,7 @@ struct _n_Fields {
   FieldsSet       set;                      /* fields of each frame */
   ContactFields   contact;                  /* NULL if no bodies can touch */
   PetscInt        written;                  /* frames in the file */
+  PetscInt        goes_on;                  /* frames of the run that is continued, see FieldsTakeUp() */
   PetscReal      *times;                    /* their times [s] */
   PetscReal      *stress;                   /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
   PetscReal      *plastic;                  /* equivalent plastic strain of each cell of this rank; NULL where nothing flows */

@@ -34,6 +34,7 @@ struct _n_History {
   PetscInt       n_records, capacity;
   PetscReal     *records;                /* those that are not in the file yet, `width` numbers each */
   PetscInt64     written;                /* records in the file */
+  PetscBool      goes_on;                /* the file is that of the run that is continued, see HistoryTakeUp() */
   int            held;                   /* the file, see OutputFilePlace() */
   PetscLogDouble flushed, flush_seconds; /* when the last flush ended, and how long it took [s] */
 };
@@ -349,12 +350,24 @@ static PetscErrorCode WriteCut(const char part[], void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The file of the run that is continued, without the records that it wrote after its checkpoint */
-static PetscErrorCode TakeUp(History history)
+/*
+  HistoryTakeUp - cuts the file of the run that is continued at its checkpoint, once all of that has been loaded
+
+  Not Collective
+
+  Input Parameter:
+. history - the `History`, after HistoryVisit(); `NULL`: there is none
+
+  Note:
+  Does nothing where the history begins with the run.
+*/
+PetscErrorCode HistoryTakeUp(History history)
 {
   HDF5Silence silence;
 
   PetscFunctionBegin;
+  if (!history || !history->goes_on) PetscFunctionReturn(PETSC_SUCCESS);
+  history->goes_on = PETSC_FALSE;
   PetscCheck(!access(history->path, F_OK), PETSC_COMM_SELF, PETSC_ERR_FILE_OPEN,
              "-output_history %s: the run that is continued has written it, and it is gone; bring it back, or give another path, where the "
              "history begins with the restart",
@@ -367,7 +380,7 @@ static PetscErrorCode TakeUp(History history)
 }
 
 /*
-  HistoryVisit - the place in the file, to or from a checkpoint; loading, the file is cut there
+  HistoryVisit - the place in the file, to or from a checkpoint; loading, HistoryTakeUp() is to follow
 
   Not Collective
 
@@ -388,7 +401,7 @@ PetscErrorCode HistoryVisit(History history, Checkpoint checkpoint)
   PetscCall(CheckpointVisitInt64s(checkpoint, "history records", 1, &written));
   if (!CheckpointLoads(checkpoint) || !history || !history->writes || !same) PetscFunctionReturn(PETSC_SUCCESS);
   history->written = written;
-  PetscCall(TakeUp(history));
+  history->goes_on = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

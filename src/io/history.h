@@ -12,3 +12,4 @@ PETSC_INTERN PetscErrorCode      HistoryGetPath(History, const char *[]);
 PETSC_INTERN PetscErrorCode      HistoryDestroy(History *);
 PETSC_INTERN PetscErrorCode      HistorySync(History);
 PETSC_INTERN PetscErrorCode      HistoryVisit(History, Checkpoint);
+PETSC_INTERN PetscErrorCode      HistoryTakeUp(History);

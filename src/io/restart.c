@@ -122,8 +122,8 @@ static PetscErrorCode TellSolvers(Output output)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All of a checkpoint: to the last bit on as many ranks as before, else to round-off */
-static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool same_ranks)
+/* Everything but files: to the last bit on as many ranks as before, else to round-off */
+static PetscErrorCode LoadState(Output output, const CheckpointFile *file, PetscBool same_ranks)
 {
   MPI_Comm   comm = PetscObjectComm((PetscObject)output);
   Contact    contact;
@@ -149,6 +149,17 @@ static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool 
   PetscCall(ContactVisit(contact, state));
   PetscCall(CheckpointFinish(state));
   PetscCall(CheckpointDestroy(&state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All of a checkpoint. Where it is of another problem, or bodies are distributed otherwise, the files that the run would go on with are as
+   they were. */
+static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool same_ranks)
+{
+  PetscFunctionBegin;
+  PetscCall(LoadState(output, file, same_ranks));
+  PetscCall(HistoryTakeUp(output->history));
+  PetscCall(FieldsTakeUp(output->fields));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -110,11 +110,13 @@ def test_restart(name, run_in, folder, same_runs):
         run_in(f"{case} {sets}", other, number, "-restart", "c.prev.h5", change, fields=False)
         assert differences(whole, other, 1e-10) == []
         assert summary(other)["run"]["complete"]
+    history = (other / "h.h5").read_bytes()
     for sets, more, message in (
         ("-left_ranks 0-1 -right_ranks 2", [], "-left_ranks 0-1 (it had 0,2), -right_ranks 2 (it had 1)"),
         ("-left_ranks 0-1 -right_ranks 2", [change], "distributed otherwise"),
     ):
         assert message in run_in(f"{case} {sets}", other, 3, "-restart", "c.prev.h5", *more, code=None, fields=False).stderr
+        assert (other / "h.h5").read_bytes() == history  # which was cut at the checkpoint before
     assert "-left_ranks 2: this run has 2 ranks" in run_in(f"{case} {ranks}", other, 2, "-restart", "c.prev.h5", change, code=None, fields=False).stderr
 
 

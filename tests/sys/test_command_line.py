@@ -57,7 +57,7 @@ WRONG = {
     "of PETSc without value": ([BLOCKS, "-left_snes_rtol", "-time_end", "1e-6"], ["-left_snes_rtol", "no value"]),
     "not finite": ([BLOCKS, "-left_density", "nan"], ["-left_density (the command line)", "'nan'", "no finite number"]),
     "too large": ([BLOCKS, "-left_youngs_modulus", "1e400"], ["-left_youngs_modulus", "'1e400'", "no finite number"]),
-    "large whole number": ([BLOCKS, "-monitor_interval", "4294967297"], ["-monitor_interval", "4294967297", "whole numbers go to"]),
+    "large whole number": ([BLOCKS, "-monitor_interval", "9223372036854775809"], ["-monitor_interval", "9223372036854775809", "whole numbers go to"]),
     "large in a list": ([BLOCKS, "-left_dm_plex_box_faces", "2,-99999999999999999999"], ["-left_dm_plex_box_faces", "-99999999999999999999"]),
     "far away": ([BLOCKS, "-left_translate", "1e20,0"], ["'left'", "1e+20 m from the origin", "-left_translate"]),
     "point of a formula": ([BLOCKS, "-left_probe", "0,inf"], [": -left_probe: the formula 'inf'"]),
