@@ -243,8 +243,8 @@ static PetscErrorCode Begin(MPI_Comm comm, const char prefix[], const char name[
   Level: developer
 
   Note:
-  Each of them makes its brick of a box. Other meshes are made on the first rank of the communicator, divided there into `n` parts, and sent;
-  discs, balls and rods of one rank are made there.
+  Each of them makes its brick of a box. Other meshes are made on the first rank of the communicator, divided there into `n` parts, and
+  sent; discs, balls and rods of one rank are made there.
 
 .seealso: `MeshCreate()`, `MeshCreateOnRank()`, `BodySetRanks()`
 @*/
