@@ -26,6 +26,14 @@
 /* The same of a moment of inertia, relative: 71 % in a plate that is two elements thick and may touch on both sides */
 #define INERTIA_CHANGE 0.2
 
+static PetscErrorCode Append(Verdict *verdict, const char format[], va_list arguments)
+{
+  PetscFunctionBegin;
+  PetscCheck(verdict->n < VERDICT_MAX, PETSC_COMM_SELF, PETSC_ERR_PLIB, "There are more than %d sentences on a run", VERDICT_MAX);
+  PetscCall(PetscVSNPrintf(verdict->text[verdict->n++], VERDICT_SIZE, format, NULL, arguments));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds a sentence */
 static PetscErrorCode Add(Verdict *verdict, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 static PetscErrorCode Add(Verdict *verdict, const char format[], ...)
@@ -33,9 +41,8 @@ static PetscErrorCode Add(Verdict *verdict, const char format[], ...)
   va_list arguments;
 
   PetscFunctionBegin;
-  PetscCheck(verdict->n < VERDICT_MAX, PETSC_COMM_SELF, PETSC_ERR_PLIB, "There are more than %d sentences on a run", VERDICT_MAX);
   va_start(arguments, format);
-  PetscCall(PetscVSNPrintf(verdict->text[verdict->n++], VERDICT_SIZE, format, NULL, arguments));
+  PetscCall(Append(verdict, format, arguments));
   va_end(arguments);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -49,7 +56,7 @@ static PetscErrorCode AddOfKind(Verdict *verdict, VerdictKind kind, const char f
   PetscFunctionBegin;
   if (verdict->found[kind]++ >= VERDICT_OF_A_KIND) PetscFunctionReturn(PETSC_SUCCESS);
   va_start(arguments, format);
-  PetscCall(PetscVSNPrintf(verdict->text[verdict->n++], VERDICT_SIZE, format, NULL, arguments));
+  PetscCall(Append(verdict, format, arguments));
   va_end(arguments);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,28 +1,11 @@
 /* Boxes of which each rank makes its own brick: the same mesh as the one that PETSc makes on one rank and divides as a graph. */
 #include "meshes.h"
-#include <petscsf.h>
 
 static DM CreateBox(PetscInt dim, const char faces[], const char more[])
 {
   const char *const upper[] = {"1", "1,2", "1,2,3"};
 
   return create_mesh("-dm_plex_dim %d -dm_plex_box_faces %s -dm_plex_box_upper %s %s", (int)dim, faces, upper[dim - 1], more);
-}
-
-/* Vertices of all ranks, shared ones once */
-static PetscInt CountVertices(DM dm)
-{
-  PetscSF         sf;
-  PetscInt        vstart, vend, n_leaves, n;
-  const PetscInt *leaf;
-
-  ok(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
-  ok(DMGetPointSF(dm, &sf));
-  ok(PetscSFGetGraph(sf, NULL, &n_leaves, &leaf, NULL));
-  n = vend - vstart;
-  for (PetscInt i = 0; i < n_leaves; i++)
-    if (leaf[i] >= vstart && leaf[i] < vend) n--;
-  return (PetscInt)sum_of_ranks((PetscReal)n);
 }
 
 /* Cones, faces, orientations, Jacobians, and that points which two ranks share are the same: PETSc's own checks */
@@ -42,7 +25,7 @@ static void CheckSame(DM bricks, DM graph, PetscInt dim)
   PetscReal         box[2][2][3];
 
   assert_int_equal(count_cells(bricks), count_cells(graph));
-  assert_int_equal(CountVertices(bricks), CountVertices(graph));
+  assert_int_equal(count_vertices(bricks), count_vertices(graph));
   near(volume_of(bricks), volume_of(graph), 1e-13); /* round-off of sums of numbers of size 1 */
   ok(DMGetBoundingBox(bricks, box[0][0], box[0][1]));
   ok(DMGetBoundingBox(graph, box[1][0], box[1][1]));
@@ -83,7 +66,7 @@ static void more_ranks_than_cells(void **state)
     CheckMesh(dm);
     assert_int_equal(count_cells(dm), n);
     near(volume_of(dm), 2, 1e-14);
-    assert_int_equal(CountVertices(dm), 2 * (n + 1));
+    assert_int_equal(count_vertices(dm), 2 * (n + 1));
     ok(DMPlexGetHeightStratum(dm, 0, NULL, &end));
     assert_true(end <= (size_of_world() > 1 ? 1 : n));
     ok(DMDestroy(&dm));

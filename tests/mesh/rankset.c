@@ -1,6 +1,5 @@
 /* Meshes that some ranks have among them, and others nothing of. */
 #include "meshes.h"
-#include <petscsf.h>
 
 typedef struct {
   PetscMPIInt n, list[3];
@@ -62,21 +61,6 @@ static PetscReal MomentHere(DM dm)
   return sum;
 }
 
-static PetscInt VertexCount(DM dm)
-{
-  PetscSF         sf;
-  PetscInt        start, end, n_leaves, n;
-  const PetscInt *leaf;
-
-  ok(DMPlexGetDepthStratum(dm, 0, &start, &end));
-  ok(DMGetPointSF(dm, &sf));
-  ok(PetscSFGetGraph(sf, NULL, &n_leaves, &leaf, NULL));
-  n = end - start;
-  for (PetscInt i = 0; i < n_leaves; i++)
-    if (leaf[i] >= start && leaf[i] < end) n--;
-  return (PetscInt)sum_of_ranks((PetscReal)n);
-}
-
 /* Options, and a surface of the mesh */
 static const char *const sources[][2] = {
     {"-dm_plex_dim 1 -dm_plex_box_faces 11", "xmax"},
@@ -103,7 +87,7 @@ static void sets_have_all(void **state)
   (void)state;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(sources); i++) {
     DM                 all = CreateOn(NULL, sources[i][0]);
-    const PetscInt     n = Sets(sets), cells = count_cells(all), vertices = VertexCount(all);
+    const PetscInt     n = Sets(sets), cells = count_cells(all), vertices = count_vertices(all);
     const PetscReal    volume = volume_of(all), moment = sum_of_ranks(MomentHere(all));
     const SurfaceFacts wanted = surface_facts(all, sources[i][1]);
 
@@ -116,7 +100,7 @@ static void sets_have_all(void **state)
       ok(DMPlexCheckPointSF(dm, NULL, PETSC_FALSE));
       ok(DMPlexCheckInterfaceCones(dm));
       assert_int_equal(count_cells(dm), cells);
-      assert_int_equal(VertexCount(dm), vertices);
+      assert_int_equal(count_vertices(dm), vertices);
       if (!Has(&sets[s], rank_of_world())) assert_int_equal(CellsHere(dm), 0);
       else assert_true(2 * sets[s].n * CellsHere(dm) > cells); /* half the mean at least */
       near(volume_of(dm), volume, 1e-13 * volume);             /* round-off of sums */

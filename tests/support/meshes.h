@@ -3,6 +3,7 @@
 #include "support.h"
 #include <impakt/mesh.h>
 #include <netcdf.h>
+#include <petscsf.h>
 
 static inline PetscMPIInt rank_of_world(void)
 {
@@ -33,6 +34,22 @@ static inline PetscInt count_cells(DM dm)
 
   ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
   return (PetscInt)sum_of_ranks((PetscReal)(end - start));
+}
+
+/* Vertices of all ranks, shared ones once */
+static inline PetscInt count_vertices(DM dm)
+{
+  PetscSF         sf;
+  PetscInt        start, end, n_leaves, n;
+  const PetscInt *leaf;
+
+  ok(DMPlexGetDepthStratum(dm, 0, &start, &end));
+  ok(DMGetPointSF(dm, &sf));
+  ok(PetscSFGetGraph(sf, NULL, &n_leaves, &leaf, NULL));
+  n = end - start;
+  for (PetscInt i = 0; i < n_leaves; i++)
+    if (leaf[i] >= start && leaf[i] < end) n--;
+  return (PetscInt)sum_of_ranks((PetscReal)n);
 }
 
 /* Volume of all cells, each of which must have a positive Jacobian in its middle */
