@@ -38,27 +38,29 @@ static PetscErrorCode Append(Verdict *verdict, const char format[], va_list argu
 static PetscErrorCode Add(Verdict *verdict, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
 static PetscErrorCode Add(Verdict *verdict, const char format[], ...)
 {
-  va_list arguments;
+  va_list        arguments;
+  PetscErrorCode failure;
 
   PetscFunctionBegin;
   va_start(arguments, format);
-  PetscCall(Append(verdict, format, arguments));
+  failure = Append(verdict, format, arguments);
   va_end(arguments);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(failure);
 }
 
 /* Adds a sentence on one of many bodies or pairs: of each kind the first few, and the others are counted */
 static PetscErrorCode AddOfKind(Verdict *verdict, VerdictKind kind, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
 static PetscErrorCode AddOfKind(Verdict *verdict, VerdictKind kind, const char format[], ...)
 {
-  va_list arguments;
+  va_list        arguments;
+  PetscErrorCode failure;
 
   PetscFunctionBegin;
   if (verdict->found[kind]++ >= VERDICT_OF_A_KIND) PetscFunctionReturn(PETSC_SUCCESS);
   va_start(arguments, format);
-  PetscCall(Append(verdict, format, arguments));
+  failure = Append(verdict, format, arguments);
   va_end(arguments);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscFunctionReturn(failure);
 }
 
 /* How many more there are of each kind */
