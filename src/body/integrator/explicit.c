@@ -4,6 +4,7 @@
 typedef struct {
   LayerBalance layer;       /* NULL: no node is massless, on any rank */
   PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
+  Vec          expected;    /* how far the layer goes under forces that are to come; NULL where it does not answer linearly and alone */
 } BodyExplicit;
 
 static LayerBalance GetLayer(Body body)
@@ -246,6 +247,30 @@ static PetscErrorCode RepeatLayer(Body body, const PetscScalar force[], const Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode Expect(Body body, const PetscScalar answer[])
+{
+  Vec          expected = ((BodyExplicit *)body->integrator->data)->expected;
+  PetscScalar *moved;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(expected, &moved));
+  PetscCall(PetscArraycpy(moved, answer, body->layer.n_dofs));
+  PetscCall(VecRestoreArrayWrite(expected, &moved));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* As RepeatLayer(), where the answer of the layer is known */
+static PetscErrorCode Follow(Body body)
+{
+  PetscFunctionBegin;
+  body->time.substep = 0;
+  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
+  PetscCall(LayerBalanceMove(GetLayer(body), ((BodyExplicit *)body->integrator->data)->expected, body->state.u));
+  PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
+  PetscCall(FinishSubstep(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The elements' forces, the acceleration, and the velocity at the end of the step */
 static PetscErrorCode Complete(Body body)
 {
@@ -327,6 +352,11 @@ static PetscErrorCode SetUp(Body body)
   if (explicit->layer_alone) {
     integrator->ops.repeat   = RepeatLayer;
     integrator->ops.complete = Complete;
+    if (body->model.linear) {
+      integrator->ops.expect = Expect;
+      integrator->ops.follow = Follow;
+      PetscCall(LayerBalanceCreateVec(explicit->layer, &explicit->expected));
+    }
   } else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
   integrator->repeats_prescribed = (PetscBool)(body->model.linear || explicit->layer_alone);
@@ -338,6 +368,7 @@ static PetscErrorCode SetUp(Body body)
 static PetscErrorCode Destroy(Body body)
 {
   PetscFunctionBegin;
+  PetscCall(VecDestroy(&((BodyExplicit *)body->integrator->data)->expected));
   PetscCall(LayerBalanceDestroy(&((BodyExplicit *)body->integrator->data)->layer));
   PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);

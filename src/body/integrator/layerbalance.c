@@ -15,7 +15,7 @@
 /* Rounds that the balance of a nonlinear layer may take */
 #define MAX_ROUNDS 100
 /* A balance that takes so many is slow: in the plane, where a layer is a curve and its factors cost little, and in space. With new factors,
-   a block that turns by half a degree in a step (tests/unit/body_repeat.c) takes 3 to 6 rounds at first. */
+   a block that turns by half a degree in a step (tests/body/interface/body_repeat.c) takes 3 to 6 rounds at first. */
 #define SLOW_ROUNDS_PLANE 6
 #define SLOW_ROUNDS_SPACE 20
 /* and so many are too slow to wait for the next step */
@@ -178,12 +178,20 @@ static PetscErrorCode ComputeMissing(LayerBalance layer, Body body, const LoadCa
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves the layer in u by what a round has found */
-static PetscErrorCode Move(LayerBalance layer, Vec u)
+/* Moves the layer in u, a vector of the body */
+PetscErrorCode LayerBalanceMove(LayerBalance layer, Vec moved, Vec u)
 {
   PetscFunctionBegin;
-  PetscCall(VecScatterBegin(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(layer->scatter, layer->solution, u, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterBegin(layer->scatter, moved, u, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(layer->scatter, moved, u, ADD_VALUES, SCATTER_REVERSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A vector of the layer */
+PetscErrorCode LayerBalanceCreateVec(LayerBalance layer, Vec *vec)
+{
+  PetscFunctionBegin;
+  PetscCall(VecDuplicate(layer->rhs, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -204,7 +212,7 @@ static PetscErrorCode TakeBack(LayerBalance layer, Body body, const LoadCase *lo
     const PetscReal next = low + (high - low) * PetscMin(PetscMax(root, LEAST_PART), 1 - LEAST_PART);
 
     PetscCall(VecScale(layer->solution, next - at));
-    PetscCall(Move(layer, u));
+    PetscCall(LayerBalanceMove(layer, layer->solution, u));
     PetscCall(VecScale(layer->solution, 1 / (next - at)));
     PetscCall(ComputeMissing(layer, body, load, follows, u));
     PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &left));
@@ -244,7 +252,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     if (body->history && round > 1) PetscCall(TakeBack(layer, body, &load, robin, work, u)); /* the first puts held rows in their places */
     PetscCall(SolveLayer(layer, body, contact));
     if (body->history) PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &work));
-    PetscCall(Move(layer, u));
+    PetscCall(LayerBalanceMove(layer, layer->solution, u));
     if (linear) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(BodyGetNorm(body, layer->solution, &change));
     first = PetscMax(first, change);

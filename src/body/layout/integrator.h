@@ -29,6 +29,10 @@ typedef struct {
   /* (NULL) after the one substep of a controller step: moves its end state to the present inputs, given by how much more force acts on
      forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
   PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
+  /* (NULL) notes how far the massless layer goes under a change of forces that is to come [m], and does so when it has come; may be set in
+     setup() */
+  PetscErrorCode (*expect)(Body, const PetscScalar[]);
+  PetscErrorCode (*follow)(Body);
   /* (NULL) finds what TSStep() and repeat() have left out of the state, since rows do not depend on it, where they have marked it as
      incomplete; may be set in setup() */
   PetscErrorCode (*complete)(Body);

@@ -6,15 +6,21 @@
 
 struct _BodyRepeat {
   PetscScalar *inputs[2], *changes[2]; /* of this rank's rows, at the end of the controller step: force [N], displacement [m] */
-  PetscBool    told;                   /* ranks have told each other whether inputs have changed */
-  PetscScalar  changed;                /* then, the number of ranks on which they have */
+  PetscBool    told;                   /* ranks have told each other how inputs have changed */
+  PetscScalar  news[2];                /* then, the numbers of ranks on which they have, and on which they have otherwise than expected */
+  PetscBool    expects;                /* what a change of forces brings about has been told */
+  PetscScalar *expected;               /* that change, per row of this rank [N] */
 };
+
+/* Forces that are to change by so much do, as far as round-off of them tells [of what they were and are] */
+#define ROUND_OFF (4 * PETSC_MACHINE_EPSILON)
 
 PetscErrorCode BodyDestroyRepeat(Body body)
 {
   PetscFunctionBegin;
   if (!body->repeat) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < 2; k++) PetscCall(PetscFree2(body->repeat->inputs[k], body->repeat->changes[k]));
+  PetscCall(PetscFree(body->repeat->expected));
   PetscCall(PetscFree(body->repeat));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -26,6 +32,7 @@ PetscErrorCode BodySetUpRepeat(Body body)
   PetscCall(PetscNew(&body->repeat));
   for (PetscInt k = 0; k < 2; k++)
     PetscCall(PetscCalloc2(body->rows.local, &body->repeat->inputs[k], body->rows.local, &body->repeat->changes[k]));
+  if (body->integrator->ops.expect) PetscCall(PetscCalloc1(body->rows.local, &body->repeat->expected));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,23 +44,37 @@ static PetscBool Counts(Body body, PetscInt input, PetscInt row)
   return (PetscBool)(input ? condition == BODY_PRESCRIBED : condition == BODY_FORCED || condition == BODY_ROBIN);
 }
 
+/* Whether an input is other than it was, and whether it has not become what was expected, which is of forces alone */
+static void Compare(Body body, PetscInt input, PetscInt row, PetscScalar value, PetscBool news[2])
+{
+  const struct _BodyRepeat *repeat = body->repeat;
+  const PetscScalar         before = repeat->inputs[input][row], change = Counts(body, input, row) ? value - before : 0;
+
+  if (change != 0) news[0] = PETSC_TRUE;
+  if (!repeat->expects) return;
+  if (input && Counts(body, input, row)) news[1] = PETSC_TRUE;
+  if (!input && !(PetscAbsScalar(change - repeat->expected[row]) <= ROUND_OFF * (PetscAbsScalar(value) + PetscAbsScalar(before))))
+    news[1] = PETSC_TRUE;
+}
+
 /* What comes in at the end of the controller step is the present state's from now on; `changes`: by how much that is more than before, on
-   the rows that it counts for */
-static PetscErrorCode TakeInputs(Body body, PetscBool *any)
+   the rows that it counts for; news: as those of Compare() */
+static PetscErrorCode TakeInputs(Body body, PetscBool news[2])
 {
   const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
   struct _BodyRepeat *repeat   = body->repeat;
 
   PetscFunctionBegin;
-  *any = PETSC_FALSE;
+  news[0] = PETSC_FALSE;
+  news[1] = (PetscBool)!repeat->expects;
   for (PetscInt k = 0; k < 2; k++) {
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
     for (PetscInt i = 0; i < body->rows.local; i++) {
+      Compare(body, k, i, values[i], news);
       repeat->changes[k][i] = Counts(body, k, i) ? values[i] - repeat->inputs[k][i] : 0;
       repeat->inputs[k][i]  = values[i];
-      if (repeat->changes[k][i] != 0) *any = PETSC_TRUE;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -82,36 +103,65 @@ static PetscBool TellsOthers(Body body)
 @*/
 PetscErrorCode BodyProposeRepeat(Body body, BodyWord *word)
 {
-  struct _BodyRepeat *repeat = body->repeat;
+  struct _BodyRepeat *repeat  = body->repeat;
+  PetscBool           news[2] = {PETSC_FALSE, PETSC_FALSE};
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(word, 2);
   word->n = 0;
   if (!body->repeats || !TellsOthers(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  repeat->told    = PETSC_TRUE;
-  repeat->changed = 0;
+  repeat->told = PETSC_TRUE;
   for (PetscInt k = 0; k < 2; k++) {
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(k ? body->traces.displacement_in : body->traces.force_in, body->time.substeps, &values));
-    for (PetscInt i = 0; i < body->rows.local; i++)
-      if (Counts(body, k, i) && values[i] - repeat->inputs[k][i] != 0) repeat->changed = 1;
+    for (PetscInt i = 0; i < body->rows.local; i++) Compare(body, k, i, values[i], news);
   }
-  word->n      = 1;
-  word->values = &repeat->changed;
+  for (PetscInt k = 0; k < 2; k++) repeat->news[k] = news[k];
+  word->n      = repeat->expects ? 2 : 1;
+  word->values = repeat->news;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyExpectRepeat - tells what a change of the forces on rows brings about, which the next `BodyTryIntegrateRows()` need not find again
+
+  Not Collective, but all ranks that have rows of the body or parts of it have to call it
+
+  Input Parameters:
++ body   - the `Body`, linear, whose rows answer by a massless layer alone
+. change - of the forces on the rows of this rank, as the body feels them [N]
+- answer - displacement of the dofs of the layer that this rank has under that change, in the order of the rows of the stiffness that
+           `BodyGetLayerMatrices()` gives [m]
+
+  Level: developer
+
+  Note:
+  Where inputs turn out to change otherwise on any rank, by more than round-off, the body finds its answer itself.
+
+.seealso: `Body`, `BodyGetLayerMatrices()`, `BodyTryIntegrateRows()`
+@*/
+PetscErrorCode BodyExpectRepeat(Body body, const PetscScalar change[], const PetscScalar answer[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (!body->integrator->ops.expect || !body->repeats) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(body->repeat->expected, change, body->rows.local));
+  PetscCall((*body->integrator->ops.expect)(body, answer));
+  body->repeat->expects = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A whole integration has just been done */
 PetscErrorCode BodyNoteInputs(Body body)
 {
-  PetscBool any;
+  PetscBool news[2];
 
   PetscFunctionBegin;
   if (!body->integrator->ops.repeat || !body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TakeInputs(body, &any));
-  body->repeat->told = PETSC_FALSE;
+  PetscCall(TakeInputs(body, news));
+  body->repeat->told = body->repeat->expects = PETSC_FALSE;
   /* rows of one node that are not orthonormal are prescribed by least squares, which has no simple change */
   body->repeats = (PetscBool)(!body->rows.n_prescribed || (body->integrator->repeats_prescribed && !body->rows.any_oblique));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -120,19 +170,24 @@ PetscErrorCode BodyNoteInputs(Body body)
 /* Moves the end state of this controller step to the inputs as they are now, if that can be done */
 PetscErrorCode BodyRepeat(Body body, PetscBool *done)
 {
-  PetscBool any;
+  struct _BodyRepeat *repeat = body->repeat;
+  PetscBool           news[2], any;
 
   PetscFunctionBegin;
   *done = body->repeats;
   if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TakeInputs(body, &any));
-  if (body->repeat->told) any = (PetscBool)(body->repeat->changed != 0);
-  else if (TellsOthers(body)) PetscCall(BodyAnyRank(body, &any));
-  body->repeat->told = PETSC_FALSE;
+  PetscCall(TakeInputs(body, news));
+  for (PetscInt k = 0; k < (repeat->expects ? 2 : 1); k++) {
+    if (repeat->told) news[k] = (PetscBool)(repeat->news[k] != 0);
+    else if (TellsOthers(body)) PetscCall(BodyAnyRank(body, &news[k]));
+  }
+  any          = news[0];
+  repeat->told = repeat->expects = PETSC_FALSE;
   /* Without a change the state stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and acceleration,
      which others feel through a mass matrix that is not diagonal alone. */
-  if (any || (body->rows.have_mass && body->mass.matrix))
-    PetscCall((*body->integrator->ops.repeat)(body, body->repeat->changes[0], body->repeat->changes[1]));
+  if (any && !news[1]) PetscCall((*body->integrator->ops.follow)(body));
+  else if (any || (body->rows.have_mass && body->mass.matrix))
+    PetscCall((*body->integrator->ops.repeat)(body, repeat->changes[0], repeat->changes[1]));
   else if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));

@@ -33,6 +33,8 @@ struct _n_InterfaceDirect {
   PetscInt          offset;    /* of this rank's rows in these */
   PetscInt          first_row; /* number of the first of them in the matrix */
   PetscInt         *shift;     /* per layer and rank: a dof of the layer on that rank, and this, are its number in the matrix */
+  PetscBool         answers;   /* `solution` is that of the last solution for S */
+  PetscScalar      *change, *moved; /* work space: per row that a body has on this rank, and per dof of a layer */
   PetscInt          room;      /* of the following */
   PetscInt         *numbers;   /* work space */
   PetscScalar      *values;    /* work space */
@@ -72,6 +74,7 @@ static PetscErrorCode DestroyMatrices(InterfaceDirect d)
   PetscCall(PCDestroy(&d->factors));
   PetscCall(VecDestroy(&d->rhs));
   PetscCall(VecDestroy(&d->solution));
+  PetscCall(PetscFree2(d->change, d->moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,6 +96,7 @@ void InterfaceDirectForget(InterfaceDirect d)
   if (!d) return;
   d->solutions = 0;
   d->filled    = PETSC_FALSE;
+  d->answers   = PETSC_FALSE;
 }
 
 /* Notes the layers and rows as they are. Where any has changed since the last call what is there of them is forgotten, and where rows are
@@ -129,7 +133,7 @@ static PetscErrorCode CreateMatrix(InterfaceOperator op)
   InterfaceDirect   d     = op->direct;
   const Contact     c     = op->contact;
   const PetscMPIInt ranks = c->ranks.size;
-  PetscInt         *next, begin = 0;
+  PetscInt         *next, begin = 0, rows = 0, dofs = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(ranks, &next));
@@ -142,6 +146,7 @@ static PetscErrorCode CreateMatrix(InterfaceOperator op)
       PetscCall(MatGetOwnershipRanges(K, &ranges));
       d->shift[k * ranks + r] = begin - ranges[r];
       begin += ranges[r + 1] - ranges[r];
+      dofs = PetscMax(dofs, ranges[r + 1] - ranges[r]);
     }
     next[r] = begin;
     begin += c->ranks.counts[r];
@@ -150,6 +155,8 @@ static PetscErrorCode CreateMatrix(InterfaceOperator op)
   begin        = c->ranks.rank ? next[c->ranks.rank - 1] + c->ranks.counts[c->ranks.rank - 1] : 0;
   d->offset    = d->first_row - begin;
   PetscCall(PetscFree(next));
+  for (PetscInt k = 0; k < d->n; k++) rows = PetscMax(rows, c->body_rows[d->bodies[k]].n);
+  PetscCall(PetscMalloc2(rows, &d->change, dofs, &d->moved));
   PetscCall(MatCreate(PetscObjectComm((PetscObject)c), &d->matrix));
   PetscCall(MatSetSizes(d->matrix, d->offset + c->rows.n, d->offset + c->rows.n, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(d->matrix, MATAIJ));
@@ -332,7 +339,7 @@ PetscErrorCode InterfaceDirectSolve(InterfaceOperator op, const PetscScalar x[],
   PetscBool          fresh;
 
   PetscFunctionBegin;
-  *solved = PETSC_FALSE;
+  *solved = d->answers = PETSC_FALSE;
   if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
   PetscCall(TakeState(op));
   if (d->solutions < SOLUTIONS_OF_FACTORS) {
@@ -347,7 +354,38 @@ PetscErrorCode InterfaceDirectSolve(InterfaceOperator op, const PetscScalar x[],
   for (PetscInt i = 0; i < op->contact->rows.n; i++) y[i] = InterfaceIsIn(op, i) ? -solution[d->offset + i] : 0;
   PetscCall(VecRestoreArrayRead(d->solution, &solution));
   if (fresh) PetscCall(CheckFactors(op, x, y));
-  *solved = (PetscBool)!d->fails;
+  *solved = d->answers = (PetscBool)!d->fails;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces y that were found last are to be taken from those on the rows. Where the layers get then has been found with them, and the
+   bodies are told, which need not find it again. */
+PetscErrorCode InterfaceDirectTell(InterfaceOperator op)
+{
+  InterfaceDirect    d = op->direct;
+  const Contact      c = op->contact;
+  const PetscScalar *solution;
+  PetscInt           begin = 0;
+
+  PetscFunctionBegin;
+  if (!d->answers) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(d->solution, &solution));
+  for (PetscInt k = 0; k < d->n; k++) {
+    const PetscInt         b  = d->bodies[k];
+    const ContactBodyRows *of = &c->body_rows[b];
+    PetscInt               n;
+    Mat                    K;
+
+    PetscCall(BodyGetLayerMatrices(c->bodies[b], &K, NULL));
+    PetscCall(MatGetLocalSize(K, &n, NULL));
+    for (PetscInt l = 0; l < of->n; l++) /* where -y is the solution */
+      d->change[l] = InterfaceSideIn(INTERFACE_GAP, &c->pairs[c->rows.pair[of->rows[l]]], b) * solution[d->offset + of->rows[l]];
+    for (PetscInt j = 0; j < n; j++) d->moved[j] = -solution[begin + j];
+    PetscCall(BodyExpectRepeat(c->bodies[b], d->change, d->moved));
+    begin += n;
+  }
+  PetscCall(VecRestoreArrayRead(d->solution, &solution));
+  d->answers = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

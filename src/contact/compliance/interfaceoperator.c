@@ -131,6 +131,14 @@ PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The forces of the last solution are to be taken from those on the rows: bodies whose answer has been found with it are told */
+PetscErrorCode InterfaceOperatorTellAnswers(InterfaceOperator op)
+{
+  PetscFunctionBegin;
+  if (!op->dense && InterfaceIsDirect(op)) PetscCall(InterfaceDirectTell(op));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* y = M x on this rank's rows that are solved for, zero on the others, at one level; x and y are not the same */
 PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator op, InterfaceMap map, const PetscScalar x[], PetscScalar y[])
 {

@@ -249,6 +249,7 @@ static PetscErrorCode ApplyByLevels(Contact contact, const PetscScalar f[], Pets
     GetLastLevels(contact, most, k, f, residual);
     PetscCall(InterfaceOperatorSolve(jacobian->S, residual, force));
     if (!by_force) PetscCall(InterfaceOperatorMultiply(jacobian->S, INTERFACE_DIRICHLET, force, moved));
+    else if (most == 1) PetscCall(InterfaceOperatorTellAnswers(jacobian->S));
     for (PetscInt i = 0; i < contact->rows.n; i++) {
       const PetscInt at = k - (most - schwarz->levels[contact->rows.pair[i]]);
 
