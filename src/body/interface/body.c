@@ -241,8 +241,15 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpRepeat(body));
   body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local && body->mass.inverse);
   if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) {
-    PetscCall(BodyCreateVec(body, &body->substep_start.u));
-    PetscCall(BodyCreateVec(body, &body->substep_start.v));
+    const Vec saved[] = {body->saved.u, body->saved.v};
+    Vec      *start[] = {&body->substep_start.u, &body->substep_start.v};
+
+    for (PetscInt k = 0; k < 2; k++) {
+      if (body->time.substeps > 1) PetscCall(BodyCreateVec(body, start[k]));
+      else { /* the only substep starts where the controller step does */ PetscCall(PetscObjectReference((PetscObject)saved[k]));
+        *start[k] = saved[k];
+      }
+    }
   }
   if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &body->substep_start.damping));
   PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));

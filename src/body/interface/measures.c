@@ -5,37 +5,14 @@
    the one that has not been accepted yet */
 #define N_SUMS (BODY_MEASURE_SUMS - 4)
 
-/* Sum of a[i] b[i]: four sums, since each addition to a single one would wait for the one before it */
-static PetscReal Dot(PetscInt n, const PetscScalar a[], const PetscScalar b[])
-{
-  const PetscInt whole  = n - n % 4;
-  PetscReal      sum[4] = {0}, rest = 0;
-
-  for (PetscInt i = 0; i < whole; i += 4)
-    for (PetscInt k = 0; k < 4; k++) sum[k] += PetscRealPart(a[i + k] * b[i + k]);
-  for (PetscInt i = whole; i < n; i++) rest += PetscRealPart(a[i] * b[i]);
-  return (sum[0] + sum[1]) + (sum[2] + sum[3]) + rest;
-}
-
-/* Stored energy of this rank's elements, or of its dofs where half the work of the internal force is all there is to it [J] */
+/* Stored energy of this rank's elements [J], where that is more than half the work of the internal force */
 static PetscErrorCode ComputePotential(Body body, PetscReal *potential)
 {
-  const PetscScalar *u, *force;
-  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
+  const PetscScalar *u;
   Vec                local;
   ElementHistory     before;
 
   PetscFunctionBegin;
-  *potential = 0;
-  if (!body->integrator->deforms) PetscFunctionReturn(PETSC_SUCCESS);
-  if (body->model.linear) {
-    PetscCall(VecGetArrayRead(body->state.u, &u));
-    PetscCall(VecGetArrayRead(body->state.internal_force, &force));
-    *potential = 0.5 * Dot(n, u, force);
-    PetscCall(VecRestoreArrayRead(body->state.internal_force, &force));
-    PetscCall(VecRestoreArrayRead(body->state.u, &u));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
   BodyHistoryLook(body, &before);
   PetscCall((*body->model.element->ops->energy)(body->model.element, u, potential));
@@ -84,87 +61,6 @@ PetscErrorCode BodyHasHourglasses(Body body, PetscBool *hourglasses)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Kinetic energy [J], staggered for central differences */
-static PetscErrorCode ComputeKinetic(Body body, Vec momentum, PetscReal *kinetic)
-{
-  const PetscReal    staggered = body->integrator->staggered * PetscSqr(body->time.step);
-  const PetscInt     n         = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar *v, *a, *p, *inertia;
-  PetscReal          sum;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(body->state.v, &v));
-  PetscCall(VecGetArrayRead(momentum, &p));
-  sum = Dot(n, v, p);
-  PetscCall(VecRestoreArrayRead(momentum, &p));
-  PetscCall(VecRestoreArrayRead(body->state.v, &v));
-  if (staggered > 0) {
-    PetscCall(BodyMultiplyMass(body, body->state.a, body->work.nodes[1]));
-    PetscCall(VecGetArrayRead(body->state.a, &a));
-    PetscCall(VecGetArrayRead(body->work.nodes[1], &inertia));
-    sum -= staggered * Dot(n, a, inertia);
-    PetscCall(VecRestoreArrayRead(body->work.nodes[1], &inertia));
-    PetscCall(VecRestoreArrayRead(body->state.a, &a));
-  }
-  *kinetic = 0.5 * sum;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The sums over this rank's nodes that make kinetic energy, momentum and angular momentum */
-static PetscErrorCode ComputeMotion(Body body, PetscReal *kinetic, PetscReal momentum[3], PetscReal angular[3])
-{
-  const PetscInt     dim = body->mesh.dim, n = body->mesh.owned_nodes * dim;
-  const PetscScalar *x, *u, *p;
-  Vec                nodal = body->work.nodes[0];
-
-  PetscFunctionBegin;
-  PetscCall(BodyMultiplyMass(body, body->state.v, nodal));
-  PetscCall(ComputeKinetic(body, nodal, kinetic));
-  PetscCall(VecGetArrayRead(nodal, &p));
-  if (dim == 1) {
-    PetscReal sums[4] = {0};
-
-    for (PetscInt i = 0; i < n; i++) sums[i % 4] += p[i];
-    momentum[0] = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  } else {
-    PetscCall(VecGetArrayRead(body->mesh.positions, &x));
-    PetscCall(VecGetArrayRead(body->state.u, &u));
-    for (PetscInt i = 0; i < n; i += dim) {
-      PetscReal r[3] = {0}, q[3] = {0};
-
-      for (PetscInt d = 0; d < dim; d++) {
-        r[d] = x[i + d] + u[i + d];
-        q[d] = p[i + d];
-        momentum[d] += q[d];
-      }
-      for (PetscInt d = 0; d < 3; d++) angular[d] += r[(d + 1) % 3] * q[(d + 2) % 3] - r[(d + 2) % 3] * q[(d + 1) % 3];
-    }
-    PetscCall(VecRestoreArrayRead(body->state.u, &u));
-    PetscCall(VecRestoreArrayRead(body->mesh.positions, &x));
-  }
-  PetscCall(VecRestoreArrayRead(nodal, &p));
-  if (body->model.element->axisymmetric) { /* around the ring it adds up to nothing but what goes along the axis */
-    momentum[0] = 0;
-    for (PetscInt d = 0; d < 3; d++) angular[d] = 0;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Mean velocity of a body without inertia, weighted by its mass all the same */
-static PetscErrorCode SumMassVelocity(Body body, PetscReal sum[3])
-{
-  const PetscScalar *v, *mass;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(body->state.v, &v));
-  PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) sum[i % body->mesh.dim] += mass[i] * v[i];
-  PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
-  PetscCall(VecRestoreArrayRead(body->state.v, &v));
-  if (body->model.element->axisymmetric) sum[0] = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether the sums of the last measures are those of the present state, and from now on they are; one that is divided among ranks, or
    remembers, is measured each time */
 static PetscErrorCode IsMeasured(Body body, PetscBool *measured)
@@ -184,19 +80,24 @@ static PetscErrorCode IsMeasured(Body body, PetscBool *measured)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What measures are sums of, over this rank's part */
+/* What measures are sums of, over this rank's part. A body without inertia has a mean velocity, weighted by its mass, all the same. */
 static PetscErrorCode SumMeasures(Body body, PetscReal sums[])
 {
+  PetscReal kinetic, half_work, momentum[3], angular[3], turned[3];
+
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(sums, N_SUMS));
-  PetscCall(ComputePotential(body, &sums[1]));
+  PetscCall(BodySumNodes(body, &kinetic, &half_work, momentum, angular, turned));
+  if (body->integrator->deforms && body->model.linear) sums[1] = half_work;
+  else if (body->integrator->deforms) PetscCall(ComputePotential(body, &sums[1]));
   PetscCall(ComputeHourglassEnergy(body, &sums[14]));
-  if (!body->integrator->has_inertia) PetscCall(SumMassVelocity(body, sums + 8));
-  else {
-    PetscCall(ComputeMotion(body, &sums[0], sums + 2, sums + 5));
-    for (PetscInt d = 0; d < 3; d++) sums[8 + d] = sums[2 + d];
+  if (body->integrator->has_inertia) {
+    sums[0] = kinetic;
+    PetscCall(PetscArraycpy(sums + 2, momentum, 3));
+    PetscCall(PetscArraycpy(sums + 5, angular, 3));
   }
-  PetscCall(BodySumRotation(body, sums + 11));
+  PetscCall(PetscArraycpy(sums + 8, momentum, 3));
+  PetscCall(PetscArraycpy(sums + 11, turned, 3));
   sums[15] = body->model.element->plastic_work; /* found with the potential energy */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -53,33 +53,7 @@ PetscErrorCode BodySetUpInertia(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sum m (X - C) x u over this rank's nodes of a linear body, else zero */
-PetscErrorCode BodySumRotation(Body body, PetscReal sum[3])
-{
-  const PetscInt     dim = body->mesh.dim;
-  const PetscScalar *mass, *u;
-
-  PetscFunctionBegin;
-  for (PetscInt d = 0; d < 3; d++) sum[d] = 0;
-  if (!body->model.linear || dim == 1 || body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
-  PetscCall(VecGetArrayRead(body->state.u, &u));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i += dim) {
-    PetscReal r[3] = {0}, moved[3] = {0}, product[3];
-
-    for (PetscInt d = 0; d < dim; d++) {
-      r[d]     = mass[i] * (body->mesh.coordinates[i + d] - body->mass.centre[d]);
-      moved[d] = u[i + d];
-    }
-    Cross(r, moved, product);
-    for (PetscInt d = 0; d < 3; d++) sum[d] += product[d];
-  }
-  PetscCall(VecRestoreArrayRead(body->state.u, &u));
-  PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The mean rotation from that sum over all ranks [rad] */
+/* The mean rotation from sum m (X - C) x u over all ranks, see BodySumNodes() [rad] */
 void BodyFinishRotation(Body body, const PetscReal sum[3], PetscReal rotation[3])
 {
   for (PetscInt d = 0; d < 3; d++) {

@@ -30,14 +30,14 @@ struct _n_InterfaceDirect {
   PetscBool         fails;         /* it has no good factors */
   PC                factors;
   Vec               rhs, solution;
-  PetscInt          offset;    /* of this rank's rows in these */
-  PetscInt          first_row; /* number of the first of them in the matrix */
-  PetscInt         *shift;     /* per layer and rank: a dof of the layer on that rank, and this, are its number in the matrix */
-  PetscBool         answers;   /* `solution` is that of the last solution for S */
+  PetscInt          offset;         /* of this rank's rows in these */
+  PetscInt          first_row;      /* number of the first of them in the matrix */
+  PetscInt         *shift;          /* per layer and rank: a dof of the layer on that rank, and this, are its number in the matrix */
+  PetscBool         answers;        /* `solution` is that of the last solution for S */
   PetscScalar      *change, *moved; /* work space: per row that a body has on this rank, and per dof of a layer */
-  PetscInt          room;      /* of the following */
-  PetscInt         *numbers;   /* work space */
-  PetscScalar      *values;    /* work space */
+  PetscInt          room;           /* of the following */
+  PetscInt         *numbers;        /* work space */
+  PetscScalar      *values;         /* work space */
 };
 
 /* NULL where a body answers otherwise */

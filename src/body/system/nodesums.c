@@ -1,0 +1,124 @@
+/*
+   Sums over the nodes of a body that its kinetic energy, momenta, mean rotation and, where it is linear, potential energy are made of. What
+   they take is the time in which the vectors come from memory, so that all are made in one pass.
+*/
+#include <body/layout/bodyimpl.h>
+
+/* What is summed up: m v.v, m a.a and u.f, then vectors: m v, (X + u) x m v, m (X - C) x u */
+enum { KINETIC, STAGGERED, POTENTIAL, MOMENTUM, ANGULAR = MOMENTUM + 3, TURNED = ANGULAR + 3, QUANTITIES = TURNED + 3 };
+/* In one dimension sums have four parts, since each addition to a single one would wait for the one before it; elsewhere there are enough
+ */
+#define PARTS 4
+/* Nodes in a block */
+#define BLOCK 64
+
+typedef struct {
+  PetscInt           n;       /* nodes */
+  const PetscScalar *x, *u;   /* per dof: reference positions and displacements [m] */
+  const PetscScalar *v, *a;   /* velocities, and accelerations */
+  const PetscScalar *mass;    /* row sums of the mass matrix */
+  const PetscScalar *mv, *ma; /* products with it, where it is not diagonal */
+  const PetscScalar *force;   /* internal forces of a linear body [N] */
+  const PetscReal   *centre;  /* of mass, of the undeformed body [m] */
+} Nodes;
+
+/* c += a x b; plane vectors have an area alone, and there is none on a line */
+static inline void AddProduct(PetscInt dim, const PetscReal a[], const PetscReal b[], PetscReal c[3])
+{
+  if (dim == 2) c[2] += a[0] * b[1] - a[1] * b[0];
+  if (dim < 3) return;
+  for (PetscInt d = 0; d < 3; d++) c[d] += a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+}
+
+static inline void AddNode(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscInt i, PetscReal sum[QUANTITIES])
+{
+  PetscReal place[3], momentum[3], arm[3];
+
+  for (PetscInt d = 0; d < dim; d++) {
+    const PetscInt k = i * dim + d;
+
+    momentum[d] = diagonal ? nodes->mass[k] * nodes->v[k] : nodes->mv[k];
+    place[d]    = nodes->x[k] + nodes->u[k];
+    arm[d]      = nodes->mass[k] * (nodes->x[k] - nodes->centre[d]);
+    sum[KINETIC] += nodes->v[k] * momentum[d];
+    sum[STAGGERED] += nodes->a[k] * (diagonal ? nodes->mass[k] * nodes->a[k] : nodes->ma[k]);
+    sum[MOMENTUM + d] += momentum[d];
+    if (linear) sum[POTENTIAL] += nodes->u[k] * nodes->force[k];
+  }
+  AddProduct(dim, place, momentum, sum + ANGULAR);
+  if (linear) AddProduct(dim, arm, nodes->u + i * dim, sum + TURNED);
+}
+
+/* Block by block, whose sums are so much smaller than all that round-off is too */
+static inline void AddNodes(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
+{
+  const PetscInt parts = dim == 1 ? PARTS : 1;
+
+  for (PetscInt q = 0; q < QUANTITIES; q++) sums[q] = 0;
+  for (PetscInt begin = 0; begin < nodes->n; begin += BLOCK) {
+    const PetscInt end = PetscMin(begin + BLOCK, nodes->n), whole = end - (end - begin) % parts;
+    PetscReal      sum[PARTS][QUANTITIES] = {{0}};
+
+    for (PetscInt i = begin; i < whole; i += parts)
+      for (PetscInt k = 0; k < parts; k++) AddNode(dim, diagonal, linear, nodes, i + k, sum[k]);
+    for (PetscInt i = whole; i < end; i++) AddNode(dim, diagonal, linear, nodes, i, sum[0]);
+    for (PetscInt q = 0; q < QUANTITIES; q++)
+      for (PetscInt k = 0; k < parts; k++) sums[q] += sum[k][q];
+  }
+}
+
+/* A loop for each case, with what does not change in it known to the compiler */
+static void Add(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
+{
+#define CASE(d)                                                                                                                            \
+  if (dim == d && diagonal && linear) AddNodes(d, PETSC_TRUE, PETSC_TRUE, nodes, sums);                                                    \
+  if (dim == d && diagonal && !linear) AddNodes(d, PETSC_TRUE, PETSC_FALSE, nodes, sums);                                                  \
+  if (dim == d && !diagonal && linear) AddNodes(d, PETSC_FALSE, PETSC_TRUE, nodes, sums);                                                  \
+  if (dim == d && !diagonal && !linear) AddNodes(d, PETSC_FALSE, PETSC_FALSE, nodes, sums)
+  CASE(1);
+  CASE(2);
+  CASE(3);
+#undef CASE
+}
+
+/* Of this rank's nodes: kinetic energy, staggered for central differences [J], half the work of the internal forces
+   of a linear body [J], momentum, angular momentum, and sum m (X - C) x u of a linear body */
+PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *half_work, PetscReal momentum[3], PetscReal angular[3],
+                            PetscReal turned[3])
+{
+  const PetscReal staggered = body->integrator->staggered * PetscSqr(body->time.step);
+  const Vec       a      = staggered > 0 ? body->state.a : body->state.v; /* what is not asked for costs least where it is read already */
+  const Vec       force  = body->state.internal_force ? body->state.internal_force : body->state.u;
+  const Vec       vecs[] = {body->mesh.positions,
+                            body->state.u,
+                            body->state.v,
+                            a,
+                            body->mass.row_sum,
+                            body->work.nodes[0],
+                            body->work.nodes[staggered > 0],
+                            force};
+  Nodes           nodes  = {.n = body->mesh.owned_nodes, .centre = body->mass.centre};
+  const PetscScalar **const arrays[] = {&nodes.x, &nodes.u, &nodes.v, &nodes.a, &nodes.mass, &nodes.mv, &nodes.ma, &nodes.force};
+  const PetscInt            n_arrays = PETSC_STATIC_ARRAY_LENGTH(vecs);
+  PetscReal                 sums[QUANTITIES];
+
+  PetscFunctionBegin;
+  if (!body->mass.diagonal) {
+    PetscCall(BodyMultiplyMass(body, body->state.v, body->work.nodes[0]));
+    if (staggered > 0) PetscCall(BodyMultiplyMass(body, a, body->work.nodes[1]));
+  }
+  for (PetscInt k = 0; k < n_arrays; k++) PetscCall(VecGetArrayRead(vecs[k], arrays[k]));
+  Add(body->mesh.dim, (PetscBool)(body->mass.diagonal != NULL), body->model.linear, &nodes, sums);
+  for (PetscInt k = n_arrays - 1; k >= 0; k--) PetscCall(VecRestoreArrayRead(vecs[k], arrays[k]));
+  *kinetic   = 0.5 * (staggered > 0 ? sums[KINETIC] - staggered * sums[STAGGERED] : sums[KINETIC]);
+  *half_work = 0.5 * sums[POTENTIAL];
+  PetscCall(PetscArraycpy(momentum, sums + MOMENTUM, 3));
+  PetscCall(PetscArraycpy(angular, sums + ANGULAR, 3));
+  PetscCall(PetscArraycpy(turned, sums + TURNED, 3));
+  if (!body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
+  /* around the ring it adds up to nothing but what goes along the axis */
+  momentum[0] = 0;
+  PetscCall(PetscArrayzero(angular, 3));
+  PetscCall(PetscArrayzero(turned, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
