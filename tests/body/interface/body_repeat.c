@@ -308,12 +308,79 @@ static void a_step_is_completed_once(void **state)
   }
 }
 
+/* What the rows of this rank do under loads of a scale, asked for as in sweeps */
+static void sweep(Body body, const NodeRows *rows, const BodyTraces *traces, PetscReal scale, PetscScalar displacement[])
+{
+  PetscScalar *row;
+
+  load(rows, traces, 1, 1, scale);
+  ok(BodyTryIntegrateRows(body, NULL));
+  ok(TraceGetLevel(traces->displacement, 1, &row));
+  ok(PetscArraycpy(displacement, row, rows->local));
+}
+
+/* A layer that has been told where it gets under a change of forces goes there, be it true or not, if forces change so on all ranks;
+   else it finds out itself */
+static void an_answer_that_is_told_is_taken(void **state)
+{
+  Body         body;
+  BodyTraces   traces;
+  NodeRows     rows;
+  PetscScalar *row, before[ROWS], after[ROWS], other[ROWS], told[ROWS], change[ROWS], *answer;
+  Vec          u, from;
+  PetscOptions options = solid_body_create(&body, BLOCK "-ts_type centraldifference -material_type linear_elastic");
+
+  (void)state;
+  touch_side(body, "ymax");
+  ok(BodySetControllerStep(body, 0, STEP));
+  set_node_rows(body, ROWS, row_nodes, row_directions, &rows);
+  ok(BodySetUp(body));
+  ok(BodyGetTraces(body, &traces));
+  ok(BodySetInitialState(body, Spinning, NULL));
+  condition_rows(body, &rows, BODY_FORCED);
+  ok(BodyGetSolution(body, &u, NULL, NULL));
+  ok(VecDuplicate(u, &from));
+  ok(PetscMalloc1(body->layer.n_dofs, &answer));
+  sweep(body, &rows, &traces, 1e-3, before);
+  ok(VecCopy(u, from));
+  ok(TraceGetLevel(traces.force_in, 1, &row));
+  for (PetscInt i = 0; i < rows.local; i++) change[i] = -row[i];
+  sweep(body, &rows, &traces, 3e-3, after);
+  for (PetscInt i = 0; i < rows.local; i++) change[i] += row[i];
+  ok(VecAXPY(from, -1, u));
+  {
+    const PetscScalar *moved;
+
+    ok(VecGetArrayRead(from, &moved)); /* twice as far as it does */
+    for (PetscInt i = 0; i < body->layer.n_dofs; i++) answer[i] = -2 * moved[body->layer.dofs[i]];
+    ok(VecRestoreArrayRead(from, &moved));
+  }
+  sweep(body, &rows, &traces, 5e-3, other);
+  for (PetscInt expected = 0; expected < 2; expected++) {
+    sweep(body, &rows, &traces, 1e-3, told);
+    ok(BodyExpectRepeat(body, change, answer));
+    sweep(body, &rows, &traces, expected ? 3e-3 : 5e-3, told);
+    for (PetscInt i = 0; i < rows.local; i++) {
+      const PetscScalar should = expected ? before[i] + 2 * (after[i] - before[i]) : other[i];
+
+      assert_true(PetscAbsScalar(after[i] - before[i]) > 1e-5);
+      near(told[i], should, 1e-14);
+    }
+  }
+  sweep(body, &rows, &traces, 1e-3, told); /* it counts once */
+  sweep(body, &rows, &traces, 3e-3, told);
+  for (PetscInt i = 0; i < rows.local; i++) near(told[i], after[i], 1e-14);
+  ok(PetscFree(answer));
+  ok(VecDestroy(&from));
+  bar_destroy(&body, options);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(explicit_bodies_repeat_as_they_turn),   cmocka_unit_test(implicit_bodies_repeat_as_they_turn),
       cmocka_unit_test(what_is_kept_comes_back_with_its_work), cmocka_unit_test(a_step_is_completed_once),
-      cmocka_unit_test(a_lag_from_step_to_step_is_refused),
+      cmocka_unit_test(a_lag_from_step_to_step_is_refused),    cmocka_unit_test(an_answer_that_is_told_is_taken),
   };
 
   return impakt_main(argc, argv, tests);
