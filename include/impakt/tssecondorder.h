@@ -7,6 +7,7 @@
 #define TSRIGID             "rigid"
 
 typedef PetscErrorCode TSCentralDifferenceFn(TS, PetscReal, Vec, Vec, Vec, void *);
+typedef PetscErrorCode TSAlpha2StepFn(TS);
 typedef PetscErrorCode TSRigidFn(TS, PetscReal, PetscReal, Vec, Vec, void *);
 
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDifferenceFn *, void *);
@@ -16,3 +17,4 @@ PETSC_EXTERN PetscErrorCode TSSecondOrderInitializePackage(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderRegisterAll(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderSetState(TS, PetscReal, PetscReal, PetscInt);
+PETSC_EXTERN PetscErrorCode TSAlpha2SetStep(TS, TSAlpha2StepFn *);

@@ -292,3 +292,30 @@ PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step,
   ts->reason      = TS_CONVERGED_ITERATING;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@C
+  TSAlpha2SetStep - has a function make the steps of a `TSALPHA2`, in place of its nonlinear solver
+
+  Logically Collective
+
+  Input Parameters:
++ ts   - a `TSALPHA2`, not yet set up
+- step - function (ts): takes the vectors of `TS2SetSolution()` to the end of the step, and the time with `TSSetTime()`
+
+  Level: developer
+
+  Note:
+  For linear equations, which need one solution and no Newton's method: its `SNES`, and the nine vectors that it works with, are not made.
+  What the function is to know comes with `TSGetI2Function()` and `TSAlpha2GetParams()`.
+
+.seealso: `TSALPHA2`, `TSSecondOrderSetState()`
+@*/
+PetscErrorCode TSAlpha2SetStep(TS ts, TSAlpha2StepFn *step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
+  ts->ops->step  = step;
+  ts->ops->setup = NULL;
+  ts->usessnes   = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -196,7 +196,7 @@ PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoin
 PetscErrorCode BodyImplicitDestroy(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  Vec          *vecs[]   = {&implicit->u, &implicit->v, &implicit->a, &implicit->next};
+  Vec *vecs[] = {&implicit->u, &implicit->v, &implicit->a, &implicit->next, &implicit->stage_u, &implicit->stage_v, &implicit->stage_a};
 
   PetscFunctionBegin;
   for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));

@@ -43,8 +43,9 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First iterate: the last displacement, of nonlinear bodies that at the last velocity, with held dofs and prescribed rows in place. Also
-   brings the acceleration, which TSALPHA2 would take from its last step, even if that step has been undone since. */
+/* First iterate of a nonlinear body: the displacement at the last velocity, with held dofs and prescribed rows in place; a body that turns
+   fast would need many iterations from where it was. Also brings the acceleration, which TSALPHA2 would take from its last step, even if
+   that step has been undone since. */
 static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 {
   Body body = (Body)ctx;
@@ -52,8 +53,7 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscFunctionBegin;
   (void)ts;
   PetscCall(VecCopy(body->state.a, A0));
-  if (body->model.linear) PetscCall(VecCopy(X0, X1));
-  else PetscCall(VecWAXPY(X1, body->time.step, V0, X0)); /* a body that turns fast would need many iterations from where it was */
+  PetscCall(VecWAXPY(X1, body->time.step, V0, X0));
   PetscCall(BodyImplicitPrescribe(body, X1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -104,33 +104,62 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Acceleration by Newmark's formula; velocity and acceleration of prescribed and massless nodes */
-static PetscErrorCode FinishSubstep(Body body)
+/* The acceleration at the end by Newmark's formula, which TSALPHA2 keeps to itself */
+static PetscErrorCode ComputeAcceleration(Body body)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   const PetscReal    dt = body->time.step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
   const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar *u0, *v0, *u1;
-  PetscScalar       *v1, *a;
+  PetscScalar       *a;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
   PetscCall(VecGetArrayRead(body->substep_start.v, &v0));
   PetscCall(VecGetArrayRead(body->state.u, &u1));
-  PetscCall(VecGetArray(body->state.v, &v1));
   PetscCall(VecGetArray(body->state.a, &a));
   for (PetscInt i = 0; i < n; i++) a[i] = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a[i];
-  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
-    const PetscInt dof = body->layer.dofs[i];
-
-    v1[dof] = (u1[dof] - u0[dof]) / dt;
-    a[dof]  = 0;
-  }
   PetscCall(VecRestoreArray(body->state.a, &a));
-  PetscCall(VecRestoreArray(body->state.v, &v1));
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(body->substep_start.v, &v0));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Massless nodes have the mean velocity of the substep, and no acceleration */
+static PetscErrorCode FinishLayer(Body body)
+{
+  const PetscScalar *u0, *u1;
+  PetscScalar       *v1, *a1;
+
+  PetscFunctionBegin;
+  if (!body->mass.redistribute) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
+  PetscCall(VecGetArrayRead(body->state.u, &u1));
+  PetscCall(VecGetArray(body->state.v, &v1));
+  PetscCall(VecGetArray(body->state.a, &a1));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
+    const PetscInt dof = body->layer.dofs[i];
+
+    v1[dof] = (u1[dof] - u0[dof]) / body->time.step;
+    a1[dof] = 0;
+  }
+  PetscCall(VecRestoreArray(body->state.a, &a1));
+  PetscCall(VecRestoreArray(body->state.v, &v1));
+  PetscCall(VecRestoreArrayRead(body->state.u, &u1));
+  PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the TS leaves undone: acceleration; velocity and acceleration of prescribed and massless nodes; the internal force at the end, where
+   the last residual was not evaluated there */
+static PetscErrorCode FinishSubstep(Body body)
+{
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (!body->model.linear) PetscCall(ComputeAcceleration(body));
+  PetscCall(FinishLayer(body));
   PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, body->state.a));
   if (body->rows.have_mass) {
     const PetscReal position = (PetscReal)(body->time.substep + 1) / body->time.substeps;
@@ -138,8 +167,7 @@ static PetscErrorCode FinishSubstep(Body body)
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
   }
-  /* the last residual was evaluated at the stage, not at the end of the substep */
-  if (implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  if (body->model.linear || implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(BodyNoteDamping(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,6 +16,7 @@ typedef struct {
   PetscReal  terms, round_off;            /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
   PetscReal  unit_strain;                 /* norm of the forces of strains of size 1, of a nonlinear body [N] */
   Vec        lead[4];                     /* work of BodyImplicitCarry() */
+  Vec        stage_u, stage_v, stage_a;   /* of a linear body, at the stage: NULL where its residual does not read them, or is at the end */
   Vec        u, v, a, next;               /* state of a body at rest while a column of the compliance is made; NULL until then */
 } BodyImplicit;
 
@@ -25,6 +26,7 @@ typedef PetscErrorCode BodyPredictorFn(TS, Vec, Vec, Vec, Vec, void *);
 PETSC_INTERN PetscErrorCode BodyImplicitCreate(BodyIntegrator);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUp(Body, BodyResidualFn *, BodyPredictorFn *);
+PETSC_INTERN PetscErrorCode BodyImplicitSetUpLinear(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitCreateSolver(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitComputeUnitStrainForce(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetLevel(Body);

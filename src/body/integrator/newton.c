@@ -1,6 +1,6 @@
 /*
-   The equations of one substep of a body on TSALPHA2, with inertia or without, and how they are solved: by Newton's method with the
-   factors of the effective matrix, in one iteration for a linear body, whose matrix is constant.
+   The equations of one substep of a body on TSALPHA2, with inertia or without, and how those of a nonlinear one are solved: by Newton's
+   method with the factors of the effective matrix. A linear body needs but one solution, see linearstep.c.
 */
 #include "implicitimpl.h"
 #include <sys/petsccompat.h>
@@ -125,7 +125,6 @@ PetscErrorCode BodyImplicitPrescribe(Body body, Vec U)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The matrix of a linear body is constant, and was assembled at set-up */
 static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shift_v, PetscReal shift_a, Mat J, Mat P,
                                       void *ctx)
 {
@@ -140,7 +139,6 @@ static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, P
   (void)shift_a;
   (void)J;
   (void)P;
-  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyImplicitRefactor(body, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -152,21 +150,6 @@ static PetscErrorCode ApplyConstrainedSolver(PC pc, Vec b, Vec x)
   PetscFunctionBegin;
   PetscCall(PCShellGetContext(pc, &body));
   PetscCall(ConstrainedSolverSolve(body->solver, b, x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* One Newton iteration solves a linear body. The residual must still be evaluated at the solution, because velocity and
-   acceleration are by-products of its evaluation. */
-static PetscErrorCode StopAfterOneIteration(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
-                                            SNESConvergedReason *reason, void *ctx)
-{
-  PetscFunctionBegin;
-  (void)snes;
-  (void)xnorm;
-  (void)gnorm;
-  (void)ctx;
-  *reason = it ? SNES_CONVERGED_ITS : SNES_CONVERGED_ITERATING;
-  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -210,58 +193,31 @@ static PetscErrorCode RefuseLagBetweenSubsteps(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's method for nonlinear bodies; one iteration of it for linear ones */
-static PetscErrorCode SetUpNewton(Body body, SNES snes)
+/* Newton's method of a nonlinear body, whose linear systems go to the factors of the effective matrix with constraints */
+static PetscErrorCode SetUpNewton(Body body, BodyPredictorFn *predictor)
 {
+  BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
   SNESLineSearch line_search;
+  SNES           snes;
+  KSP            ksp;
+  PC             pc;
+  char           outer[128];
 
   PetscFunctionBegin;
-  PetscCall(SNESGetLineSearch(snes, &line_search));
-  if (!body->model.linear) {
-    PetscCall(SNESSetTolerances(snes, NEWTON_UNDERFLOW, NEWTON_TOLERANCE, NEWTON_STEP, NEWTON_ITERATIONS, PETSC_CURRENT));
-    PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
-    PetscCall(RefuseLagBetweenSubsteps(body));
-    PetscCall(SNESSetFromOptions(snes));
-    PetscCall(SNESSetConvergenceTest(snes, StopInBalance, body, NULL));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(SNESSetLagJacobian(snes, -2));
-  PetscCall(SNESSetLagJacobianPersists(snes, PETSC_TRUE));
-  PetscCall(SNESSetLagPreconditioner(snes, -2));
-  PetscCall(SNESSetLagPreconditionerPersists(snes, PETSC_TRUE));
-  PetscCall(SNESSetConvergenceTest(snes, StopAfterOneIteration, NULL, NULL));
-  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-  PetscCall(SNESLineSearchSetComputeNorms(line_search, PETSC_FALSE)); /* one iteration is all there is: nothing reads them */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The effective matrix and its factors, which a linear body keeps for good, and the callbacks of the TS and its SNES */
-PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
-{
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  const char   *prefix   = ((PetscObject)body)->prefix;
-  SNES          snes;
-  KSP           ksp;
-  PC            pc;
-  Vec           vec;
-  char          outer[128];
-
-  PetscFunctionBegin;
-  PetscCall(BodyImplicitCreateSolver(body, NULL));
-  PetscCall(BodyCreateVec(body, &vec));
-  PetscCall(TSSetI2Function(body->time.ts, vec, residual, body));
   PetscCall(TSSetI2Jacobian(body->time.ts, implicit->matrix, implicit->matrix, ComputeJacobian, body));
-  PetscCall(VecDestroy(&vec));
   PetscCall(TSAlpha2SetPredictor(body->time.ts, predictor, body));
   PetscCall(TSGetSNES(body->time.ts, &snes));
-  PetscCall(SetUpNewton(body, snes));
-  if (!body->model.linear || !body->integrator->affine || body->time.substeps > 1) body->integrator->ops.repeat = NULL;
+  PetscCall(SNESGetLineSearch(snes, &line_search));
+  PetscCall(SNESSetTolerances(snes, NEWTON_UNDERFLOW, NEWTON_TOLERANCE, NEWTON_STEP, NEWTON_ITERATIONS, PETSC_CURRENT));
+  PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
+  PetscCall(RefuseLagBetweenSubsteps(body));
+  PetscCall(SNESSetFromOptions(snes));
+  PetscCall(SNESSetConvergenceTest(snes, StopInBalance, body, NULL));
   /* BodyImplicitCheckSubstep() tells, with body and time */
   PetscCall(SNESSetErrorIfNotConverged(snes, PETSC_FALSE));
-  PetscCall(TSSetErrorIfStepFails(body->time.ts, PETSC_FALSE));
   PetscCall(SNESGetKSP(snes, &ksp));
   /* the user's -<body>_ksp_... options are for the solver with the factors, inside */
-  PetscCall(PetscSNPrintf(outer, sizeof(outer), "%sconstrained_", prefix));
+  PetscCall(PetscSNPrintf(outer, sizeof(outer), "%sconstrained_", ((PetscObject)body)->prefix));
   PetscCall(KSPSetOptionsPrefix(ksp, outer));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -269,6 +225,23 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
   PetscCall(PCShellSetContext(pc, body));
   PetscCall(PCShellSetApply(pc, ApplyConstrainedSolver));
   PetscCall(PCShellSetName(pc, "factored effective matrix with contact constraints"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The effective matrix and its factors, which a linear body keeps for good, and how the TS makes its steps */
+PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
+{
+  Vec vec;
+
+  PetscFunctionBegin;
+  PetscCall(BodyImplicitCreateSolver(body, NULL));
+  PetscCall(BodyCreateVec(body, &vec));
+  PetscCall(TSSetI2Function(body->time.ts, vec, residual, body));
+  PetscCall(VecDestroy(&vec));
+  PetscCall(TSSetErrorIfStepFails(body->time.ts, PETSC_FALSE));
+  if (!body->model.linear || !body->integrator->affine || body->time.substeps > 1) body->integrator->ops.repeat = NULL;
+  if (body->model.linear) PetscCall(BodyImplicitSetUpLinear(body));
+  else PetscCall(SetUpNewton(body, predictor));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -295,8 +268,7 @@ static PetscErrorCode CheckLinearSolver(Body body, PetscBool *failed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes Newton's method that did not converge, with body, time and what to do. That of a linear body takes one iteration, in which its
-   solver alone can fail. */
+/* Notes Newton's method that did not converge, with body, time and what to do. Of a linear body the solver alone can fail. */
 PetscErrorCode BodyImplicitCheckSubstep(Body body)
 {
   SNESConvergedReason reason;

@@ -19,7 +19,7 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First iterate: the last displacement with held dofs and prescribed rows in place, and what they do to a nonlinear body */
+/* First iterate of a nonlinear body: the last displacement with held dofs and prescribed rows in place, and what they do to it */
 static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 {
   Body body = (Body)ctx;
@@ -30,7 +30,7 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscCall(VecCopy(body->state.a, A0));
   PetscCall(VecCopy(X0, X1));
   PetscCall(BodyImplicitPrescribe(body, X1));
-  if (!body->model.linear) PetscCall(BodyImplicitCarry(body, ComputeResidual, X0, X1));
+  PetscCall(BodyImplicitCarry(body, ComputeResidual, X0, X1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -59,7 +59,7 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The velocity is the mean of the substep */
+/* The velocity is the mean of the substep. That of a linear body has no residual at its end, to leave the internal force behind. */
 static PetscErrorCode FinishSubstep(Body body)
 {
   const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
@@ -75,6 +75,7 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
   PetscCall(VecZeroEntries(body->state.a));
+  if (body->model.linear) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
