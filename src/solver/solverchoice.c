@@ -65,7 +65,7 @@ static PetscErrorCode ChooseSequential(PC pc, PetscInt n, PetscInt dim)
   }
   PetscCall(PCSetType(pc, PCLU));
   PetscCall(PCFactorSetZeroPivot(pc, 0)); /* PETSc's default is 2e-14, whatever the unit of the matrix */
-  PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
+  PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,7 +118,7 @@ PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
     PetscCall(KSPGetPC(inner, &pc));
     PetscCall(PCSetType(pc, PCLU));
     PetscCall(PCFactorSetZeroPivot(pc, 0));
-    PetscCall(PCFactorSetMatOrderingType(pc, dim == 1 ? MATORDERINGRCM : MATORDERINGND));
+    PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (size > 1) PetscCall(ConstrainedSolverChooseMUMPS(pc));
