@@ -166,7 +166,7 @@ PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar force[], const P
   PetscFunctionBegin;
   PetscCall(ConstrainedSolverCorrect(body->solver, force, displacement, du));
   PetscCall(VecAXPY(body->state.u, 1, du));
-  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscCall(BodyImplicitNoteForce(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

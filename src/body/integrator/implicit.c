@@ -33,7 +33,7 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
 
   PetscFunctionBegin;
   (void)ts;
-  PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
+  if (!body->state.force_known) PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
   /* Newmark's formulas are unstable on prescribed nodes with mass: their acceleration is the partner's, or the load's */
   if (body->held.any && (prescribed || !body->mass.diagonal)) PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
   if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
@@ -167,7 +167,8 @@ static PetscErrorCode FinishSubstep(Body body)
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
   }
-  if (body->model.linear || implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  if (body->model.linear) PetscCall(BodyImplicitNoteForce(body));
+  else if (implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(BodyNoteDamping(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,6 +27,7 @@ PETSC_INTERN PetscErrorCode BodyImplicitCreate(BodyIntegrator);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUp(Body, BodyResidualFn *, BodyPredictorFn *);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUpLinear(Body);
+PETSC_INTERN PetscErrorCode BodyImplicitNoteForce(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitCreateSolver(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitComputeUnitStrainForce(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetLevel(Body);

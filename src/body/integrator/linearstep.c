@@ -95,6 +95,15 @@ static PetscErrorCode Correct(Body body, Vec du, Vec U, Vec V)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The internal force at the end of the substep, from which the next one starts unless the state is another by then */
+PetscErrorCode BodyImplicitNoteForce(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  body->state.force_known = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The step of the TS */
 static PetscErrorCode MakeStep(TS ts)
 {
@@ -112,11 +121,13 @@ static PetscErrorCode MakeStep(TS ts)
   U        = body->state.u;
   du       = body->work.nodes[0];
   PetscCall(BodyImplicitPrescribe(body, U));
+  if (body->held.any || body->rows.n_prescribed) body->state.force_known = PETSC_FALSE;
   PetscCall(ComputeStage(body, U));
   PetscCall((*compute_residual)(ts, t + implicit->alpha_f * dt, implicit->stage_u ? implicit->stage_u : U, implicit->stage_v,
                                 implicit->stage_a, F, body));
   PetscCall(ConstrainedSolverSolve(body->solver, F, du));
   PetscCall(Correct(body, du, U, body->state.v));
+  body->state.force_known = PETSC_FALSE;
   PetscCall(TSSetTime(ts, t + dt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,7 +12,7 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   (void)ts;
   (void)V;
   (void)A;
-  PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
+  if (!body->state.force_known) PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
   PetscCall(VecZeroEntries(F));
   PetscCall(BodyAddSpringForce(body, U, F));
   PetscCall(BodyImplicitAddForces(body, t, U, F));
@@ -75,7 +75,7 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
   PetscCall(VecZeroEntries(body->state.a));
-  if (body->model.linear) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  if (body->model.linear) PetscCall(BodyImplicitNoteForce(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -121,7 +121,8 @@ typedef struct {
   PetscReal damping_work;   /* taken by the dashpots since the start [J] */
   PetscReal time;
   PetscInt  step;       /* substeps since the start */
-  PetscBool incomplete; /* displacements, and internal forces on massless nodes, are there; the rest waits for BodyCompleteStep() */
+  PetscBool incomplete;  /* displacements, and internal forces on massless nodes, are there; the rest waits for BodyCompleteStep() */
+  PetscBool force_known; /* the internal force is known to be that of u: a linear implicit body needs it for its next step */
 } BodyState;
 
 /* Contact forces that go over from the rows of the last accepted step to those of this one, see handover.c */

@@ -22,6 +22,7 @@ PetscErrorCode BodyStateCopy(Body body, const BodyState *from, BodyState *to)
   to->time          = from->time;
   to->step          = from->step;
   to->incomplete    = from->incomplete;
+  to->force_known   = (PetscBool)(from->force_known && from->internal_force && to->internal_force);
   if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCopy(from->u, to->u));
   PetscCall(VecCopy(from->v, to->v));
