@@ -7,6 +7,8 @@
 
 /* Ranks agree whether a signal has come, or the time is over, about so often [s]: a message to all of them costs as much as a small step */
 #define LOOK_EVERY 0.05
+/* One rank asks for signals no more often than this [s]: the system takes 1 us for it, a tenth of a small step */
+#define ASK_EVERY 1e-3
 /* Part of -max_wall_time that is left for the last checkpoint and the summary */
 #define TIME_LEFT 0.01
 /* Larger than the number of any signal */
@@ -23,7 +25,7 @@ PetscErrorCode OutputStartClock(Output output)
   PetscCall(ControllerGetTimings(output->controller, &setup, NULL, NULL));
   c->begin      = now - setup;
   c->written    = now;
-  c->looked     = now;
+  c->looked     = c->begin;
   c->look_every = 1;
   c->last_step  = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -74,16 +76,18 @@ static PetscErrorCode Look(Output output, PetscInt step, StopSignals *signals, P
   PetscLogDouble now;
   double         values[5] = {0}; /* the signal that ends the run, a checkpoint; seconds since begin, checkpoint, last look */
   PetscMPIInt    size;
+  PetscBool      asks;
 
   PetscFunctionBegin;
   PetscCall(PetscTime(&now));
-  if (c->catches) StopSignalsTake(signals);
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  asks = (PetscBool)(size > 1 || now - c->looked >= ASK_EVERY);
+  if (asks && c->catches) StopSignalsTake(signals);
   values[0] = signals->stop ? LAST_SIGNAL - signals->stop : 0; /* what the user does counts before SIGTERM, which mpiexec sends beside it */
   values[1] = signals->checkpoint;
   values[2] = now - c->begin;
   values[3] = now - c->written;
   values[4] = now - c->looked;
-  PetscCallMPI(MPI_Comm_size(comm, &size));
   if (size > 1) {
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, values, 5, MPI_DOUBLE, MPI_MAX, comm));
     if (values[4] < LOOK_EVERY) c->look_every = PetscMin(2 * c->look_every, 1 << 16);
@@ -93,8 +97,8 @@ static PetscErrorCode Look(Output output, PetscInt step, StopSignals *signals, P
   signals->checkpoint = (PetscBool)(values[1] > 0);
   *late               = (PetscBool)(c->max_wall_time > 0 && values[2] >= (1 - TIME_LEFT) * c->max_wall_time);
   *due                = (PetscBool)(c->wall_interval > 0 && values[3] >= c->wall_interval);
-  c->looked           = now;
   c->next_look        = step + c->look_every;
+  if (asks) c->looked = now;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -26,7 +26,7 @@ static PetscErrorCode ComputeStage(Body body, Vec U)
   const PetscReal     alpha_f = implicit->alpha_f, alpha_m = implicit->alpha_m;
   const PetscInt      n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar  *u0, *v0, *a0, *u1;
-  PetscScalar        *values;
+  PetscScalar        *u, *v, *a;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
@@ -34,23 +34,23 @@ static PetscErrorCode ComputeStage(Body body, Vec U)
   PetscCall(VecGetArrayRead(body->state.a, &a0));
   PetscCall(VecGetArrayRead(U, &u1));
   if (implicit->stage_a) {
-    PetscCall(VecGetArrayWrite(implicit->stage_a, &values));
-    for (PetscInt i = 0; i < n; i++) values[i] = (1 - alpha_m) * a0[i] + alpha_m * (m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i]);
-    PetscCall(VecRestoreArrayWrite(implicit->stage_a, &values));
+    PetscCall(VecGetArrayWrite(implicit->stage_a, &a));
+#pragma omp simd
+    for (PetscInt i = 0; i < n; i++) a[i] = (1 - alpha_m) * a0[i] + alpha_m * (m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i]);
+    PetscCall(VecRestoreArrayWrite(implicit->stage_a, &a));
   }
   if (implicit->stage_v) {
-    PetscCall(VecGetArrayWrite(implicit->stage_v, &values));
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscScalar a1 = m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i];
-
-      values[i] = v0[i] + alpha_f * (m.by_start * a0[i] + m.by_end * a1);
-    }
-    PetscCall(VecRestoreArrayWrite(implicit->stage_v, &values));
+    PetscCall(VecGetArrayWrite(implicit->stage_v, &v));
+#pragma omp simd
+    for (PetscInt i = 0; i < n; i++)
+      v[i] = v0[i] + alpha_f * (m.by_start * a0[i] + m.by_end * (m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i]));
+    PetscCall(VecRestoreArrayWrite(implicit->stage_v, &v));
   }
   if (implicit->stage_u) {
-    PetscCall(VecGetArrayWrite(implicit->stage_u, &values));
-    for (PetscInt i = 0; i < n; i++) values[i] = u0[i] + alpha_f * (u1[i] - u0[i]);
-    PetscCall(VecRestoreArrayWrite(implicit->stage_u, &values));
+    PetscCall(VecGetArrayWrite(implicit->stage_u, &u));
+#pragma omp simd
+    for (PetscInt i = 0; i < n; i++) u[i] = u0[i] + alpha_f * (u1[i] - u0[i]);
+    PetscCall(VecRestoreArrayWrite(implicit->stage_u, &u));
   }
   PetscCall(VecRestoreArrayRead(U, &u1));
   PetscCall(VecRestoreArrayRead(body->state.a, &a0));
@@ -77,11 +77,11 @@ static PetscErrorCode Correct(Body body, Vec du, Vec U, Vec V)
   PetscCall(VecGetArray(U, &u));
   PetscCall(VecGetArrayWrite(V, &v));
   PetscCall(VecGetArray(body->state.a, &a));
+#pragma omp simd
   for (PetscInt i = 0; i < n; i++) {
-    PetscScalar a1;
+    const PetscScalar u1 = u[i] - scale * change[i], a1 = m.c2 * (u1 - u0[i]) - m.c1 * v0[i] - m.c0 * a[i];
 
-    u[i] -= scale * change[i];
-    a1   = m.c2 * (u[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a[i];
+    u[i] = u1;
     v[i] = v0[i] + m.by_start * a[i] + m.by_end * a1;
     a[i] = a1;
   }

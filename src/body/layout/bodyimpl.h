@@ -120,7 +120,7 @@ typedef struct {
   PetscReal external_work;  /* done by the applied forces since the start [J] */
   PetscReal damping_work;   /* taken by the dashpots since the start [J] */
   PetscReal time;
-  PetscInt  step;       /* substeps since the start */
+  PetscInt  step;        /* substeps since the start */
   PetscBool incomplete;  /* displacements, and internal forces on massless nodes, are there; the rest waits for BodyCompleteStep() */
   PetscBool force_known; /* the internal force is known to be that of u: a linear implicit body needs it for its next step */
 } BodyState;
