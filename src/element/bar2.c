@@ -3,12 +3,20 @@
 #include <impakt/private/materialimpl.h>
 #include <impakt/private/simd.h>
 
+/* Elements one after the other from a node to the next: nearly all of a mesh. Others are runs of one element, whose nodes may be any. */
+typedef struct {
+  PetscInt  element, length; /* the first of them, and their number */
+  PetscBool follow;          /* their nodes follow each other */
+} Run;
+
 typedef struct {
   PetscBool        linear;
   const PetscReal *coordinates;    /* of the rank's nodes; owned by the body */
   PetscReal       *inverse_length; /* of the coordinate of the second node less that of the first, so it may be negative [1/m] */
   PetscReal       *pull_area;      /* cross-section, with the sign of the length: an element may run against the axis [m^2] */
   PetscReal       *strain, *stress;
+  PetscInt         n_runs;
+  Run             *runs;
 } Bar2;
 
 /* Shape functions at the two Gauss points, (1 +- 1 / sqrt 3) / 2 */
@@ -29,6 +37,27 @@ static PetscErrorCode ElementSetFromOptions_Bar2(Element element)
              "-%scross_section is %g m^2; it must lie between %g and %g m^2",
              ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area, SECTION_SMALLEST, SECTION_LARGEST);
   if (set) PetscCall(ElementSetCrossSection(element, area));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which elements follow each other, so that loops over them need not look up their nodes */
+static PetscErrorCode FindRuns(Element element)
+{
+  Bar2           *bar   = (Bar2 *)element->data;
+  const PetscInt *nodes = element->connectivity;
+  Run            *run   = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(element->count, &bar->runs));
+  for (PetscInt e = 0; e < element->count; e++) {
+    const PetscBool follows = (PetscBool)(nodes[2 * e + 1] == nodes[2 * e] + 1);
+
+    if (run && run->follow && follows && nodes[2 * e] == nodes[2 * e - 1]) run->length++;
+    else {
+      run  = &bar->runs[bar->n_runs++];
+      *run = (Run){e, 1, follows};
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,6 +82,7 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
     bar->pull_area[e]      = length > 0 ? element->cross_section : -element->cross_section;
     PetscCheck(length != 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "A bar element at x = %g has no length", (double)coordinates[node[0]]);
   }
+  PetscCall(FindRuns(element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,23 +103,49 @@ static void NoteInverted(Element element, const PetscReal strain[], const PetscR
     if (isnan(stress[e]) || (!linear && !(1 + strain[e] > 0))) element->inverted = e;
 }
 
+static void ComputeStrains(const Bar2 *bar, const PetscInt nodes[], const PetscScalar u[])
+{
+  for (const Run *run = bar->runs; run < bar->runs + bar->n_runs; run++) {
+    const PetscReal   *inverse_length = bar->inverse_length + run->element;
+    const PetscScalar *at             = u + nodes[2 * run->element];
+    PetscReal         *strain         = bar->strain + run->element;
+
+    if (!run->follow) *strain = GetStrain(bar, nodes, run->element, u);
+    else {
+#pragma omp simd
+      for (PetscInt e = 0; e < run->length; e++) strain[e] = (at[e + 1] - at[e]) * inverse_length[e];
+    }
+  }
+}
+
+/* f += what elements pull at their nodes with [N] */
+static void AddPulls(const Bar2 *bar, const PetscInt nodes[], const PetscReal pull[], PetscScalar f[])
+{
+  for (const Run *run = bar->runs; run < bar->runs + bar->n_runs; run++) {
+    const PetscInt  *ends = nodes + 2 * run->element, last = run->length - 1;
+    const PetscReal *of = pull + run->element;
+    PetscScalar     *at = f + ends[0];
+
+    f[ends[0]] -= of[0];
+    f[ends[2 * last + 1]] += of[last];
+#pragma omp simd
+    for (PetscInt e = 1; e <= last; e++) at[e] += of[e - 1] - of[e];
+  }
+}
+
 static PetscErrorCode ElementInternalForce_Bar2(Element element, const PetscScalar u[], PetscScalar f[])
 {
-  Bar2           *bar    = (Bar2 *)element->data;
-  const PetscInt *nodes  = element->connectivity;
-  const PetscInt  count  = element->count;
-  PetscReal      *strain = bar->strain, *stress = bar->stress;
+  Bar2           *bar   = (Bar2 *)element->data;
+  const PetscInt *nodes = element->connectivity;
+  const PetscInt  count = element->count;
+  PetscReal      *pull  = bar->stress;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < count; e++) strain[e] = GetStrain(bar, nodes, e, u);
-  PetscCall(MaterialComputeUniaxial(element->material, count, strain, stress));
-  for (PetscInt e = 0; e < count; e++) {
-    const PetscReal pull = bar->pull_area[e] * stress[e];
-
-    f[nodes[2 * e]] -= pull;
-    f[nodes[2 * e + 1]] += pull;
-  }
-  NoteInverted(element, strain, stress);
+  ComputeStrains(bar, nodes, u);
+  PetscCall(MaterialComputeUniaxial(element->material, count, bar->strain, bar->stress));
+  NoteInverted(element, bar->strain, bar->stress);
+  for (PetscInt e = 0; e < count; e++) pull[e] *= bar->pull_area[e];
+  AddPulls(bar, nodes, pull, f);
   PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -233,6 +289,7 @@ static PetscErrorCode ElementDestroy_Bar2(Element element)
 
   PetscFunctionBegin;
   PetscCall(PetscFree4(bar->inverse_length, bar->pull_area, bar->strain, bar->stress));
+  PetscCall(PetscFree(bar->runs));
   PetscCall(PetscFree(element->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

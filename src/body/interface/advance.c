@@ -244,7 +244,7 @@ PetscErrorCode BodyIntegrate(Body body)
 @*/
 PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *position)
 {
-  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
+  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim, whole = n - n % 4;
   const PetscScalar *u, *x;
   PetscScalar       *previous;
   PetscReal          sums[2] = {0, 0}, change4[4] = {0}, position4[4] = {0};
@@ -255,11 +255,15 @@ PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *po
   PetscCall(VecGetArrayRead(body->mesh.positions, &x));
   PetscCall(VecGetArray(body->iterate.u, &previous));
   /* four sums each, since a single one waits for every addition */
-  for (PetscInt i = 0; i < n; i += 4)
-    for (PetscInt k = 0; k < PetscMin(4, n - i); k++) {
+  for (PetscInt i = 0; i < whole; i += 4)
+    for (PetscInt k = 0; k < 4; k++) {
       change4[k] += PetscSqr(u[i + k] - previous[i + k]);
       position4[k] += PetscSqr(x[i + k] + u[i + k]);
     }
+  for (PetscInt i = whole; i < n; i++) {
+    change4[i - whole] += PetscSqr(u[i] - previous[i]);
+    position4[i - whole] += PetscSqr(x[i] + u[i]);
+  }
   for (PetscInt k = 0; k < 4; k++) {
     sums[0] += change4[k];
     sums[1] += position4[k];
