@@ -308,6 +308,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->model.stiffness));
   PetscCall(MatDestroy(&b->mass.matrix));
   PetscCall(MatDestroy(&b->mass.product));
+  PetscCall(PetscFree(b->mass.diagonals));
   PetscCall(MatDestroy(&b->rows.matrix));
   PetscCall(VecDestroy(&b->rows.free_dofs));
   PetscCall(TSDestroy(&b->time.ts));

@@ -137,33 +137,6 @@ static PetscErrorCode AddOrphans(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For products: in two and three dimensions x, y and z of a node have the same masses, and nothing to do with each other, so that one
-   number serves for all of them */
-static PetscErrorCode SetUpProduct(Body body)
-{
-  const PetscInt dim = body->mesh.dim;
-  PetscInt       begin;
-  Mat            of_nodes;
-  IS             first;
-
-  PetscFunctionBegin;
-  if (!body->mass.matrix) PetscFunctionReturn(PETSC_SUCCESS);
-  if (dim == 1) {
-    PetscCall(PetscObjectReference((PetscObject)body->mass.matrix));
-    body->mass.product = body->mass.matrix;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(MatGetOwnershipRange(body->mass.matrix, &begin, NULL));
-  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->mesh.owned_nodes, begin, dim, &first));
-  PetscCall(MatCreateSubMatrix(body->mass.matrix, first, first, MAT_INITIAL_MATRIX, &of_nodes));
-  PetscCall(ISDestroy(&first));
-  PetscCall(MatCreateMAIJ(of_nodes, dim, &body->mass.product));
-  /* on several ranks such a matrix takes memory in each product; another without the zeros between components does not */
-  if (body->rows.size > 1) PetscCall(MatConvert(body->mass.product, MATAIJ, MAT_INPLACE_MATRIX, &body->mass.product));
-  PetscCall(MatDestroy(&of_nodes));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Marks the massless nodes and their displacements, but those that are held */
 static PetscErrorCode SetUpLayer(Body body)
 {
@@ -198,7 +171,7 @@ PetscErrorCode BodySetUpMass(Body body)
   }
   PetscCall(AssembleMass(body));
   if (body->mass.orphans) PetscCall(AddOrphans(body));
-  PetscCall(SetUpProduct(body));
+  PetscCall(BodySetUpMassProduct(body));
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));
   PetscCall(VecSet(ones, 1));
@@ -240,15 +213,6 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
   PetscCall(ConstrainedSolverCreate(solvable, body->rows.free_matrix, body->mesh.dim, prefix, NULL, &body->mass.solver));
   PetscCall(MatDestroy(&solvable));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* y = M x */
-PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
-{
-  PetscFunctionBegin;
-  if (body->mass.diagonal) PetscCall(VecPointwiseMult(y, body->mass.diagonal, x));
-  else PetscCall(MatMult(body->mass.product, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
