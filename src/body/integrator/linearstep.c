@@ -4,6 +4,7 @@
    body has few nodes, calls take more time than numbers.
 */
 #include "implicitimpl.h"
+#include <impakt/private/simd.h>
 
 /* Acceleration at the end of the substep, a1 = c2 (u1 - u0) - c1 v0 - c0 a0, and velocity, v1 = v0 + dt ((1 - gamma) a0 + gamma a1) */
 typedef struct {
@@ -17,14 +18,21 @@ static Newmark NewmarkOf(const BodyImplicit *implicit, PetscReal dt)
   return (Newmark){1 / (beta * dt * dt), 1 / (beta * dt), (1 - 2 * beta) / (2 * beta), dt * (1 - gamma), dt * gamma};
 }
 
+SIMD_CLONES static void GetStageAccelerations(PetscInt n, Newmark m, PetscReal alpha_m, const PetscScalar u0[], const PetscScalar v0[],
+                                              const PetscScalar a0[], const PetscScalar u1[], PetscScalar a[])
+{
+#pragma omp simd
+  for (PetscInt i = 0; i < n; i++) a[i] = (1 - alpha_m) * a0[i] + alpha_m * (m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i]);
+}
+
 /* What the residual is of: motion at the stage where U, with held dofs and prescribed rows in place, is that at the end. The stage of a
    displacement is U itself where it is at the end. */
 static PetscErrorCode ComputeStage(Body body, Vec U)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   const Newmark       m        = NewmarkOf(implicit, body->time.step);
-  const PetscReal     alpha_f = implicit->alpha_f, alpha_m = implicit->alpha_m;
-  const PetscInt      n = body->mesh.owned_nodes * body->mesh.dim;
+  const PetscReal     alpha_f  = implicit->alpha_f;
+  const PetscInt      n        = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar  *u0, *v0, *a0, *u1;
   PetscScalar        *u, *v, *a;
 
@@ -35,8 +43,7 @@ static PetscErrorCode ComputeStage(Body body, Vec U)
   PetscCall(VecGetArrayRead(U, &u1));
   if (implicit->stage_a) {
     PetscCall(VecGetArrayWrite(implicit->stage_a, &a));
-#pragma omp simd
-    for (PetscInt i = 0; i < n; i++) a[i] = (1 - alpha_m) * a0[i] + alpha_m * (m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i]);
+    GetStageAccelerations(n, m, implicit->alpha_m, u0, v0, a0, u1, a);
     PetscCall(VecRestoreArrayWrite(implicit->stage_a, &a));
   }
   if (implicit->stage_v) {
@@ -60,12 +67,24 @@ static PetscErrorCode ComputeStage(Body body, Vec U)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* U -= du, and velocity and acceleration with it */
+/* u -= du, and velocity and acceleration with it, which is that at the start before */
+SIMD_CLONES static void MoveEnds(PetscInt n, Newmark m, PetscReal scale, const PetscScalar du[], const PetscScalar u0[],
+                                 const PetscScalar v0[], PetscScalar u[], PetscScalar v[], PetscScalar a[])
+{
+#pragma omp simd
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscScalar u1 = u[i] - scale * du[i], a1 = m.c2 * (u1 - u0[i]) - m.c1 * v0[i] - m.c0 * a[i];
+
+    u[i] = u1;
+    v[i] = v0[i] + m.by_start * a[i] + m.by_end * a1;
+    a[i] = a1;
+  }
+}
+
 static PetscErrorCode Correct(Body body, Vec du, Vec U, Vec V)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   const Newmark       m        = NewmarkOf(implicit, body->time.step);
-  const PetscReal     scale    = 1 / implicit->alpha_f; /* du is that of the stage */
   const PetscInt      n        = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar  *change, *u0, *v0;
   PetscScalar        *u, *v, *a;
@@ -77,14 +96,7 @@ static PetscErrorCode Correct(Body body, Vec du, Vec U, Vec V)
   PetscCall(VecGetArray(U, &u));
   PetscCall(VecGetArrayWrite(V, &v));
   PetscCall(VecGetArray(body->state.a, &a));
-#pragma omp simd
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscScalar u1 = u[i] - scale * change[i], a1 = m.c2 * (u1 - u0[i]) - m.c1 * v0[i] - m.c0 * a[i];
-
-    u[i] = u1;
-    v[i] = v0[i] + m.by_start * a[i] + m.by_end * a1;
-    a[i] = a1;
-  }
+  MoveEnds(n, m, 1 / implicit->alpha_f, change, u0, v0, u, v, a); /* the change is that of the stage */
   PetscCall(VecRestoreArray(body->state.a, &a));
   PetscCall(VecRestoreArrayWrite(V, &v));
   PetscCall(VecRestoreArray(U, &u));

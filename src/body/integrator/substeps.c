@@ -27,7 +27,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
   PetscFunctionBegin;
   if (body->state.step != body->saved.step) PetscCall(BodyRestore(body));
   for (body->time.substep = 0; body->time.substep < body->time.substeps; body->time.substep++) {
-    if (body->substep_start.u && body->time.substeps > 1) { /* else it is the saved state itself */
+    if (body->substep_start.u && body->time.substeps > 1) {
       PetscCall(VecCopy(body->state.u, body->substep_start.u));
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }

@@ -214,6 +214,24 @@ PetscErrorCode BodyShareControllerStep(Body body, PetscInt n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A substep starts from the saved state where it is the only one of a controller step */
+static PetscErrorCode SetUpSubstepStart(Body body)
+{
+  BodyState *start = &body->substep_start;
+
+  PetscFunctionBegin;
+  if (body->time.substeps > 1) {
+    PetscCall(BodyCreateVec(body, &start->u));
+    PetscCall(BodyCreateVec(body, &start->v));
+  } else {
+    PetscCall(PetscObjectReference((PetscObject)body->saved.u));
+    PetscCall(PetscObjectReference((PetscObject)body->saved.v));
+    start->u = body->saved.u;
+    start->v = body->saved.v;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodySetUp - makes mass, matrices, integrator and initial state
 
@@ -240,17 +258,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpTime(body));
   PetscCall(BodySetUpRepeat(body));
   body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local && body->mass.inverse);
-  if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) {
-    const Vec saved[] = {body->saved.u, body->saved.v};
-    Vec      *start[] = {&body->substep_start.u, &body->substep_start.v};
-
-    for (PetscInt k = 0; k < 2; k++) {
-      if (body->time.substeps > 1) PetscCall(BodyCreateVec(body, start[k]));
-      else { /* the only substep starts where the controller step does */ PetscCall(PetscObjectReference((PetscObject)saved[k]));
-        *start[k] = saved[k];
-      }
-    }
-  }
+  if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) PetscCall(SetUpSubstepStart(body));
   if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &body->substep_start.damping));
   PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));
   if (!body->model.blocks.n) PetscCall(MaterialViewFromOptions(body->model.material, (PetscObject)body, "-material_view"));

@@ -230,7 +230,7 @@ struct _p_Body {
     PetscReal        time_step;
   } measured;
   PetscReal plastic_before; /* plastic work in the history that was done before this run [J] */
-  BodyState substep_start;  /* u and v, which are NULL unless loads or the integrator read them */
+  BodyState substep_start;  /* u and v, which are NULL unless loads or the integrator read them; of one substep those of `saved` */
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
     Vec       a;       /* the saved acceleration as it was [m/s^2]; NULL until needed */

@@ -4,6 +4,7 @@
    diagonals, which are gone through one after the other, without the numbers of columns.
 */
 #include <body/layout/bodyimpl.h>
+#include <impakt/private/simd.h>
 
 /* Diagonals that are gone through so at most; products of other matrices are left to PETSc */
 #define MAX_DIAGONALS 3
@@ -88,6 +89,13 @@ PetscErrorCode BodySetUpMassProduct(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* y += values x, number by number */
+SIMD_CLONES static void AddProducts(PetscInt n, const PetscScalar values[], const PetscScalar x[], PetscScalar y[])
+{
+#pragma omp simd
+  for (PetscInt i = 0; i < n; i++) y[i] += values[i] * x[i];
+}
+
 /* y = M x by the diagonals of M */
 static PetscErrorCode MultiplyDiagonals(Body body, Vec x, Vec y)
 {
@@ -100,11 +108,9 @@ static PetscErrorCode MultiplyDiagonals(Body body, Vec x, Vec y)
   PetscCall(VecGetArrayWrite(y, &to));
   PetscCall(PetscArrayzero(to, n));
   for (PetscInt d = 0; d < body->mass.n_diagonals; d++) {
-    const PetscInt     offset = body->mass.offsets[d], begin = PetscMax(0, -offset), end = PetscMin(n, n - offset);
-    const PetscScalar *values = body->mass.diagonals + d * n;
+    const PetscInt offset = body->mass.offsets[d], begin = PetscMax(0, -offset), end = PetscMin(n, n - offset);
 
-#pragma omp simd
-    for (PetscInt i = begin; i < end; i++) to[i] += values[i] * from[i + offset];
+    if (begin < end) AddProducts(end - begin, body->mass.diagonals + d * n + begin, from + begin + offset, to + begin);
   }
   PetscCall(VecRestoreArrayWrite(y, &to));
   PetscCall(VecRestoreArrayRead(x, &from));
