@@ -118,35 +118,34 @@ static void ComputeStrains(const Bar2 *bar, const PetscInt nodes[], const PetscS
   }
 }
 
-/* f += what elements pull at their nodes with [N] */
-static void AddPulls(const Bar2 *bar, const PetscInt nodes[], const PetscReal pull[], PetscScalar f[])
+/* f += what elements with these stresses pull at their nodes with [N] */
+static void AddPulls(const Bar2 *bar, const PetscInt nodes[], const PetscReal stress[], PetscScalar f[])
 {
   for (const Run *run = bar->runs; run < bar->runs + bar->n_runs; run++) {
-    const PetscInt  *ends = nodes + 2 * run->element, last = run->length - 1;
-    const PetscReal *of = pull + run->element;
-    PetscScalar     *at = f + ends[0];
+    const PetscInt *ends = nodes + 2 * run->element;
+    PetscScalar    *at   = f + ends[0];
+    PetscReal       pull = 0;
 
-    f[ends[0]] -= of[0];
-    f[ends[2 * last + 1]] += of[last];
-#pragma omp simd
-    for (PetscInt e = 1; e <= last; e++) at[e] += of[e - 1] - of[e];
+    for (PetscInt e = 0; e < run->length; e++) {
+      const PetscReal before = pull;
+
+      pull = bar->pull_area[run->element + e] * stress[run->element + e];
+      at[e] += before - pull;
+    }
+    f[ends[2 * run->length - 1]] += pull;
   }
 }
 
 static PetscErrorCode ElementInternalForce_Bar2(Element element, const PetscScalar u[], PetscScalar f[])
 {
-  Bar2           *bar   = (Bar2 *)element->data;
-  const PetscInt *nodes = element->connectivity;
-  const PetscInt  count = element->count;
-  PetscReal      *pull  = bar->stress;
+  const Bar2 *bar = (const Bar2 *)element->data;
 
   PetscFunctionBegin;
-  ComputeStrains(bar, nodes, u);
-  PetscCall(MaterialComputeUniaxial(element->material, count, bar->strain, bar->stress));
+  ComputeStrains(bar, element->connectivity, u);
+  PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
+  AddPulls(bar, element->connectivity, bar->stress, f);
   NoteInverted(element, bar->strain, bar->stress);
-  for (PetscInt e = 0; e < count; e++) pull[e] *= bar->pull_area[e];
-  AddPulls(bar, nodes, pull, f);
-  PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)count));
+  PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)element->count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

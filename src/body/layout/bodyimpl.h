@@ -64,20 +64,19 @@ typedef struct {
 
 typedef struct {
   BodyMassType      type;
-  PetscBool         redistribute;            /* contact nodes become massless */
-  PetscBool         near;                    /* but those that face no partner at the start, which keep their mass */
-  PetscBool         chosen;                  /* program or options have said whether they do */
-  Vec               row_sum;                 /* M 1: the lumped mass */
-  Vec               diagonal;                /* the mass matrix where it is diagonal, else NULL */
-  Mat               matrix;                  /* the mass matrix where it is not diagonal, else NULL */
-  Mat               product;                 /* the same for products with vectors */
-  PetscScalar      *diagonals;               /* the same where all that is not zero lies on a few, else NULL: n_diagonals x rows */
-  PetscInt          n_diagonals, offsets[3]; /* of each from the main one, ascending */
-  Vec               inverse;                 /* of a diagonal one: 1/m, 0 on massless nodes */
-  ConstrainedSolver solver;                  /* of one that is not diagonal; NULL until first needed */
-  Vec               orphans;                 /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
-  PetscReal         total;                   /* [kg] */
-  PetscReal         centre[3];               /* of the undeformed body [m] */
+  PetscBool         redistribute; /* contact nodes become massless */
+  PetscBool         near;         /* but those that face no partner at the start, which keep their mass */
+  PetscBool         chosen;       /* program or options have said whether they do */
+  Vec               row_sum;      /* M 1: the lumped mass */
+  Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
+  Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
+  Mat               product;      /* the same for products with vectors */
+  PetscScalar      *diagonals;    /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
+  Vec               inverse;      /* of a diagonal one: 1/m, 0 on massless nodes */
+  ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
+  Vec               orphans;      /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
+  PetscReal         total;        /* [kg] */
+  PetscReal         centre[3];    /* of the undeformed body [m] */
   PetscReal
       inverse_inertia[9]; /* inverse of the inertia tensor of the undeformed body about its centre; zero in one dimension [1/(kg m^2)] */
   /* of a body with a massless contact layer */

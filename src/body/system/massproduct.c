@@ -1,60 +1,33 @@
 /*
    Products of a mass matrix with vectors. In two and three dimensions x, y and z of a node have the same masses, and nothing to do with
    each other, so that one number serves for all of them. In one dimension nodes that are numbered along the bar make a matrix of three
-   diagonals, which are gone through one after the other, without the numbers of columns.
+   diagonals, for which the numbers of columns need not be looked up.
 */
 #include <body/layout/bodyimpl.h>
 #include <impakt/private/simd.h>
 
-/* Diagonals that are gone through so at most; products of other matrices are left to PETSc */
-#define MAX_DIAGONALS 3
-
-/* Where entries of a matrix are, as column less row; `n` is more than may be kept where there are too many */
-static PetscErrorCode FindDiagonals(Mat M, PetscInt *n, PetscInt offsets[MAX_DIAGONALS])
+/* The entries of each row below, on and above the main diagonal, if the matrix of one rank has no others */
+static PetscErrorCode FindDiagonals(Body body)
 {
-  PetscInt begin, end;
+  const PetscInt n = body->mesh.owned_nodes;
 
   PetscFunctionBegin;
-  *n = 0;
-  PetscCall(MatGetOwnershipRange(M, &begin, &end));
-  for (PetscInt row = begin; row < end && *n <= MAX_DIAGONALS; row++) {
-    const PetscInt *columns;
-    PetscInt        n_columns;
-
-    PetscCall(MatGetRow(M, row, &n_columns, &columns, NULL));
-    for (PetscInt k = 0; k < n_columns && *n <= MAX_DIAGONALS; k++) {
-      PetscInt d = 0;
-
-      while (d < *n && offsets[d] != columns[k] - row) d++;
-      if (d < *n) continue;
-      if (*n < MAX_DIAGONALS) offsets[*n] = columns[k] - row;
-      (*n)++;
-    }
-    PetscCall(MatRestoreRow(M, row, &n_columns, &columns, NULL));
-  }
-  if (*n <= MAX_DIAGONALS) PetscCall(PetscSortInt(*n, offsets));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The diagonals of a matrix that has no others, row by row */
-static PetscErrorCode FillDiagonals(Body body, Mat M)
-{
-  const PetscInt local = body->mesh.owned_nodes;
-  PetscInt       begin, end;
-
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc1(body->mass.n_diagonals * local, &body->mass.diagonals));
-  PetscCall(MatGetOwnershipRange(M, &begin, &end));
-  for (PetscInt row = begin; row < end; row++) {
+  PetscCall(PetscCalloc1(3 * n, &body->mass.diagonals));
+  for (PetscInt row = 0; row < n; row++) {
     const PetscInt    *columns;
     const PetscScalar *values;
     PetscInt           n_columns;
+    PetscBool          near = PETSC_TRUE;
 
-    PetscCall(MatGetRow(M, row, &n_columns, &columns, &values));
-    for (PetscInt k = 0; k < n_columns; k++)
-      for (PetscInt d = 0; d < body->mass.n_diagonals; d++)
-        if (columns[k] - row == body->mass.offsets[d]) body->mass.diagonals[d * local + row - begin] = values[k];
-    PetscCall(MatRestoreRow(M, row, &n_columns, &columns, &values));
+    PetscCall(MatGetRow(body->mass.matrix, row, &n_columns, &columns, &values));
+    for (PetscInt k = 0; k < n_columns; k++) {
+      if (PetscAbsInt(columns[k] - row) > 1) near = PETSC_FALSE;
+      else body->mass.diagonals[(columns[k] - row + 1) * n + row] = values[k];
+    }
+    PetscCall(MatRestoreRow(body->mass.matrix, row, &n_columns, &columns, &values));
+    if (near) continue;
+    PetscCall(PetscFree(body->mass.diagonals));
+    break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -63,7 +36,7 @@ static PetscErrorCode FillDiagonals(Body body, Mat M)
 PetscErrorCode BodySetUpMassProduct(Body body)
 {
   const PetscInt dim = body->mesh.dim;
-  PetscInt       begin, n = MAX_DIAGONALS + 1;
+  PetscInt       begin;
   Mat            of_nodes;
   IS             first;
 
@@ -72,10 +45,7 @@ PetscErrorCode BodySetUpMassProduct(Body body)
   if (dim == 1) {
     PetscCall(PetscObjectReference((PetscObject)body->mass.matrix));
     body->mass.product = body->mass.matrix;
-    if (body->rows.size == 1) PetscCall(FindDiagonals(body->mass.matrix, &n, body->mass.offsets));
-    if (n > MAX_DIAGONALS) PetscFunctionReturn(PETSC_SUCCESS);
-    body->mass.n_diagonals = n;
-    PetscCall(FillDiagonals(body, body->mass.matrix));
+    if (body->rows.size == 1) PetscCall(FindDiagonals(body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(MatGetOwnershipRange(body->mass.matrix, &begin, NULL));
@@ -89,41 +59,33 @@ PetscErrorCode BodySetUpMassProduct(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += values x, number by number */
-SIMD_CLONES static void AddProducts(PetscInt n, const PetscScalar values[], const PetscScalar x[], PetscScalar y[])
+/* y = M x from the diagonals of M, in the order in which PETSc adds up a row */
+SIMD_CLONES static void MultiplyDiagonals(PetscInt n, const PetscScalar below[], const PetscScalar on[], const PetscScalar above[],
+                                          const PetscScalar x[], PetscScalar y[])
 {
+  y[0] = on[0] * x[0] + (n > 1 ? above[0] * x[1] : 0);
 #pragma omp simd
-  for (PetscInt i = 0; i < n; i++) y[i] += values[i] * x[i];
-}
-
-/* y = M x by the diagonals of M */
-static PetscErrorCode MultiplyDiagonals(Body body, Vec x, Vec y)
-{
-  const PetscInt     n = body->mesh.owned_nodes;
-  const PetscScalar *from;
-  PetscScalar       *to;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(x, &from));
-  PetscCall(VecGetArrayWrite(y, &to));
-  PetscCall(PetscArrayzero(to, n));
-  for (PetscInt d = 0; d < body->mass.n_diagonals; d++) {
-    const PetscInt offset = body->mass.offsets[d], begin = PetscMax(0, -offset), end = PetscMin(n, n - offset);
-
-    if (begin < end) AddProducts(end - begin, body->mass.diagonals + d * n + begin, from + begin + offset, to + begin);
-  }
-  PetscCall(VecRestoreArrayWrite(y, &to));
-  PetscCall(VecRestoreArrayRead(x, &from));
-  PetscCall(PetscLogFlops(2.0 * body->mass.n_diagonals * (PetscLogDouble)n));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 1; i < n - 1; i++) y[i] = below[i] * x[i - 1] + on[i] * x[i] + above[i] * x[i + 1];
+  if (n > 1) y[n - 1] = below[n - 1] * x[n - 2] + on[n - 1] * x[n - 1];
 }
 
 /* y = M x */
 PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
 {
+  const PetscInt     n         = body->mesh.owned_nodes;
+  const PetscScalar *diagonals = body->mass.diagonals, *from;
+  PetscScalar       *to;
+
   PetscFunctionBegin;
   if (body->mass.diagonal) PetscCall(VecPointwiseMult(y, body->mass.diagonal, x));
-  else if (body->mass.diagonals) PetscCall(MultiplyDiagonals(body, x, y));
-  else PetscCall(MatMult(body->mass.product, x, y));
+  else if (!diagonals) PetscCall(MatMult(body->mass.product, x, y));
+  else {
+    PetscCall(VecGetArrayRead(x, &from));
+    PetscCall(VecGetArrayWrite(y, &to));
+    MultiplyDiagonals(n, diagonals, diagonals + n, diagonals + 2 * n, from, to);
+    PetscCall(VecRestoreArrayWrite(y, &to));
+    PetscCall(VecRestoreArrayRead(x, &from));
+    PetscCall(PetscLogFlops(5.0 * (PetscLogDouble)n));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
