@@ -249,8 +249,9 @@ static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
     c[used]         = c[j];
     s->used[used++] = s->columns[j];
   }
-  PetscCall(VecZeroEntries(x));
-  PetscCall(VecMAXPY(x, used, c, s->used));
+  if (used) PetscCall(VecAXPBY(x, c[0], 0, s->used[0]));
+  else PetscCall(VecZeroEntries(x));
+  if (used > 1) PetscCall(VecMAXPY(x, used - 1, c + 1, s->used + 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

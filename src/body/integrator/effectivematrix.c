@@ -1,6 +1,7 @@
 /* The effective matrix K + shift M + shift_velocity C of a body on TSALPHA2, and the solver with its factors: one for each level of cut
    controller steps. */
 #include "implicitimpl.h"
+#include <impakt/private/simd.h>
 
 /* Where the matrix of whole controller steps was linearised last, to another vector or back; the first number tells whether it was */
 static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
@@ -159,13 +160,37 @@ PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves the displacement at the end of the one substep of a linear body: A du = B^T df with prescribed rows at B du = dx, A being the
-   effective matrix; and the internal force with it */
-PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar force[], const PetscScalar displacement[], Vec du)
+/* u, v and a += du times 1 and these parts */
+SIMD_CLONES static void AddChange(PetscInt n, PetscReal to_velocity, PetscReal to_acceleration, const PetscScalar du[], PetscScalar u[],
+                                  PetscScalar v[], PetscScalar a[])
 {
+#pragma omp simd
+  for (PetscInt i = 0; i < n; i++) {
+    u[i] += du[i];
+    v[i] += to_velocity * du[i];
+    a[i] += to_acceleration * du[i];
+  }
+}
+
+/* Moves the displacement at the end of the one substep of a linear body: A du = B^T df with prescribed rows at B du = dx, A being the
+   effective matrix; and velocity, acceleration and internal force with it */
+PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar force[], const PetscScalar displacement[], PetscReal to_velocity,
+                                   PetscReal to_acceleration, Vec du)
+{
+  const PetscScalar *change;
+  PetscScalar       *u, *v, *a;
+
   PetscFunctionBegin;
   PetscCall(ConstrainedSolverCorrect(body->solver, force, displacement, du));
-  PetscCall(VecAXPY(body->state.u, 1, du));
+  PetscCall(VecGetArrayRead(du, &change));
+  PetscCall(VecGetArray(body->state.u, &u));
+  PetscCall(VecGetArray(body->state.v, &v));
+  PetscCall(VecGetArray(body->state.a, &a));
+  AddChange(body->mesh.owned_nodes * body->mesh.dim, to_velocity, to_acceleration, change, u, v, a);
+  PetscCall(VecRestoreArray(body->state.a, &a));
+  PetscCall(VecRestoreArray(body->state.v, &v));
+  PetscCall(VecRestoreArray(body->state.u, &u));
+  PetscCall(VecRestoreArrayRead(du, &change));
   PetscCall(BodyImplicitNoteForce(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

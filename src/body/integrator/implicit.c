@@ -178,30 +178,26 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   const PetscReal     dt = body->time.step, to_velocity = implicit->gamma / (implicit->beta * dt);
-  const PetscReal     to_acceleration = 1 / (implicit->beta * dt * dt);
-  const PetscInt      n               = body->mesh.owned_nodes * body->mesh.dim;
-  Vec                 change          = body->work.nodes[2];
+  Vec                 change = body->work.nodes[2];
   const PetscScalar  *du;
   PetscScalar        *v, *a;
 
   PetscFunctionBegin;
-  PetscCall(BodyImplicitCorrect(body, force, displacement, change));
-  PetscCall(VecGetArrayRead(change, &du));
-  PetscCall(VecGetArray(body->state.v, &v));
-  PetscCall(VecGetArray(body->state.a, &a));
-  for (PetscInt i = 0; i < n; i++) {
-    v[i] += to_velocity * du[i];
-    a[i] += to_acceleration * du[i];
-  }
-  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
-    const PetscInt dof = body->layer.dofs[i];
+  PetscCall(BodyImplicitCorrect(body, force, displacement, to_velocity, 1 / (implicit->beta * dt * dt), change));
+  if (body->mass.redistribute) {
+    PetscCall(VecGetArrayRead(change, &du));
+    PetscCall(VecGetArray(body->state.v, &v));
+    PetscCall(VecGetArray(body->state.a, &a));
+    for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
+      const PetscInt dof = body->layer.dofs[i];
 
-    v[dof] += (1 / dt - to_velocity) * du[dof];
-    a[dof] = 0;
+      v[dof] += (1 / dt - to_velocity) * du[dof];
+      a[dof] = 0;
+    }
+    PetscCall(VecRestoreArray(body->state.a, &a));
+    PetscCall(VecRestoreArray(body->state.v, &v));
+    PetscCall(VecRestoreArrayRead(change, &du));
   }
-  PetscCall(VecRestoreArray(body->state.a, &a));
-  PetscCall(VecRestoreArray(body->state.v, &v));
-  PetscCall(VecRestoreArrayRead(change, &du));
   if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));

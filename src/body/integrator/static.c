@@ -81,11 +81,8 @@ static PetscErrorCode FinishSubstep(Body body)
 
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
-  Vec change = body->work.nodes[2];
-
   PetscFunctionBegin;
-  PetscCall(BodyImplicitCorrect(body, force, displacement, change));
-  PetscCall(VecAXPY(body->state.v, 1 / body->time.step, change));
+  PetscCall(BodyImplicitCorrect(body, force, displacement, 1 / body->time.step, 0, body->work.nodes[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
