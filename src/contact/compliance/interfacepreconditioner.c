@@ -12,57 +12,12 @@
    counts, so that j has the dofs of the first layers of elements beside c alone, and what takes a solution with the factors of the
    body in the former takes a small part of one here. A massless layer has no j: its P is R K R^T, with its stiffness K.
 */
-#include "interfaceimpl.h"
-#include <solver/constrainedsolver.h>
-#include <sys/petsccompat.h>
-
-/* Layers of elements beside the surface. Two cubes of 20 and 18 hexahedra along an edge, at steps in which waves cross 5 of them, took 27
-   iterations without P, 23 with no layer, 16, 13, 12 with one, two, four, and 11 with all. */
-#define LAYERS 3
-
-/* Of one body: its dofs on the surfaces of which it is the Dirichlet side, and those in the layers beside them */
-typedef struct {
-  PetscInt         body;
-  PetscObjectId    id; /* of A, and its state, when it was factored */
-  PetscObjectState state;
-  Mat              B; /* the rows as they are; borrowed */
-  IS               surface, layers;
-  Mat              A_cc, A_cj, A_jc;
-  KSP              factors; /* of A_jj; NULL where no dofs are beside the surface */
-  VecScatter       gather;  /* from all dofs to those on the surface */
-  Vec              rows, dofs, moved, force, diagonal, depth[2];
-  PetscBool        is_layer; /* A is that of a massless layer, which has the surface alone */
-  PetscBool       *moves;    /* per row of this rank that the body has: whether it has a part in R */
-  PetscBool       *claimed;  /* work space, per dof of this rank */
-  PetscReal        mean;     /* of the diagonal of P, which other rows of the Dirichlet side are multiplied with */
-} Slab;
+#include "interfaceslab.h"
 
 struct _n_InterfacePreconditioner {
-  PetscInt n;
-  Slab    *slabs;
+  PetscInt       n;
+  InterfaceSlab *slabs;
 };
-
-static PetscErrorCode SlabReset(Slab *slab)
-{
-  PetscFunctionBegin;
-  PetscCall(ISDestroy(&slab->surface));
-  PetscCall(ISDestroy(&slab->layers));
-  PetscCall(MatDestroy(&slab->A_cc));
-  PetscCall(MatDestroy(&slab->A_cj));
-  PetscCall(MatDestroy(&slab->A_jc));
-  PetscCall(KSPDestroy(&slab->factors));
-  PetscCall(VecScatterDestroy(&slab->gather));
-  PetscCall(VecDestroy(&slab->rows));
-  PetscCall(VecDestroy(&slab->dofs));
-  PetscCall(VecDestroy(&slab->moved));
-  PetscCall(VecDestroy(&slab->force));
-  PetscCall(VecDestroy(&slab->diagonal));
-  PetscCall(VecDestroy(&slab->depth[0]));
-  PetscCall(VecDestroy(&slab->depth[1]));
-  PetscCall(PetscFree(slab->moves));
-  PetscCall(PetscFree(slab->claimed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* NULL where no body is a Dirichlet side with a matrix that stays as it is */
 PetscErrorCode InterfacePreconditionerCreate(InterfaceOperator op, InterfacePreconditioner *preconditioner)
@@ -86,7 +41,7 @@ PetscErrorCode InterfacePreconditionerCreate(InterfaceOperator op, InterfacePrec
     if (!dirichlet || !A || !op->feels[b]) continue;
     /* with a massless layer the surface is all that there is, and a product with K takes next to nothing */
     if (!layer && !exact) continue;
-    p->slabs[p->n++] = (Slab){.body = b, .is_layer = (PetscBool)(layer != NULL)};
+    p->slabs[p->n++] = (InterfaceSlab){.body = b, .is_layer = (PetscBool)(layer != NULL)};
   }
   if (p->n) *preconditioner = p;
   else PetscCall(InterfacePreconditionerDestroy(&p));
@@ -97,7 +52,7 @@ PetscErrorCode InterfacePreconditionerDestroy(InterfacePreconditioner *precondit
 {
   PetscFunctionBegin;
   if (!*preconditioner) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < (*preconditioner)->n; k++) PetscCall(SlabReset(&(*preconditioner)->slabs[k]));
+  for (PetscInt k = 0; k < (*preconditioner)->n; k++) PetscCall(InterfaceSlabReset(&(*preconditioner)->slabs[k]));
   PetscCall(PetscFree((*preconditioner)->slabs));
   PetscCall(PetscFree(*preconditioner));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -111,138 +66,9 @@ static PetscBool IsDirichlet(const Contact contact, PetscInt b, PetscInt k)
   return (PetscBool)(pair->body[pair->dirichlet] == b);
 }
 
-/* Marks dofs of any rank by the number of their layer, where they have none yet */
-static PetscErrorCode Mark(IS dofs, PetscScalar layer, Vec mark, Vec work)
-{
-  const PetscInt    *dof;
-  PetscScalar       *now;
-  const PetscScalar *found;
-  PetscInt           n;
-
-  PetscFunctionBegin;
-  PetscCall(VecSet(work, -1));
-  PetscCall(ISGetLocalSize(dofs, &n));
-  PetscCall(ISGetIndices(dofs, &dof));
-  for (PetscInt i = 0; i < n; i++) PetscCall(VecSetValue(work, dof[i], layer, INSERT_VALUES));
-  PetscCall(ISRestoreIndices(dofs, &dof));
-  PetscCall(VecAssemblyBegin(work));
-  PetscCall(VecAssemblyEnd(work));
-  PetscCall(VecGetLocalSize(work, &n));
-  PetscCall(VecGetArrayRead(work, &found));
-  PetscCall(VecGetArray(mark, &now));
-  for (PetscInt i = 0; i < n; i++)
-    if (PetscRealPart(now[i]) < 0) now[i] = found[i];
-  PetscCall(VecRestoreArray(mark, &now));
-  PetscCall(VecRestoreArrayRead(work, &found));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The dofs of this rank in one layer */
-static PetscErrorCode ListLayer(Vec mark, PetscReal layer, IS *is)
-{
-  PetscInt           count = 0, *dofs, begin, n;
-  const PetscScalar *values;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(mark, &n));
-  PetscCall(VecGetOwnershipRange(mark, &begin, NULL));
-  PetscCall(VecGetArrayRead(mark, &values));
-  PetscCall(PetscMalloc1(n, &dofs));
-  for (PetscInt i = 0; i < n; i++)
-    if (PetscRealPart(values[i]) == layer) dofs[count++] = begin + i;
-  PetscCall(VecRestoreArrayRead(mark, &values));
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)mark), count, dofs, PETSC_COPY_VALUES, is));
-  PetscCall(PetscFree(dofs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The dofs of the surfaces of which the body is the Dirichlet side, of any rank and perhaps more than once */
-static PetscErrorCode ListSurface(const Contact contact, const Slab *slab, IS *is)
-{
-  PetscInt n = 0, room = 0, *dofs;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    const SurfaceData *data;
-
-    if (pair->body[pair->dirichlet] != slab->body) continue;
-    PetscCall(SurfaceGetData(pair->surfaces[pair->dirichlet], &data));
-    room += data->n_nodes * data->dim;
-  }
-  PetscCall(PetscMalloc1(room, &dofs));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    const SurfaceData *data;
-
-    if (pair->body[pair->dirichlet] != slab->body) continue;
-    PetscCall(SurfaceGetData(pair->surfaces[pair->dirichlet], &data));
-    for (PetscInt i = 0; i < data->n_nodes * data->dim; i++) dofs[n++] = data->dofs[i / data->dim] + i % data->dim;
-  }
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)contact->bodies[slab->body]), n, dofs, PETSC_OWN_POINTER, is));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Which dofs are on the surface and in the layers beside it; those of a massless layer are numbered by themselves, and all are on it */
-static PetscErrorCode FindDofs(const Contact contact, Slab *slab, Mat A)
-{
-  const MPI_Comm comm = PetscObjectComm((PetscObject)A);
-  IS             reach;
-  Vec            mark, work;
-
-  PetscFunctionBegin;
-  if (slab->is_layer) {
-    PetscInt n, begin;
-
-    PetscCall(MatGetLocalSize(A, &n, NULL));
-    PetscCall(MatGetOwnershipRange(A, &begin, NULL));
-    PetscCall(ISCreateStride(comm, n, begin, 1, &slab->surface));
-    PetscCall(ISCreateStride(comm, 0, 0, 1, &slab->layers));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(MatCreateVecs(A, &mark, &work));
-  PetscCall(VecSet(mark, -1));
-  PetscCall(ListSurface(contact, slab, &reach));
-  PetscCall(Mark(reach, 0, mark, work));
-  PetscCall(ISDestroy(&reach));
-  PetscCall(ListLayer(mark, 0, &slab->surface));
-  PetscCall(ISDuplicate(slab->surface, &reach));
-  PetscCall(MatIncreaseOverlap(A, 1, &reach, LAYERS));
-  PetscCall(Mark(reach, 1, mark, work));
-  PetscCall(ListLayer(mark, 1, &slab->layers));
-  PetscCall(ISDestroy(&reach));
-  PetscCall(VecDestroy(&mark));
-  PetscCall(VecDestroy(&work));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Factors of A_jj, and the matrices beside it */
-static PetscErrorCode SlabFactor(Slab *slab, PetscInt dim, Mat A)
-{
-  PetscInt n;
-  Mat      A_jj;
-
-  PetscFunctionBegin;
-  PetscCall(MatCreateSubMatrix(A, slab->surface, slab->surface, MAT_INITIAL_MATRIX, &slab->A_cc));
-  PetscCall(MatCreateVecs(slab->A_cc, &slab->moved, &slab->force));
-  PetscCall(ISGetSize(slab->layers, &n));
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatCreateSubMatrix(A, slab->surface, slab->layers, MAT_INITIAL_MATRIX, &slab->A_cj));
-  PetscCall(MatCreateSubMatrix(A, slab->layers, slab->surface, MAT_INITIAL_MATRIX, &slab->A_jc));
-  PetscCall(MatCreateSubMatrix(A, slab->layers, slab->layers, MAT_INITIAL_MATRIX, &A_jj));
-  PetscCall(MatSetOption(A_jj, MAT_SPD, PETSC_TRUE));
-  PetscCall(MatCreateVecs(A_jj, &slab->depth[0], &slab->depth[1]));
-  PetscCall(KSPCreate(PetscObjectComm((PetscObject)A), &slab->factors));
-  PetscCall(KSPSetOperators(slab->factors, A_jj, A_jj));
-  PetscCall(ConstrainedSolverChoose(slab->factors, A_jj, dim));
-  PetscCall(KSPSetUp(slab->factors));
-  PetscCall(MatDestroy(&A_jj));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Which of the rows that are in have a part in R: a node that touches two partners has rows with one direction, of which R may have one, or
    P is singular. A row has one if its largest entry is on a dof of this rank that no other has claimed. */
-static PetscErrorCode ChooseRows(InterfaceOperator op, Slab *slab)
+static PetscErrorCode ChooseRows(InterfaceOperator op, InterfaceSlab *slab)
 {
   const Contact      contact = op->contact;
   PetscInt           count   = 0, n, dofs, row, dof; /* the first row and dof of this rank */
@@ -278,49 +104,8 @@ static PetscErrorCode ChooseRows(InterfaceOperator op, Slab *slab)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes the body's matrices as they are: the rows change often, A hardly ever */
-static PetscErrorCode SlabUpdate(const Contact contact, Slab *slab)
-{
-  Mat              A;
-  PetscObjectId    id;
-  PetscObjectState state;
-  PetscInt         rows, dofs;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetComplianceMatrices(contact->bodies[slab->body], &A, &slab->B));
-  PetscCall(PetscObjectGetId((PetscObject)A, &id));
-  PetscCall(PetscObjectStateGet((PetscObject)A, &state));
-  if (id == slab->id && state == slab->state) PetscFunctionReturn(PETSC_SUCCESS);
-  slab->id    = id;
-  slab->state = state;
-  PetscCall(SlabReset(slab));
-  PetscCall(FindDofs(contact, slab, A));
-  PetscCall(SlabFactor(slab, contact->dim, A));
-  PetscCall(MatCreateVecs(slab->B, &slab->dofs, &slab->rows));
-  PetscCall(VecDuplicate(slab->dofs, &slab->diagonal));
-  PetscCall(MatGetDiagonal(A, slab->diagonal));
-  PetscCall(VecScatterCreate(slab->dofs, slab->surface, slab->moved, NULL, &slab->gather));
-  PetscCall(MatGetLocalSize(slab->B, &rows, &dofs));
-  PetscCall(PetscMalloc1(rows, &slab->moves));
-  PetscCall(PetscMalloc1(dofs, &slab->claimed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* force = (A_cc - A_cj A_jj^{-1} A_jc) moved */
-static PetscErrorCode SlabApply(Slab *slab)
-{
-  PetscFunctionBegin;
-  PetscCall(MatMult(slab->A_cc, slab->moved, slab->force));
-  if (!slab->factors) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMult(slab->A_jc, slab->moved, slab->depth[0]));
-  PetscCall(KSPSolve(slab->factors, slab->depth[0], slab->depth[1]));
-  PetscCall(VecScale(slab->depth[1], -1));
-  PetscCall(MatMultAdd(slab->A_cj, slab->depth[1], slab->force, slab->force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What one body adds to y = P x, on its rows that are in */
-static PetscErrorCode AddSlab(InterfaceOperator op, Slab *slab, const PetscScalar x[], PetscScalar y[])
+static PetscErrorCode AddSlab(InterfaceOperator op, InterfaceSlab *slab, const PetscScalar x[], PetscScalar y[])
 {
   const Contact          contact = op->contact;
   const ContactBodyRows *of      = &contact->body_rows[slab->body];
@@ -334,7 +119,7 @@ static PetscErrorCode AddSlab(InterfaceOperator op, Slab *slab, const PetscScala
   PetscCall(MatMultTranspose(slab->B, slab->rows, slab->dofs));
   PetscCall(VecScatterBegin(slab->gather, slab->dofs, slab->moved, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(slab->gather, slab->dofs, slab->moved, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(SlabApply(slab));
+  PetscCall(InterfaceSlabApply(slab));
   PetscCall(VecZeroEntries(slab->dofs));
   PetscCall(VecScatterBegin(slab->gather, slab->force, slab->dofs, INSERT_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(slab->gather, slab->force, slab->dofs, INSERT_VALUES, SCATTER_REVERSE));
@@ -356,7 +141,7 @@ PetscErrorCode InterfacePreconditionerUpdate(InterfaceOperator op)
 
   PetscFunctionBegin;
   for (PetscInt k = 0; p && k < p->n; k++) {
-    PetscCall(SlabUpdate(op->contact, &p->slabs[k]));
+    PetscCall(InterfaceSlabUpdate(op->contact, &p->slabs[k]));
     PetscCall(ChooseRows(op, &p->slabs[k]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
