@@ -75,11 +75,11 @@ def test_on_ranks(ranks, integrators, shared_run):
     np.testing.assert_allclose(forces(other), reference, rtol=0, atol=1e-10 * np.abs(reference).max())
 
 
-@pytest.mark.parametrize("integrators", ["", f"{LOWER} {UPPER}"], ids=["II", "EE"])
-def test_preconditioned(integrators, shared_run):
-    """What the Dirichlet side answers with halves the iterations, of implicit bodies and of massless layers; the forces are the same. Measured: 0.47 and 0.44 of them."""
+@pytest.mark.parametrize(("integrators", "part"), [("", 0.35), (UPPER, 0.35), (f"{LOWER} {UPPER}", 0.55)], ids=["II", "IE", "EE"])
+def test_preconditioned(integrators, part, shared_run):
+    """What both sides answer with where one is implicit, and the massless layer of the Dirichlet side, take away iterations; the forces are the same."""
     run, plain = (shared_run(joined(plates(8, 12, integrators), PRODUCTS, more)) for more in ("", "-friction_pc_type none"))
-    assert 0 < run.summary["schwarz"]["inner_iterations"] <= 0.55 * plain.summary["schwarz"]["inner_iterations"]
+    assert 0 < run.summary["schwarz"]["inner_iterations"] <= part * plain.summary["schwarz"]["inner_iterations"]  # measured: 0.26, 0.24, 0.44
     reference = forces(plain)
     np.testing.assert_allclose(forces(run), reference, rtol=0, atol=1e-9 * np.abs(reference).max())
 

@@ -53,6 +53,7 @@ VARIANTS = {
     "Anderson": BLOCKS + "-schwarz_snes_type anderson",
     "Aitken": BLOCKS + "-schwarz_snes_type nrichardson -schwarz_relaxation aitken",
     "conjugate gradients": BLOCKS + "-schwarz_dense_limit 0",
+    "conjugate gradients, sliding": BLOCKS + "-schwarz_dense_limit 0 -left_initial_velocity 20,20",  # what preconditions is made again as rows follow
     "sweeps on bodies": BLOCKS + "-schwarz_condense 0",
     "gap rate": BLOCKS + "-contact_constraint gap_rate",
     "mass not diagonal": BLOCKS + "-left_mass_type consistent -right_mass_type averaged",
@@ -495,6 +496,7 @@ def test_contact_of_three_ranks(run_in, folder):
         ("-left_ksp_type cg -left_pc_type gamg", 1, "the solver of body 'left'"),
         ("-left_pc_type cholesky -left_pc_factor_mat_solver_type mumps", 2, "the solver of body 'left'"),
         (EXPLICIT + EXPLICIT.replace("left", "right") + "-schwarz_dense_limit 0", 2, "the factors of contact that ranks make together"),
+        ("-schwarz_dense_limit 0", 2, "the factors of contact that ranks make together"),
     ],
 )
 def test_solver_that_does_not_repeat(run_in, folder, solver, ranks, words):

@@ -1,7 +1,7 @@
 /* S where it is only multiplied with: one solution with the factors of each body for a product, and conjugate gradients. */
 #include "interfaceimpl.h"
 
-/* Iterations after which conjugate gradients are said not to converge; surfaces of 10^4 facets take 20 to 30 */
+/* Iterations after which conjugate gradients are said not to converge; without a preconditioner surfaces of 10^4 facets take 20 to 30 */
 #define MAX_ITERATIONS 1000
 
 PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator op)
@@ -148,11 +148,11 @@ PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator op)
     PetscCall(PCSetType(pc, PCSHELL));
     PetscCall(PCShellSetContext(pc, op));
     PetscCall(PCShellSetApply(pc, InterfacePreconditionerApply));
-    PetscCall(PCShellSetName(pc, "what the Dirichlet sides answer with, near the surface"));
+    PetscCall(PCShellSetName(pc, "what the sides of the pairs answer with, near the surface"));
   } else PetscCall(PCSetType(pc, PCJACOBI));
   PetscCall(KSPSetNormType(op->iterative, KSP_NORM_UNPRECONDITIONED));
   PetscCall(KSPSetInitialGuessNonzero(op->iterative, op->settings.warm));
-  PetscCall(KSPSetTolerances(op->iterative, op->settings.tolerance, 0, PETSC_CURRENT, MAX_ITERATIONS));
+  PetscCall(KSPSetTolerances(op->iterative, op->settings.tolerance, op->settings.enough, PETSC_CURRENT, MAX_ITERATIONS));
   PetscCall(KSPSetFromOptions(op->iterative));
   PetscCall(MatDestroy(&shell));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -22,16 +22,16 @@ typedef enum {
 typedef enum { INTERFACE_LEFT_OUT, INTERFACE_SOLVED, INTERFACE_KNOWN } InterfaceMark;
 
 typedef struct {
-  const char *prefix;      /* of the options of conjugate gradients */
-  PetscReal   tolerance;   /* of conjugate gradients, relative to the right-hand side */
-  PetscReal   worst;       /* what they may leave of it all the same where round-off keeps them from `tolerance`, relative */
-  PetscInt    dense_limit; /* rows, times levels, up to which matrices are dense */
-  PetscInt    few;         /* up to which they are so from the start */
-  PetscReal   at_once;     /* the same where they cost no more than so many products */
-  PetscBool   warm;        /* conjugate gradients begin with what the solution is before */
-  PetscBool
-      precondition;   /* conjugate gradients by what the Dirichlet sides answer with, where these are linear and rows beyond dense_limit */
-  PetscBool sparse;   /* factors of S may be sparse, with more rows than dense_limit, where the bodies are many */
+  const char *prefix;       /* of the options of conjugate gradients */
+  PetscReal   tolerance;    /* of conjugate gradients, relative to the right-hand side */
+  PetscReal   enough;       /* the same in terms of what S y is told in, where that is larger: more is not asked for */
+  PetscReal   worst;        /* what they may leave of it all the same where round-off keeps them from `tolerance`, relative */
+  PetscInt    dense_limit;  /* rows, times levels, up to which matrices are dense */
+  PetscInt    few;          /* up to which they are so from the start */
+  PetscReal   at_once;      /* the same where they cost no more than so many products */
+  PetscBool   warm;         /* conjugate gradients begin with what the solution is before */
+  PetscBool   precondition; /* products have a preconditioner, where rows are too many for dense matrices and bodies let it be made */
+  PetscBool   sparse;       /* factors of S may be sparse, with more rows than dense_limit, where the bodies are many */
   PetscBool products; /* where matrices are not dense S is multiplied with alone, and nothing is iterated for here: they are so beyond `few`
                          where products cost little */
   PetscBool direct;   /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */

@@ -31,6 +31,9 @@
 #define AT_ONCE 100
 /* Conjugate gradients, relative to the residual: a step of Newton's method that leaves so much takes one more sweep at most */
 #define FORCE_TOLERANCE 1e-9
+/* Where one step closes all gaps: part of what the outer iteration may leave, so that no other sweep corrects it; or round-off */
+#define PART_OF_OUTER   0.03
+#define FORCE_ROUND_OFF 1e-12
 
 PetscErrorCode SchwarzMakeJacobianRoom(Jacobian *jacobian, PetscInt size, PetscInt most)
 {
@@ -353,8 +356,11 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 PetscErrorCode SchwarzCreateJacobian(Contact contact)
 {
   Schwarz                *schwarz  = (Schwarz *)contact->data;
+  const PetscBool         closes   = (PetscBool)(schwarz->exact && !schwarz->substeps && !contact->turns.n &&
+                                                 schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
   const InterfaceSettings settings = {.prefix       = "schwarz_interface_",
-                                      .tolerance    = FORCE_TOLERANCE,
+                                      .tolerance    = closes ? FORCE_ROUND_OFF : FORCE_TOLERANCE,
+                                      .enough       = closes ? PART_OF_OUTER * schwarz->atol : 0,
                                       .dense_limit  = schwarz->dense_limit,
                                       .few          = PetscMin(SCHWARZ_DENSE_ROWS, schwarz->dense_limit),
                                       .at_once      = AT_ONCE,
@@ -382,18 +388,5 @@ PetscErrorCode SchwarzSetUpJacobian(Contact contact)
   PetscCall(OuterSolverSetNewton(contact, &schwarz->outer, SchwarzComputeJacobian, ApplyNewton));
   PetscCall(SchwarzCreateJacobian(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode SchwarzDestroyJacobian(Contact contact)
-{
-  Jacobian *jacobian = &((Schwarz *)contact->data)->jacobian;
-
-  PetscFunctionBegin;
-  PetscCall(InterfaceOperatorDestroy(&jacobian->S));
-  PetscCall(PetscFree(jacobian->marks));
-  PetscCall(PetscFree3(jacobian->residual, jacobian->force, jacobian->change));
-  PetscCall(DenseFactorDestroy(&jacobian->chained));
-  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDestroy(&jacobian->probe[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

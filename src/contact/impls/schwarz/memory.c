@@ -91,6 +91,19 @@ PetscErrorCode SchwarzStepBack(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode DestroyJacobian(Contact contact)
+{
+  Jacobian *jacobian = &((Schwarz *)contact->data)->jacobian;
+
+  PetscFunctionBegin;
+  PetscCall(InterfaceOperatorDestroy(&jacobian->S));
+  PetscCall(PetscFree(jacobian->marks));
+  PetscCall(PetscFree3(jacobian->residual, jacobian->force, jacobian->change));
+  PetscCall(DenseFactorDestroy(&jacobian->chained));
+  for (PetscInt k = 0; k < 2; k++) PetscCall(VecDestroy(&jacobian->probe[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode SchwarzDestroyMemory(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
@@ -103,7 +116,7 @@ PetscErrorCode SchwarzDestroyMemory(Contact contact)
       schwarz->known         = schwarz->memory[k].known;
       schwarz->solved_active = schwarz->memory[k].solved_active;
     }
-    PetscCall(SchwarzDestroyJacobian(contact));
+    PetscCall(DestroyJacobian(contact));
     PetscCall(SchwarzDestroySecants(contact));
     PetscCall(PetscFree2(schwarz->known, schwarz->solved_active));
   }

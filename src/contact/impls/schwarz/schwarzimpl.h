@@ -257,7 +257,6 @@ PETSC_INTERN PetscErrorCode SchwarzDestroyMemory(Contact);
 PETSC_INTERN PetscErrorCode SchwarzTakeMemory(Contact, PetscInt, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzUpdateJacobian(Contact);
 PETSC_INTERN PetscErrorCode SchwarzComputeJacobian(SNES, Vec, Mat, Mat, void *);
-PETSC_INTERN PetscErrorCode SchwarzDestroyJacobian(Contact);
 PETSC_INTERN PetscErrorCode SchwarzSetRoles(Contact);
 PETSC_INTERN PetscErrorCode SchwarzChooseMode(Contact);
 PETSC_INTERN PetscErrorCode SchwarzPreferForces(Contact);
