@@ -24,7 +24,7 @@ typedef enum { INTERFACE_LEFT_OUT, INTERFACE_SOLVED, INTERFACE_KNOWN } Interface
 typedef struct {
   const char *prefix;       /* of the options of conjugate gradients */
   PetscReal   tolerance;    /* of conjugate gradients, relative to the right-hand side */
-  PetscReal   enough;       /* the same in terms of what S y is told in, where that is larger: more is not asked for */
+  PetscReal   enough;       /* what they may leave at any rate, in the unit of the right-hand side */
   PetscReal   worst;        /* what they may leave of it all the same where round-off keeps them from `tolerance`, relative */
   PetscInt    dense_limit;  /* rows, times levels, up to which matrices are dense */
   PetscInt    few;          /* up to which they are so from the start */
