@@ -1,5 +1,6 @@
 /* Integration over one controller step. */
 #include <body/layout/bodyimpl.h>
+#include <impakt/private/simd.h>
 
 /* Where the solver of a massless contact layer did not converge the step has failed; that of an implicit body is asked by its integrator */
 static PetscErrorCode CheckSolver(Body body)
@@ -223,6 +224,29 @@ PetscErrorCode BodyIntegrate(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Squares of u - previous and of x + u, summed: four sums each, since a single one waits for every addition */
+SIMD_CLONES static void SumSquares(PetscInt n, const PetscScalar u[], const PetscScalar previous[], const PetscScalar x[],
+                                   PetscReal sums[2])
+{
+  const PetscInt whole     = n - n % 4;
+  PetscReal      change[4] = {0}, position[4] = {0};
+
+  for (PetscInt i = 0; i < whole; i += 4)
+    for (PetscInt k = 0; k < 4; k++) {
+      change[k] += PetscSqr(u[i + k] - previous[i + k]);
+      position[k] += PetscSqr(x[i + k] + u[i + k]);
+    }
+  for (PetscInt i = whole; i < n; i++) {
+    change[i - whole] += PetscSqr(u[i] - previous[i]);
+    position[i - whole] += PetscSqr(x[i] + u[i]);
+  }
+  sums[0] = sums[1] = 0;
+  for (PetscInt k = 0; k < 4; k++) {
+    sums[0] += change[k];
+    sums[1] += position[k];
+  }
+}
+
 /*@
   BodyGetPositionChange - how far the positions at the end of the controller step have moved since the last call for it
 
@@ -244,30 +268,17 @@ PetscErrorCode BodyIntegrate(Body body)
 @*/
 PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *position)
 {
-  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim, whole = n - n % 4;
+  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
   const PetscScalar *u, *x;
   PetscScalar       *previous;
-  PetscReal          sums[2] = {0, 0}, change4[4] = {0}, position4[4] = {0};
+  PetscReal          sums[2];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(VecGetArrayRead(body->state.u, &u));
   PetscCall(VecGetArrayRead(body->mesh.positions, &x));
   PetscCall(VecGetArray(body->iterate.u, &previous));
-  /* four sums each, since a single one waits for every addition */
-  for (PetscInt i = 0; i < whole; i += 4)
-    for (PetscInt k = 0; k < 4; k++) {
-      change4[k] += PetscSqr(u[i + k] - previous[i + k]);
-      position4[k] += PetscSqr(x[i + k] + u[i + k]);
-    }
-  for (PetscInt i = whole; i < n; i++) {
-    change4[i - whole] += PetscSqr(u[i] - previous[i]);
-    position4[i - whole] += PetscSqr(x[i] + u[i]);
-  }
-  for (PetscInt k = 0; k < 4; k++) {
-    sums[0] += change4[k];
-    sums[1] += position4[k];
-  }
+  SumSquares(n, u, previous, x, sums);
   PetscCall(PetscArraycpy(previous, u, n));
   PetscCall(VecRestoreArray(body->iterate.u, &previous));
   PetscCall(VecRestoreArrayRead(body->mesh.positions, &x));
