@@ -165,7 +165,7 @@ PetscErrorCode ConstrainedSolverSetDenseLimit(ConstrainedSolver s, PetscInt limi
 }
 
 /* A solution that did not converge is not a number: the matrix of a nonlinear body may be indefinite where Newton's method has gone astray,
-   and its step fails then. With a constant matrix PETSc has ended with an error. */
+   and its step fails then. Where a column of a constant matrix is made PETSc has ended with an error. */
 PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver s, KSP ksp, Vec x)
 {
   KSPConvergedReason reason;

@@ -215,11 +215,26 @@ static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
+/* Whether iterations that do not converge end with an error of PETSc */
+static PetscErrorCode SetRaises(ConstrainedSolver s, PetscBool raises)
 {
   PetscFunctionBegin;
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, raises));
+  if (s->iterative) PetscCall(KSPSetErrorIfNotConverged(s->iterative, raises));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The solution of a step. If it does not converge the step has failed, and ConstrainedSolverTakeFailure() tells why; what a constant matrix
+   is asked for beside steps, once, ends with an error instead. */
+PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
+{
+  const PetscBool iterates = (PetscBool)(!s->direct || (s->n && !s->dense));
+
+  PetscFunctionBegin;
+  if (iterates && s->shares) PetscCall(SetRaises(s, PETSC_FALSE));
   PetscCall(ConstrainedSolverSolveFree(s, b, x));
   PetscCall(Constrain(s, NULL, x));
+  if (iterates && s->shares) PetscCall(SetRaises(s, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
