@@ -1,6 +1,5 @@
 /* Energies, momentum and mean rotation. */
 #include <body/layout/bodyimpl.h>
-#include <impakt/private/simd.h>
 
 /* Sums over nodes and elements that measures are made of; beyond them are the works of loads and of dashpots, in all accepted steps and in
    the one that has not been accepted yet */

@@ -3,6 +3,7 @@
    they take is the time in which the vectors come from memory, so that all are made in one pass.
 */
 #include <body/layout/bodyimpl.h>
+#include <impakt/private/simd.h>
 
 /* What is summed up: m v.v, m a.a and u.f, then vectors: m v, (X + u) x m v, m (X - C) x u */
 enum { KINETIC, STAGGERED, POTENTIAL, MOMENTUM, ANGULAR = MOMENTUM + 3, TURNED = ANGULAR + 3, QUANTITIES = TURNED + 3 };
@@ -22,62 +23,67 @@ typedef struct {
   const PetscReal   *centre;  /* of mass, of the undeformed body [m] */
 } Nodes;
 
-/* c += a x b; plane vectors have an area alone, and there is none on a line */
-static inline void AddProduct(PetscInt dim, const PetscReal a[], const PetscReal b[], PetscReal c[3])
+/* c += a x b, the latter in part k of the sums; plane vectors have an area alone, and there is none on a line */
+SIMD_INLINE void AddProduct(PetscInt dim, PetscInt k, const PetscReal a[], const PetscReal b[], PetscReal c[3][PARTS])
 {
-  if (dim == 2) c[2] += a[0] * b[1] - a[1] * b[0];
+  if (dim == 2) c[2][k] += a[0] * b[1] - a[1] * b[0];
   if (dim < 3) return;
-  for (PetscInt d = 0; d < 3; d++) c[d] += a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
+  for (PetscInt d = 0; d < 3; d++) c[d][k] += a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
 }
 
-static inline void AddNode(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscInt i, PetscReal sum[QUANTITIES])
+/* Node i, to part k of the sums */
+SIMD_INLINE void AddNode(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscInt i, PetscInt k,
+                         PetscReal sum[QUANTITIES][PARTS])
 {
   PetscReal place[3], momentum[3], arm[3];
 
   for (PetscInt d = 0; d < dim; d++) {
-    const PetscInt k = i * dim + d;
+    const PetscInt dof = i * dim + d;
 
-    momentum[d] = diagonal ? nodes->mass[k] * nodes->v[k] : nodes->mv[k];
-    place[d]    = nodes->x[k] + nodes->u[k];
-    arm[d]      = nodes->mass[k] * (nodes->x[k] - nodes->centre[d]);
-    sum[KINETIC] += nodes->v[k] * momentum[d];
-    sum[STAGGERED] += nodes->a[k] * (diagonal ? nodes->mass[k] * nodes->a[k] : nodes->ma[k]);
-    sum[MOMENTUM + d] += momentum[d];
-    if (linear) sum[POTENTIAL] += nodes->u[k] * nodes->force[k];
+    momentum[d] = diagonal ? nodes->mass[dof] * nodes->v[dof] : nodes->mv[dof];
+    place[d]    = nodes->x[dof] + nodes->u[dof];
+    arm[d]      = nodes->mass[dof] * (nodes->x[dof] - nodes->centre[d]);
+    sum[KINETIC][k] += nodes->v[dof] * momentum[d];
+    sum[STAGGERED][k] += nodes->a[dof] * (diagonal ? nodes->mass[dof] * nodes->a[dof] : nodes->ma[dof]);
+    sum[MOMENTUM + d][k] += momentum[d];
+    if (linear) sum[POTENTIAL][k] += nodes->u[dof] * nodes->force[dof];
   }
-  AddProduct(dim, place, momentum, sum + ANGULAR);
-  if (linear) AddProduct(dim, arm, nodes->u + i * dim, sum + TURNED);
+  AddProduct(dim, k, place, momentum, sum + ANGULAR);
+  if (linear) AddProduct(dim, k, arm, nodes->u + i * dim, sum + TURNED);
 }
 
 /* Block by block, whose sums are so much smaller than all that round-off is too */
-static inline void AddNodes(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
+SIMD_INLINE void AddNodes(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
 {
   const PetscInt parts = dim == 1 ? PARTS : 1;
 
   for (PetscInt q = 0; q < QUANTITIES; q++) sums[q] = 0;
   for (PetscInt begin = 0; begin < nodes->n; begin += BLOCK) {
     const PetscInt end = PetscMin(begin + BLOCK, nodes->n), whole = end - (end - begin) % parts;
-    PetscReal      sum[PARTS][QUANTITIES] = {{0}};
+    PetscReal      sum[QUANTITIES][PARTS] = {{0}};
 
     for (PetscInt i = begin; i < whole; i += parts)
-      for (PetscInt k = 0; k < parts; k++) AddNode(dim, diagonal, linear, nodes, i + k, sum[k]);
-    for (PetscInt i = whole; i < end; i++) AddNode(dim, diagonal, linear, nodes, i, sum[0]);
+      for (PetscInt k = 0; k < parts; k++) AddNode(dim, diagonal, linear, nodes, i + k, k, sum);
+    for (PetscInt i = whole; i < end; i++) AddNode(dim, diagonal, linear, nodes, i, 0, sum);
     for (PetscInt q = 0; q < QUANTITIES; q++)
-      for (PetscInt k = 0; k < parts; k++) sums[q] += sum[k][q];
+      for (PetscInt k = 0; k < parts; k++) sums[q] += sum[q][k];
   }
 }
 
 /* A loop for each case, with what does not change in it known to the compiler */
-static void Add(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
+SIMD_CLONES static void Add(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
 {
-#define CASE(d)                                                                                                                            \
-  if (dim == d && diagonal && linear) AddNodes(d, PETSC_TRUE, PETSC_TRUE, nodes, sums);                                                    \
-  if (dim == d && diagonal && !linear) AddNodes(d, PETSC_TRUE, PETSC_FALSE, nodes, sums);                                                  \
-  if (dim == d && !diagonal && linear) AddNodes(d, PETSC_FALSE, PETSC_TRUE, nodes, sums);                                                  \
-  if (dim == d && !diagonal && !linear) AddNodes(d, PETSC_FALSE, PETSC_FALSE, nodes, sums)
-  CASE(1);
-  CASE(2);
-  CASE(3);
+#define CASE(d, m, l)                                                                                                                      \
+  if (dim == d && diagonal == m && linear == l) AddNodes(d, m, l, nodes, sums)
+#define CASES(d)                                                                                                                           \
+  CASE(d, PETSC_FALSE, PETSC_FALSE);                                                                                                       \
+  CASE(d, PETSC_FALSE, PETSC_TRUE);                                                                                                        \
+  CASE(d, PETSC_TRUE, PETSC_FALSE);                                                                                                        \
+  CASE(d, PETSC_TRUE, PETSC_TRUE)
+  CASES(1);
+  CASES(2);
+  CASES(3);
+#undef CASES
 #undef CASE
 }
 
