@@ -62,6 +62,8 @@ WRONG = {
     "far away": ([BLOCKS, "-left_translate", "1e20,0"], ["'left'", "1e+20 m from the origin", "-left_translate"]),
     "point of a formula": ([BLOCKS, "-left_probe", "0,inf"], [": -left_probe: the formula 'inf'"]),
     "type of PETSc's": ([BLOCKS, "-left_snes_type", "bogus"], ["-left_snes_type (the command line)", "no SNES of type 'bogus'"]),
+    "Newton's method of a linear body": ([BLOCKS, "-left_snes_max_it", "3"], ["-left_snes_max_it has no effect", "'left'", "linear"]),
+    "and of an explicit one": ([BLOCKS, "-left_ts_type", "centraldifference", "-left_snes_monitor"], ["-left_snes_monitor has no effect", "explicit"]),
     "table of a device": ([BLOCKS, "-left_body_force", "table:/dev/zero,0"], ["-left_body_force", "'/dev/zero'", "a device"]),
     "viewer": ([BLOCKS, "-contact_view", "paper"], ["-contact_view", "'paper'", "viewer"]),
 }

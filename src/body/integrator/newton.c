@@ -204,6 +204,7 @@ static PetscErrorCode SetUpNewton(Body body, BodyPredictorFn *predictor)
   char           outer[128];
 
   PetscFunctionBegin;
+  body->integrator->uses_newton = PETSC_TRUE;
   PetscCall(TSSetI2Jacobian(body->time.ts, implicit->matrix, implicit->matrix, ComputeJacobian, body));
   PetscCall(TSAlpha2SetPredictor(body->time.ts, predictor, body));
   PetscCall(TSGetSNES(body->time.ts, &snes));

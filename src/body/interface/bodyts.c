@@ -269,6 +269,30 @@ PetscErrorCode BodySetTimeFromOptions(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A TS reads options of its SNES whether it has something to solve or not: of a body that has not they are refused, once it is set up */
+PetscErrorCode BodyRefuseNewtonOptions(Body body)
+{
+  char      prefix[128], *all, *found;
+  PetscBool given;
+  size_t    length = 0;
+
+  PetscFunctionBegin;
+  if (body->integrator->uses_newton) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "-%ssnes_", ((PetscObject)body)->prefix));
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  PetscCall(PetscStrstr(all, prefix, &found));
+  given = (PetscBool)(found && (found == all || found[-1] == ' '));
+  if (given)
+    while (found[length] && found[length] != ' ') length++;
+  PetscCheck(
+      !given, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "%.*s has no effect: body '%s' is explicit, rigid or of a linear material, and needs no Newton's method in its steps; leave it "
+      "out, or choose -%smaterial_type neo_hookean and -%sts_type alpha2",
+      (int)length, found, body->hdr.name, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The integrator for the TS, whose type and parameters the program may have changed, with these parameters */
 PetscErrorCode BodySetUpIntegrator(Body body)
 {

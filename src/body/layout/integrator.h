@@ -83,6 +83,7 @@ struct _n_BodyIntegrator {
   /* known after getparameters() */
   PetscBool affine; /* for linear materials, displacements at the ends of substeps are affine in the contact forces at these ends alone */
   /* known after setup() */
+  PetscBool uses_newton;        /* the SNES of the TS solves the equations of each substep */
   PetscBool depends_on_step;    /* displacements of the rows under forces on them depend on the length of the substep */
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */
   PetscBool repeats_prescribed; /* repeat() can do it with prescribed rows */
