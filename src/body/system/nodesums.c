@@ -6,7 +6,7 @@
 #include <impakt/private/simd.h>
 
 /* What is summed up: m v.v, m a.a and u.f, then vectors: m v, (X + u) x m v, m (X - C) x u */
-enum { KINETIC, STAGGERED, POTENTIAL, MOMENTUM, ANGULAR = MOMENTUM + 3, TURNED = ANGULAR + 3, QUANTITIES = TURNED + 3 };
+enum { KINETIC = 0, STAGGERED = 1, POTENTIAL = 2, MOMENTUM = 3, ANGULAR = MOMENTUM + 3, TURNED = ANGULAR + 3, QUANTITIES = TURNED + 3 };
 /* In one dimension sums have four parts, since each addition to a single one would wait for the one before it; elsewhere there are enough
  */
 #define PARTS 4
@@ -71,20 +71,19 @@ SIMD_INLINE void AddNodes(PetscInt dim, PetscBool diagonal, PetscBool linear, co
 }
 
 /* A loop for each case, with what does not change in it known to the compiler */
+SIMD_INLINE void AddIn(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
+{
+  if (diagonal && linear) AddNodes(dim, PETSC_TRUE, PETSC_TRUE, nodes, sums);
+  else if (diagonal) AddNodes(dim, PETSC_TRUE, PETSC_FALSE, nodes, sums);
+  else if (linear) AddNodes(dim, PETSC_FALSE, PETSC_TRUE, nodes, sums);
+  else AddNodes(dim, PETSC_FALSE, PETSC_FALSE, nodes, sums);
+}
+
 SIMD_CLONES static void Add(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
 {
-#define CASE(d, m, l)                                                                                                                      \
-  if (dim == d && diagonal == m && linear == l) AddNodes(d, m, l, nodes, sums)
-#define CASES(d)                                                                                                                           \
-  CASE(d, PETSC_FALSE, PETSC_FALSE);                                                                                                       \
-  CASE(d, PETSC_FALSE, PETSC_TRUE);                                                                                                        \
-  CASE(d, PETSC_TRUE, PETSC_FALSE);                                                                                                        \
-  CASE(d, PETSC_TRUE, PETSC_TRUE)
-  CASES(1);
-  CASES(2);
-  CASES(3);
-#undef CASES
-#undef CASE
+  if (dim == 1) AddIn(1, diagonal, linear, nodes, sums);
+  else if (dim == 2) AddIn(2, diagonal, linear, nodes, sums);
+  else AddIn(3, diagonal, linear, nodes, sums);
 }
 
 /* Of this rank's nodes: kinetic energy, staggered for central differences [J], half the work of the internal forces
