@@ -14,7 +14,7 @@ import time
 import pytest
 from conftest import IMPAKT, MPIEXEC, ROOT
 
-RUN = [IMPAKT, "-options_file", ROOT / "options/bars-high-speed.opts", "-time_step", "1e-8"]  # of over a second
+RUN = [IMPAKT, "-options_file", ROOT / "options/bars-high-speed.opts", "-time_step", "2.5e-9"]  # of some seconds
 BAR = re.compile(r"\[[#.]+\] +\d+ %  \d+ (s|min) to go")
 
 
