@@ -180,19 +180,7 @@ static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal 
 static PetscErrorCode FinishSubstep(Body body)
 {
   PetscFunctionBegin;
-  if (GetLayer(body)) {
-    const PetscScalar *u0, *u1;
-    PetscScalar       *v;
-
-    PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
-    PetscCall(VecGetArrayRead(body->state.u, &u1));
-    PetscCall(VecGetArray(body->state.v, &v));
-    for (PetscInt i = 0; i < body->layer.n_dofs; i++)
-      v[body->layer.dofs[i]] = (u1[body->layer.dofs[i]] - u0[body->layer.dofs[i]]) / body->time.step;
-    PetscCall(VecRestoreArray(body->state.v, &v));
-    PetscCall(VecRestoreArrayRead(body->state.u, &u1));
-    PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
-  }
+  PetscCall(BodyFinishLayer(body));
   PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, NULL));
   if (body->rows.have_mass)
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, (PetscReal)(body->time.substep + 1) / body->time.substeps, body->state.v));
@@ -233,17 +221,26 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the layer alone answers: it is put in place anew, from where it is, and all else is as it was at mid-step */
+/* Where the layer alone answers: it is moved by what is known, or else (NULL) put in place anew from where it is, and all else is as it was
+   at mid-step */
+static PetscErrorCode MoveLayer(Body body, Vec known)
+{
+  PetscFunctionBegin;
+  body->time.substep = 0;
+  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
+  if (known) PetscCall(LayerBalanceMove(GetLayer(body), known, body->state.u));
+  else PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
+  PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
+  PetscCall(FinishSubstep(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode RepeatLayer(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   PetscFunctionBegin;
   (void)force;
   (void)displacement;
-  body->time.substep = 0;
-  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
-  PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
-  PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
-  PetscCall(FinishSubstep(body));
+  PetscCall(MoveLayer(body, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -259,15 +256,10 @@ static PetscErrorCode Expect(Body body, const PetscScalar answer[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As RepeatLayer(), where the answer of the layer is known */
 static PetscErrorCode Follow(Body body)
 {
   PetscFunctionBegin;
-  body->time.substep = 0;
-  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
-  PetscCall(LayerBalanceMove(GetLayer(body), ((BodyExplicit *)body->integrator->data)->expected, body->state.u));
-  PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
-  PetscCall(FinishSubstep(body));
+  PetscCall(MoveLayer(body, ((BodyExplicit *)body->integrator->data)->expected));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -126,31 +126,6 @@ static PetscErrorCode ComputeAcceleration(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Massless nodes have the mean velocity of the substep, and no acceleration */
-static PetscErrorCode FinishLayer(Body body)
-{
-  const PetscScalar *u0, *u1;
-  PetscScalar       *v1, *a1;
-
-  PetscFunctionBegin;
-  if (!body->mass.redistribute) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
-  PetscCall(VecGetArrayRead(body->state.u, &u1));
-  PetscCall(VecGetArray(body->state.v, &v1));
-  PetscCall(VecGetArray(body->state.a, &a1));
-  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
-    const PetscInt dof = body->layer.dofs[i];
-
-    v1[dof] = (u1[dof] - u0[dof]) / body->time.step;
-    a1[dof] = 0;
-  }
-  PetscCall(VecRestoreArray(body->state.a, &a1));
-  PetscCall(VecRestoreArray(body->state.v, &v1));
-  PetscCall(VecRestoreArrayRead(body->state.u, &u1));
-  PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What the TS leaves undone: acceleration; velocity and acceleration of prescribed and massless nodes; the internal force at the end, where
    the last residual was not evaluated there */
 static PetscErrorCode FinishSubstep(Body body)
@@ -159,7 +134,7 @@ static PetscErrorCode FinishSubstep(Body body)
 
   PetscFunctionBegin;
   if (!body->model.linear) PetscCall(ComputeAcceleration(body));
-  PetscCall(FinishLayer(body));
+  PetscCall(BodyFinishLayer(body));
   PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, body->state.a));
   if (body->rows.have_mass) {
     const PetscReal position = (PetscReal)(body->time.substep + 1) / body->time.substeps;
@@ -178,26 +153,10 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   const PetscReal     dt = body->time.step, to_velocity = implicit->gamma / (implicit->beta * dt);
-  Vec                 change = body->work.nodes[2];
-  const PetscScalar  *du;
-  PetscScalar        *v, *a;
 
   PetscFunctionBegin;
-  PetscCall(BodyImplicitCorrect(body, force, displacement, to_velocity, 1 / (implicit->beta * dt * dt), change));
-  if (body->mass.redistribute) {
-    PetscCall(VecGetArrayRead(change, &du));
-    PetscCall(VecGetArray(body->state.v, &v));
-    PetscCall(VecGetArray(body->state.a, &a));
-    for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
-      const PetscInt dof = body->layer.dofs[i];
-
-      v[dof] += (1 / dt - to_velocity) * du[dof];
-      a[dof] = 0;
-    }
-    PetscCall(VecRestoreArray(body->state.a, &a));
-    PetscCall(VecRestoreArray(body->state.v, &v));
-    PetscCall(VecRestoreArrayRead(change, &du));
-  }
+  PetscCall(BodyImplicitCorrect(body, force, displacement, to_velocity, 1 / (implicit->beta * dt * dt), body->work.nodes[2]));
+  PetscCall(BodyFinishLayer(body));
   if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));

@@ -21,6 +21,31 @@ PetscErrorCode BodyCheckSubstep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Massless nodes have the mean velocity of the substep, and no acceleration */
+PetscErrorCode BodyFinishLayer(Body body)
+{
+  const PetscScalar *u0, *u1;
+  PetscScalar       *v1, *a1;
+
+  PetscFunctionBegin;
+  if (!body->layer.n_dofs) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
+  PetscCall(VecGetArrayRead(body->state.u, &u1));
+  PetscCall(VecGetArray(body->state.v, &v1));
+  PetscCall(VecGetArray(body->state.a, &a1));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
+    const PetscInt dof = body->layer.dofs[i];
+
+    v1[dof] = (u1[dof] - u0[dof]) / body->time.step;
+    a1[dof] = 0;
+  }
+  PetscCall(VecRestoreArray(body->state.a, &a1));
+  PetscCall(VecRestoreArray(body->state.v, &v1));
+  PetscCall(VecRestoreArrayRead(body->state.u, &u1));
+  PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All substeps, by the TS; those after a failed one are left out, and the state is good for nothing then but to be restored */
 PetscErrorCode BodyMakeSubsteps(Body body)
 {

@@ -1,6 +1,8 @@
 /* The time integrator of a body, from the program and from options. */
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
+#include <sys/optionstext.h>
+#include <strings.h>
 
 /* Stable step of a body over the time that a plane wave takes through its mean element, about: 0.77 of cubes and squares with Poisson's
    ratio 0.25 */
@@ -272,23 +274,19 @@ PetscErrorCode BodySetTimeFromOptions(Body body)
 /* A TS reads options of its SNES whether it has something to solve or not: of a body that has not they are refused, once it is set up */
 PetscErrorCode BodyRefuseNewtonOptions(Body body)
 {
-  char      prefix[128], *all, *found;
-  PetscBool given;
-  size_t    length = 0;
+  const char *prefix = ((PetscObject)body)->prefix, *name, *value;
+  char        first[128], *all, *text;
 
   PetscFunctionBegin;
   if (body->integrator->uses_newton) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "-%ssnes_", ((PetscObject)body)->prefix));
+  PetscCall(PetscSNPrintf(first, sizeof(first), "-%ssnes_", prefix));
   PetscCall(PetscOptionsGetAll(NULL, &all));
-  PetscCall(PetscStrstr(all, prefix, &found));
-  given = (PetscBool)(found && (found == all || found[-1] == ' '));
-  if (given)
-    while (found[length] && found[length] != ' ') length++;
-  PetscCheck(
-      !given, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-      "%.*s has no effect: body '%s' is explicit, rigid or of a linear material, and needs no Newton's method in its steps; leave it "
-      "out, or choose -%smaterial_type neo_hookean and -%sts_type alpha2",
-      (int)length, found, body->hdr.name, ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+  for (text = all; OptionsTextNext(&text, &name, &value);)
+    PetscCheck(
+        strncasecmp(name, first, strlen(first)) != 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+        "%s has no effect: body '%s' is explicit, rigid or of a linear material, and needs no Newton's method in its steps; leave it "
+        "out, or choose -%smaterial_type neo_hookean and -%sts_type alpha2",
+        name, body->hdr.name, prefix, prefix);
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

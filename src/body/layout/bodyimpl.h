@@ -424,6 +424,7 @@ PETSC_INTERN PetscErrorCode BodyEndMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);
+PETSC_INTERN PetscErrorCode BodyFinishLayer(Body);
 PETSC_INTERN PetscErrorCode BodyCheckSubstep(Body);
 PETSC_INTERN PetscErrorCode BodyCreateCompliance(Body);
 PETSC_INTERN Compliance     BodyGetSharedCompliance(Body);

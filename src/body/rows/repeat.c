@@ -44,17 +44,19 @@ static PetscBool Counts(Body body, PetscInt input, PetscInt row)
   return (PetscBool)(input ? condition == BODY_PRESCRIBED : condition == BODY_FORCED || condition == BODY_ROBIN);
 }
 
-/* Whether an input is other than it was, and whether it has not become what was expected, which is of forces alone */
-static void Compare(Body body, PetscInt input, PetscInt row, PetscScalar value, PetscBool news[2])
+/* By how much an input is more than it was, where it counts; news: whether it is, and whether otherwise than expected, which is of forces
+   alone */
+static PetscScalar Compare(Body body, PetscInt input, PetscInt row, PetscScalar value, PetscBool news[2])
 {
   const struct _BodyRepeat *repeat = body->repeat;
   const PetscScalar         before = repeat->inputs[input][row], change = Counts(body, input, row) ? value - before : 0;
 
   if (change != 0) news[0] = PETSC_TRUE;
-  if (!repeat->expects) return;
+  if (!repeat->expects) return change;
   if (input && Counts(body, input, row)) news[1] = PETSC_TRUE;
   if (!input && !(PetscAbsScalar(change - repeat->expected[row]) <= ROUND_OFF * (PetscAbsScalar(value) + PetscAbsScalar(before))))
     news[1] = PETSC_TRUE;
+  return change;
 }
 
 /* What comes in at the end of the controller step is the present state's from now on; `changes`: by how much that is more than before, on
@@ -72,8 +74,7 @@ static PetscErrorCode TakeInputs(Body body, PetscBool news[2])
 
     PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
     for (PetscInt i = 0; i < body->rows.local; i++) {
-      Compare(body, k, i, values[i], news);
-      repeat->changes[k][i] = Counts(body, k, i) ? values[i] - repeat->inputs[k][i] : 0;
+      repeat->changes[k][i] = Compare(body, k, i, values[i], news);
       repeat->inputs[k][i]  = values[i];
     }
   }
@@ -116,7 +117,7 @@ PetscErrorCode BodyProposeRepeat(Body body, BodyWord *word)
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(k ? body->traces.displacement_in : body->traces.force_in, body->time.substeps, &values));
-    for (PetscInt i = 0; i < body->rows.local; i++) Compare(body, k, i, values[i], news);
+    for (PetscInt i = 0; i < body->rows.local; i++) (void)Compare(body, k, i, values[i], news);
   }
   for (PetscInt k = 0; k < 2; k++) repeat->news[k] = news[k];
   word->n      = repeat->expects ? 2 : 1;

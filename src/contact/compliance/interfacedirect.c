@@ -168,25 +168,18 @@ static PetscErrorCode CreateMatrix(InterfaceOperator op)
 /* What dofs of layer k are in the matrix */
 static PetscErrorCode NumberDofs(InterfaceOperator op, PetscInt k, Mat K, PetscInt n, const PetscInt dofs[])
 {
-  InterfaceDirect   d    = op->direct;
-  const PetscMPIInt mine = op->contact->ranks.rank;
-  const PetscInt   *ranges;
-  PetscLayout       layout;
+  InterfaceDirect d     = op->direct;
+  const PetscInt *shift = d->shift + k * op->contact->ranks.size;
+  PetscLayout     layout;
 
   PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRanges(K, &ranges));
   PetscCall(MatGetLayouts(K, &layout, NULL));
   if (n > d->room) {
     PetscCall(PetscFree2(d->numbers, d->values));
     d->room = 2 * n;
     PetscCall(PetscMalloc2(d->room, &d->numbers, d->room, &d->values));
   }
-  for (PetscInt j = 0; j < n; j++) {
-    PetscMPIInt rank = mine;
-
-    if (dofs[j] < ranges[mine] || dofs[j] >= ranges[mine + 1]) PetscCall(PetscLayoutFindOwner(layout, dofs[j], &rank));
-    d->numbers[j] = dofs[j] + d->shift[k * op->contact->ranks.size + rank];
-  }
+  for (PetscInt j = 0; j < n; j++) PetscCall(InterfaceFindNumber(layout, shift, op->contact->ranks.rank, dofs[j], &d->numbers[j]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -79,6 +79,17 @@ static inline PetscBool InterfaceIsDirect(InterfaceOperator op)
   return (PetscBool)(op->direct && !op->matrix);
 }
 
+/* Where matrices of bodies are joined to one: the number in it of a row of one of them, with this layout, that any rank has; `shift` is
+   what comes to numbers of each rank, of which this one is `mine` */
+static inline PetscErrorCode InterfaceFindNumber(PetscLayout layout, const PetscInt shift[], PetscMPIInt mine, PetscInt row,
+                                                 PetscInt *number)
+{
+  PetscFunctionBegin;
+  if (row < layout->rstart || row >= layout->rend) PetscCall(PetscLayoutFindOwner(layout, row, &mine));
+  *number = row + shift[mine];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether a row of this rank is solved for at present */
 static inline PetscBool InterfaceIsIn(InterfaceOperator op, PetscInt i)
 {

@@ -143,22 +143,20 @@ static PetscErrorCode JoinSlabs(const Contact contact, InterfaceJoint j)
 /* The entries of one row of a slab; zeros are left out, so that nothing hangs on where entries have been before */
 static PetscErrorCode JoinRow(const Contact contact, InterfaceJoint j, PetscInt k, PetscInt row, PetscInt i, PetscInt sign)
 {
-  const PetscInt    *columns, *ranges;
+  const PetscInt    *columns;
   const PetscScalar *values;
   PetscLayout        layout;
   PetscInt           n;
 
   PetscFunctionBegin;
   PetscCall(MatGetLayouts(j->slabs[k].K, &layout, NULL));
-  PetscCall(PetscLayoutGetRanges(layout, &ranges));
   PetscCall(MatGetRow(j->slabs[k].rows, row, &n, &columns, &values));
   for (PetscInt l = 0; l < n; l++) {
-    PetscMPIInt rank = contact->ranks.rank;
+    PetscInt number = 0;
 
     if (values[l] == 0) continue;
-    if (columns[l] < ranges[rank] || columns[l] >= ranges[rank + 1]) PetscCall(PetscLayoutFindOwner(layout, columns[l], &rank));
-    PetscCall(
-        MatSetValue(j->C, contact->rows.begin + i, columns[l] + j->shift[k * contact->ranks.size + rank], sign * values[l], INSERT_VALUES));
+    PetscCall(InterfaceFindNumber(layout, j->shift + k * contact->ranks.size, contact->ranks.rank, columns[l], &number));
+    PetscCall(MatSetValue(j->C, contact->rows.begin + i, number, sign * values[l], INSERT_VALUES));
   }
   PetscCall(MatRestoreRow(j->slabs[k].rows, row, &n, &columns, &values));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,49 +1,15 @@
 /* S, the operator from contact forces to gaps: dense and by products alone, whole and in part, and when it changes from one to the other.
  */
-#include "simulation.h"
-#include <contact/compliance/interfaceoperator.h>
-
-#define MOST_ROWS 12
+#include "operators.h"
 
 static const InterfaceSettings dense     = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 100, .few = 100};
 static const InterfaceSettings iterative = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 0};
 static const InterfaceSettings sparse    = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 0, .direct = PETSC_TRUE};
 static const InterfaceSettings chooses   = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 100, .few = 0};
 
-/* Two blocks that do not match, one implicit and one with a massless layer, 1 kg/m^3 and 1 Pa */
-static void Create(Simulation *simulation)
-{
-  AddOptions("-prefix_push a_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 4,5 -dm_plex_box_lower -1,0 -dm_plex_box_upper "
-             "-0.01,1 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 -prefix_pop "
-             "-prefix_push b_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 3,4 -dm_plex_box_lower 0,0 -dm_plex_box_upper 1,1 "
-             "-density 1 -youngs_modulus 1 -poissons_ratio 0.25 -ts_type centraldifference -prefix_pop "
-             "-bodies a,b -contact_pairs a.xmax:b.xmin -time_step 0.04 -time_end 1");
-  ok(SimulationCreate(simulation));
-  between(simulation->contact->rows.n_all, 5, MOST_ROWS);
-}
-
-/* All rows with both sides are solved for, but the last of all ranks where `leave` */
-static InterfaceOperator SetUp(Simulation *simulation, const InterfaceSettings *settings, PetscBool leave)
-{
-  const Contact     contact = simulation->contact;
-  InterfaceMark     marks[MOST_ROWS];
-  InterfaceOperator op;
-
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    marks[i] = leave && contact->rows.begin + i == contact->rows.n_all - 1 ? INTERFACE_LEFT_OUT : INTERFACE_SOLVED;
-  ok(InterfaceOperatorCreate(contact, settings, &op));
-  ok(InterfaceOperatorSetRows(op, marks, 1));
-  return op;
-}
-
-static PetscReal force(PetscInt row)
-{
-  return 1 + PetscSinReal(2.0 * row);
-}
-
 static void fill(const Contact contact, PetscScalar x[])
 {
-  for (PetscInt i = 0; i < contact->rows.n; i++) x[i] = force(contact->rows.begin + i);
+  for (PetscInt i = 0; i < contact->rows.n; i++) x[i] = force_on(contact->rows.begin + i);
 }
 
 /* Forces of some N bring some m: round-off, and what conjugate gradients leave */
@@ -53,13 +19,13 @@ static void products_are_the_same(void **state)
   InterfaceOperator op[2];
   Contact           contact;
 
-  Create(simulation);
+  create_blocks(simulation);
   contact = simulation->contact;
   for (PetscInt leave = 0; leave < 2; leave++) {
     PetscScalar x[MOST_ROWS], gap[MOST_ROWS], side[2][MOST_ROWS], other[MOST_ROWS];
 
-    op[0] = SetUp(simulation, &dense, (PetscBool)leave);
-    op[1] = SetUp(simulation, &iterative, (PetscBool)leave);
+    op[0] = set_up_operator(simulation, &dense, (PetscBool)leave);
+    op[1] = set_up_operator(simulation, &iterative, (PetscBool)leave);
     fill(contact, x);
     for (PetscInt map = 0; map < 4; map++) {
       ok(InterfaceOperatorMultiply(op[0], (InterfaceMap)map, x, gap));
@@ -85,10 +51,10 @@ static void solutions_are_the_same(void **state)
   Simulation *simulation = (Simulation *)*state;
   Contact     contact;
 
-  Create(simulation);
+  create_blocks(simulation);
   contact = simulation->contact;
   for (PetscInt which = 0; which < 2; which++) {
-    InterfaceOperator op = SetUp(simulation, which ? &iterative : &dense, PETSC_FALSE);
+    InterfaceOperator op = set_up_operator(simulation, which ? &iterative : &dense, PETSC_FALSE);
     PetscScalar       x[MOST_ROWS], gap[MOST_ROWS], found[MOST_ROWS] = {0};
     PetscReal         springs[MOST_ROWS];
     PetscBool         in[MOST_ROWS];
@@ -97,7 +63,7 @@ static void solutions_are_the_same(void **state)
       for (PetscInt i = 0; i < contact->rows.n; i++) {
         in[i]      = (PetscBool)(!some || (contact->rows.begin + i) % 2);
         springs[i] = some ? 0.3 + 0.1 * i : 0;
-        x[i]       = in[i] ? force(contact->rows.begin + i) : 0;
+        x[i]       = in[i] ? force_on(contact->rows.begin + i) : 0;
       }
       ok(InterfaceOperatorMultiply(op, INTERFACE_GAP, x, gap));
       for (PetscInt i = 0; i < contact->rows.n; i++) gap[i] += springs[i] * x[i];
@@ -119,11 +85,11 @@ static void sparse_factors_solve_the_same(void **state)
   Mat               K;
 
   AddOptions("-a_ts_type centraldifference");
-  Create(simulation);
+  create_blocks(simulation);
   contact = simulation->contact;
   ok(BodyGetLayerMatrices(contact->bodies[0], &K, NULL));
   assert_non_null(K);
-  op = SetUp(simulation, &sparse, PETSC_FALSE);
+  op = set_up_operator(simulation, &sparse, PETSC_FALSE);
   for (PetscInt round = 0; round < 4; round++) { /* all rows, with and without springs; some of them; with the first layer made anew */
     PetscScalar x[MOST_ROWS], gap[MOST_ROWS];
     PetscReal   springs[MOST_ROWS];
@@ -132,7 +98,7 @@ static void sparse_factors_solve_the_same(void **state)
     for (PetscInt i = 0; i < contact->rows.n; i++) {
       in[i]      = (PetscBool)(round < 2 || (contact->rows.begin + i) % 2);
       springs[i] = round ? 0.3 + 0.1 * i : 0;
-      x[i]       = in[i] ? force(contact->rows.begin + i) : 0;
+      x[i]       = in[i] ? force_on(contact->rows.begin + i) : 0;
     }
     ok(InterfaceOperatorMultiply(op, INTERFACE_GAP, x, gap));
     for (PetscInt i = 0; i < contact->rows.n; i++) gap[i] += springs[i] * x[i];
@@ -161,10 +127,10 @@ static void becomes_dense_when_that_has_paid(void **state)
   PetscBool         is_dense;
   PetscInt          solutions = 0;
 
-  Create(simulation);
+  create_blocks(simulation);
   contact = simulation->contact;
   fill(contact, gap);
-  op = SetUp(simulation, &chooses, PETSC_FALSE);
+  op = set_up_operator(simulation, &chooses, PETSC_FALSE);
   InterfaceOperatorGetRows(op, NULL, NULL, &is_dense);
   assert_false(is_dense);
   ok(InterfaceOperatorSolve(op, gap, first));
@@ -191,7 +157,7 @@ static void may_be_a_sparse_matrix(void **state)
   Contact     contact;
   Mat         S;
 
-  Create(simulation);
+  create_blocks(simulation);
   contact = simulation->contact;
   ok(MatCreateAIJ(PETSC_COMM_WORLD, contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all, 2, NULL, 2, NULL, &S));
   for (PetscInt i = contact->rows.begin; i < contact->rows.begin + contact->rows.n; i++) {
@@ -212,11 +178,11 @@ static void may_be_a_sparse_matrix(void **state)
       const PetscInt row = contact->rows.begin + i, last = contact->rows.n_all - 1;
 
       marks[i] = INTERFACE_SOLVED;
-      gap[i]   = (2 + row) * force(row) + (row == 0 ? force(last) : row == last ? force(0) : 0);
+      gap[i]   = (2 + row) * force_on(row) + (row == 0 ? force_on(last) : row == last ? force_on(0) : 0);
     }
     ok(InterfaceOperatorSetRows(op, marks, 1));
     ok(InterfaceOperatorSolve(op, gap, found));
-    for (PetscInt i = 0; i < contact->rows.n; i++) near(found[i], force(contact->rows.begin + i), 1e-12);
+    for (PetscInt i = 0; i < contact->rows.n; i++) near(found[i], force_on(contact->rows.begin + i), 1e-12);
     ok(InterfaceOperatorDestroy(&op));
     assert_null(op);
   }
@@ -303,10 +269,10 @@ static void iterations_that_do_not_converge_are_an_error(void **state)
   InterfaceOperator op;
   PetscScalar       gap[MOST_ROWS], found[MOST_ROWS] = {0};
 
-  Create(simulation);
+  create_blocks(simulation);
   AddOptions("-operator_ksp_max_it 1");
   fill(simulation->contact, gap);
-  op = SetUp(simulation, &iterative, PETSC_FALSE);
+  op = set_up_operator(simulation, &iterative, PETSC_FALSE);
   refused(PETSC_ERR_NOT_CONVERGED, "Conjugate gradients for the contact forces|after 1 iterations|-operator_ksp_max_it",
           InterfaceOperatorSolve(op, gap, found));
   ok(InterfaceOperatorDestroy(&op));

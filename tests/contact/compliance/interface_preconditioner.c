@@ -1,41 +1,10 @@
 /* What preconditions S, the operator from contact forces to gaps, where it is only multiplied with. */
-#include "simulation.h"
-#include <contact/compliance/interfaceoperator.h>
-
-#define MOST_ROWS 12
+#include "operators.h"
 
 static const InterfaceSettings plain          = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 0};
 static const InterfaceSettings preconditioned = {.prefix = "operator_", .tolerance = 1e-14, .dense_limit = 0, .precondition = PETSC_TRUE};
 static const InterfaceSettings enough         = {
     .prefix = "operator_", .tolerance = 1e-14, .enough = 1e-6, .dense_limit = 0, .precondition = PETSC_TRUE};
-
-/* Two blocks that do not match, one implicit and one with a massless layer, 1 kg/m^3 and 1 Pa */
-static void Create(Simulation *simulation)
-{
-  AddOptions("-prefix_push a_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 4,5 -dm_plex_box_lower -1,0 -dm_plex_box_upper "
-             "-0.01,1 -density 1 -youngs_modulus 1 -poissons_ratio 0.25 -prefix_pop "
-             "-prefix_push b_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces 3,4 -dm_plex_box_lower 0,0 -dm_plex_box_upper 1,1 "
-             "-density 1 -youngs_modulus 1 -poissons_ratio 0.25 -ts_type centraldifference -prefix_pop "
-             "-bodies a,b -contact_pairs a.xmax:b.xmin -time_step 0.04 -time_end 1");
-  ok(SimulationCreate(simulation));
-  between(simulation->contact->rows.n_all, 5, MOST_ROWS);
-}
-
-static InterfaceOperator SetUp(Simulation *simulation, const InterfaceSettings *settings)
-{
-  InterfaceMark     marks[MOST_ROWS];
-  InterfaceOperator op;
-
-  for (PetscInt i = 0; i < simulation->contact->rows.n; i++) marks[i] = INTERFACE_SOLVED;
-  ok(InterfaceOperatorCreate(simulation->contact, settings, &op));
-  ok(InterfaceOperatorSetRows(op, marks, 1));
-  return op;
-}
-
-static PetscReal force(PetscInt row)
-{
-  return 1 + PetscSinReal(2.0 * row);
-}
 
 /* Iterations of one solution for forces of some N, which close gaps of some m, on all rows or on those with odd numbers */
 static PetscInt solve(InterfaceOperator op, const Contact contact, PetscBool some, PetscReal tolerance)
@@ -46,7 +15,7 @@ static PetscInt solve(InterfaceOperator op, const Contact contact, PetscBool som
 
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     in[i] = (PetscBool)(!some || (contact->rows.begin + i) % 2);
-    x[i]  = in[i] ? force(contact->rows.begin + i) : 0;
+    x[i]  = in[i] ? force_on(contact->rows.begin + i) : 0;
   }
   ok(InterfaceOperatorFactor(op, in, NULL));
   ok(InterfaceOperatorMultiply(op, INTERFACE_GAP, x, gap));
@@ -84,10 +53,10 @@ static void preconditioned_by_both_sides(void **state)
   Contact           contact;
   PetscInt          most, iterations, fewer;
 
-  Create(simulation);
+  create_blocks(simulation);
   contact = simulation->contact;
-  op[0]   = SetUp(simulation, &plain);
-  op[1]   = SetUp(simulation, &preconditioned);
+  op[0]   = set_up_operator(simulation, &plain, PETSC_FALSE);
+  op[1]   = set_up_operator(simulation, &preconditioned, PETSC_FALSE);
   assert_false(InterfaceOperatorHasPreconditioner(op[0]));
   assert_true(InterfaceOperatorHasPreconditioner(op[1]));
   most       = solve(op[0], contact, PETSC_FALSE, 1e-10);
@@ -98,7 +67,7 @@ static void preconditioned_by_both_sides(void **state)
   scale_rows(contact);
   assert_int_equal(solve(op[1], contact, PETSC_FALSE, 1e-10), iterations);
   ok(InterfaceOperatorDestroy(&op[0]));
-  op[0] = SetUp(simulation, &enough);
+  op[0] = set_up_operator(simulation, &enough, PETSC_FALSE);
   fewer = solve(op[0], contact, PETSC_FALSE, 1e-3);
   between(fewer, 1, iterations - 1);
   for (PetscInt k = 0; k < 2; k++) ok(InterfaceOperatorDestroy(&op[k]));
@@ -113,9 +82,9 @@ static void preconditioner_is_symmetric(void **state)
   PetscReal         columns[MOST_ROWS][MOST_ROWS] = {{0}}; /* of all ranks, the same on each */
   PetscBool         in[MOST_ROWS];
 
-  Create(simulation);
+  create_blocks(simulation);
   contact = simulation->contact;
-  op      = SetUp(simulation, &preconditioned);
+  op      = set_up_operator(simulation, &preconditioned, PETSC_FALSE);
   for (PetscInt i = 0; i < contact->rows.n; i++) in[i] = (PetscBool)(contact->rows.begin + i != 1);
   ok(InterfaceOperatorChoose(op, in));
   for (PetscInt c = 0; c < contact->rows.n_all; c++) {
