@@ -1,6 +1,6 @@
 /* Rigid motions: a step is a function of the caller, who knows what moves as one. */
 #include <impakt/tssecondorder.h>
-#include "tsrigid.h"
+#include "constructors.h"
 #include <petsc/private/tsimpl.h>
 
 typedef struct {

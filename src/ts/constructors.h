@@ -2,4 +2,5 @@
 #pragma once
 #include <petscts.h>
 
+PETSC_INTERN PetscErrorCode TSCreate_CentralDifference(TS);
 PETSC_INTERN PetscErrorCode TSCreate_Rigid(TS);

@@ -1,0 +1,137 @@
+/* What time integrators of second order share: registration, and what driving them in sweeps takes, beside `TSALPHA2` as a static one. */
+#include <impakt/tssecondorder.h>
+#include "constructors.h"
+#include <petsc/private/tsimpl.h>
+
+/*MC
+   TSSTATIC - static balance at the end of each step, K(u) = f(t): `TSALPHA2` with its stage at the end of the step, for bodies without
+   inertia
+
+   Level: beginner
+
+.seealso: `TSALPHA2`
+M*/
+static PetscErrorCode TSCreate_Static(TS ts)
+{
+  PetscFunctionBegin;
+  PetscCall(TSSetType(ts, TSALPHA2));
+  PetscCall(TSAlpha2SetParams(ts, 1, 1, 0.5, 0.25));
+  PetscCall(PetscObjectChangeTypeName((PetscObject)ts, TSSTATIC));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TSSecondOrderRegisterAll - registers Impakt's time integrators with `TS`
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `TSCENTRALDIFFERENCE`, `ImpaktInitialize()`
+@*/
+PetscErrorCode TSSecondOrderRegisterAll(void)
+{
+  PetscFunctionBegin;
+  PetscCall(TSRegister(TSCENTRALDIFFERENCE, TSCreate_CentralDifference));
+  PetscCall(TSRegister(TSSTATIC, TSCreate_Static));
+  PetscCall(TSRegister(TSRIGID, TSCreate_Rigid));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* PETSc forgets all integrators with PetscFinalize() */
+static PetscBool TSSecondOrderPackageInitialized = PETSC_FALSE;
+
+/*@
+  TSSecondOrderInitializePackage - registers Impakt's time integrators with `TS`, once
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `TSSecondOrderRegisterAll()`, `TSSecondOrderFinalizePackage()`, `ImpaktInitialize()`
+@*/
+PetscErrorCode TSSecondOrderInitializePackage(void)
+{
+  PetscFunctionBegin;
+  if (TSSecondOrderPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
+  TSSecondOrderPackageInitialized = PETSC_TRUE;
+  PetscCall(TSSecondOrderRegisterAll());
+  PetscCall(PetscRegisterFinalize(TSSecondOrderFinalizePackage));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TSSecondOrderFinalizePackage - ends the package; `PetscFinalize()` calls it
+
+  Not Collective
+
+  Level: developer
+
+.seealso: `TSSecondOrderInitializePackage()`
+@*/
+PetscErrorCode TSSecondOrderFinalizePackage(void)
+{
+  PetscFunctionBegin;
+  TSSecondOrderPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TSSecondOrderSetState - puts an integrator at a time, to go on from the vectors of `TS2SetSolution()` as they are now
+
+  Logically Collective
+
+  Input Parameters:
++ ts        - a `TSALPHA2` or `TSCENTRALDIFFERENCE`
+. time      - current time [s]
+. time_step - step from here on [s]
+- step      - number of steps taken so far
+
+  Level: developer
+
+  Note:
+  Also switches off the restart of `TSALPHA2`, which would make two half steps with another matrix before the next step to estimate an
+  acceleration. Impakt always knows the acceleration.
+
+  An integrator whose last step has failed goes on as any other.
+
+.seealso: `TSALPHA2`, `TSCENTRALDIFFERENCE`
+@*/
+PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step, PetscInt step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
+  ts->ptime       = time;
+  ts->time_step   = time_step;
+  ts->steps       = step;
+  ts->steprestart = PETSC_FALSE;
+  ts->reason      = TS_CONVERGED_ITERATING;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  TSAlpha2SetStep - has a function make the steps of a `TSALPHA2`, in place of its nonlinear solver
+
+  Logically Collective
+
+  Input Parameters:
++ ts   - a `TSALPHA2`, not yet set up
+- step - function (ts): takes the vectors of `TS2SetSolution()` to the end of the step, and the time with `TSSetTime()`
+
+  Level: developer
+
+  Note:
+  For linear equations, which need one solution and no Newton's method: its `SNES`, and the nine vectors that it works with, are not made.
+  What the function is to know comes with `TSGetI2Function()` and `TSAlpha2GetParams()`.
+
+.seealso: `TSALPHA2`, `TSSecondOrderSetState()`
+@*/
+PetscErrorCode TSAlpha2SetStep(TS ts, TSAlpha2StepFn *step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
+  ts->ops->step  = step;
+  ts->ops->setup = NULL;
+  ts->usessnes   = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
