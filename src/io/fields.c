@@ -228,11 +228,14 @@ PetscErrorCode FieldsMonitor(Controller controller, const ControllerFrame *frame
 */
 PetscErrorCode FieldsFinish(Fields fields)
 {
-  int closed;
+  PetscErrorCode error;
+  int            closed;
 
   PetscFunctionBegin;
   if (fields->first_rank && access(fields->xdmf, F_OK)) fields->listed = -1; /* somebody has moved or deleted it */
-  PetscCall(FieldsShareError(fields, List(fields, PETSC_TRUE)));
+  error          = FieldsShareError(fields, List(fields, PETSC_TRUE));
+  fields->failed = (PetscBool)(error != PETSC_SUCCESS); /* FieldsDestroy() does not tell it again */
+  PetscCall(error);
   if (fields->file < 0) PetscFunctionReturn(PETSC_SUCCESS);
   closed       = H5Fclose(fields->file) < 0 ? 0 : 1;
   fields->file = -1;
