@@ -31,14 +31,13 @@ static PetscErrorCode ExtendByOne(ConstrainedSolver s, PetscInt j)
 PetscErrorCode ConstrainedSolverChooseBlock(ConstrainedSolver s)
 {
   PetscInt      size;
-  PetscBool     factors = PETSC_FALSE, mumps = PETSC_FALSE;
+  PetscBool     mumps = PETSC_FALSE;
   MatSolverType package;
 
   PetscFunctionBegin;
   s->block = 1;
-  if (s->direct) PetscCall(PetscObjectTypeCompareAny((PetscObject)s->direct, &factors, PCLU, PCCHOLESKY, ""));
-  if (!factors || s->global <= FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PCFactorGetMatSolverType(s->direct, &package));
+  if (!s->factors || s->global <= FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCFactorGetMatSolverType(s->factors, &package));
   PetscCall(PetscStrcmp(package, MATSOLVERMUMPS, &mumps));
   if (!mumps) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetSize(s->rhs, &size));
@@ -72,28 +71,47 @@ static PetscErrorCode FillUnits(ConstrainedSolver s, PetscInt n, const PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x = A^{-1} B^T e for n rows. On one rank MUMPS is told where right-hand sides have their entries, and leaves out what stays zero, which
-   takes a third of the time; on several ranks it would want them all on the first one. */
-static PetscErrorCode SolveBlock(ConstrainedSolver s, PetscInt n, const PetscInt rows[], Mat x)
+/* rhs = B^T e for n rows, with what stays zero left out, on the rank that has A; the others need nothing */
+static PetscErrorCode CreateSparseUnits(ConstrainedSolver s, PetscInt n, const PetscInt rows[], PetscBool here, Mat *rhs)
 {
-  Mat factors, rhs, transposed = NULL;
+  Mat taken, units;
+  IS  is;
 
   PetscFunctionBegin;
-  PetscCall(PCFactorGetMatrix(s->direct, &factors));
-  PetscCall(MatMumpsSetIcntl(factors, 27, (PetscInt)MAX_BLOCK));
-  if (s->size == 1) {
-    IS is;
+  *rhs = NULL;
+  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)s->B), here ? n : 0, rows, PETSC_USE_POINTER, &is));
+  PetscCall(MatCreateSubMatrix(s->B, is, NULL, MAT_INITIAL_MATRIX, &taken));
+  PetscCall(ISDestroy(&is));
+  units = taken;
+  if (s->size > 1) PetscCall(MatGetDiagonalBlock(taken, &units)); /* all columns are this rank's, or none */
+  if (here) PetscCall(MatCreateTranspose(units, rhs));
+  PetscCall(MatDestroy(&taken));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, rows, PETSC_USE_POINTER, &is));
-    PetscCall(MatCreateSubMatrix(s->B, is, NULL, MAT_INITIAL_MATRIX, &transposed));
-    PetscCall(ISDestroy(&is));
-    PetscCall(MatCreateTranspose(transposed, &rhs));
-  } else {
+/* x = A^{-1} B^T e for n rows. MUMPS of one rank is told where right-hand sides have their entries, and leaves out what stays zero, which
+   takes a third of the time; that of several ranks would want them all on the first one. */
+static PetscErrorCode SolveBlock(ConstrainedSolver s, PetscInt n, const PetscInt rows[], Mat x)
+{
+  const PetscBool sparse = (PetscBool)(s->size == 1 || s->home);
+  PetscBool       here;
+  PetscInt        mine;
+  Mat             factors, rhs;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(s->rhs, &mine));
+  here = (PetscBool)(!s->home || mine > 0);
+  if (sparse) PetscCall(CreateSparseUnits(s, n, rows, here, &rhs));
+  else {
     PetscCall(MatDuplicate(x, MAT_DO_NOT_COPY_VALUES, &rhs));
     PetscCall(FillUnits(s, n, rows, rhs));
   }
-  PetscCall(MatMatSolve(factors, rhs, x));
-  PetscCall(MatDestroy(&transposed));
+  if (s->home) PetscCall(MatDenseGetLocalMatrix(x, &x));
+  if (here) {
+    PetscCall(PCFactorGetMatrix(s->factors, &factors));
+    PetscCall(MatMumpsSetIcntl(factors, 27, (PetscInt)MAX_BLOCK));
+    PetscCall(MatMatSolve(factors, rhs, x));
+  }
   PetscCall(MatDestroy(&rhs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

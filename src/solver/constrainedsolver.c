@@ -111,6 +111,7 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(KSPSetUpOnBlocks(s->ksp)); /* now, not with the first solution */
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPPREONLY, &direct));
   if (direct) PetscCall(KSPGetPC(s->ksp, &s->direct));
+  PetscCall(ConstrainedSolverFindFactors(s, A));
   PetscCall(ConstrainedSolverCountFlops(s, A));
 
   PetscCall(MatCreateVecs(A, NULL, &s->rhs));

@@ -5,7 +5,9 @@
 
 struct _n_ConstrainedSolver {
   KSP                ksp;
-  PC                 direct; /* the preconditioner where it is the whole solver, else NULL */
+  PC                 direct;  /* the preconditioner where it is the whole solver, else NULL */
+  PC                 factors; /* what has factors of A that all ranks made together, or this one alone; NULL: nothing */
+  PetscBool          home;    /* one of several ranks has A, and `factors`; those of others are of nothing */
   Mat                B;
   PetscInt           local, global, begin; /* rows of B */
   PetscMPIInt        size, *counts, *offsets;
@@ -41,6 +43,7 @@ struct _n_ConstrainedSolver {
 #define FEW_ROWS 16
 
 PETSC_INTERN PetscErrorCode ConstrainedSolverChooseBlock(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver, KSP, Vec);
 PETSC_INTERN PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver, PetscInt);

@@ -147,25 +147,48 @@ PetscErrorCode ConstrainedSolverAdjust(KSP ksp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Which preconditioner has factors of A, if any has: `direct`, or the one of the block where one of several ranks has all of A */
+PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver s, Mat A)
+{
+  PetscBool blocks, factored;
+  KSP      *inner;
+  PC        pc = s->direct;
+
+  PetscFunctionBegin;
+  if (!pc) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectTypeCompare((PetscObject)pc, PCBJACOBI, &blocks));
+  if (blocks) PetscCall(IsOnOneRank(A, s->size, &s->home));
+  if (s->home) {
+    PetscCall(PCBJacobiGetSubKSP(pc, NULL, NULL, &inner));
+    PetscCall(PetscObjectTypeCompare((PetscObject)inner[0], KSPPREONLY, &s->home));
+    if (s->home) PetscCall(KSPGetPC(inner[0], &pc));
+  }
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factored, PCLU, PCCHOLESKY, ""));
+  if (factored) s->factors = pc;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What one solution costs, to compare iterations with columns; counted, so that a run repeats */
 PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver s, Mat A)
 {
-  MatInfo  info;
-  PetscInt n;
-  Mat      factors = NULL;
+  PetscInt       n, mine;
+  PetscLogDouble entries = 0;
 
   PetscFunctionBegin;
   PetscCall(MatGetSize(A, &n, NULL));
+  PetscCall(MatGetLocalSize(A, &mine, NULL));
   s->solve_flops = (PetscLogDouble)FLOPS_OF_UNKNOWN * n;
-  if (s->direct) {
-    PetscBool factored;
+  if (!s->factors) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!s->home || mine) {
+    MatInfo info;
+    Mat     factors;
 
-    PetscCall(PetscObjectTypeCompareAny((PetscObject)s->direct, &factored, PCLU, PCCHOLESKY, ""));
-    if (factored) PetscCall(PCFactorGetMatrix(s->direct, &factors));
+    PetscCall(PCFactorGetMatrix(s->factors, &factors));
+    PetscCall(MatGetInfo(factors, MAT_GLOBAL_SUM, &info));
+    entries = info.nz_used;
   }
-  if (!factors) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatGetInfo(factors, MAT_GLOBAL_SUM, &info));
-  if (info.nz_used > 0) s->solve_flops = FLOPS_OF_ENTRY * info.nz_used;
+  if (s->home) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &entries, 1, MPI_DOUBLE, MPI_SUM, PetscObjectComm((PetscObject)s->ksp)));
+  if (entries > 0) s->solve_flops = FLOPS_OF_ENTRY * entries;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

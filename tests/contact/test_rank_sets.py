@@ -39,6 +39,9 @@ CASES = {
     "space": SPACE + BOX,
     "space, explicit": SPACE + BOX + BOTH,
     "space, neo-Hookean, explicit, friction": SPACE + BOX + NEO_HOOKEAN + FRICTION + BOTH,
+    "space, factors of MUMPS": SPACE + BOX + "-left_dm_plex_box_faces 12,8,6",
+    "space, explicit, tied, substeps": SPACE + BOX.replace("0.6002", "0.6") + "-contact_law tied -{0}_ts_type centraldifference -{1}_ts_type centraldifference "
+    "-{0}_ts_time_step 1e-6 -{1}_ts_time_step 2e-6".format("left", "right"),
     "ball": SPACE + BALL,
     "ball, explicit": SPACE + BALL + BOTH,
     "rod": SPACE + ROD,
@@ -53,7 +56,8 @@ CASES = {
 SETS = {2: ["-left_ranks 0 -right_ranks 1", "-left_ranks 1"], 3: ["-left_ranks 0,2 -right_ranks 1", "-left_ranks 1-2 -right_ranks 1-2", "-left_ranks 2 -right_ranks 0-1"]}
 SHORT = {
     ("plane", 2, 0), ("plane, neo-Hookean, friction", 3, 0), ("plane, explicit, friction", 3, 1), ("plane, implicit and explicit", 3, 2),
-    ("plane, multipliers", 2, 0), ("plane, rigid", 3, 0), ("space", 3, 1), ("space, neo-Hookean, explicit, friction", 3, 0), ("ball, explicit", 3, 2),
+    ("plane, multipliers", 2, 0), ("plane, rigid", 3, 0), ("space", 3, 1), ("space, neo-Hookean, explicit, friction", 3, 0), ("space, factors of MUMPS", 2, 0),
+    ("space, explicit, tied, substeps", 2, 1), ("ball, explicit", 3, 2),
     ("rod", 3, 2), ("tet4 of a file", 3, 0), ("tet10 of a file, explicit", 3, 2), ("composite ball, explicit", 3, 1),
 }  # fmt: skip
 ALL = [(name, ranks, i) for name in CASES for ranks in SETS for i in range(len(SETS[ranks]))]

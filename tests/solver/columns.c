@@ -35,13 +35,18 @@ typedef struct {
   PetscOptions      options;
 } System;
 
-static void create(System *s, const char options[])
+/* at_home: the last rank has all unknowns, and all ranks have rows */
+static void create(System *s, PetscBool at_home, const char options[])
 {
-  PetscInt begin, end, local, row;
-  Mat      A, B;
+  PetscInt    begin, end, local, row;
+  PetscMPIInt rank, size;
+  Mat         A, B;
 
+  ok(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
+  ok(MPI_Comm_size(PETSC_COMM_WORLD, &size));
   s->options = options_begin("%s", options);
-  ok(MatCreateAIJ(PETSC_COMM_WORLD, PETSC_DECIDE, PETSC_DECIDE, SIZE, SIZE, 3, NULL, 2, NULL, &A));
+  local      = at_home ? (rank == size - 1 ? SIZE : 0) : PETSC_DECIDE;
+  ok(MatCreateAIJ(PETSC_COMM_WORLD, local, local, SIZE, SIZE, 3, NULL, 2, NULL, &A));
   ok(MatGetOwnershipRange(A, &begin, &end));
   for (PetscInt i = begin; i < end; i++)
     for (PetscInt j = PetscMax(0, i - 1); j <= PetscMin(SIZE - 1, i + 1); j++) ok(MatSetValue(A, i, j, i == j ? 2 : -1, INSERT_VALUES));
@@ -113,7 +118,7 @@ static void blocks_and_single_columns_are_exact(void **state)
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(factors); k++) {
     System s;
 
-    create(&s, factors[k]);
+    create(&s, PETSC_FALSE, factors[k]);
     know_all(&s);
     destroy(&s);
   }
@@ -126,11 +131,34 @@ static void more_rows_than_a_block_are_exact(void **state)
   PetscInt rows[ROWS];
 
   (void)state;
-  create(&s, "-columns_pc_type cholesky -columns_pc_factor_mat_solver_type mumps");
+  create(&s, PETSC_FALSE, "-columns_pc_type cholesky -columns_pc_factor_mat_solver_type mumps");
   for (PetscInt r = 0; r < ROWS; r++) rows[r] = r;
   ok(ConstrainedSolverExtend(s.solver, ROWS, rows));
   check(&s, ROWS);
   destroy(&s);
+}
+
+/* Where one of several ranks has the matrix its factors are there, and blocks are solved for without the others */
+static void blocks_of_one_rank_are_exact(void **state)
+{
+  static const char *const factors[] = {"-columns_sub_pc_type cholesky -columns_sub_pc_factor_mat_solver_type mumps", ""};
+
+  (void)state;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(factors); k++) {
+    PetscMPIInt    size;
+    PetscLogDouble one, many;
+    System         s;
+
+    ok(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+    create(&s, PETSC_TRUE, factors[k]);
+    one  = ConstrainedSolverGetFlops(s.solver);
+    many = ConstrainedSolverGetExtendFlops(s.solver, ROWS);
+    assert_true(one < 100 * SIZE); /* that of a matrix of three diagonals, and not a guess */
+    if (k == 0 && size > 1) assert_true(many < ROWS * one / 4);
+    else near(many, ROWS * one, 0);
+    know_all(&s);
+    destroy(&s);
+  }
 }
 
 /* What decides whether dense matrices are worth their columns */
@@ -140,13 +168,13 @@ static void columns_of_a_block_count_less(void **state)
   System         s;
 
   (void)state;
-  create(&s, "-columns_pc_type cholesky -columns_pc_factor_mat_solver_type mumps");
+  create(&s, PETSC_FALSE, "-columns_pc_type cholesky -columns_pc_factor_mat_solver_type mumps");
   one  = ConstrainedSolverGetExtendFlops(s.solver, 1);
   many = ConstrainedSolverGetExtendFlops(s.solver, ROWS);
   near(one, ConstrainedSolverGetFlops(s.solver), 0);
   assert_true(many < ROWS * one / 4);
   destroy(&s);
-  create(&s, "-columns_pc_type redundant -columns_redundant_pc_type lu");
+  create(&s, PETSC_FALSE, "-columns_pc_type redundant -columns_redundant_pc_type lu");
   many = ConstrainedSolverGetExtendFlops(s.solver, ROWS);
   near(many, ROWS * ConstrainedSolverGetFlops(s.solver), 0);
   destroy(&s);
@@ -225,9 +253,8 @@ static void kept_columns_give_what_a_solution_gives(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(blocks_and_single_columns_are_exact),
-      cmocka_unit_test(more_rows_than_a_block_are_exact),
-      cmocka_unit_test(columns_of_a_block_count_less),
+      cmocka_unit_test(blocks_and_single_columns_are_exact),     cmocka_unit_test(blocks_of_one_rank_are_exact),
+      cmocka_unit_test(more_rows_than_a_block_are_exact),        cmocka_unit_test(columns_of_a_block_count_less),
       cmocka_unit_test(kept_columns_give_what_a_solution_gives),
   };
 

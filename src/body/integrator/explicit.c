@@ -325,10 +325,9 @@ static PetscErrorCode SetUp(Body body)
 {
   BodyIntegrator integrator = body->integrator;
   BodyExplicit *explicit    = (BodyExplicit *)integrator->data;
-  PetscBool layer           = (PetscBool)(body->layer.n_dofs > 0);
+  const PetscBool layer     = body->layer.exists;
 
   PetscFunctionBegin;
-  PetscCall(BodyAnyRank(body, &layer));
   if (layer) PetscCall(LayerBalanceCreate(body, &explicit->layer));
   integrator->answers_by_layer = (PetscBool)(layer && body->time.substeps == 1 && (body->rows.global || body->rows.expected) &&
                                              !body->rows.have_mass && !body->rows.tied_mass);

@@ -91,6 +91,7 @@ typedef struct {
 typedef struct {
   PetscBool    *contains; /* per local node: it belongs to a contact surface */
   PetscReal     edge;     /* of the elements with such a node, see BodyGetContactElementSize(); 0 until it is asked for [m] */
+  PetscBool     exists;   /* some rank has massless nodes */
   PetscInt      n_dofs;   /* owned */
   PetscInt     *dofs;     /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */
   LayerElements elements; /* those that touch massless nodes; NULL until somebody balances them */

@@ -50,13 +50,10 @@ PetscErrorCode BodyComputeStartAcceleration(Body body, PetscBool pushed, const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the body has massless nodes on any rank, whose balance means anything; collective */
-static PetscErrorCode HasLayer(Body body, PetscBool *has)
+/* Whether the body has massless nodes on any rank, whose balance means anything */
+static PetscBool HasLayer(Body body)
 {
-  PetscFunctionBegin;
-  *has = (PetscBool)(body->layer.n_dofs > 0 && body->integrator->has_inertia);
-  PetscCall(BodyAnyRank(body, has));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return (PetscBool)(body->layer.exists && body->integrator->has_inertia);
 }
 
 /*@
@@ -78,14 +75,12 @@ PetscErrorCode BodyIsOutOfBalance(Body body, PetscBool *out)
 {
   Vec                f = body->work.nodes[0];
   const PetscScalar *values;
-  PetscBool          has;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(out, 2);
   *out = PETSC_FALSE;
-  PetscCall(HasLayer(body, &has));
-  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ComputeImbalance(body, PETSC_FALSE, NULL, f));
   PetscCall(VecGetArrayRead(f, &values));
   for (PetscInt i = 0; i < body->layer.n_dofs; i++)
@@ -132,15 +127,13 @@ PetscErrorCode BodyMarkRows(Body body, PetscBool massless[], PetscBool mass[])
 {
   Vec          marks = body->work.nodes[0];
   PetscScalar *mark;
-  PetscBool    has;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(HasLayer(body, &has));
   for (PetscInt massive = 0; massive < 2; massive++) {
     PetscCall(VecSet(marks, massive));
     PetscCall(VecGetArray(marks, &mark));
-    for (PetscInt i = 0; i < body->layer.n_dofs && has; i++) mark[body->layer.dofs[i]] = 1 - massive;
+    for (PetscInt i = 0; i < body->layer.n_dofs && HasLayer(body); i++) mark[body->layer.dofs[i]] = 1 - massive;
     PetscCall(VecRestoreArray(marks, &mark));
     PetscCall(FindEntries(body, marks, massive ? mass : massless));
   }
@@ -192,16 +185,14 @@ static PetscErrorCode GetRows(Body body, Vec vec, PetscScalar rows[])
 @*/
 PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *change)
 {
-  Vec       f = body->work.nodes[0], du = body->work.nodes[1];
-  PetscBool has;
+  Vec f = body->work.nodes[0], du = body->work.nodes[1];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(change, 3);
   *change = 0;
   PetscCall(PetscArrayzero(displacement, body->rows.local));
-  PetscCall(HasLayer(body, &has));
-  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyPrepareLayer(body, body->state.u));
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(ComputeImbalance(body, PETSC_FALSE, NULL, f));
@@ -231,12 +222,10 @@ PetscErrorCode BodyMultiplyLayerCompliance(Body body, const PetscScalar force[],
 {
   Vec          f = body->work.nodes[0], du = body->work.nodes[1];
   PetscScalar *row;
-  PetscBool    has;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(HasLayer(body, &has));
-  if (!has) {
+  if (!HasLayer(body)) {
     PetscCall(PetscArrayzero(displacement, body->rows.local));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -270,16 +259,14 @@ PetscErrorCode BodyMultiplyLayerCompliance(Body body, const PetscScalar force[],
 @*/
 PetscErrorCode BodyMoveLayer(Body body, const PetscScalar force[], PetscReal *change)
 {
-  Vec       f = body->work.nodes[0], du = body->work.nodes[1];
-  PetscBool has;
+  Vec f = body->work.nodes[0], du = body->work.nodes[1];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(change, 3);
   PetscCheck(!body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before the first step");
   *change = 0;
-  PetscCall(HasLayer(body, &has));
-  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ComputeImbalance(body, PETSC_TRUE, force, f));
   PetscCall(BodyApplyLayerCompliance(body, f, du));
   PetscCall(MeasureChange(body, du, change));

@@ -10,7 +10,6 @@
 static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec change)
 {
   Vec          f = body->work.nodes[0], du = body->work.nodes[1], pull = body->work.nodes[2];
-  PetscBool    layer = (PetscBool)(body->layer.n_dofs > 0);
   PetscScalar *row, *values;
 
   PetscFunctionBegin;
@@ -20,8 +19,7 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], f));
   PetscCall(BodyAddStoppedHandover(body, f));
   PetscCall(BodyZeroHeld(body, f));
-  PetscCall(BodyAnyRank(body, &layer));
-  if (layer) {
+  if (body->layer.exists) {
     PetscCall(BodySolveLayer(body, body->saved.u, f, du, pull));
     PetscCall(VecAXPY(f, 1, pull));
     PetscCall(VecGetArray(f, &values));
@@ -125,8 +123,6 @@ substep.
 @*/
 PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
 {
-  PetscBool layer;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
@@ -139,9 +135,8 @@ PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
     body->rows.any_by_mean = (PetscBool)(body->rows.any_by_mean || rows[i]);
   }
   PetscCall(BodyAnyRank(body, &body->rows.any_by_mean));
-  layer = (PetscBool)(body->layer.n_dofs > 0);
-  PetscCall(BodyAnyRank(body, &layer));
-  if (layer && body->rows.any_by_mean) PetscCall(BodyPrepareLayer(body, body->state.u)); /* its factors, before the time loop */
+  if (body->layer.exists && body->rows.any_by_mean)
+    PetscCall(BodyPrepareLayer(body, body->state.u)); /* its factors, before the time loop */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

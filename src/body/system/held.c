@@ -124,17 +124,15 @@ PetscErrorCode BodyCheckHeld(Body body)
 {
   PetscReal free[BODY_MAX_RIGID * BODY_MAX_RIGID], rows;
   PetscInt  n_free;
-  PetscBool layer = (PetscBool)(body->layer.n_dofs > 0);
 
   PetscFunctionBegin;
-  PetscCall(BodyAnyRank(body, &layer));
   if (!body->integrator->has_inertia) {
     PetscCall(FindFreeMotions(body, body->held.n, body->held.dofs, PETSC_FALSE, &n_free, free));
     PetscCall(MatNorm(body->rows.matrix, NORM_FROBENIUS, &rows)); /* the rows of all pairs are there, those of others empty */
     if (n_free && rows == 0) PetscCall(RefuseLoose(body, n_free, free));
     PetscCall(BodySetUpSprings(body, n_free, free));
   }
-  if (layer) {
+  if (body->layer.exists) {
     PetscCall(FindFreeMotions(body, body->layer.n_dofs, body->layer.dofs, PETSC_TRUE, &n_free, free));
     PetscCheck(!n_free, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "Body '%s' has too few nodes with mass to hold its massless contact nodes, which can turn about them; refine the mesh, or "

@@ -79,13 +79,11 @@ PetscErrorCode BodyPrepareLayer(Body body, Vec u)
 PetscErrorCode BodyApplyLayerCompliance(Body body, Vec f, Vec du)
 {
   LayerSolver layer = body->layer.solver;
-  KSP         ksp;
 
   PetscFunctionBegin;
   PetscCall(VecScatterBegin(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(ConstrainedSolverGetKSP(layer->own ? layer->own : body->solver, &ksp));
-  PetscCall(KSPSolve(ksp, layer->rhs, layer->solution));
+  PetscCall(ConstrainedSolverSolveFree(layer->own ? layer->own : body->solver, layer->rhs, layer->solution));
   PetscCall(VecZeroEntries(du));
   PetscCall(VecScatterBegin(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));

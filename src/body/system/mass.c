@@ -144,6 +144,7 @@ static PetscErrorCode SetUpLayer(Body body)
 
   PetscFunctionBegin;
   body->layer.n_dofs = 0;
+  body->layer.exists = PETSC_FALSE;
   PetscCall(PetscMalloc1(body->mass.redistribute ? body->mesh.owned_nodes * body->mesh.dim : 0, &body->layer.dofs));
   if (!body->mass.redistribute) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++)
@@ -154,6 +155,8 @@ static PetscErrorCode SetUpLayer(Body body)
       if (held < body->held.n && body->held.dofs[held] == dof) continue;
       if (body->layer.contains[node]) body->layer.dofs[body->layer.n_dofs++] = dof;
     }
+  body->layer.exists = (PetscBool)(body->layer.n_dofs > 0);
+  PetscCall(BodyAnyRank(body, &body->layer.exists));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
