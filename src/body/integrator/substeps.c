@@ -21,14 +21,15 @@ PetscErrorCode BodyCheckSubstep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Massless nodes have the mean velocity of the substep, and no acceleration */
+/* Massless nodes have the mean velocity of the substep, and no acceleration. Vectors count as changed on all ranks: PETSc would take the
+   norms that it remembers on those without such nodes, and add up over the others. */
 PetscErrorCode BodyFinishLayer(Body body)
 {
   const PetscScalar *u0, *u1;
   PetscScalar       *v1, *a1;
 
   PetscFunctionBegin;
-  if (!body->layer.n_dofs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->layer.exists) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
   PetscCall(VecGetArrayRead(body->state.u, &u1));
   PetscCall(VecGetArray(body->state.v, &v1));
