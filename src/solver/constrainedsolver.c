@@ -28,6 +28,19 @@ static PetscErrorCode ChooseColumns(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the rank that has A has all rows too */
+static PetscErrorCode FindWhetherAlone(ConstrainedSolver s)
+{
+  const PetscInt *ranges;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetOwnershipRanges(s->rhs, &ranges));
+  s->alone = s->home;
+  for (PetscMPIInt r = 0; r < s->size; r++)
+    if (s->counts[r] && ranges[r + 1] == ranges[r]) s->alone = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All that goes with the rows: none of them is constrained, and no column is there */
 static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B, Compliance compliance)
 {
@@ -45,6 +58,7 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B, Compliance complian
   PetscCall(PetscMPIIntCast(s->local, &local));
   PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, s->counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < s->size; total += s->counts[r++]) s->offsets[r] = total;
+  PetscCall(FindWhetherAlone(s));
   PetscCall(
       PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
   PetscCall(PetscCalloc3(2 * s->global, &s->changes, s->global, &s->coefficients, s->local, &s->column));

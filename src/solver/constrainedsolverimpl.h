@@ -8,6 +8,7 @@ struct _n_ConstrainedSolver {
   PC                 direct;  /* the preconditioner where it is the whole solver, else NULL */
   PC                 factors; /* what has factors of A that all ranks made together, or this one alone; NULL: nothing */
   PetscBool          home;    /* one of several ranks has A, and `factors`; those of others are of nothing */
+  PetscBool          alone;   /* and all rows of B too: then it solves without a word of others, who may not even ask */
   Mat                B;
   PetscInt           local, global, begin; /* rows of B */
   PetscMPIInt        size, *counts, *offsets;
@@ -36,7 +37,8 @@ struct _n_ConstrainedSolver {
   /* corrections by stored columns: their changes, all rows on every rank */
   PetscBool    keeps; /* columns are kept of all rows that become known */
   PetscScalar *changes, *coefficients;
-  PetscScalar *column; /* work space: of this rank's rows */
+  PetscBool    by_columns; /* what a correction starts from is in `changes`, and else in `rhs` */
+  PetscScalar *column;     /* work space: of this rank's rows */
 };
 
 /* Interfaces of so few rows in all make the column of each row that is asked for: a correction adds them up in place of a solution */

@@ -270,14 +270,14 @@ static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Changes of forces and targets, of all rows on every rank. `columns`: the columns of all rows whose force changes are there; where the
-   interface has few rows they are made. */
+/* Changes of forces and targets, of all rows on every rank that may ask. `columns`: the columns of all rows whose force changes are there;
+   where the interface has few rows they are made, unless one rank may be doing this without the others. */
 static PetscErrorCode GatherChanges(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[], PetscBool *columns)
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
 
   PetscFunctionBegin;
-  if (s->size > 1) {
+  if (s->size > 1 && !s->alone) {
     PetscCallMPI(MPI_Allgatherv(force, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes, s->counts, s->offsets, MPIU_SCALAR, comm));
     PetscCallMPI(
         MPI_Allgatherv(target, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes + s->global, s->counts, s->offsets, MPIU_SCALAR, comm));
@@ -288,29 +288,38 @@ static PetscErrorCode GatherChanges(ConstrainedSolver s, const PetscScalar force
   *columns = PETSC_TRUE;
   for (PetscInt j = 0; j < s->global; j++) {
     if (s->changes[j] == 0) continue;
-    if (s->global <= FEW_ROWS) PetscCall(ConstrainedSolverMakeColumn(s, j));
+    if (s->global <= FEW_ROWS && !s->alone) PetscCall(ConstrainedSolverMakeColumn(s, j));
     *columns = (PetscBool)(*columns && s->fresh[j]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x with A x = B^T (force - s) and B_m x = target, for forces and targets of this rank's rows: what a change of both changes. By the
-   columns where they are kept, else by a solution. */
-PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[], Vec x)
+/* Brings changes of forces and targets of this rank's rows to the ranks that have A, for ConstrainedSolverCorrect(); collective */
+PetscErrorCode ConstrainedSolverBring(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[])
 {
   PetscScalar *row;
-  PetscBool    columns = PETSC_FALSE;
 
   PetscFunctionBegin;
-  if (s->keeps && s->dense) PetscCall(GatherChanges(s, force, target, &columns));
-  if (columns) {
-    PetscCall(AddColumns(s, x));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  s->by_columns = PETSC_FALSE;
+  if (s->keeps && s->dense) PetscCall(GatherChanges(s, force, target, &s->by_columns));
+  if (s->by_columns) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(s->row, &row));
   PetscCall(PetscArraycpy(row, force, s->local));
   PetscCall(VecRestoreArrayWrite(s->row, &row));
   PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x with A x = B^T (force - s) and B_m x = target, for the forces and targets that ConstrainedSolverBring() has brought, without another
+   use of the solver in between: what a change of both changes. By the columns where they are kept, else by a solution. Where nothing is
+   constrained, a rank that has all of A makes this alone. */
+PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar target[], Vec x)
+{
+  PetscFunctionBegin;
+  if (s->by_columns) {
+    PetscCall(AddColumns(s, x));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ConstrainedSolverSolveFree(s, s->rhs, x));
   PetscCall(Constrain(s, target, x));
   PetscFunctionReturn(PETSC_SUCCESS);

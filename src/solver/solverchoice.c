@@ -168,6 +168,12 @@ PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver s, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether one of several ranks has A and solves with it without a message, as long as no row is constrained */
+PetscBool ConstrainedSolverIsHome(ConstrainedSolver s)
+{
+  return s->home;
+}
+
 /* What one solution costs, to compare iterations with columns; counted, so that a run repeats */
 PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver s, Mat A)
 {

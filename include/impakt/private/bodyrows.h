@@ -113,6 +113,8 @@ PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrateRows(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyCompleteStep(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyProposeRepeat(Body, BodyWord *);
+PETSC_EXTERN PetscErrorCode BodyBeginExchange(Body, PetscBool);
+PETSC_EXTERN PetscErrorCode BodyEndExchange(Body);
 PETSC_EXTERN PetscErrorCode BodyExpectRepeat(Body, const PetscScalar[], const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);

@@ -414,6 +414,7 @@ typedef struct {
   PetscReal     *traces;       /* six numbers per body, see ContactGetBodyTraces() */
   PetscInt      *counts;       /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
   BodyWord      *words;        /* per body: see ContactTellWords() */
+  PetscBool     *left_out;     /* per body: it is not integrated with others */
   PetscScalar   *told;         /* all words at once */
   PetscInt       most_told;    /* numbers that there is room for in these */
   PetscReal     *boxes;        /* per surface: lower corner, and the upper one with its sign changed [m] */
@@ -510,6 +511,7 @@ PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 /* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
    can: ContactFailed() tells. */
 PETSC_EXTERN PetscErrorCode ContactIntegrateBody(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactIntegrateSome(Contact, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode ContactIntegrateBodies(Contact);
 PETSC_EXTERN PetscErrorCode ContactAgree(Contact);
 PETSC_EXTERN PetscErrorCode ContactCompleteBodies(Contact);

@@ -20,6 +20,14 @@ static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What BodyImplicitCorrect() needs of ranks with rows */
+static PetscErrorCode BringChanges(Body body, const PetscScalar force[], const PetscScalar displacement[])
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverBring(body->solver, force, displacement));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What all integrators on TSALPHA2 have in common */
 PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
 {
@@ -31,6 +39,7 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   integrator->reads_start        = PETSC_TRUE;
   integrator->feels_end_force    = PETSC_TRUE;
   integrator->repeats_prescribed = PETSC_TRUE;
+  integrator->ops.bringchanges   = BringChanges;
   integrator->ops.setrows        = BodyImplicitSetRows;
   integrator->ops.setlevel       = BodyImplicitSetLevel;
   integrator->ops.renew          = BodyImplicitRenew;
@@ -181,7 +190,8 @@ PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar force[], const P
   PetscScalar       *u, *v, *a;
 
   PetscFunctionBegin;
-  PetscCall(ConstrainedSolverCorrect(body->solver, force, displacement, du));
+  if (!body->rows.exchange.open) PetscCall(BringChanges(body, force, displacement));
+  PetscCall(ConstrainedSolverCorrect(body->solver, displacement, du));
   PetscCall(VecGetArrayRead(du, &change));
   PetscCall(VecGetArray(body->state.u, &u));
   PetscCall(VecGetArray(body->state.v, &v));

@@ -336,6 +336,7 @@ static PetscErrorCode SetUp(Body body)
   if (body->mass.matrix) PetscCall(BodySetUpMassSolver(body));
   PetscCall(TSCentralDifferenceSetAcceleration(body->time.ts, ComputeAcceleration, body));
   PetscCall(TSCentralDifferenceSetAccelerationVec(body->time.ts, body->state.a));
+  integrator->is_local        = (PetscBool)(body->mass.inverse != NULL);
   integrator->depends_on_step = (PetscBool)(body->time.substeps > 1);
   integrator->reads_start     = layer;
   integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
@@ -375,7 +376,6 @@ PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
   integrator->has_inertia       = PETSC_TRUE;
   integrator->needs_stable_step = PETSC_TRUE;
   integrator->divides_by_mass   = PETSC_TRUE;
-  integrator->is_local          = PETSC_TRUE;
   integrator->staggered         = 0.25;
   integrator->affine            = PETSC_TRUE;
   integrator->ops.setup         = SetUp;

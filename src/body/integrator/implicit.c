@@ -99,6 +99,9 @@ static PetscErrorCode SetUp(Body body)
     body->rows.stage = implicit->alpha_f;
     PetscCall(BodyCreateVec(body, &body->rows.stage_balance));
   }
+  /* other masses are factored when they are needed first, which may be in a substep */
+  body->integrator->is_local = (PetscBool)(body->model.linear && ConstrainedSolverIsHome(body->solver) &&
+                                           (body->mass.diagonal || body->time.substeps == 1));
   /* a mass matrix that is not diagonal hands the acceleration of prescribed nodes to others */
   if (body->rows.have_mass && body->mass.matrix) body->integrator->ops.repeat = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -258,7 +258,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpTime(body));
   PetscCall(BodyRefuseNewtonOptions(body));
   PetscCall(BodySetUpRepeat(body));
-  body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local && body->mass.inverse);
+  body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local);
   if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) PetscCall(SetUpSubstepStart(body));
   if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &body->substep_start.damping));
   PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));

@@ -136,6 +136,13 @@ typedef struct {
   PetscReal  until;        /* position in the controller step from which on there is nothing of the old rows; 0: they are the same */
 } BodyHandover;
 
+/* What ranks tell each other before and after a step in place of within it, see exchange.c */
+typedef struct {
+  PetscBool open;
+  PetscBool writes; /* the step has traces to be written */
+  Vec       force;  /* that of contact on all nodes at its end; NULL until needed [N] */
+} BodyExchange;
+
 /* Where the rows of this rank have entries, see src/body/rows/pattern.c */
 typedef struct {
   PetscInt  n;                 /* rows */
@@ -175,6 +182,7 @@ typedef struct {
   Vec          stage_balance; /* forces that hold rows and held dofs at the stage; NULL: they are those at the end [N] */
   PetscScalar *kept_traces;   /* output traces put aside by BodyKeep() */
   BodyHandover handover;
+  BodyExchange exchange;
 } BodyRows;
 
 /* What a body keeps for controller steps that have been cut in halves so many times, see src/body/interface/steplevel.c */
@@ -424,6 +432,8 @@ PETSC_INTERN PetscErrorCode BodyTurnToMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyEndMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
+PETSC_INTERN PetscErrorCode BodyBringChanges(Body);
+PETSC_INTERN void           BodyDropWord(Body);
 PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodyFinishLayer(Body);
 PETSC_INTERN PetscErrorCode BodyCheckSubstep(Body);

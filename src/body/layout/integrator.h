@@ -29,6 +29,10 @@ typedef struct {
   /* (NULL) after the one substep of a controller step: moves its end state to the present inputs, given by how much more force acts on
      forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
   PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
+  /* (NULL) brings what the next repeat() needs of these changes to the rank that has the body, where it needs the changes and not the
+   * forces
+   */
+  PetscErrorCode (*bringchanges)(Body, const PetscScalar[], const PetscScalar[]);
   /* (NULL) notes how far the massless layer goes under a change of forces that is to come [m], and does so when it has come; may be set in
      setup() */
   PetscErrorCode (*expect)(Body, const PetscScalar[]);
@@ -78,11 +82,11 @@ struct _n_BodyIntegrator {
   PetscBool has_inertia;       /* false: neither mass nor acceleration means anything, and the state has no kinetic energy */
   PetscBool needs_stable_step; /* substeps are bounded by 2 / omega_max */
   PetscBool divides_by_mass;   /* each substep divides by the mass, so that factoring it has to be paid for */
-  PetscBool is_local;          /* substeps need no sums over all ranks but what rows that are prescribed take: see `local` in bodyimpl.h */
   PetscReal staggered;         /* the energy that the scheme conserves has 1/2 (v'Mv - staggered dt^2 a'Ma) for kinetic energy */
   /* known after getparameters() */
   PetscBool affine; /* for linear materials, displacements at the ends of substeps are affine in the contact forces at these ends alone */
   /* known after setup() */
+  PetscBool is_local;           /* substeps need no word of other ranks but what rows that are prescribed take: see `local` in bodyimpl.h */
   PetscBool uses_newton;        /* the SNES of the TS solves the equations of each substep */
   PetscBool depends_on_step;    /* displacements of the rows under forces on them depend on the length of the substep */
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */

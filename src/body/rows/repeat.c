@@ -125,6 +125,30 @@ PetscErrorCode BodyProposeRepeat(Body body, BodyWord *word)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Brings the changes that the next BodyRepeat() makes to the rank that has the body */
+PetscErrorCode BodyBringChanges(Body body)
+{
+  const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
+  struct _BodyRepeat *repeat   = body->repeat;
+  PetscBool           news[2];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2; k++) {
+    PetscScalar *values;
+
+    PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
+    for (PetscInt i = 0; i < body->rows.local; i++) repeat->changes[k][i] = Compare(body, k, i, values[i], news);
+  }
+  PetscCall((*body->integrator->ops.bringchanges)(body, repeat->changes[0], repeat->changes[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A word that was told before a step that has not been made is not that of the next one */
+void BodyDropWord(Body body)
+{
+  if (body->repeat) body->repeat->told = PETSC_FALSE;
+}
+
 /*@
   BodyExpectRepeat - tells what a change of the forces on rows brings about, which the next `BodyTryIntegrateRows()` need not find again
 

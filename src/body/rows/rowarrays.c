@@ -78,6 +78,7 @@ PetscErrorCode BodyDestroyRowArrays(Body body)
   PetscCall(PetscFree(rows->changed));
   PetscCall(PetscFree(rows->by_mean));
   PetscCall(BodyHandoverDestroy(&rows->handover));
+  PetscCall(VecDestroy(&rows->exchange.force));
   for (PetscInt k = 0; k < 3; k++) PetscCall(VecDestroy(&body->work.rows[k]));
   PetscCall(MatDestroy(&rows->free_matrix));
   PetscCall(RowPatternDestroy(&rows->pattern));

@@ -38,6 +38,10 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 
   PetscFunctionBegin;
   if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->rows.exchange.open) {
+    body->rows.exchange.writes = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.u, body->traces.displacement, level));
   PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.v, body->traces.velocity, level));
   PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.a, body->traces.acceleration, level));

@@ -134,8 +134,8 @@ PetscErrorCode ContactAgree(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One body through the controller step, as far as its rows depend on it, unless the step has failed already. ContactAgree() follows when
-   all bodies have been integrated. */
+/* One body through the controller step, as far as its rows depend on it, unless the step has failed already; for bodies that wait for each
+   other. ContactAgree() follows when all bodies have been integrated. */
 PetscErrorCode ContactIntegrateBody(Contact contact, PetscInt b)
 {
   StepConvergedReason reason;
@@ -147,11 +147,46 @@ PetscErrorCode ContactIntegrateBody(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ranks that have rows of bodies, and those that have the bodies, tell each other what steps need, and end with, of all bodies at once; not
+   of those that are left out (`NULL`: none) */
+static PetscErrorCode BeginExchange(Contact contact, const PetscBool left_out[], PetscBool completes)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies && contact->ranks.size > 1; b++)
+    if (!left_out || !left_out[b]) PetscCall(BodyBeginExchange(contact->bodies[b], completes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EndExchange(Contact contact, const PetscBool left_out[])
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies && contact->ranks.size > 1; b++)
+    if (!left_out || !left_out[b]) PetscCall(BodyEndExchange(contact->bodies[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bodies that do not wait for each other, as far as their rows depend on it, but those that are left out (`NULL`: none). ContactAgree()
+   follows. */
+PetscErrorCode ContactIntegrateSome(Contact contact, const PetscBool left_out[])
+{
+  PetscFunctionBegin;
+  PetscCall(BeginExchange(contact, left_out, PETSC_FALSE));
+  for (PetscInt k = 0; k < contact->n_bodies; k++) {
+    const PetscInt b = contact->ranks.visits[k];
+
+    if (!left_out || !left_out[b]) PetscCall(ContactIntegrateBody(contact, b));
+  }
+  PetscCall(EndExchange(contact, left_out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All bodies, whose rows are loaded, through the controller step */
 PetscErrorCode ContactIntegrateBodies(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < contact->n_bodies; k++) PetscCall(ContactIntegrateBody(contact, contact->ranks.visits[k]));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyProposeRepeat(contact->bodies[b], &contact->work.words[b]));
+  PetscCall(ContactTellWords(contact, contact->work.words));
+  PetscCall(ContactIntegrateSome(contact, NULL));
   PetscCall(ContactAgree(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -160,6 +195,7 @@ PetscErrorCode ContactIntegrateBodies(Contact contact)
 PetscErrorCode ContactCompleteBodies(Contact contact)
 {
   PetscFunctionBegin;
+  PetscCall(BeginExchange(contact, NULL, PETSC_TRUE));
   for (PetscInt k = 0; k < contact->n_bodies && !ContactFailed(contact); k++) {
     const PetscInt      b = contact->ranks.visits[k];
     StepConvergedReason reason;
@@ -167,6 +203,7 @@ PetscErrorCode ContactCompleteBodies(Contact contact)
     PetscCall(BodyCompleteStep(contact->bodies[b], &reason));
     PetscCall(TakeFailure(contact, b, reason));
   }
+  PetscCall(EndExchange(contact, NULL));
   PetscCall(ContactAgree(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

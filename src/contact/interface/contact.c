@@ -373,7 +373,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
-  PetscCall(PetscFree5(c->spares, c->work.hands_over, c->work.traces, c->work.counts, c->work.words));
+  PetscCall(PetscFree6(c->spares, c->work.hands_over, c->work.traces, c->work.counts, c->work.words, c->work.left_out));
   PetscCall(PetscFree(c->work.told));
   PetscCall(PetscFree(c->work.boxes));
   PetscCall(ContactDestroyResultants(c));

@@ -177,20 +177,14 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An integration under the contact forces of the step before; or what a body that tells it for less would do without contact */
-static PetscErrorCode MakeBase(Contact contact, PetscInt b)
+/* The contact forces of the step before, on a body */
+static PetscErrorCode LoadStartForces(Contact contact, PetscInt b)
 {
   const ContactBodyRows *of     = &contact->body_rows[b];
   const BodyTraces      *traces = &contact->traces[b];
   PetscInt               levels;
-  PetscBool              free_rows;
 
   PetscFunctionBegin;
-  PetscCall(BodyHasFreeRows(contact->bodies[b], &free_rows));
-  if (free_rows) {
-    PetscCall(BodySetFreeBase(contact->bodies[b]));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(TraceGetSizes(traces->force_in, NULL, &levels));
   for (PetscInt level = 0; level <= levels; level++) {
     PetscScalar *force;
@@ -199,8 +193,26 @@ static PetscErrorCode MakeBase(Contact contact, PetscInt b)
     for (PetscInt k = 0; k < of->n; k++)
       force[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * contact->start.force[of->rows[k]];
   }
-  PetscCall(ContactIntegrateBody(contact, b));
-  PetscCall(BodySetBase(contact->bodies[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An integration of each body under the contact forces of the step before; or what a body that tells it for less would do without contact
+ */
+static PetscErrorCode MakeBases(Contact contact)
+{
+  PetscBool *free_rows = contact->work.left_out;
+
+  PetscFunctionBegin;
+  PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscCall(BodyHasFreeRows(contact->bodies[b], &free_rows[b]));
+    if (free_rows[b]) PetscCall(BodySetFreeBase(contact->bodies[b]));
+    else PetscCall(LoadStartForces(contact, b));
+  }
+  PetscCall(ContactIntegrateSome(contact, free_rows));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (!free_rows[b]) PetscCall(BodySetBase(contact->bodies[b]));
+  PetscCall(ContactAgree(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -225,9 +237,7 @@ PetscErrorCode SchwarzPrepareCondensed(Contact contact)
 
   PetscFunctionBegin;
   if (!schwarz->have_base) {
-    PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
-    for (PetscInt k = 0; k < contact->n_bodies; k++) PetscCall(MakeBase(contact, contact->ranks.visits[k]));
-    PetscCall(ContactAgree(contact));
+    PetscCall(MakeBases(contact));
     schwarz->have_base = PETSC_TRUE;
   }
   PetscCall(SchwarzSetRoles(contact));

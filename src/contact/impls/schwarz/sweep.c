@@ -316,6 +316,22 @@ static PetscErrorCode TellInputs(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All bodies that do not rest, of which none waits for another */
+static PetscErrorCode AnswerAtOnce(Contact contact)
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(TellInputs(contact));
+  if (schwarz->step != STEP_CONDENSED) PetscCall(ContactIntegrateSome(contact, schwarz->groups.rests));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    if (schwarz->groups.rests[b]) continue;
+    if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[b]));
+    if (schwarz->has_forces) PetscCall(SchwarzReportByForce(contact, b));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All bodies that do not rest, each after those whose answer it waits for */
 static PetscErrorCode SweepBodies(Contact contact, const PetscScalar x[])
 {
@@ -331,9 +347,7 @@ static PetscErrorCode SweepBodies(Contact contact, const PetscScalar x[])
     if (known) PetscCall(SchwarzReportByForce(contact, b)); /* to partners that come later */
     else PetscCall(Answer(contact, b));
   }
-  if (known) PetscCall(TellInputs(contact));
-  for (PetscInt k = 0; k < contact->n_bodies && known; k++)
-    if (!rests[contact->ranks.visits[k]]) PetscCall(Answer(contact, contact->ranks.visits[k]));
+  if (known) PetscCall(AnswerAtOnce(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
