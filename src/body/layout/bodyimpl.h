@@ -147,6 +147,9 @@ typedef struct {
 typedef struct {
   PetscInt  n;                 /* rows */
   PetscInt *offsets, *columns; /* of each row among the columns, n + 1; global numbers */
+  /* columns of other ranks that the matrix has room for, ascending: entries are stored by their places here, and there may be more of these
+     than rows have entries in */
+  PetscInt n_elsewhere, *elsewhere;
 } RowPattern;
 
 /* The rows of the interface: of this rank, and how to have all of them on every rank */
@@ -457,6 +460,7 @@ PETSC_INTERN PetscErrorCode RowPatternNote(RowPattern *, Mat, PetscBool, PetscBo
 PETSC_INTERN PetscErrorCode RowPatternDestroy(RowPattern *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
 PETSC_INTERN PetscErrorCode BodySetUpGram(Body);
+PETSC_INTERN PetscErrorCode BodyAgreeOnGram(Body);
 PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);
 PETSC_INTERN void           BodyUnmarkDependent(Body, PetscBool[]);
 PETSC_INTERN void           BodyDivideByGram(Body, PetscScalar[]);

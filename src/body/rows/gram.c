@@ -148,10 +148,18 @@ PetscErrorCode BodySetUpGram(Body body)
   PetscCall(PetscSortIntWithArray(n, gram->nodes, gram->order));
   PetscCall(FindCandidates(body, gram->nodes, gram->order, gram->all, &size, &most));
   body->rows.any_oblique = (PetscBool)(gram->n_runs > 0);
-  /* of a body at home its rank alone has rows, and tells the others when they take part: BodySetConstraints() */
+  /* of a body at home its rank alone has rows, and tells the others when they take part: BodyAgreeOnGram() */
   if (!body->local || !body->rows.at_home) PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
   PetscCall(Grow(most * (most + 5), &gram->work_room, &gram->work));
   PetscCall(Grow(size, &gram->inverse_room, &gram->inverses));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the rank of a local body alone knows of its rows, before all ranks take part in prescribing some */
+PetscErrorCode BodyAgreeOnGram(Body body)
+{
+  PetscFunctionBegin;
+  if (body->local && (body->rows.n_prescribed || body->rows.n_robin)) PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

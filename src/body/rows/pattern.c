@@ -8,18 +8,38 @@ PetscErrorCode RowPatternDestroy(RowPattern *pattern)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree2(pattern->offsets, pattern->columns));
-  pattern->n = 0;
+  PetscCall(PetscFree(pattern->elsewhere));
+  pattern->n = pattern->n_elsewhere = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the rows of this rank have entries in the columns that were noted last */
+/* The columns of other ranks that a matrix has room for */
+static PetscErrorCode GetElsewhere(Mat matrix, PetscInt *n, const PetscInt *columns[])
+{
+  PetscBool many;
+  Mat       block;
+
+  PetscFunctionBegin;
+  *n       = 0;
+  *columns = NULL;
+  PetscCall(PetscObjectTypeCompare((PetscObject)matrix, MATMPIAIJ, &many));
+  if (!many) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatMPIAIJGetSeqAIJ(matrix, NULL, &block, columns));
+  PetscCall(MatGetSize(block, NULL, n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the rows of this rank have entries in the columns that were noted last, and store them in the same places */
 static PetscErrorCode Compare(const RowPattern *pattern, Mat matrix, PetscBool *same)
 {
-  PetscInt begin, end;
+  PetscInt        begin, end, n_elsewhere;
+  const PetscInt *elsewhere;
 
   PetscFunctionBegin;
   PetscCall(MatGetOwnershipRange(matrix, &begin, &end));
-  *same = (PetscBool)(pattern->offsets && pattern->n == end - begin);
+  PetscCall(GetElsewhere(matrix, &n_elsewhere, &elsewhere));
+  *same = (PetscBool)(pattern->offsets && pattern->n == end - begin && pattern->n_elsewhere == n_elsewhere);
+  if (*same && n_elsewhere) PetscCall(PetscArraycmp(elsewhere, pattern->elsewhere, n_elsewhere, same));
   for (PetscInt i = 0; *same && i < pattern->n; i++) {
     const PetscInt  first = pattern->offsets[i];
     const PetscInt *columns;
@@ -36,9 +56,10 @@ static PetscErrorCode Compare(const RowPattern *pattern, Mat matrix, PetscBool *
 /* Notes where a matrix has entries. `same`: where the last one had them; then nothing is allocated. `agree`: on every rank, collective */
 PetscErrorCode RowPatternNote(RowPattern *pattern, Mat matrix, PetscBool agree, PetscBool *same)
 {
-  PetscInt    begin, end, count = 0;
-  int         differs;
-  PetscMPIInt size;
+  PetscInt        begin, end, count = 0;
+  const PetscInt *elsewhere;
+  int             differs;
+  PetscMPIInt     size;
 
   PetscFunctionBegin;
   PetscCall(Compare(pattern, matrix, same));
@@ -57,6 +78,9 @@ PetscErrorCode RowPatternNote(RowPattern *pattern, Mat matrix, PetscBool agree, 
     PetscCall(MatRestoreRow(matrix, row, &n, NULL, NULL));
   }
   pattern->n = end - begin;
+  PetscCall(GetElsewhere(matrix, &pattern->n_elsewhere, &elsewhere));
+  PetscCall(PetscMalloc1(pattern->n_elsewhere, &pattern->elsewhere));
+  PetscCall(PetscArraycpy(pattern->elsewhere, elsewhere, pattern->n_elsewhere));
   PetscCall(PetscMalloc2(pattern->n + 1, &pattern->offsets, count, &pattern->columns));
   pattern->offsets[0] = 0;
   for (PetscInt i = 0; i < pattern->n; i++) {

@@ -241,7 +241,7 @@ PetscErrorCode BodyTakeConditions(Body body, const PetscInt counts[BODY_CONDITIO
 PetscErrorCode BodySetConstraints(Body body)
 {
   PetscFunctionBegin;
-  if (body->local && (body->rows.n_prescribed || body->rows.n_robin)) PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
+  PetscCall(BodyAgreeOnGram(body));
   PetscCall(BodyUpdateGram(body));
   for (PetscInt i = 0; i < body->rows.local; i++) {
     body->rows.constrained[i] = (PetscBool)(body->rows.conditions[i] == BODY_PRESCRIBED || body->rows.conditions[i] == BODY_ROBIN);
