@@ -258,14 +258,14 @@ static PetscErrorCode ElementPoints_Composite(Element element, PetscInt e, Petsc
 /* Exact: products of functions that are linear in each part */
 static PetscErrorCode ElementMass_Composite(Element element, PetscInt e, PetscScalar M[])
 {
-  const Geometry        at    = GetGeometry(element, e);
-  const CompositeShape *shape = at.shape;
-  const PetscInt        dim = at.dim, corners = at.corners, nodes = at.nodes, n = nodes * dim;
+  const Geometry        at      = GetGeometry(element, e);
+  const CompositeShape *shape   = at.shape;
+  const PetscInt        corners = at.corners, nodes = at.nodes;
   PetscReal             density;
 
   PetscFunctionBegin;
   PetscCall(MaterialGetDensity(element->material, &density));
-  PetscCall(PetscArrayzero(M, n * n));
+  PetscCall(PetscArrayzero(M, nodes * nodes));
   for (PetscInt s = 0; s < shape->n_parts; s++) {
     PetscReal       gradient[4][3], of_node[4][COMPOSITE_MAX_NODES] = {{0}};
     const PetscReal mass = density * element->cross_section * GetPart(&at, s, gradient) / (PetscReal)(corners * (corners + 1));
@@ -280,8 +280,7 @@ static PetscErrorCode ElementMass_Composite(Element element, PetscInt e, PetscSc
       for (PetscInt l = 0; l < corners; l++)
         for (PetscInt a = 0; a < nodes; a++)
           for (PetscInt b = 0; b < nodes && of_node[k][a] != 0; b++)
-            for (PetscInt i = 0; i < dim; i++)
-              M[(dim * a + i) * n + dim * b + i] += mass * (k == l ? 2 : 1) * of_node[k][a] * of_node[l][b];
+            M[a * nodes + b] += mass * (k == l ? 2 : 1) * of_node[k][a] * of_node[l][b];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

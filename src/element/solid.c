@@ -298,21 +298,22 @@ static PetscErrorCode ElementViscosity_Solid(Element element, PetscInt e, const 
 /* By the load points: exact on simplices and parallelepipeds, where products of two shape functions are quadratic in each coordinate */
 static PetscErrorCode ElementMass_Solid(Element element, PetscInt e, PetscScalar M[])
 {
-  const PetscInt dim = element->dim, n = element->nodes * dim;
+  const PetscInt n = element->nodes;
   PetscReal      positions[SOLID_MAX_POINTS * 3], weights[SOLID_MAX_POINTS], density;
 
   PetscFunctionBegin;
   PetscCall(MaterialGetDensity(element->material, &density));
   PetscCall(ElementPoints_Solid(element, e, positions, weights));
   PetscCall(PetscArrayzero(M, n * n));
-  for (PetscInt a = 0; a < element->nodes; a++)
-    for (PetscInt b = 0; b < element->nodes; b++) {
-      PetscReal mass = 0;
+  for (PetscInt g = 0; g < element->n_points; g++) {
+    const PetscReal *N = element->shape + g * n;
 
-      for (PetscInt g = 0; g < element->n_points; g++)
-        mass += density * weights[g] * element->shape[g * element->nodes + a] * element->shape[g * element->nodes + b];
-      for (PetscInt i = 0; i < dim; i++) M[(dim * a + i) * n + dim * b + i] = mass;
+    for (PetscInt a = 0; a < n; a++) {
+      const PetscReal part = density * weights[g] * N[a];
+
+      for (PetscInt b = 0; b < n; b++) M[a * n + b] += part * N[b];
     }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -352,15 +353,14 @@ static PetscErrorCode ElementDestroy_Solid(Element element)
 /* All but the loops over all elements, which each shape has of its own */
 PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
 {
-  PetscReal gradient[SOLID_MAX_NODES * 3];
-  Solid    *solid;
+  Solid *solid;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&solid));
   solid->shape = shape;
   solid->point = GetPoint;
   for (PetscInt g = 0; g < shape->n_load_points; g++)
-    (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, gradient);
+    (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, solid->load_gradients[g]);
   solid->history               = &element->history;
   element->data                = solid;
   element->dim                 = shape->dim;

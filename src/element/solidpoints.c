@@ -1,6 +1,24 @@
 /* Points in solid elements: those of loads, and the one that is nearest to a position. */
 #include <impakt/private/solid.h>
 
+/* det(dX/dxi) where shape functions have these gradients by the reference coordinates; X: positions of the nodes, three numbers each */
+static PetscReal GetDeterminant(PetscInt nodes, PetscInt dim, const PetscReal X[], const PetscReal dN[])
+{
+  PetscReal x[3][3] = {{0}};
+
+  if (dim == 2) {
+    for (PetscInt a = 0; a < nodes; a++)
+      for (PetscInt i = 0; i < 2; i++)
+        for (PetscInt j = 0; j < 2; j++) x[i][j] += X[3 * a + i] * dN[2 * a + j];
+    return x[0][0] * x[1][1] - x[0][1] * x[1][0];
+  }
+  for (PetscInt a = 0; a < nodes; a++)
+    for (PetscInt i = 0; i < 3; i++)
+      for (PetscInt j = 0; j < 3; j++) x[i][j] += X[3 * a + i] * dN[3 * a + j];
+  return x[0][0] * (x[1][1] * x[2][2] - x[1][2] * x[2][1]) + x[0][1] * (x[1][2] * x[2][0] - x[1][0] * x[2][2]) +
+         x[0][2] * (x[1][0] * x[2][1] - x[1][1] * x[2][0]);
+}
+
 /* Points at which loads of the body are integrated, with the part of the element's volume that each stands for */
 PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal positions[], PetscReal weights[])
 {
@@ -8,16 +26,19 @@ PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal positi
   const SolidShape *shape = solid->shape;
   const PetscInt   *nodes = element->connectivity + e * element->nodes;
   const PetscInt    dim   = element->dim;
+  PetscReal         X[SOLID_MAX_NODES * 3];
 
   PetscFunctionBegin;
+  for (PetscInt a = 0; a < element->nodes; a++)
+    for (PetscInt i = 0; i < dim; i++) X[3 * a + i] = solid->coordinates[dim * nodes[a] + i];
   for (PetscInt g = 0; g < shape->n_load_points; g++) {
-    PetscReal N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3];
+    const PetscReal *N = solid->load_shape + g * shape->nodes;
 
-    weights[g] = SolidGetShape(element, e, shape->load_points + dim * g, N, gradient) * element->cross_section * shape->volume /
+    weights[g] = GetDeterminant(element->nodes, dim, X, solid->load_gradients[g]) * element->cross_section * shape->volume /
                  shape->n_load_points;
     for (PetscInt i = 0; i < dim; i++) {
       positions[dim * g + i] = 0;
-      for (PetscInt a = 0; a < element->nodes; a++) positions[dim * g + i] += N[a] * solid->coordinates[dim * nodes[a] + i];
+      for (PetscInt a = 0; a < element->nodes; a++) positions[dim * g + i] += N[a] * X[3 * a + i];
     }
     if (element->axisymmetric) weights[g] *= 2 * PETSC_PI * positions[dim * g];
   }

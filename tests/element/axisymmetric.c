@@ -115,11 +115,11 @@ static void mass_is_that_of_the_ring(void **state)
     solid_create(&solid, &mesh, MATERIAL_LINEAR_ELASTIC, kinds[s].options);
     near(get_volume(&solid), PETSC_PI * (outer * outer - inner * inner), 1e-14);
     ok((*solid.element->ops->mass)(solid.element, 0, M));
-    for (PetscInt a = 0; a < 8 && s; a++) {
+    for (PetscInt a = 0; a < 4 && s; a++) {
       PetscReal sum = 0;
 
-      for (PetscInt b = 0; b < 8; b++) sum += M[8 * a + b];
-      near(sum, mesh.x[2 * mesh.connectivity[a / 2]] < 1 ? of_inner : of_outer, 1e-14 * of_outer);
+      for (PetscInt b = 0; b < 4; b++) sum += M[4 * a + b];
+      near(sum, mesh.x[2 * mesh.connectivity[a]] < 1 ? of_inner : of_outer, 1e-14 * of_outer);
     }
     solid_destroy(&solid);
   }

@@ -104,7 +104,7 @@ static void masses_are_positive_and_complete(void **state)
       ok((*solid.element->ops->mass)(solid.element, 0, M));
       ok((*solid.element->ops->points)(solid.element, 0, positions, weights));
       for (PetscInt g = 0; g < solid.element->n_points; g++) volume += weights[g];
-      const PetscInt d = mesh.dim, n = d * mesh.nodes;
+      const PetscInt d = mesh.dim;
 
       for (PetscInt i = 0; i < d; i++) {
         PetscReal moment = 0, expected = 0;
@@ -113,10 +113,9 @@ static void masses_are_positive_and_complete(void **state)
         for (PetscInt a = 0; a < mesh.nodes; a++) {
           PetscReal row = 0;
 
-          for (PetscInt b = 0; b < n; b++) {
-            near(M[(d * a + i) * n + b], M[b * n + d * a + i], 1e-17);
-            if (b % d != i) assert_true(M[(d * a + i) * n + b] == 0);
-            row += M[(d * a + i) * n + b];
+          for (PetscInt b = 0; b < mesh.nodes; b++) {
+            near(M[a * mesh.nodes + b], M[b * mesh.nodes + a], 1e-17);
+            row += M[a * mesh.nodes + b];
           }
           assert_true(row > 0.02 * 3 * volume);
           mass += row;

@@ -3,6 +3,7 @@
 #include <impakt/element.h>
 #include <petsc/private/petscimpl.h>
 
+#define ELEMENT_MAX_NODES  10
 #define ELEMENT_MAX_DOFS   30
 #define ELEMENT_MAX_POINTS 48 /* load points of an element */
 
@@ -28,7 +29,7 @@ struct _ElementOps {
   PetscErrorCode (*viscousforce)(Element, const PetscScalar[], const PetscScalar[], PetscScalar[]);
   PetscErrorCode (*viscosity)(Element, PetscInt, const PetscScalar[],
                               PetscScalar[]);               /* its derivative by the velocity, of one element, row by row [N/m] */
-  PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]); /* consistent mass of one element [kg] */
+  PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]); /* consistent mass of one element, nodes x nodes: all components have it [kg] */
   PetscErrorCode (*stress)(Element, const PetscScalar[],
                            PetscReal[]); /* Cauchy stress, mean of each element: xx yy zz xy yz xz, 6 x count [Pa] */
   PetscErrorCode (*plastic)(Element, PetscReal *,

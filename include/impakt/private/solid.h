@@ -29,7 +29,8 @@ typedef struct {
   PetscReal mean_share; /* of the mean of the element in the ratio of volumes at its points; 0 to 1, which most formulations have */
   PetscReal (*point)(Element, PetscInt, PetscInt, PetscReal[]); /* weight of a point of an element with the thickness, and the gradients of
                                                                    the shape functions there, nodes x dim */
-  PetscReal  load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES];
+  /* shape functions at the points of loads and masses, and their gradients by reference coordinates, nodes x dim */
+  PetscReal  load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES], load_gradients[SOLID_MAX_POINTS][SOLID_MAX_NODES * 3];
   SolidShape reduced; /* the shape with another rule, where a formulation has one */
   void      *own;     /* of the formulation */
 } Solid;

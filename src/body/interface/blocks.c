@@ -273,8 +273,8 @@ PetscErrorCode BodyComputeBlockMass(Body body)
 {
   BodyBlocks    *blocks  = &body->model.blocks;
   const Element  element = body->model.element;
-  const PetscInt dim = body->mesh.dim, n = element->nodes;
-  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const PetscInt n       = element->nodes;
+  PetscScalar    M[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
 
   PetscFunctionBegin;
   if (!blocks->n) PetscFunctionReturn(PETSC_SUCCESS);
@@ -282,7 +282,7 @@ PetscErrorCode BodyComputeBlockMass(Body body)
   for (PetscInt e = 0; e < element->count; e++) {
     PetscCall((*element->ops->mass)(element, e, M));
     for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = 0; b < n; b++) blocks->mass[blocks->of_element[e]] += PetscRealPart(M[a * dim * n * dim + b * dim]);
+      for (PetscInt b = 0; b < n; b++) blocks->mass[blocks->of_element[e]] += PetscRealPart(M[a * n + b]);
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, blocks->mass, (PetscMPIInt)blocks->n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);

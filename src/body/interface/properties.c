@@ -180,9 +180,10 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 @*/
 PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
 {
-  const PetscInt nodes = body->mesh.cell_nodes;
-  PetscReal      all[3], sums[2] = {0, 0};
+  const PetscInt nodes   = body->mesh.cell_nodes;
+  PetscReal      sums[3] = {0}; /* as those of SumCells() */
   PetscInt       dim, cstart, cend;
+  PetscBool      simplex;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -190,7 +191,7 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
   *size = body->layer.edge;
   if (*size > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetDimension(body, &dim));
-  PetscCall(SumCells(body, all));
+  PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
   PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
   for (PetscInt e = 0; e < cend - cstart; e++) {
     PetscBool touches = PETSC_FALSE;
@@ -201,10 +202,11 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
     PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cstart + e, &measure, NULL, NULL));
     sums[0] += measure;
     sums[1]++;
+    if (simplex) sums[2]++;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  if (!(sums[1] > 0)) PetscCall(PetscArraycpy(sums, all, 2));
-  if (all[2] > 0 && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  if (!(sums[1] > 0)) PetscCall(SumCells(body, sums));
+  if (sums[2] > 0 && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
   *size = body->layer.edge = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,63 +4,40 @@
 const char *const BodyMassTypes[]        = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
 const char *const BodyMassMomentsNames[] = {"total", "centre", "inertia", "BodyMassMoments", "BODY_MASS_", NULL};
 
-/* Moves the mass of an element's contact nodes to its inner nodes: what these have is scaled to the mass of the element, with the coupling
-   between them, so that the mass does not spread along the layer. Without inner nodes nothing is left: BodyFindOrphans() finds the mass a
-   place. */
-static void MoveInside(Body body, const PetscInt nodes[], PetscScalar M[])
-{
-  const PetscInt n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
-  PetscScalar    all = 0, inner = 0;
-  PetscBool      moves = PETSC_FALSE;
-
-  for (PetscInt a = 0; a < n_nodes; a++) {
-    if (body->layer.contains[nodes[a]]) moves = PETSC_TRUE;
-    for (PetscInt b = 0; b < n_nodes; b++) {
-      all += M[a * dim * n + b * dim];
-      if (!body->layer.contains[nodes[a]] && !body->layer.contains[nodes[b]]) inner += M[a * dim * n + b * dim];
-    }
-  }
-  if (!moves) return;
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscBool kept = (PetscBool)(!body->layer.contains[nodes[i / dim]] && !body->layer.contains[nodes[j / dim]]);
-
-      M[i * n + j] = kept ? M[i * n + j] * all / inner : 0;
-    }
-}
-
-/* Row sums on the diagonal */
-static void Lump(PetscInt n, PetscScalar M[])
-{
-  for (PetscInt i = 0; i < n; i++) {
-    PetscScalar sum = 0;
-
-    for (PetscInt j = 0; j < n; j++) {
-      sum += M[i * n + j];
-      M[i * n + j] = 0;
-    }
-    M[i * n + i] = sum;
-  }
-}
-
-/* The two parts that the mass matrix of one element is the sum of, row by row, before any factor: lumped and consistent, or zero where the
-   type has none; with all mass where it is, or with that of contact nodes moved inside, each part by itself */
+/* The two parts that the mass matrix of one element is the sum of, before any factor, and the same for each component: lumped, by nodes,
+   and consistent, nodes x nodes, or zero where the type has none. All mass is where it is; or that of contact nodes is moved to the inner
+   nodes, in each part by itself: what these have is scaled to the mass of the element, with the coupling between them, so that the mass
+   does not spread along the layer. Without inner nodes nothing is left: BodyFindOrphans() finds the mass a place. */
 PetscErrorCode BodyGetElementMassParts(Body body, PetscInt e, PetscBool move, PetscScalar lumped[], PetscScalar consistent[])
 {
-  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
-  const PetscInt  n     = body->model.element->nodes * body->mesh.dim;
-  const PetscReal share = body->mass.type == BODY_MASS_LUMPED ? 1 : body->mass.type == BODY_MASS_CONSISTENT ? 0 : 0.5;
+  const PetscInt   n     = body->model.element->nodes;
+  const PetscInt  *nodes = body->mesh.connectivity + e * n;
+  const PetscReal  share = body->mass.type == BODY_MASS_LUMPED ? 1 : body->mass.type == BODY_MASS_CONSISTENT ? 0 : 0.5;
+  const PetscBool *layer = body->layer.contains;
+  PetscScalar      all = 0, inner[2] = {0}, scale[2] = {share, 1 - share};
+  PetscBool        moves = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall((*body->model.element->ops->mass)(body->model.element, e, consistent));
-  PetscCall(PetscArraycpy(lumped, consistent, n * n));
-  Lump(n, lumped);
-  if (move) MoveInside(body, nodes, lumped);
-  if (move) MoveInside(body, nodes, consistent);
-  for (PetscInt i = 0; i < n * n; i++) {
-    lumped[i] *= share;
-    consistent[i] *= 1 - share;
+  for (PetscInt a = 0; a < n; a++) {
+    lumped[a] = 0;
+    for (PetscInt b = 0; b < n; b++) lumped[a] += consistent[a * n + b];
+    if (move && layer[nodes[a]]) moves = PETSC_TRUE;
   }
+  if (moves) {
+    for (PetscInt a = 0; a < n; a++) {
+      all += lumped[a];
+      if (layer[nodes[a]]) lumped[a] = 0;
+      inner[0] += lumped[a];
+      for (PetscInt b = 0; b < n; b++) {
+        if (layer[nodes[a]] || layer[nodes[b]]) consistent[a * n + b] = 0;
+        inner[1] += consistent[a * n + b];
+      }
+    }
+    for (PetscInt k = 0; k < 2; k++) scale[k] *= inner[k] != 0 ? all / inner[k] : 0;
+  }
+  for (PetscInt a = 0; a < n; a++) lumped[a] *= scale[0];
+  for (PetscInt i = 0; i < n * n; i++) consistent[i] *= scale[1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,38 +55,39 @@ static PetscReal MeanFactor(Body body, const PetscInt nodes[])
   return inner ? sum / inner : 0;
 }
 
-/* The mass matrix of one element as the body uses it, row by row. What elements without inner nodes have given to their neighbours is not
-   in it. */
+/* The mass matrix of one element as the body uses it, nodes x nodes, the same for each component. What elements without inner nodes have
+   given to their neighbours is not in it. */
 PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
 {
-  const PetscInt  dim = body->mesh.dim, n = body->model.element->nodes * dim;
-  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
-  PetscScalar     consistent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  const PetscInt  n     = body->model.element->nodes;
+  const PetscInt *nodes = body->mesh.connectivity + e * n;
+  PetscScalar     lumped[ELEMENT_MAX_NODES];
   PetscReal       mean = 1;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetElementMassParts(body, e, body->mass.redistribute, M, consistent));
-  if (body->mass.factor) {
-    mean = MeanFactor(body, nodes);
-    for (PetscInt i = 0; i < n; i++) M[i * n + i] *= body->mass.factor[nodes[i / dim]];
-  }
-  for (PetscInt i = 0; i < n * n; i++) M[i] += mean * consistent[i];
+  PetscCall(BodyGetElementMassParts(body, e, body->mass.redistribute, lumped, M));
+  if (body->mass.factor) mean = MeanFactor(body, nodes);
+  for (PetscInt i = 0; i < n * n && mean != 1; i++) M[i] *= mean;
+  for (PetscInt a = 0; a < n; a++) M[a * n + a] += body->mass.factor ? body->mass.factor[nodes[a]] * lumped[a] : lumped[a];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode AssembleMass(Body body)
 {
-  const PetscInt n = body->model.element->nodes * body->mesh.dim;
+  const PetscInt dim = body->mesh.dim, nodes = body->model.element->nodes, n = nodes * dim;
   PetscInt       dofs[ELEMENT_MAX_DOFS];
-  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], diagonal[ELEMENT_MAX_DOFS];
+  PetscScalar    of_nodes[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES], M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS] = {0}, diagonal[ELEMENT_MAX_DOFS];
 
   PetscFunctionBegin;
   if (body->mass.type == BODY_MASS_LUMPED) PetscCall(BodyCreateVec(body, &body->mass.diagonal));
   else PetscCall(BodyCreateMatrix(body, &body->mass.matrix));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
-    PetscCall(BodyGetElementMass(body, e, M));
+    PetscCall(BodyGetElementMass(body, e, of_nodes));
     PetscCall(BodyGetElementDofs(body, e, dofs));
-    for (PetscInt i = 0; i < n; i++) diagonal[i] = M[i * n + i];
+    for (PetscInt i = 0; i < n; i++) diagonal[i] = of_nodes[i / dim * (nodes + 1)];
+    for (PetscInt a = 0; a < nodes && body->mass.matrix; a++)
+      for (PetscInt b = 0; b < nodes; b++)
+        for (PetscInt d = 0; d < dim; d++) M[(a * dim + d) * n + b * dim + d] = of_nodes[a * nodes + b];
     if (body->mass.diagonal) PetscCall(VecSetValues(body->mass.diagonal, n, dofs, diagonal, ADD_VALUES));
     else PetscCall(MatSetValues(body->mass.matrix, n, dofs, n, dofs, M, ADD_VALUES));
   }

@@ -26,19 +26,26 @@
    than this part of it */
 #define KEPT 1e-11
 
-/* phi' M phi of an element for each moment, field values by node */
-static void AddElementMoments(const MomentsProblem *problem, const PetscScalar M[], PetscReal phi[][4], PetscReal scale,
-                              PetscReal moments[])
+/* phi' M phi of an element for each moment, field values by node; of a consistent mass, nodes x nodes */
+static void AddConsistentMoments(const MomentsProblem *problem, const PetscScalar M[], PetscReal phi[][4], PetscReal scale,
+                                 PetscReal moments[])
 {
-  const PetscInt n = problem->body->model.element->nodes, dim = problem->body->mesh.dim;
+  const PetscInt n = problem->body->model.element->nodes;
 
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscReal entry = scale * M[i * dim * n * dim + j * dim];
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal product[4] = {0};
 
-      if (entry == 0) continue;
-      for (PetscInt m = 0; m < problem->n_moments; m++) moments[m] += entry * phi[i][problem->pair[m][0]] * phi[j][problem->pair[m][1]];
-    }
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt a = 0; a < 4; a++) product[a] += M[i * n + j] * phi[j][a];
+    for (PetscInt m = 0; m < problem->n_moments; m++) moments[m] += scale * phi[i][problem->pair[m][0]] * product[problem->pair[m][1]];
+  }
+}
+
+/* And of a lumped one, by nodes */
+static void AddLumpedMoments(const MomentsProblem *problem, const PetscScalar mass[], PetscReal phi[][4], PetscReal moments[])
+{
+  for (PetscInt i = 0; i < problem->body->model.element->nodes; i++)
+    for (PetscInt m = 0; m < problem->n_moments; m++) moments[m] += mass[i] * phi[i][problem->pair[m][0]] * phi[i][problem->pair[m][1]];
 }
 
 /* The moments of the full mass in the fields as they are */
@@ -46,16 +53,16 @@ static PetscErrorCode ComputeFullMoments(const MomentsProblem *problem, PetscRea
 {
   Body           body = problem->body;
   const PetscInt n    = body->model.element->nodes;
-  PetscScalar    lumped[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], consistent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-  PetscReal      phi[ELEMENT_MAX_DOFS][4];
+  PetscScalar    lumped[ELEMENT_MAX_NODES], consistent[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
+  PetscReal      phi[ELEMENT_MAX_NODES][4] = {{0}};
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(moments, problem->n_moments));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscCall(BodyGetElementMassParts(body, e, PETSC_FALSE, lumped, consistent));
     for (PetscInt i = 0; i < n; i++) MomentsGetFields(problem, body->mesh.connectivity[e * n + i], phi[i]);
-    AddElementMoments(problem, lumped, phi, 1, moments);
-    AddElementMoments(problem, consistent, phi, 1, moments);
+    AddLumpedMoments(problem, lumped, phi, moments);
+    AddConsistentMoments(problem, consistent, phi, 1, moments);
   }
   PetscCallMPI(
       MPI_Allreduce(MPI_IN_PLACE, moments, (PetscMPIInt)problem->n_moments, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
@@ -67,8 +74,8 @@ static PetscErrorCode ComputeWeights(MomentsProblem *problem)
 {
   Body               body = problem->body;
   const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim, n_moments = problem->n_moments;
-  PetscScalar        lumped[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], consistent[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-  PetscReal          phi[ELEMENT_MAX_DOFS][4];
+  PetscScalar        lumped[ELEMENT_MAX_NODES], consistent[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
+  PetscReal          phi[ELEMENT_MAX_NODES][4] = {{0}};
   const PetscScalar *orphans;
 
   PetscFunctionBegin;
@@ -84,14 +91,13 @@ static PetscErrorCode ComputeWeights(MomentsProblem *problem)
       inner += !body->layer.contains[nodes[i]];
     }
     if (!inner) continue;
-    AddElementMoments(problem, consistent, phi, 1 / (inner * problem->total), share);
+    AddConsistentMoments(problem, consistent, phi, 1 / (inner * problem->total), share);
     for (PetscInt i = 0; i < n; i++) {
       PetscReal *weights = problem->weights + nodes[i] * n_moments;
 
       if (body->layer.contains[nodes[i]]) continue;
       for (PetscInt m = 0; m < n_moments; m++)
-        weights[m] += share[m] +
-                      lumped[i * dim * n * dim + i * dim] * phi[i][problem->pair[m][0]] * phi[i][problem->pair[m][1]] / problem->total;
+        weights[m] += share[m] + lumped[i] * phi[i][problem->pair[m][0]] * phi[i][problem->pair[m][1]] / problem->total;
     }
   }
   if (!body->mass.orphans) PetscFunctionReturn(PETSC_SUCCESS);

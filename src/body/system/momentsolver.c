@@ -115,11 +115,12 @@ static PetscErrorCode Iterate(MomentsProblem *problem, PetscReal hold, PetscReal
   PetscCall(MomentsCompute(problem, coefficients, moments, slopes));
   ComputeResidual(problem, hold, start, coefficients, moments, residual, &norm);
   for (PetscInt iteration = 0; iteration < ITERATIONS; iteration++) {
-    PetscReal next[MAX_MOMENTS], next_residual[MAX_MOMENTS], next_norm = PETSC_MAX_REAL, part = 1;
+    const PetscInt halvings = norm <= TOLERANCE ? 1 : HALVINGS; /* what is round-off already, no half of a step makes smaller */
+    PetscReal      next[MAX_MOMENTS], next_residual[MAX_MOMENTS], next_norm = PETSC_MAX_REAL, part = 1;
 
     for (PetscInt k = 0; k < n; k++) slopes[k * n + k] += problem->softness[k] + hold;
     PetscCall(SolveSmall(n, slopes, residual));
-    for (PetscInt halving = 0; halving < HALVINGS && !(next_norm < PROGRESS * norm); halving++, part /= 2) {
+    for (PetscInt halving = 0; halving < halvings && !(next_norm < PROGRESS * norm); halving++, part /= 2) {
       for (PetscInt k = 0; k < n; k++) next[k] = coefficients[k] - part * residual[k];
       PetscCall(MomentsCompute(problem, next, moments, slopes));
       ComputeResidual(problem, hold, start, next, moments, next_residual, &next_norm);

@@ -50,7 +50,7 @@ static PetscErrorCode CloseLocal(Body body, Vec vec, Vec *local, PetscScalar **a
 static PetscErrorCode CollectMass(Body body, Vec vec)
 {
   const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
-  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *mass;
+  PetscScalar    M[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES], *mass;
   Vec            local;
 
   PetscFunctionBegin;
@@ -65,7 +65,7 @@ static PetscErrorCode CollectMass(Body body, Vec vec)
     if (inner) continue;
     PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
     for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = 0; b < n; b++) sum += M[a * dim * n * dim + b * dim];
+      for (PetscInt b = 0; b < n; b++) sum += M[a * n + b];
     for (PetscInt a = 0; a < n; a++) mass[nodes[a] * dim] += sum / n;
   }
   PetscCall(CloseLocal(body, vec, &local, &mass));

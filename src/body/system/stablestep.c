@@ -40,9 +40,10 @@ static PetscBool IsStill(Body body, PetscInt node, PetscInt component)
    this rank's nodes */
 static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscScalar u[], PetscReal *largest)
 {
-  const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes;
-  const PetscInt  n     = body->model.element->nodes * body->mesh.dim;
+  const PetscInt *nodes   = body->mesh.connectivity + e * body->model.element->nodes;
+  const PetscInt  n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
   PetscScalar     K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], work[4 * ELEMENT_MAX_DOFS];
+  PetscScalar     of_nodes[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
   PetscReal       eigenvalues[ELEMENT_MAX_DOFS];
   PetscInt        kept[ELEMENT_MAX_DOFS], n_kept = 0;
   PetscBLASInt    one = 1, m, lwork = 4 * ELEMENT_MAX_DOFS, info;
@@ -50,14 +51,14 @@ static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscSca
   PetscFunctionBegin;
   *largest = 0;
   PetscCall((*body->model.element->ops->stiffness)(body->model.element, e, u, K));
-  PetscCall(BodyGetElementMass(body, e, M));
+  PetscCall(BodyGetElementMass(body, e, of_nodes));
   for (PetscInt i = 0; i < n; i++)
-    if (!IsStill(body, nodes[i / body->mesh.dim], i % body->mesh.dim)) kept[n_kept++] = i;
+    if (!IsStill(body, nodes[i / dim], i % dim)) kept[n_kept++] = i;
   if (!n_kept) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < n_kept; i++)
     for (PetscInt j = 0; j < n_kept; j++) {
       K[i * n_kept + j] = K[kept[i] * n + kept[j]];
-      M[i * n_kept + j] = M[kept[i] * n + kept[j]];
+      M[i * n_kept + j] = kept[i] % dim == kept[j] % dim ? of_nodes[kept[i] / dim * n_nodes + kept[j] / dim] : 0;
     }
   PetscCall(PetscBLASIntCast(n_kept, &m));
   PetscCallBLAS("LAPACKsygv", LAPACKsygv_(&one, "N", "L", &m, K, &m, M, &m, eigenvalues, work, &lwork, &info));
@@ -82,9 +83,12 @@ typedef struct {
 static PetscErrorCode FillChunk(Body body, PetscInt begin, const PetscScalar u[], Chunk *chunk)
 {
   const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
-  PetscScalar    M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscScalar    M[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
+  PetscReal      first[ELEMENT_MAX_DOFS];
 
   PetscFunctionBegin;
+  /* no symmetry that an eigenvector could be orthogonal to; the same for all elements, so that equal ones give equal values */
+  for (PetscInt i = 0; i < n * dim; i++) first[i] = PetscSinReal(1 + 7.3 * i * i + 2.1 * i);
   for (PetscInt c = 0; c < chunk->count; c++) {
     const PetscInt *nodes  = body->mesh.connectivity + (begin + c) * n;
     PetscReal       extent = 0;
@@ -96,15 +100,13 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, const PetscScalar u[]
 
       chunk->connectivity[own] = own;
       for (PetscInt d = 0; d < dim; d++) {
-        const PetscInt  i    = a * dim + d;
-        const PetscReal mass = M[i * n * dim + i];
+        const PetscReal mass = M[a * n + a];
 
         chunk->coordinates[own * dim + d] = body->mesh.coordinates[nodes[a] * dim + d];
         chunk->at[own * dim + d]          = PetscRealPart(u[nodes[a] * dim + d]);
         extent = PetscMax(extent, PetscAbsReal(body->mesh.coordinates[nodes[a] * dim + d] - body->mesh.coordinates[nodes[0] * dim + d]));
         chunk->inverse_mass[own * dim + d] = mass > 0 && !IsStill(body, nodes[a], d) ? 1 / mass : 0;
-        /* no symmetry that an eigenvector could be orthogonal to; the same for all elements, so that equal ones give equal values */
-        chunk->u[own * dim + d] = PetscSinReal(1 + 7.3 * i * i + 2.1 * i);
+        chunk->u[own * dim + d]            = first[a * dim + d];
       }
     }
     chunk->size[c] = extent;

@@ -68,16 +68,19 @@ static PetscReal compute_stable_step(Body body)
 /* The same of the worst element on its own */
 static PetscReal compute_stable_step_of_elements(Body body)
 {
-  const PetscInt n                   = body->model.element->nodes * body->mesh.dim;
+  const PetscInt nodes = body->model.element->nodes, dim = body->mesh.dim, n = nodes * dim;
   PetscReal      zero[3 * MAX_NODES] = {0}, largest = 0;
 
   for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscScalar  K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], M[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], work[8 * ELEMENT_MAX_DOFS];
+    PetscScalar  of_nodes[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
     PetscReal    eigenvalues[ELEMENT_MAX_DOFS];
     PetscBLASInt one = 1, size, lwork = 8 * ELEMENT_MAX_DOFS, info;
 
     ok((*body->model.element->ops->stiffness)(body->model.element, e, zero, K));
-    ok(BodyGetElementMass(body, e, M));
+    ok(BodyGetElementMass(body, e, of_nodes));
+    for (PetscInt i = 0; i < n; i++)
+      for (PetscInt j = 0; j < n; j++) M[i * n + j] = i % dim == j % dim ? of_nodes[i / dim * nodes + j / dim] : 0;
     ok(PetscBLASIntCast(n, &size));
     LAPACKsygv_(&one, "N", "L", &size, K, &size, M, &size, eigenvalues, work, &lwork, &info);
     assert_int_equal(info, 0);
