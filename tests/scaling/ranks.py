@@ -78,15 +78,15 @@ def run_logged(arguments, options, ranks, steps):
         return summary, [{name: float(row[column]) for name, column in COUNTED.items()} for row in events]
 
 
-def run_counting(arguments, options, ranks, steps, event):
-    """How often each rank has made an event of PETSc's log, in all stages."""
+def run_counting(arguments, options, ranks, steps, event, column="Count"):
+    """How often each rank has made an event of PETSc's log, or what else a column of it counts, in all stages."""
     with tempfile.TemporaryDirectory() as directory:
         log, made = Path(directory) / "log.csv", [0] * ranks
         run(arguments, options, ranks, steps, ("-log_view", f":{log}:ascii_csv"))
         with log.open(encoding="utf-8") as file:
             for row in csv.DictReader(file):
                 if row["Event Name"] == event:
-                    made[int(row["Rank"])] += int(float(row["Count"]))
+                    made[int(row["Rank"])] += int(float(row[column]))
         return made
 
 

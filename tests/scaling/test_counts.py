@@ -141,6 +141,19 @@ def test_ranks_leave_out_bodies_of_others():
     assert halves == [whole / 2, whole / 2]
 
 
+@pytest.mark.parametrize("integrator", ["centraldifference", "alpha2"])
+def test_steps_of_bodies_on_their_own_ranks_wait_for_nobody(integrator):
+    """Forces are brought before the steps of bodies, and displacements taken after them: no rank waits for the step of a body that another makes."""
+    arguments = SimpleNamespace(build=BUILD, mpiexec=MPIEXEC, time_limit=300)
+    options = boxes(6, integrator=integrator) | {"a_ranks": 0, "b_ranks": 1}
+    made, messages, reductions = (
+        [b - a for a, b in zip(*(run_counting(arguments, options, 2, steps, "BodyIntegrate", column) for steps in (2, 6)))]
+        for column in ("Count", "Num Messages", "Num Reductions")
+    )
+    assert min(made) > 4
+    assert messages == reductions == [0, 0]
+
+
 def two_blocks(**more):
     """Options of two rubber blocks in the plane, one above the other, of which each lies whole on a rank."""
     options = {"bodies": "a,b", "contact_pairs": "a:b", "contact_facing": "false", "progress": 0}
