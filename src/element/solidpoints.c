@@ -22,11 +22,11 @@ static PetscReal GetDeterminant(PetscInt nodes, PetscInt dim, const PetscReal X[
 /* Points at which loads of the body are integrated, with the part of the element's volume that each stands for */
 PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal positions[], PetscReal weights[])
 {
-  const Solid      *solid = (const Solid *)element->data;
-  const SolidShape *shape = solid->shape;
-  const PetscInt   *nodes = element->connectivity + e * element->nodes;
-  const PetscInt    dim   = element->dim;
-  PetscReal         X[SOLID_MAX_NODES * 3];
+  const Solid      *solid                  = (const Solid *)element->data;
+  const SolidShape *shape                  = solid->shape;
+  const PetscInt   *nodes                  = element->connectivity + e * element->nodes;
+  const PetscInt    dim                    = element->dim;
+  PetscReal         X[SOLID_MAX_NODES * 3] = {0};
 
   PetscFunctionBegin;
   for (PetscInt a = 0; a < element->nodes; a++)

@@ -84,7 +84,7 @@ static PetscErrorCode FillChunk(Body body, PetscInt begin, const PetscScalar u[]
 {
   const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
   PetscScalar    M[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
-  PetscReal      first[ELEMENT_MAX_DOFS];
+  PetscReal      first[ELEMENT_MAX_DOFS] = {0};
 
   PetscFunctionBegin;
   /* no symmetry that an eigenvector could be orthogonal to; the same for all elements, so that equal ones give equal values */
