@@ -59,9 +59,12 @@ def test_verdict(shared_run):
     bad = shared_run(f"{BEAM} -time_step 2e-4 -controller_step_cuts 0 {UNLIMITED}")
     assert warnings(bad)[-1].startswith("impakt: warning: the energy error is +178 %")
     assert [f"impakt: warning: {text}" for text in bad.summary["warnings"]] == warnings(bad)[1:]
-    gains = shared_run(f"{BEAM} -time_step 1.1e-5 -controller_step_cuts 0 {UNLIMITED}")
-    assert 0.01 < gains.summary["system"]["energy_error_max"] < 0.05  # measured: 0.0151
-    assert warnings(gains)[-1].startswith("impakt: warning: the energy error is +1.")
+    gains = []
+    for step in ("7e-6", "1e-5", "1.1e-5", "1.2e-5"):  # measured: 0.0012, 0.0111, 0.0151, 0.0118
+        run = shared_run(f"{BEAM} -time_step {step} -controller_step_cuts 0 {UNLIMITED}")
+        gains.append(run.summary["system"]["energy_error_max"])
+        assert any(line.startswith("impakt: warning: the energy error is +") for line in warnings(run)) == (gains[-1] > 0.01)
+    assert any(0.01 < gain < 0.05 for gain in gains)
     good = shared_run("-options_file options/impact-high-speed.opts")
     assert good.summary["warnings"] == []
     assert not good.summary["contact"]["in_contact_at_end"]
