@@ -5,8 +5,7 @@
 #include "verdict.h"
 #include <stdarg.h>
 
-/* Energy from which on a run says that it has lost so much, or gained it: no physics does that, and a run that goes on is to be looked at
- */
+/* Parts of its energy from which on a run says that it has lost them, or gained: nothing makes energy */
 #define ENERGY_LOSS 0.05
 #define ENERGY_GAIN 0.01
 /* The same of the momentum, which contact keeps to round-off unless it is known to lose some */
