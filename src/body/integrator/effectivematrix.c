@@ -20,7 +20,7 @@ static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What BodyImplicitCorrect() needs of ranks with rows */
+/* Brings what BodyImplicitCorrect() needs from ranks with rows */
 static PetscErrorCode BringChanges(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   PetscFunctionBegin;
@@ -183,14 +183,12 @@ SIMD_CLONES static void AddChange(PetscInt n, PetscReal to_velocity, PetscReal t
 
 /* Moves the displacement at the end of the one substep of a linear body: A du = B^T df with prescribed rows at B du = dx, A being the
    effective matrix; and velocity, acceleration and internal force with it */
-PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar force[], const PetscScalar displacement[], PetscReal to_velocity,
-                                   PetscReal to_acceleration, Vec du)
+PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar displacement[], PetscReal to_velocity, PetscReal to_acceleration, Vec du)
 {
   const PetscScalar *change;
   PetscScalar       *u, *v, *a;
 
   PetscFunctionBegin;
-  if (!body->rows.exchange.open) PetscCall(BringChanges(body, force, displacement));
   PetscCall(ConstrainedSolverCorrect(body->solver, displacement, du));
   PetscCall(VecGetArrayRead(du, &change));
   PetscCall(VecGetArray(body->state.u, &u));

@@ -158,7 +158,8 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   const PetscReal     dt = body->time.step, to_velocity = implicit->gamma / (implicit->beta * dt);
 
   PetscFunctionBegin;
-  PetscCall(BodyImplicitCorrect(body, force, displacement, to_velocity, 1 / (implicit->beta * dt * dt), body->work.nodes[2]));
+  (void)force; /* which BringChanges() has brought */
+  PetscCall(BodyImplicitCorrect(body, displacement, to_velocity, 1 / (implicit->beta * dt * dt), body->work.nodes[2]));
   PetscCall(BodyFinishLayer(body));
   if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));

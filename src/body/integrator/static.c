@@ -82,7 +82,8 @@ static PetscErrorCode FinishSubstep(Body body)
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   PetscFunctionBegin;
-  PetscCall(BodyImplicitCorrect(body, force, displacement, 1 / body->time.step, 0, body->work.nodes[2]));
+  (void)force; /* which BringChanges() has brought */
+  PetscCall(BodyImplicitCorrect(body, displacement, 1 / body->time.step, 0, body->work.nodes[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

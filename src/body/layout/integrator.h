@@ -29,9 +29,7 @@ typedef struct {
   /* (NULL) after the one substep of a controller step: moves its end state to the present inputs, given by how much more force acts on
      forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
   PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
-  /* (NULL) brings what the next repeat() needs of these changes to the rank that has the body, where it needs the changes and not the
-   * forces
-   */
+  /* (NULL) before repeat(), which needs changes and not forces: brings what it needs of these from the ranks that have rows */
   PetscErrorCode (*bringchanges)(Body, const PetscScalar[], const PetscScalar[]);
   /* (NULL) notes how far the massless layer goes under a change of forces that is to come [m], and does so when it has come; may be set in
      setup() */

@@ -59,9 +59,9 @@ static PetscScalar Compare(Body body, PetscInt input, PetscInt row, PetscScalar 
   return change;
 }
 
-/* What comes in at the end of the controller step is the present state's from now on; `changes`: by how much that is more than before, on
-   the rows that it counts for; news: as those of Compare() */
-static PetscErrorCode TakeInputs(Body body, PetscBool news[2])
+/* By how much what comes in at the end of the controller step is more than what the present state has, in `changes`, on the rows that it
+   counts for; news: as those of Compare() */
+static PetscErrorCode CompareInputs(Body body, PetscBool news[2])
 {
   const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
   struct _BodyRepeat *repeat   = body->repeat;
@@ -73,10 +73,22 @@ static PetscErrorCode TakeInputs(Body body, PetscBool news[2])
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
-    for (PetscInt i = 0; i < body->rows.local; i++) {
-      repeat->changes[k][i] = Compare(body, k, i, values[i], news);
-      repeat->inputs[k][i]  = values[i];
-    }
+    for (PetscInt i = 0; i < body->rows.local; i++) repeat->changes[k][i] = Compare(body, k, i, values[i], news);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What comes in is the present state's from now on */
+static PetscErrorCode TakeInputs(Body body)
+{
+  const Trace traces[] = {body->traces.force_in, body->traces.displacement_in};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2; k++) {
+    PetscScalar *values;
+
+    PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
+    PetscCall(PetscArraycpy(body->repeat->inputs[k], values, body->rows.local));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -104,8 +116,8 @@ static PetscBool TellsOthers(Body body)
 @*/
 PetscErrorCode BodyProposeRepeat(Body body, BodyWord *word)
 {
-  struct _BodyRepeat *repeat  = body->repeat;
-  PetscBool           news[2] = {PETSC_FALSE, PETSC_FALSE};
+  struct _BodyRepeat *repeat = body->repeat;
+  PetscBool           news[2];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -113,12 +125,7 @@ PetscErrorCode BodyProposeRepeat(Body body, BodyWord *word)
   word->n = 0;
   if (!body->repeats || !TellsOthers(body)) PetscFunctionReturn(PETSC_SUCCESS);
   repeat->told = PETSC_TRUE;
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscScalar *values;
-
-    PetscCall(TraceGetLevel(k ? body->traces.displacement_in : body->traces.force_in, body->time.substeps, &values));
-    for (PetscInt i = 0; i < body->rows.local; i++) (void)Compare(body, k, i, values[i], news);
-  }
+  PetscCall(CompareInputs(body, news));
   for (PetscInt k = 0; k < 2; k++) repeat->news[k] = news[k];
   word->n      = repeat->expects ? 2 : 1;
   word->values = repeat->news;
@@ -128,18 +135,11 @@ PetscErrorCode BodyProposeRepeat(Body body, BodyWord *word)
 /* Brings the changes that the next BodyRepeat() makes to the rank that has the body */
 PetscErrorCode BodyBringChanges(Body body)
 {
-  const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
-  struct _BodyRepeat *repeat   = body->repeat;
-  PetscBool           news[2];
+  PetscBool news[2];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscScalar *values;
-
-    PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
-    for (PetscInt i = 0; i < body->rows.local; i++) repeat->changes[k][i] = Compare(body, k, i, values[i], news);
-  }
-  PetscCall((*body->integrator->ops.bringchanges)(body, repeat->changes[0], repeat->changes[1]));
+  PetscCall(CompareInputs(body, news));
+  PetscCall((*body->integrator->ops.bringchanges)(body, body->repeat->changes[0], body->repeat->changes[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -181,11 +181,9 @@ PetscErrorCode BodyExpectRepeat(Body body, const PetscScalar change[], const Pet
 /* A whole integration has just been done */
 PetscErrorCode BodyNoteInputs(Body body)
 {
-  PetscBool news[2];
-
   PetscFunctionBegin;
   if (!body->integrator->ops.repeat || !body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TakeInputs(body, news));
+  PetscCall(TakeInputs(body));
   body->repeat->told = body->repeat->expects = PETSC_FALSE;
   /* rows of one node that are not orthonormal are prescribed by least squares, which has no simple change */
   body->repeats = (PetscBool)(!body->rows.n_prescribed || (body->integrator->repeats_prescribed && !body->rows.any_oblique));
@@ -201,7 +199,8 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   PetscFunctionBegin;
   *done = body->repeats;
   if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TakeInputs(body, news));
+  PetscCall(CompareInputs(body, news));
+  PetscCall(TakeInputs(body));
   for (PetscInt k = 0; k < (repeat->expects ? 2 : 1); k++) {
     if (repeat->told) news[k] = (PetscBool)(repeat->news[k] != 0);
     else if (TellsOthers(body)) PetscCall(BodyAnyRank(body, &news[k]));
@@ -211,9 +210,11 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   /* Without a change the state stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and acceleration,
      which others feel through a mass matrix that is not diagonal alone. */
   if (any && !news[1]) PetscCall((*body->integrator->ops.follow)(body));
-  else if (any || (body->rows.have_mass && body->mass.matrix))
+  else if (any || (body->rows.have_mass && body->mass.matrix)) {
+    if (body->integrator->ops.bringchanges && !body->rows.exchange.open)
+      PetscCall((*body->integrator->ops.bringchanges)(body, repeat->changes[0], repeat->changes[1]));
     PetscCall((*body->integrator->ops.repeat)(body, repeat->changes[0], repeat->changes[1]));
-  else if (body->rows.have_mass) {
+  } else if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));
   }

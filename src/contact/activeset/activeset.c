@@ -170,6 +170,11 @@ static PetscErrorCode EndExchange(Contact contact, const PetscBool left_out[])
 PetscErrorCode ContactIntegrateSome(Contact contact, const PetscBool left_out[])
 {
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    contact->work.words[b].n = 0;
+    if (!left_out || !left_out[b]) PetscCall(BodyProposeRepeat(contact->bodies[b], &contact->work.words[b]));
+  }
+  PetscCall(ContactTellWords(contact, contact->work.words));
   PetscCall(BeginExchange(contact, left_out, PETSC_FALSE));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     const PetscInt b = contact->ranks.visits[k];
@@ -184,8 +189,6 @@ PetscErrorCode ContactIntegrateSome(Contact contact, const PetscBool left_out[])
 PetscErrorCode ContactIntegrateBodies(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyProposeRepeat(contact->bodies[b], &contact->work.words[b]));
-  PetscCall(ContactTellWords(contact, contact->work.words));
   PetscCall(ContactIntegrateSome(contact, NULL));
   PetscCall(ContactAgree(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -298,21 +298,19 @@ static PetscErrorCode Answer(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What ranks have to know of the inputs of bodies that several of them have, of all bodies at once */
-static PetscErrorCode TellInputs(Contact contact)
+/* What all bodies that do not rest make of what comes in by their compliance; what ranks have to know of inputs they tell of all at once */
+static PetscErrorCode RespondAtOnce(Contact contact)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
+  const PetscBool *rests = ((const Schwarz *)contact->data)->groups.rests;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    BodyWord *word = &contact->work.words[b];
-
-    word->n = 0;
-    if (schwarz->groups.rests[b]) continue;
-    if (schwarz->step == STEP_CONDENSED) PetscCall(BodyProposeInputs(contact->bodies[b], word));
-    else PetscCall(BodyProposeRepeat(contact->bodies[b], word));
+    contact->work.words[b].n = 0;
+    if (!rests[b]) PetscCall(BodyProposeInputs(contact->bodies[b], &contact->work.words[b]));
   }
   PetscCall(ContactTellWords(contact, contact->work.words));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (!rests[b]) PetscCall(BodyRespond(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -322,13 +320,10 @@ static PetscErrorCode AnswerAtOnce(Contact contact)
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(TellInputs(contact));
-  if (schwarz->step != STEP_CONDENSED) PetscCall(ContactIntegrateSome(contact, schwarz->groups.rests));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    if (schwarz->groups.rests[b]) continue;
-    if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[b]));
-    if (schwarz->has_forces) PetscCall(SchwarzReportByForce(contact, b));
-  }
+  if (schwarz->step == STEP_CONDENSED) PetscCall(RespondAtOnce(contact));
+  else PetscCall(ContactIntegrateSome(contact, schwarz->groups.rests));
+  for (PetscInt b = 0; b < contact->n_bodies && schwarz->has_forces; b++)
+    if (!schwarz->groups.rests[b]) PetscCall(SchwarzReportByForce(contact, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
