@@ -119,6 +119,7 @@ PETSC_EXTERN PetscErrorCode BodySetMassRedistribute(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodySetFromOptions(Body);
 PETSC_EXTERN PetscErrorCode BodySetUpDiscretization(Body);
 PETSC_EXTERN PetscErrorCode BodySetUp(Body);
+PETSC_EXTERN PetscErrorCode BodyRefuseNewtonOptions(PetscInt, const Body[]);
 PETSC_EXTERN PetscErrorCode BodyView(Body, PetscViewer);
 PETSC_EXTERN PetscErrorCode BodyViewFromOptions(Body, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode BodyDestroy(Body *);

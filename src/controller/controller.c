@@ -68,6 +68,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(ControllerChooseStep(controller));
   for (PetscInt b = 0; b < n; b++) PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
   PetscCall(ContactSetUp(contact));
+  PetscCall(BodyRefuseNewtonOptions(n, controller->bodies));
   PetscCall(ControllerSetUpStepControl(controller));
   PetscCall(ControllerWarnOfStep(controller));
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));

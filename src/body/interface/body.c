@@ -256,7 +256,6 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(BodySetUpDamping(body));
   PetscCall(BodySetUpPoints(body));
   PetscCall(BodySetUpTime(body));
-  PetscCall(BodyRefuseNewtonOptions(body));
   PetscCall(BodySetUpRepeat(body));
   body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local);
   if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) PetscCall(SetUpSubstepStart(body));

@@ -271,22 +271,57 @@ PetscErrorCode BodySetTimeFromOptions(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A TS reads options of its SNES whether it has something to solve or not: of a body that has not they are refused, once it is set up */
-PetscErrorCode BodyRefuseNewtonOptions(Body body)
+/* An error if the option is one of Newton's method of a body that makes none. Most options are of no Newton's method: bodies are looked at
+   for the few others alone. */
+static PetscErrorCode CheckNewtonOption(PetscInt n, const Body bodies[], const char name[])
 {
-  const char *prefix = ((PetscObject)body)->prefix, *name, *value;
-  char        first[128], *all, *text;
+  char lower[PETSC_MAX_OPTION_NAME], *found;
 
   PetscFunctionBegin;
-  if (body->integrator->uses_newton) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(first, sizeof(first), "-%ssnes_", prefix));
-  PetscCall(PetscOptionsGetAll(NULL, &all));
-  for (text = all; OptionsTextNext(&text, &name, &value);)
+  PetscCall(PetscStrncpy(lower, name, sizeof(lower)));
+  PetscCall(PetscStrtolower(lower));
+  PetscCall(PetscStrstr(lower, "snes_", &found));
+  if (!found) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < n; b++) {
+    Body        body   = bodies[b];
+    const char *prefix = ((PetscObject)body)->prefix;
+    char        first[128];
+
+    PetscCall(PetscSNPrintf(first, sizeof(first), "-%ssnes_", prefix));
     PetscCheck(
-        strncasecmp(name, first, strlen(first)) != 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+        body->integrator->uses_newton || strncasecmp(name, first, strlen(first)) != 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
         "%s has no effect: body '%s' is explicit, rigid or of a linear material, and needs no Newton's method in its steps; leave it "
         "out, or choose -%smaterial_type neo_hookean and -%sts_type alpha2",
         name, body->hdr.name, prefix, prefix);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyRefuseNewtonOptions - makes an error of options of Newton's method that bodies have no use for
+
+  Collective
+
+  Input Parameters:
++ n      - number of bodies
+- bodies - the bodies, set up
+
+  Level: developer
+
+  Note:
+  A `TS` reads the options of its `SNES` whether it has something to solve or not, so that nothing else tells of them. All bodies are
+  checked together: `PetscOptionsGetAll()` takes time in proportion to the square of the number of options.
+
+.seealso: `Body`, `BodySetUp()`, `BodySetFromOptions()`
+@*/
+PetscErrorCode BodyRefuseNewtonOptions(PetscInt n, const Body bodies[])
+{
+  const char *name, *value;
+  char       *all, *text;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (text = all; OptionsTextNext(&text, &name, &value);) PetscCall(CheckNewtonOption(n, bodies, name));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

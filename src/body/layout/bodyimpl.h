@@ -447,7 +447,6 @@ PETSC_INTERN PetscErrorCode BodySetRowsOfLevels(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode BodyTakeLevel(Body, PetscInt, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyDestroyLevels(Body);
 PETSC_INTERN PetscErrorCode BodySetUpRepeat(Body);
-PETSC_INTERN PetscErrorCode BodyRefuseNewtonOptions(Body);
 PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
