@@ -289,7 +289,8 @@ static PetscErrorCode CheckNewtonOption(PetscInt n, const Body bodies[], const c
 
     PetscCall(PetscSNPrintf(first, sizeof(first), "-%ssnes_", prefix));
     PetscCheck(
-        body->integrator->uses_newton || strncasecmp(name, first, strlen(first)) != 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+        body->integrator->uses_newton || strncasecmp(name, first, strlen(first)) != 0, PetscObjectComm((PetscObject)body),
+        PETSC_ERR_USER_INPUT,
         "%s has no effect: body '%s' is explicit, rigid or of a linear material, and needs no Newton's method in its steps; leave it "
         "out, or choose -%smaterial_type neo_hookean and -%sts_type alpha2",
         name, body->hdr.name, prefix, prefix);

@@ -1,5 +1,7 @@
 #include "outersolver.h"
+#include <sys/optionstext.h>
 #include <sys/petsccompat.h>
+#include <strings.h>
 
 /* A SNES of `local` unknowns on this rank, with a dense Jacobian held as a sparse matrix: its size is that of the interface */
 PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt local, PetscErrorCode (*function)(SNES, Vec, Vec, void *),
@@ -93,6 +95,29 @@ static PetscErrorCode RefuseSlopes(Contact contact, const char prefix[], SNESLin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether options name the SNES with anything but what says how it solves */
+static PetscErrorCode FindWatched(const char prefix[], PetscBool *watched)
+{
+  const char *solves[] = {"type", "atol", "rtol", "stol", "max_it", "linesearch_type", "linesearch_damping"};
+  const char *name, *value;
+  char        begin[128], *all, *text;
+
+  PetscFunctionBegin;
+  *watched = PETSC_FALSE;
+  PetscCall(PetscSNPrintf(begin, sizeof(begin), "-%ssnes_", prefix));
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (text = all; OptionsTextNext(&text, &name, &value);) {
+    PetscBool known = PETSC_FALSE;
+
+    if (strncasecmp(name, begin, strlen(begin)) != 0) continue;
+    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(solves) && !known; i++)
+      known = (PetscBool)!strcasecmp(name + strlen(begin), solves[i]);
+    if (!known) *watched = PETSC_TRUE;
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads type and tolerances. The defaults for Anderson (mixing 1/2, eight vectors) suit an iteration with a gain of about -1,
    which is that of the Dirichlet-Neumann alternation between equal bodies. */
 PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, PetscReal atol, PetscReal rtol, PetscInt max_it)
@@ -120,9 +145,35 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
     PetscCall(InsertDefault(prefix, "-snes_anderson_m", "8", &size));
   }
   PetscCall(SNESSetFromOptions(solver->snes));
+  PetscCall(FindWatched(prefix, &solver->watched));
   PetscCall(RefuseSlopes(contact, prefix, line_search));
   PetscCall(RemoveDefault(prefix, "-snes_anderson_beta", beta));
   PetscCall(RemoveDefault(prefix, "-snes_anderson_m", size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solves from x on. Newton's method evaluates the function first: where that is `converged` then, as in most steps of linear bodies, there
+   is nothing to solve, and no SNESSolve(), which looks for a dozen options each time. The function is not evaluated twice where there is.
+ */
+PetscErrorCode OuterSolverSolve(Contact contact, OuterSolver *solver, PetscErrorCode (*function)(SNES, Vec, Vec, void *),
+                                const PetscBool *converged)
+{
+  PetscBool newton;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)solver->snes, SNESNEWTONLS, &newton));
+  if (newton && !solver->watched) {
+    PetscReal norm;
+
+    PetscCall((*function)(solver->snes, solver->x, solver->residual, contact));
+    PetscCall(VecNorm(solver->residual, NORM_2, &norm));
+    if (*converged && !PetscIsInfOrNanReal(norm)) {
+      PetscCall(SNESSetConvergedReason(solver->snes, SNES_CONVERGED_FNORM_ABS));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
+    PetscCall(SNESSetInitialFunction(solver->snes, solver->residual));
+  }
+  PetscCall(SNESSolve(solver->snes, NULL, solver->x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,9 +12,10 @@
 #define OUTER_POSITION_RTOL 1e-15
 
 typedef struct {
-  SNES snes;
-  Vec  x, residual;
-  Mat  jacobian;
+  SNES      snes;
+  Vec       x, residual;
+  Mat       jacobian;
+  PetscBool watched; /* options may want to see each solve of it: monitors, views, reasons */
 } OuterSolver;
 
 PETSC_INTERN PetscErrorCode OuterSolverCreate(Contact, const char[], PetscInt, PetscErrorCode (*)(SNES, Vec, Vec, void *),
@@ -22,4 +23,5 @@ PETSC_INTERN PetscErrorCode OuterSolverCreate(Contact, const char[], PetscInt, P
 PETSC_INTERN PetscErrorCode OuterSolverSetNewton(Contact, OuterSolver *, PetscErrorCode (*)(SNES, Vec, Mat, Mat, void *),
                                                  PetscErrorCode (*)(PC, Vec, Vec));
 PETSC_INTERN PetscErrorCode OuterSolverSetFromOptions(Contact, OuterSolver *, PetscReal, PetscReal, PetscInt);
+PETSC_INTERN PetscErrorCode OuterSolverSolve(Contact, OuterSolver *, PetscErrorCode (*)(SNES, Vec, Vec, void *), const PetscBool *);
 PETSC_INTERN PetscErrorCode OuterSolverDestroy(OuterSolver *);

@@ -47,7 +47,7 @@ static PetscErrorCode Iterate(Contact contact)
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     schwarz->swept = PETSC_FALSE;
     if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_FALSE);
-    PetscCall(SNESSolve(schwarz->outer.snes, NULL, schwarz->outer.x));
+    PetscCall(OuterSolverSolve(contact, &schwarz->outer, SchwarzSweep, &schwarz->converged));
     PetscCall(SchwarzCheckConverged(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     schwarz->iterated = schwarz->groups.on;

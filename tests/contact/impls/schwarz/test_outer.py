@@ -68,6 +68,17 @@ def test_types_agree_on_nodes_with_mass(snes, pairing, shared_run):
     assert run.history["body/left/kinetic"][()].max() <= 1.001 * run.history["body/left/kinetic"][0]
 
 
+@pytest.mark.parametrize(("option", "line"), [("-schwarz_snes_monitor", "0 SNES Function norm"), ("-schwarz_snes_converged_reason", "solve converged")])
+def test_petsc_monitors_of_the_outer_iteration(option, line, impakt):
+    """A step whose first sweep agrees is not handed to SNES, unless somebody looks at what that does; the figures are the same."""
+    options = f"{DEFAULTS} {MOVING} -time_end 2e-5"
+    quiet, watched = impakt(options), impakt(f"{options} {option}")
+    lines = sum(line in each for each in watched.stdout.splitlines())
+    assert lines == watched.summary["contact"]["steps_in_contact"] == 200
+    for part in ("schwarz", "contact", "errors", "system"):
+        assert quiet.summary[part] == watched.summary[part], part
+
+
 def test_petsc_monitors_of_a_body(impakt):
     """Sweeps take steps back and try again; a monitor of the body's TS sees each accepted step once."""
     run = impakt(f"{DEFAULTS} -time_start -1e-6 -time_end 1e-6 -left_dm_plex_box_upper -1e-4 -left_dm_plex_box_lower -0.2501 -right_dm_plex_box_lower 1e-4 -right_dm_plex_box_upper 0.2501 -left_ts_monitor")
