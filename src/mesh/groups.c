@@ -98,24 +98,38 @@ static PetscErrorCode RefuseSurface(DM dm, const char name[], const char what[])
           name ? name : "", what, list[0] ? list : "none", box);
 }
 
-/* Whether all vertices of a face are on a side of the bounding box. In one dimension a face is its own vertex. */
-static PetscErrorCode OnSide(DM dm, const Selection *selection, PetscInt face, PetscInt vstart, PetscInt vend, PetscSection section,
-                             const PetscScalar x[], PetscBool *on)
+/* The coordinates of a face, dimension by dimension. In one dimension a face is its own vertex. */
+static PetscErrorCode GetExtent(DM dm, PetscInt face, PetscInt dim, PetscInt vstart, PetscInt vend, PetscSection section,
+                                const PetscScalar x[], PetscReal lower[3], PetscReal upper[3])
 {
   PetscInt *closure = NULL, n;
 
   PetscFunctionBegin;
-  *on = PETSC_TRUE;
+  for (PetscInt d = 0; d < 3; d++) lower[d] = PETSC_MAX_REAL;
+  for (PetscInt d = 0; d < 3; d++) upper[d] = -PETSC_MAX_REAL;
   PetscCall(DMPlexGetTransitiveClosure(dm, face, PETSC_TRUE, &n, &closure));
-  for (PetscInt p = 0; p < n && *on; p++) {
+  for (PetscInt p = 0; p < n; p++) {
     PetscInt offset;
 
     if (closure[2 * p] < vstart || closure[2 * p] >= vend) continue;
     PetscCall(PetscSectionGetOffset(section, closure[2 * p], &offset));
-    if (PetscAbsReal(PetscRealPart(x[offset + selection->side / 2]) - selection->place) > selection->tolerance) *on = PETSC_FALSE;
+    for (PetscInt d = 0; d < dim; d++) {
+      lower[d] = PetscMin(lower[d], PetscRealPart(x[offset + d]));
+      upper[d] = PetscMax(upper[d], PetscRealPart(x[offset + d]));
+    }
   }
   PetscCall(DMPlexRestoreTransitiveClosure(dm, face, PETSC_TRUE, &n, &closure));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether all vertices of a face with this extent are on the side of the bounding box that the selection has, if it has one */
+static PetscBool OnSide(const Selection *selection, const PetscReal lower[3], const PetscReal upper[3])
+{
+  const PetscInt d = selection->side / 2;
+
+  if (selection->side < 0) return PETSC_TRUE;
+  return (PetscBool)(PetscAbsReal(lower[d] - selection->place) <= selection->tolerance &&
+                     PetscAbsReal(upper[d] - selection->place) <= selection->tolerance);
 }
 
 /* The faces of the boundary. Faces between two ranks do not belong to it. */
@@ -127,34 +141,44 @@ static PetscErrorCode MarkBoundary(DM dm, DMLabel *boundary)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The selected ones of this rank's boundary faces */
-static PetscErrorCode CollectFaces(DM dm, DMLabel boundary, const Selection *selection, PetscInt *n_faces, PetscInt *faces[])
+/* This rank's boundary faces of some selections, all found in one pass */
+static PetscErrorCode CollectFaces(DM dm, DMLabel boundary, PetscInt n_selections, const Selection selections[], PetscInt n_faces[],
+                                   PetscInt *faces[])
 {
   IS                 points;
   const PetscInt    *point;
   const PetscScalar *x;
   PetscSection       section;
   Vec                coordinates;
-  PetscInt           n, vstart, vend;
+  PetscInt           n, dim, vstart, vend;
+  PetscBool          by_side = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(DMLabelGetStratumSize(boundary, 1, &n));
   PetscCall(DMGetCoordinateSection(dm, &section));
   PetscCall(DMGetCoordinatesLocal(dm, &coordinates));
+  PetscCall(DMGetCoordinateDim(dm, &dim));
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
-  PetscCall(PetscMalloc1(n, faces));
-  *n_faces = 0;
+  for (PetscInt s = 0; s < n_selections; s++) {
+    PetscCall(PetscMalloc1(n, &faces[s]));
+    n_faces[s] = 0;
+    if (selections[s].side >= 0) by_side = PETSC_TRUE;
+  }
   if (n) {
     PetscCall(VecGetArrayRead(coordinates, &x));
     PetscCall(DMLabelGetStratumIS(boundary, 1, &points));
     PetscCall(ISGetIndices(points, &point));
     for (PetscInt i = 0; i < n; i++) {
-      PetscBool on = PETSC_TRUE;
+      PetscReal lower[3], upper[3];
 
-      if (selection->label) on = InLabel(selection, point[i]);
-      else if (selection->by_value) on = PETSC_FALSE; /* only other ranks have the label */
-      if (selection->side >= 0) PetscCall(OnSide(dm, selection, point[i], vstart, vend, section, x, &on));
-      if (on) (*faces)[(*n_faces)++] = point[i];
+      if (by_side) PetscCall(GetExtent(dm, point[i], dim, vstart, vend, section, x, lower, upper));
+      for (PetscInt s = 0; s < n_selections; s++) {
+        PetscBool in = PETSC_TRUE;
+
+        if (selections[s].label) in = InLabel(&selections[s], point[i]);
+        else if (selections[s].by_value) in = PETSC_FALSE; /* only other ranks have the label */
+        if (in && OnSide(&selections[s], lower, upper)) faces[s][n_faces[s]++] = point[i];
+      }
     }
     PetscCall(ISRestoreIndices(points, &point));
     PetscCall(ISDestroy(&points));
@@ -166,6 +190,7 @@ static PetscErrorCode CollectFaces(DM dm, DMLabel boundary, const Selection *sel
 /* Labels the faces on the sides of the bounding box as xmin, xmax, ... A side without faces on any rank gets no label. */
 PetscErrorCode MeshMarkSides(DM dm)
 {
+  Selection selections[6];
   DMLabel   boundary;
   PetscReal lower[3], upper[3];
   PetscInt  dim, n[6], any[6], *faces[6];
@@ -175,12 +200,11 @@ PetscErrorCode MeshMarkSides(DM dm)
   PetscCall(DMGetBoundingBox(dm, lower, upper));
   PetscCall(MarkBoundary(dm, &boundary));
   for (PetscInt side = 0; side < 2 * dim; side++) {
-    Selection selection = {.side = -1};
-
-    UseSide(side, lower, upper, &selection);
-    PetscCall(CollectFaces(dm, boundary, &selection, &n[side], &faces[side]));
-    any[side] = n[side];
+    selections[side] = (Selection){.side = -1};
+    UseSide(side, lower, upper, &selections[side]);
   }
+  PetscCall(CollectFaces(dm, boundary, 2 * dim, selections, n, faces));
+  PetscCall(PetscArraycpy(any, n, 2 * dim));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, any, (PetscMPIInt)(2 * dim), MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
   for (PetscInt side = 0; side < 2 * dim; side++) {
     DMLabel label;
@@ -252,7 +276,7 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
     if (!found) PetscCall(RefuseSurface(dm, name, ""));
   }
   PetscCall(MarkBoundary(dm, &boundary));
-  PetscCall(CollectFaces(dm, boundary, &selection, n_faces, faces));
+  PetscCall(CollectFaces(dm, boundary, 1, &selection, n_faces, faces));
   PetscCall(DMLabelDestroy(&boundary));
   PetscCallMPI(MPI_Allreduce(n_faces, &total, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)dm)));
   if (!total) {
@@ -301,7 +325,7 @@ PetscErrorCode MeshFindSurface(DM dm, const char name[], PetscBool by_side, Pets
     PetscCall(DMPlexGetSupportSize(dm, f, &n));
     if (n == 1) PetscCall(DMLabelSetValue(boundary, f, 1));
   }
-  PetscCall(CollectFaces(dm, boundary, &selection, n_faces, faces));
+  PetscCall(CollectFaces(dm, boundary, 1, &selection, n_faces, faces));
   PetscCall(DMLabelDestroy(&boundary));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
