@@ -13,6 +13,12 @@
 static const PetscReal points[POINTS][DIM] = {{-G, -G, -G}, {G, -G, -G}, {G, G, -G}, {-G, G, -G},
                                               {-G, -G, G},  {G, -G, G},  {G, G, G},  {-G, G, G}};
 
+/* Gradients of monomials by powers of the coordinates: 1, xi, eta, zeta, eta zeta, zeta xi, xi eta */
+#define TERMS 7
+static const SolidTerm terms[TERMS] = {{8, 3, {0, 1, 2}, {0, 1, 2}}, {8. / 3, 2, {1, 2}, {3, 5}}, {8. / 3, 2, {0, 2}, {3, 4}},
+                                       {8. / 3, 2, {0, 1}, {5, 4}},  {8. / 9, 1, {0}, {6}},       {8. / 9, 1, {1}, {6}},
+                                       {8. / 9, 1, {2}, {6}}};
+
 SIMD_INLINE void ModesOfNodes(const SimdVector n[NODES], SimdVector m[MODES])
 {
   /* sums and differences along xi, then along eta, below and above */

@@ -12,6 +12,10 @@
 
 static const PetscReal points[POINTS][DIM] = {{-G, -G}, {G, -G}, {G, G}, {-G, G}};
 
+/* Gradients of monomials by powers of the coordinates: 1, xi, eta */
+#define TERMS 3
+static const SolidTerm terms[TERMS] = {{4, 2, {0, 1}, {0, 1}}, {4. / 3, 1, {1}, {2}}, {4. / 3, 1, {0}, {2}}};
+
 SIMD_INLINE void ModesOfNodes(const SimdVector n[NODES], SimdVector m[MODES])
 {
   const SimdVector s0 = n[1] + n[0], d0 = n[1] - n[0], s1 = n[2] + n[3], d1 = n[2] - n[3];

@@ -14,6 +14,10 @@ static const PetscReal points[POINTS][DIM] = {{0.25, 0.25, 0.25}};
 static const PetscReal load_points[4][DIM] = {{A, A, A}, {B, A, A}, {A, B, A}, {A, A, B}};
 static const PetscReal corners[NODES][DIM] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
 
+/* Gradients of the monomials are constant */
+#define TERMS 1
+static const SolidTerm terms[TERMS] = {{1, 3, {0, 1, 2}, {0, 1, 2}}};
+
 SIMD_INLINE void ModesOfNodes(const SimdVector n[NODES], SimdVector m[MODES])
 {
   m[0] = n[1] - n[0];

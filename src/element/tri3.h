@@ -10,6 +10,10 @@
 
 static const PetscReal points[POINTS][DIM] = {{1.0 / 3, 1.0 / 3}};
 
+/* Gradients of the monomials are constant */
+#define TERMS 1
+static const SolidTerm terms[TERMS] = {{1, 2, {0, 1}, {0, 1}}};
+
 SIMD_INLINE void ModesOfNodes(const SimdVector n[NODES], SimdVector m[MODES])
 {
   m[0] = n[1] - n[0];

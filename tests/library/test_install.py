@@ -34,7 +34,7 @@ def test_the_program_runs_from_there(installed, launch, tmp_path):  # noqa: F811
 
 
 # These want a shape's definitions before them, as src/element/hex8.h has them
-TEMPLATES = ("solidbatch.h", "solidloops.h", "solidops.h", "solidplastic.h")
+TEMPLATES = ("solidaffine.h", "solidbatch.h", "solidloops.h", "solidops.h", "solidplastic.h")
 
 
 @pytest.mark.parametrize("compiler", ["cc", "c++"])

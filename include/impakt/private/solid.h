@@ -18,6 +18,13 @@ typedef struct {
   void (*shape)(const PetscReal xi[], PetscReal N[], PetscReal dN[]); /* shape functions and their gradients, nodes x dim */
 } SolidShape;
 
+/* A product of reference coordinates in the gradients of the monomials of a shape: the sum of its squares over the points, and the
+   monomials that have it in their derivatives along which axes */
+typedef struct {
+  PetscReal weight;
+  PetscInt  n, axis[3], mode[3];
+} SolidTerm;
+
 typedef struct {
   const SolidShape     *shape;
   const PetscReal      *coordinates; /* of the rank's nodes; owned by the body */

@@ -118,7 +118,7 @@ SIMD_INLINE void GetFirstGradients(const Solid *solid, const PetscInt connectivi
 }
 
 /* Adds the force of one point, by monomials: the stress against the axes of the reference element against their gradients */
-SIMD_INLINE void AddPointOfPart(PetscInt part, SimdReal P[9], SimdVector cofactor[DIM][DIM], const PetscReal xi[DIM],
+SIMD_INLINE void AddPointOfPart(PetscInt part, SimdReal P[9], const SimdVector cofactor[DIM][DIM], const PetscReal xi[DIM],
                                 SimdVector F[DIM][MODES])
 {
 #pragma GCC unroll 3

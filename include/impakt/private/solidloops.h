@@ -3,20 +3,29 @@
    for, and includes this.
 */
 #include <impakt/private/solidbatch.h>
+#include <impakt/private/solidaffine.h>
 
-/* Returns the first element with a stress that is no number; -1: none */
+/* Returns the first element with a stress that is no number; -1: none. `n_affine`: elements in batches of parallelepipeds. */
 SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, PetscInt count, const PetscInt connectivity[],
-                                      const PetscReal u[], PetscReal f[])
+                                      const PetscReal u[], PetscReal f[], PetscInt *n_affine)
 {
   PetscInt  inverted = -1;
   Gradients at[2]    = {0};
 
+  *n_affine = 0;
   if (count && POINTS == 1) GetFirstGradients(solid, connectivity, 0, count, u, &at[0]);
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
-    SimdReal       P[9], nodal[DIM][NODES], check                                                  = {0};
+    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES];
+    SimdReal       P[9], nodal[DIM][NODES], check = {0};
+    PetscBool      affine = PETSC_FALSE;
+    Frame          frame;
 
+    /* one by one: an initialiser of all of F is a loop over bytes */
+    for (PetscInt part = 0; part < SIMD_PARTS; part++)
+      for (PetscInt i = 0; i < DIM; i++)
+#pragma GCC unroll 8
+        for (PetscInt k = 0; k < MODES; k++) F[part][i][k] = (SimdVector){0};
     /* gradients one point ahead, where there is one point that of the next batch: read in whole right after it is written in parts, H would
        have to go through the cache */
     if (POINTS == 1) {
@@ -25,9 +34,12 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
     } else {
       GetModes(connectivity, first, count, solid->coordinates, X);
       GetModes(connectivity, first, count, u, U);
-      GetGradients(X, U, points[0], &at[0]);
+      affine = GetFrame(X, &frame);
+      if (affine) AddAffine(solid, first, &frame, U, F);
+      else GetGradients(X, U, points[0], &at[0]);
+      *n_affine += affine ? in_batch : 0;
     }
-    for (PetscInt g = 0; g < POINTS; g++) {
+    for (PetscInt g = 0; g < POINTS && !affine; g++) {
       const PetscInt now = (POINTS == 1 ? first / SIMD_WIDTH : g) % 2;
 
       if (g + 1 < POINTS) GetGradients(X, U, points[g + 1], &at[1 - now]);
@@ -115,11 +127,17 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
     SimdReal       W, work, sum = {0}, flowed = {0};
     PetscInt       bad;
+    PetscBool      affine;
+    Frame          frame;
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
+    affine = GetFrame(X, &frame);
+    if (affine)
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) at.determinant[p] = frame.determinant[p];
     for (PetscInt g = 0; g < POINTS; g++) {
-      GetGradients(X, U, points[g], &at);
+      if (affine) GetFrameGradients(&frame, U, points[g], at.H);
+      else GetGradients(X, U, points[g], &at);
       SolidEnergy(solid, first, g, (const SimdReal *)at.H, W, work);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) flowed[p] += at.determinant[p] * work[p];
@@ -161,7 +179,21 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
   }
 }
 
+static PetscErrorCode InternalForce(Element element, const PetscScalar u[], PetscScalar f[])
+{
+  const Solid   *solid = (const Solid *)element->data;
+  PetscInt       n_affine;
+  PetscLogDouble flops;
+
+  PetscFunctionBegin;
+  element->inverted = AddForces(solid, WEIGHT * element->cross_section, element->count, element->connectivity, u, f, &n_affine);
+  flops             = CountAffineFlops(solid->linear) * (PetscLogDouble)n_affine;
+  PetscCall(PetscLogFlops(flops + element->flops * (PetscLogDouble)(element->count - n_affine)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 #include <impakt/private/solidplastic.h>
+#define SOLID_HAS_FORCE
 #define SOLID_HAS_HISTORY
 #include <impakt/private/solidops.h>
 

@@ -1,4 +1,5 @@
 /* The operations of an element from the loops of its shape and formulation: AddForces(), AddViscousForces(), AddEnergy(), GetStress() */
+#if !defined(SOLID_HAS_FORCE)
 static PetscErrorCode InternalForce(Element element, const PetscScalar u[], PetscScalar f[])
 {
   PetscFunctionBegin;
@@ -6,6 +7,7 @@ static PetscErrorCode InternalForce(Element element, const PetscScalar u[], Pets
   PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)element->count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+#endif
 
 static PetscErrorCode ViscousForce(Element element, const PetscScalar u[], const PetscScalar v[], PetscScalar f[])
 {

@@ -1,6 +1,7 @@
 /* The corners of elements, and the edges that meet there. */
 #pragma once
 #include <body/layout/bodyimpl.h>
+#include <impakt/private/simd.h>
 
 enum { MOST_CORNERS = 8 };
 
@@ -25,4 +26,12 @@ static inline const Corners *BodyFindCorners(Body body)
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(corners_of_shapes); i++)
     if (corners_of_shapes[i].shape == body->mesh.cell_shape) return &corners_of_shapes[i];
   return NULL;
+}
+
+/* Where the nodes of a cell are, as moved by u; NULL: undeformed. dim is to be known where this is compiled. */
+SIMD_INLINE void CornersGetPlaces(PetscInt dim, PetscInt n, const PetscInt nodes[], const PetscReal x[], const PetscScalar u[],
+                                  PetscReal place[MOST_CORNERS][3])
+{
+  for (PetscInt a = 0; a < n; a++)
+    for (PetscInt d = 0; d < dim; d++) place[a][d] = x[nodes[a] * dim + d] + (u ? PetscRealPart(u[nodes[a] * dim + d]) : 0);
 }

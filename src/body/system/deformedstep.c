@@ -19,28 +19,21 @@
    a factor that depends on the shape [1/m]. Of a composite element it is the root of the mean square of its cells: its gradients are
    projections of theirs, whose squares are less than the mean on average. One thin cell does not make it as stiff as if all were so: taken
    for that, elements at the rim of a rod's foot hid for long how those at its axis were flattened, until these were unstable. */
-static PetscReal GetThinness(Body body, const Corners *corners, const PetscScalar u[])
+SIMD_INLINE PetscReal FindThinness(PetscInt dim, const BodyMesh *mesh, const Corners *corners, const PetscScalar u[])
 {
-  const PetscInt   n = body->mesh.cell_nodes, dim = body->mesh.dim;
-  const PetscReal *x          = body->mesh.coordinates;
-  const PetscInt   of_element = body->mesh.cells_of_element;
-  PetscReal        largest = 0, squares = 0;
+  const PetscInt of_element = mesh->cells_of_element;
+  PetscReal      largest = 0, squares = 0;
 
-  for (PetscInt e = 0; e < body->mesh.n_cells; e++) {
-    const PetscInt *nodes   = body->mesh.cell_connectivity + e * n;
-    PetscReal       of_cell = 0;
+  for (PetscInt e = 0; e < mesh->n_cells; e++) {
+    PetscReal of_cell = 0, place[MOST_CORNERS][3];
 
     if (e % of_element == 0) squares = 0;
-
+    CornersGetPlaces(dim, mesh->cell_nodes, mesh->cell_connectivity + e * mesh->cell_nodes, mesh->coordinates, u, place);
     for (PetscInt c = 0; c < corners->corners; c++) {
       PetscReal edge[3][3] = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, cofactor[3][3], determinant, rows = 0, columns = 0;
 
       for (PetscInt i = 0; i < dim; i++)
-        for (PetscInt d = 0; d < dim; d++) {
-          const PetscInt to = nodes[corners->ends[c][i]] * dim + d, from = nodes[c] * dim + d;
-
-          edge[i][d] = x[to] - x[from] + (u ? PetscRealPart(u[to] - u[from]) : 0);
-        }
+        for (PetscInt d = 0; d < dim; d++) edge[i][d] = place[corners->ends[c][i]][d] - place[c][d];
       for (PetscInt i = 0; i < 3; i++)
         for (PetscInt j = 0; j < 3; j++)
           cofactor[i][j] = edge[(i + 1) % 3][(j + 1) % 3] * edge[(i + 2) % 3][(j + 2) % 3] -
@@ -51,18 +44,24 @@ static PetscReal GetThinness(Body body, const Corners *corners, const PetscScala
         PetscReal row = 0, column = 0;
 
         for (PetscInt j = 0; j < dim; j++) {
-          row += PetscAbsReal(cofactor[i][j] / determinant);
-          column += PetscAbsReal(cofactor[j][i] / determinant);
+          row += PetscAbsReal(cofactor[i][j]);
+          column += PetscAbsReal(cofactor[j][i]);
         }
         rows    = PetscMax(rows, row);
         columns = PetscMax(columns, column);
       }
-      of_cell = PetscMax(of_cell, rows * columns);
+      of_cell = PetscMax(of_cell, rows * columns / PetscSqr(determinant));
     }
     squares += of_cell / (PetscReal)of_element;
     if (e % of_element == of_element - 1) largest = PetscMax(largest, PetscSqrtReal(squares));
   }
   return largest;
+}
+
+static PetscReal GetThinness(const BodyMesh *mesh, const Corners *corners, const PetscScalar u[])
+{
+  if (mesh->dim == 3) return FindThinness(3, mesh, corners, u);
+  return mesh->dim == 2 ? FindThinness(2, mesh, corners, u) : FindThinness(1, mesh, corners, u);
 }
 
 /* Looks at the present state, which is that of an accepted step. Collective; of a local body the rank that has it looks alone. */
@@ -80,8 +79,8 @@ PetscErrorCode BodyUpdateStableStep(Body body)
   if (body->local && !body->mesh.is_owner) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->state.step / time->substeps % INTERVAL) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  thinness[0] = GetThinness(body, corners, u);
-  thinness[1] = time->thinness > 0 ? 0 : GetThinness(body, corners, NULL);
+  thinness[0] = GetThinness(&body->mesh, corners, u);
+  thinness[1] = time->thinness > 0 ? 0 : GetThinness(&body->mesh, corners, NULL);
   if (body->rows.size > 1 && !body->local)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, thinness, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
   if (!(time->thinness > 0)) {

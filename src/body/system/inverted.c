@@ -9,42 +9,64 @@
 */
 #include "corners.h"
 
-/* The Jacobian at a corner, as moved by u; NULL: undeformed */
-static PetscReal Jacobian(PetscInt dim, const PetscInt nodes[], PetscInt corner, const PetscInt ends[3], const PetscReal x[],
-                          const PetscScalar u[])
+/* The Jacobian at a corner of a cell whose nodes are at these places */
+SIMD_INLINE PetscReal Jacobian(PetscInt dim, PetscReal place[][3], PetscInt corner, const PetscInt ends[3])
 {
   PetscReal e[3][3] = {{0}};
 
   for (PetscInt i = 0; i < dim; i++)
-    for (PetscInt d = 0; d < dim; d++) {
-      const PetscInt to = nodes[ends[i]] * dim + d, from = nodes[corner] * dim + d;
-
-      e[i][d] = x[to] - x[from] + (u ? PetscRealPart(u[to] - u[from]) : 0);
-    }
+    for (PetscInt d = 0; d < dim; d++) e[i][d] = place[ends[i]][d] - place[corner][d];
   if (dim == 1) return e[0][0];
   if (dim == 2) return e[0][0] * e[1][1] - e[0][1] * e[1][0];
   return e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) + e[0][1] * (e[1][2] * e[2][0] - e[1][0] * e[2][2]) +
          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
 }
 
+/* How many cells have a corner that is inside out in the state u and was not before, and the first of them; -1: none */
+SIMD_INLINE PetscInt CountInverted(PetscInt dim, const BodyMesh *mesh, const Corners *shape, const PetscScalar u[], PetscInt *found)
+{
+  PetscInt number = 0;
+
+  *found = -1;
+  for (PetscInt e = 0; e < mesh->n_cells; e++) {
+    const PetscInt *nodes = mesh->cell_connectivity + e * mesh->cell_nodes;
+    PetscReal       place[MOST_CORNERS][3], smallest = PETSC_MAX_REAL;
+    PetscBool       inside = PETSC_FALSE;
+
+    CornersGetPlaces(dim, mesh->cell_nodes, nodes, mesh->coordinates, u, place);
+    for (PetscInt c = 0; c < shape->corners; c++) smallest = PetscMin(smallest, Jacobian(dim, place, c, shape->ends[c]));
+    if (smallest > 0) continue;
+    for (PetscInt c = 0; c < shape->corners && !inside; c++) {
+      PetscReal before[MOST_CORNERS][3];
+
+      CornersGetPlaces(dim, mesh->cell_nodes, nodes, mesh->coordinates, NULL, before);
+      inside = (PetscBool)(Jacobian(dim, place, c, shape->ends[c]) <= 0 && Jacobian(dim, before, c, shape->ends[c]) > 0);
+    }
+    if (inside && *found < 0) *found = e;
+    number += inside;
+  }
+  return number;
+}
+
 /* The energy that the body must store before an element of this rank can be inside out; infinity where nobody can tell [J]. Volumes are
    those of the corners' Jacobians, scaled so that their sum is the volume of the body, with thickness and cross section. */
 static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscReal *energy)
 {
-  const PetscInt n   = body->mesh.cell_nodes;
-  PetscReal      sum = 0, least = PETSC_MAX_REAL, modulus, density;
-  const char    *formulation;
-  PetscBool      full;
+  const BodyMesh *mesh = &body->mesh;
+  PetscReal       sum = 0, least = PETSC_MAX_REAL, modulus, density, place[MOST_CORNERS][3];
+  const char     *formulation;
+  PetscBool       full;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < body->mesh.n_cells; e++)
+  for (PetscInt e = 0; e < mesh->n_cells; e++) {
+    CornersGetPlaces(mesh->dim, mesh->cell_nodes, mesh->cell_connectivity + e * mesh->cell_nodes, mesh->coordinates, NULL, place);
     for (PetscInt c = 0; c < shape->corners; c++) {
-      const PetscReal jacobian = Jacobian(body->mesh.dim, body->mesh.cell_connectivity + e * n, c, shape->ends[c], body->mesh.coordinates,
-                                          NULL);
+      const PetscReal jacobian = Jacobian(mesh->dim, place, c, shape->ends[c]);
 
       sum += jacobian / (PetscReal)shape->corners;
       if (jacobian > 0) least = PetscMin(least, jacobian);
     }
+  }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)body)));
   PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
@@ -82,8 +104,7 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscR
 PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number, PetscReal centre[3])
 {
   const Corners     *shape = BodyFindCorners(body);
-  const PetscInt     n = body->mesh.cell_nodes, dim = body->mesh.dim;
-  PetscInt           found = -1;
+  PetscInt           found;
   PetscMPIInt        first;
   Vec                local;
   const PetscScalar *u;
@@ -97,16 +118,9 @@ PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number,
   if (!body->model.least_inverting) PetscCall(ComputeLeastEnergy(body, shape, &body->model.least_inverting));
   if (!(potential >= body->model.least_inverting)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  for (PetscInt e = 0; e < body->mesh.n_cells; e++) {
-    const PetscInt *nodes  = body->mesh.cell_connectivity + e * n;
-    PetscBool       inside = PETSC_FALSE;
-
-    for (PetscInt c = 0; c < shape->corners && !inside; c++)
-      inside = (PetscBool)(Jacobian(dim, nodes, c, shape->ends[c], body->mesh.coordinates, u) <= 0 &&
-                           Jacobian(dim, nodes, c, shape->ends[c], body->mesh.coordinates, NULL) > 0);
-    if (inside && found < 0) found = e;
-    *number += inside;
-  }
+  if (body->mesh.dim == 3) *number = CountInverted(3, &body->mesh, shape, u, &found);
+  else if (body->mesh.dim == 2) *number = CountInverted(2, &body->mesh, shape, u, &found);
+  else *number = CountInverted(1, &body->mesh, shape, u, &found);
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, number, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   if (*number) PetscCall(BodyFindFirstElement(body, found < 0 ? -1 : found / body->mesh.cells_of_element, &first, centre));
