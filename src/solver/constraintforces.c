@@ -50,15 +50,25 @@ static PetscErrorCode CreateIterative(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the constraint forces are worth a dense matrix: few of them, or iterations have cost as much as it would */
-static PetscErrorCode ChooseDense(ConstrainedSolver s, PetscBool *dense)
+/* Whether there is room for a dense matrix of the constraint forces, and the columns that it takes */
+static PetscErrorCode MayBeDense(ConstrainedSolver s, PetscBool *may)
 {
-  PetscInt size, missing = 0;
+  PetscInt size;
 
   PetscFunctionBegin;
   PetscCall(VecGetSize(s->rhs, &size));
+  *may = (PetscBool)(s->n <= s->dense_limit && (PetscReal)s->n * size <= MAX_COLUMN_NUMBERS);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the constraint forces are worth a dense matrix: few of them, or iterations have cost as much as it would */
+static PetscErrorCode ChooseDense(ConstrainedSolver s, PetscBool *dense)
+{
+  PetscInt missing = 0;
+
+  PetscFunctionBegin;
   for (PetscInt k = 0; k < s->n; k++) missing += !s->fresh[s->rows[k]];
-  *dense = (PetscBool)(s->n <= s->dense_limit && (PetscReal)s->n * size <= MAX_COLUMN_NUMBERS);
+  PetscCall(MayBeDense(s, dense));
   if (s->n > FEW_CONSTRAINTS && s->spent < missing * s->solve_flops + DenseFactorFlops(s->n)) *dense = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -153,11 +163,34 @@ PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x -= A^{-1} B_m^T s with the constraint forces s by conjugate gradients */
+/* force_vec = W_mm^-1 gap_vec by conjugate gradients. Where these do not converge, as with elements a hundred times as long as high, and
+   there is room for a dense matrix, there is one from now on, and nothing has been found. */
+static PetscErrorCode Iterate(ConstrainedSolver s)
+{
+  KSPConvergedReason reason;
+  PetscInt           iterations;
+  PetscBool          may = PETSC_FALSE, raises;
+
+  PetscFunctionBegin;
+  PetscCall(MayBeDense(s, &may));
+  PetscCall(KSPGetErrorIfNotConverged(s->iterative, &raises));
+  if (may) PetscCall(KSPSetErrorIfNotConverged(s->iterative, PETSC_FALSE));
+  PetscCall(KSPSolve(s->iterative, s->gap_vec, s->force_vec));
+  PetscCall(KSPSetErrorIfNotConverged(s->iterative, raises));
+  PetscCall(KSPGetConvergedReason(s->iterative, &reason));
+  PetscCall(KSPGetIterationNumber(s->iterative, &iterations));
+  s->spent += (iterations + 1) * s->solve_flops; /* one more for x */
+  if (may && (reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_BREAKDOWN)) {
+    s->spent = PETSC_MAX_REAL;
+    PetscCall(FactorConstraints(s));
+  } else PetscCall(ConstrainedSolverCheckSolution(s, s->iterative, s->force_vec));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x -= A^{-1} B_m^T s with the constraint forces s by conjugate gradients, unless it turns out that these have a dense matrix after all */
 static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, const PetscScalar target[], Vec x)
 {
   PetscScalar *gap;
-  PetscInt     iterations;
 
   PetscFunctionBegin;
   PetscCall(MatMult(s->B, x, s->gap_vec));
@@ -167,10 +200,8 @@ static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, const PetscScala
     if (s->mine[i] < 0) gap[i] = 0;
   }
   PetscCall(VecRestoreArray(s->gap_vec, &gap));
-  PetscCall(KSPSolve(s->iterative, s->gap_vec, s->force_vec));
-  PetscCall(ConstrainedSolverCheckSolution(s, s->iterative, s->force_vec));
-  PetscCall(KSPGetIterationNumber(s->iterative, &iterations));
-  s->spent += (iterations + 1) * s->solve_flops; /* one more for x */
+  PetscCall(Iterate(s));
+  if (s->dense) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatMultTranspose(s->B, s->force_vec, s->rhs));
   PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->product));
   PetscCall(VecAXPY(x, -1, s->product));
@@ -201,10 +232,8 @@ static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[],
 {
   PetscFunctionBegin;
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!s->dense) {
-    PetscCall(ConstrainIteratively(s, target, x));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  if (!s->dense) PetscCall(ConstrainIteratively(s, target, x));
+  if (!s->dense) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GatherGaps(s, x, target));
   for (PetscInt k = 0; k < s->n; k++) {
     s->force[k] = -s->gathered[k];
