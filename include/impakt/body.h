@@ -45,6 +45,7 @@ PETSC_EXTERN const char *const BodyMassTypes[];
 S*/
 typedef struct {
   PetscReal kinetic;             /* J; staggered, for central differences */
+  PetscReal kinetic_unstaggered; /* J; the same for all other integrators */
   PetscReal potential;           /* J */
   PetscReal hourglass_energy;    /* part of the potential that holds what elements with one point do not see, J */
   PetscReal external_work;       /* done since the start by forces from outside and by held displacements, J */

@@ -83,16 +83,17 @@ static PetscErrorCode IsMeasured(Body body, PetscBool *measured)
 /* What measures are sums of, over this rank's part. A body without inertia has a mean velocity, weighted by its mass, all the same. */
 static PetscErrorCode SumMeasures(Body body, PetscReal sums[])
 {
-  PetscReal kinetic, half_work, momentum[3], angular[3], turned[3];
+  PetscReal kinetic, moving, half_work, momentum[3], angular[3], turned[3];
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(sums, N_SUMS));
-  PetscCall(BodySumNodes(body, &kinetic, &half_work, momentum, angular, turned));
+  PetscCall(BodySumNodes(body, &kinetic, &moving, &half_work, momentum, angular, turned));
   if (body->integrator->deforms && body->model.linear) sums[1] = half_work;
   else if (body->integrator->deforms) PetscCall(ComputePotential(body, &sums[1]));
   PetscCall(ComputeHourglassEnergy(body, &sums[14]));
   if (body->integrator->has_inertia) {
-    sums[0] = kinetic;
+    sums[0]  = kinetic;
+    sums[16] = moving;
     PetscCall(PetscArraycpy(sums + 2, momentum, 3));
     PetscCall(PetscArraycpy(sums + 5, angular, 3));
   }
@@ -172,12 +173,13 @@ static PetscErrorCode Finish(Body body, const PetscReal sums[], BodyMeasures *me
   PetscReal drag;
 
   PetscFunctionBegin;
-  measures->kinetic          = sums[0];
-  measures->potential        = sums[1];
-  measures->external_work    = sums[N_SUMS];
-  measures->damping_work     = sums[N_SUMS + 1];
-  measures->plastic_work     = sums[15] - body->plastic_before;
-  measures->hourglass_energy = sums[14];
+  measures->kinetic             = sums[0];
+  measures->kinetic_unstaggered = sums[16];
+  measures->potential           = sums[1];
+  measures->external_work       = sums[N_SUMS];
+  measures->damping_work        = sums[N_SUMS + 1];
+  measures->plastic_work        = sums[15] - body->plastic_before;
+  measures->hourglass_energy    = sums[14];
   BodyFinishRotation(body, sums + 11, measures->rotation);
   PetscCall(BodyGetDamping(body, &drag, NULL)); /* which takes momentum */
   measures->loaded = (PetscBool)(BodyIsLoaded(body) || drag > 0);

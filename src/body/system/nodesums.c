@@ -86,10 +86,10 @@ SIMD_CLONES static void Add(PetscInt dim, PetscBool diagonal, PetscBool linear, 
   else AddIn(3, diagonal, linear, nodes, sums);
 }
 
-/* Of this rank's nodes: kinetic energy, staggered for central differences [J], half the work of the internal forces
+/* Of this rank's nodes: kinetic energy, staggered for central differences and as it is [J], half the work of the internal forces
    of a linear body [J], momentum, angular momentum, and sum m (X - C) x u of a linear body */
-PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *half_work, PetscReal momentum[3], PetscReal angular[3],
-                            PetscReal turned[3])
+PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *moving, PetscReal *half_work, PetscReal momentum[3],
+                            PetscReal angular[3], PetscReal turned[3])
 {
   const PetscReal staggered = body->integrator->staggered * PetscSqr(body->time.step);
   const Vec       a      = staggered > 0 ? body->state.a : body->state.v; /* what is not asked for costs least where it is read already */
@@ -116,6 +116,7 @@ PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *half_work,
   Add(body->mesh.dim, (PetscBool)(body->mass.diagonal != NULL), body->model.linear, &nodes, sums);
   for (PetscInt k = n_arrays - 1; k >= 0; k--) PetscCall(VecRestoreArrayRead(vecs[k], arrays[k]));
   *kinetic   = 0.5 * (staggered > 0 ? sums[KINETIC] - staggered * sums[STAGGERED] : sums[KINETIC]);
+  *moving    = 0.5 * sums[KINETIC];
   *half_work = 0.5 * sums[POTENTIAL];
   PetscCall(PetscArraycpy(momentum, sums + MOMENTUM, 3));
   PetscCall(PetscArraycpy(angular, sums + ANGULAR, 3));
