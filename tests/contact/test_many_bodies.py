@@ -384,6 +384,30 @@ def test_rows_go_with_near_pairs(forces, impakt):
     assert counts[100] / 100 <= 1.2 * counts[25] / 25
 
 
+def test_set_up_goes_with_the_number_of_bodies(impakt):
+    """Not with its square. A list of all options for each body, which PETSc makes in time that goes with the square of their number, took 42 s of 640 discs and 1 s
+    of 160; four times as many bodies take 3 to 5 times as long, and on a busy machine some more."""
+    times = [min(impakt(grid(n).replace("-time_end 3e-4", "-time_end 3e-5")).summary["timing"]["wall_setup"] for _ in range(2)) for n in (160, 640)]
+    assert times[1] <= 12 * times[0]  # 42 before
+
+
+@pytest.mark.parametrize(
+    ("more", "why"),
+    [
+        ("-contact_facing true", "-contact_facing false lets pairs come and go"),
+        ("-contact_rows finer", "-contact_rows"),
+        ("-d3_boundary_displacement surface -d3_boundary_displacement_surface 0,0", "body 'd3' has prescribed displacements"),
+        ("-d3_mass_redistribute near", "body 'd3' has -mass_redistribute near"),
+    ],
+    ids=["facing", "finer", "held", "near"],
+)
+def test_a_run_says_why_all_pairs_have_rows(more, why, impakt):
+    """Rows of all pairs take memory with the square of the number of bodies, which nobody could guess from one body that is held."""
+    head = [line for line in impakt(f"{grid(20)} {more}").stdout.splitlines() if "all pairs have rows all the time" in line]
+    assert len(head) == 1 and why in head[0]
+    assert "all pairs have rows" not in impakt(grid(20)).stdout
+
+
 def test_history_of_many_bodies_is_small(impakt):
     """Every series takes a whole chunk for its first record: with chunks of 1024 records these 100 discs took 53 MB for 10 steps. Measured now: 13 MB."""
     history = impakt(grid(100)).history

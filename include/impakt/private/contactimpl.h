@@ -395,6 +395,7 @@ typedef struct {
 typedef struct {
   PetscBool                 all;          /* the program is to choose all pairs, and has not yet */
   PetscBool                 come_and_go;  /* pairs have rows while their bodies are near */
+  char                      stay[256];    /* why they have all the time, where there are many; else empty */
   struct ContactPreference *preferences;  /* per body */
   PetscInt                 *place;        /* per body: its place in the order of the bodies */
   PetscReal                *edge;         /* per body: of its contact elements [m] */

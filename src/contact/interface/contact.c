@@ -292,6 +292,9 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, " and %" PetscInt_FMT " more pairs", contact->n_pairs - MOST_NAMED));
   if (contact->setup) PetscCall(CountNodes(contact, &nodes));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", nodes, nodes == 1 ? "" : "s"));
+  if (contact->neighbours.stay[0])
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  all pairs have rows all the time, also of bodies that are far apart, since %s\n",
+                                     contact->neighbours.stay));
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)
     PetscCall(PetscViewerASCIIPrintf(
         viewer, "  law %s\n", contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law]));

@@ -24,31 +24,54 @@ PetscErrorCode ContactHasMany(Contact contact, PetscBool *many)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What keeps all bodies together from having pairs that come and go, by an option; NULL: nothing */
+static const char *FindUnsuited(Contact contact)
+{
+  if (contact->options.facing) return "sides are faces that see another body: -contact_facing false lets pairs come and go";
+  if (contact->options.law != CONTACT_LAW_FRICTIONLESS && contact->options.law != CONTACT_LAW_FRICTION)
+    return "-contact_law ties or bonds them";
+  if (contact->options.balance) return "of -contact_balance";
+  if (contact->options.row_side != CONTACT_ROW_SIDE_FIRST) return "of -contact_rows, which is not first";
+  if (contact->options.stabilization != CONTACT_STABILIZATION_NONE) return "of -contact_stabilization";
+  if (!contact->ops->mayreplacerows || !(*contact->ops->mayreplacerows)(contact)) return "the contact method cannot begin anew in a run";
+  return NULL;
+}
+
+/* The same of one body, as ranks know it */
+static PetscErrorCode FindUnsuitedBody(Body body, const char **why)
+{
+  PetscBool       is_static, near;
+  const PetscInt *held;
+  PetscInt        n;
+
+  PetscFunctionBegin;
+  PetscCall(BodyIsStatic(body, &is_static));
+  PetscCall(BodyGetMassRedistributeNear(body, &near));
+  PetscCall(BodyGetHeldDofs(body, &n, &held));
+  *why = is_static ? "is static" : near ? "has -mass_redistribute near" : n ? "has prescribed displacements" : NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether pairs may come and go: all bodies must move by their inertia, so that the way that they make in a step is known, with surfaces
-   that are the same whoever the partner is, and nothing may be merged, tied or remembered across pairs */
+   that are the same whoever the partner is, and nothing may be merged, tied or remembered across pairs. Notes what is against it. */
 PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
 {
+  ContactNeighbours *neighbours = &contact->neighbours;
+  const char        *why = FindUnsuited(contact), *of_body = NULL;
+  PetscInt           first = contact->n_bodies; /* body that does not suit */
+
   PetscFunctionBegin;
-  *suits = (PetscBool)(!contact->options.facing &&
-                       (contact->options.law == CONTACT_LAW_FRICTIONLESS || contact->options.law == CONTACT_LAW_FRICTION) &&
-                       !contact->options.balance && contact->options.row_side == CONTACT_ROW_SIDE_FIRST &&
-                       contact->options.stabilization == CONTACT_STABILIZATION_NONE && contact->ops->mayreplacerows &&
-                       (*contact->ops->mayreplacerows)(contact));
-  for (PetscInt b = 0; b < contact->n_bodies && *suits; b++) {
-    PetscBool       is_static, near;
-    const PetscInt *held;
-    PetscInt        n;
-
-    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
-    PetscCall(BodyGetMassRedistributeNear(contact->bodies[b], &near));
-    PetscCall(BodyGetHeldDofs(contact->bodies[b], &n, &held));
-    if (is_static || near || n) *suits = PETSC_FALSE;
+  for (PetscInt b = 0; b < contact->n_bodies && !of_body && !why; b++) {
+    PetscCall(FindUnsuitedBody(contact->bodies[b], &of_body));
+    if (of_body) first = b;
   }
-  {
-    int unsuited = !*suits;
-
-    PetscCall(ContactOr(contact, &unsuited));
-    *suits = (PetscBool)!unsuited;
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)contact)));
+  *suits = (PetscBool)(!why && first == contact->n_bodies);
+  if (why) PetscCall(PetscStrncpy(neighbours->stay, why, sizeof(neighbours->stay)));
+  else if (!*suits) {
+    PetscCall(FindUnsuitedBody(contact->bodies[first], &of_body));
+    PetscCall(PetscSNPrintf(neighbours->stay, sizeof(neighbours->stay), "body '%s' %s", ((PetscObject)contact->bodies[first])->name,
+                            of_body ? of_body : "has prescribed displacements"));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
