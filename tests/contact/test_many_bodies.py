@@ -396,7 +396,7 @@ def test_set_up_goes_with_the_number_of_bodies(impakt):
     [
         ("-contact_facing true", "-contact_facing false lets pairs come and go"),
         ("-contact_rows finer", "-contact_rows"),
-        ("-d3_boundary_displacement surface -d3_boundary_displacement_surface 0,0", "body 'd3' has prescribed displacements"),
+        ("-d19_boundary_displacement back -d19_boundary_displacement_back free,0", "body 'd19' has prescribed displacements"),
         ("-d3_mass_redistribute near", "body 'd3' has -mass_redistribute near"),
     ],
     ids=["facing", "finer", "held", "near"],
