@@ -14,6 +14,7 @@
    Methods in Engineering 15, 1980: B-bar).
 */
 #include <impakt/private/solidbatch.h>
+#include <impakt/private/solidaffine.h>
 #include <impakt/private/tensor.h>
 #include <element/dilatationratio.h>
 
@@ -182,26 +183,31 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
 {
   PetscInt  inverted = -1;
   Gradients at[3]    = {0};
+  Frame     frame    = {0};
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
-    SimdReal       P[9], nodal[DIM][NODES], pressure                                               = {0};
+    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES];
+    SimdReal       P[9], nodal[DIM][NODES], pressure = {0};
     Volumes        volumes[SIMD_PARTS];
     Means          means;
     Dilated        dilated[2];
+    PetscBool      affine;
 
+    ZeroModes(F);
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
-    GetGradients(X, U, points[0], &at[0]);
+    affine = GetFrame(X, &frame);
+    for (PetscInt k = 0; k < 3 && affine; k++) SetFrame(&frame, &at[k]);
+    GetGradientsOf(affine, &frame, X, U, points[0], &at[0]);
     GetVolumes(linear, X, U, volumes, &means);
-    GetGradients(X, U, points[1], &at[1]);
+    GetGradientsOf(affine, &frame, X, U, points[1], &at[1]);
     DilateAny(linear, &means, at[0].H, &dilated[0]);
     for (PetscInt g = 0; g < POINTS; g++) {
       Gradients *now = &at[g % 3];
 
       /* gradients two points ahead, and F' one, as what is written in parts and read in whole right after would go through the cache */
-      if (g + 2 < POINTS) GetGradients(X, U, points[g + 2], &at[(g + 2) % 3]);
+      if (g + 2 < POINTS) GetGradientsOf(affine, &frame, X, U, points[g + 2], &at[(g + 2) % 3]);
       if (g + 1 < POINTS) DilateAny(linear, &means, at[(g + 1) % 3].H, &dilated[(g + 1) % 2]);
       SolidStress(solid, first, g, (const SimdReal *)now->H, P);
       if (linear) UndilateLinear(now->determinant, P, pressure);
@@ -300,12 +306,16 @@ SIMD_INLINE PetscInt ObserveBatch(const Solid *solid, PetscInt first, PetscInt c
   Means          means;
   Dilated        dilated;
   PetscInt       bad;
+  PetscBool      affine;
+  Frame          frame = {0};
 
   GetModes(connectivity, first, count, solid->coordinates, X);
   GetModes(connectivity, first, count, u, U);
+  affine = GetFrame(X, &frame);
+  if (affine) SetFrame(&frame, &at);
   GetVolumes(solid->linear, X, U, volumes, &means);
   for (PetscInt g = 0; g < POINTS; g++) {
-    GetGradients(X, U, points[g], &at);
+    GetGradientsOf(affine, &frame, X, U, points[g], &at);
     DilateAny(solid->linear, &means, at.H, &dilated);
     if (energy) {
       SolidEnergy(solid, first, g, (const SimdReal *)at.H, W, work);

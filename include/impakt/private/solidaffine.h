@@ -95,8 +95,10 @@ SIMD_INLINE void AddTerm(const SolidTerm *term, const Frame *frame, SimdReal P[9
 SIMD_INLINE void AddTerms(const Solid *solid, PetscInt first, const Frame *frame, SimdVector U[SIMD_PARTS][DIM][MODES],
                           SimdVector F[SIMD_PARTS][DIM][MODES])
 {
-  SimdReal H[2][9] = {{{0}}}, P[9];
+  SimdReal H[2][9], P[9];
 
+  ZeroAcross(H[0]);
+  ZeroAcross(H[1]);
   GetTerm(&terms[0], frame, U, H[0]);
 #pragma GCC unroll 7
   for (PetscInt t = 0; t < TERMS; t++) {
@@ -126,12 +128,34 @@ SIMD_INLINE void GetFrameGradients(const Frame *frame, SimdVector U[SIMD_PARTS][
     }
 }
 
+/* What is the same at all points */
+SIMD_INLINE void SetFrame(const Frame *frame, Gradients *at)
+{
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    SimdGetParts(at->determinant)[part] = SimdGetParts((PetscReal *)frame->determinant)[part];
+#pragma GCC unroll 3
+    for (PetscInt i = 0; i < DIM; i++)
+#pragma GCC unroll 3
+      for (PetscInt k = 0; k < DIM; k++) at->cofactor[part][i][k] = frame->cofactor[part][i][k];
+  }
+}
+
+/* GetGradients(), with the rest set by SetFrame() where the batch is affine */
+SIMD_INLINE void GetGradientsOf(PetscBool affine, const Frame *frame, SimdVector X[SIMD_PARTS][DIM][MODES],
+                                SimdVector U[SIMD_PARTS][DIM][MODES], const PetscReal xi[DIM], Gradients *at)
+{
+  if (affine) GetFrameGradients(frame, U, xi, at->H);
+  else GetGradients(X, U, xi, at);
+}
+
 /* The forces of a batch of any material, by monomials */
 SIMD_INLINE void AddPoints(const Solid *solid, PetscInt first, const Frame *frame, SimdVector U[SIMD_PARTS][DIM][MODES],
                            SimdVector F[SIMD_PARTS][DIM][MODES])
 {
-  SimdReal H[2][9] = {{{0}}}, P[9];
+  SimdReal H[2][9], P[9];
 
+  ZeroAcross(H[0]);
+  ZeroAcross(H[1]);
   GetFrameGradients(frame, U, points[0], H[0]);
   for (PetscInt g = 0; g < POINTS; g++) {
     if (g + 1 < POINTS) GetFrameGradients(frame, U, points[g + 1], H[(g + 1) % 2]);
@@ -141,7 +165,7 @@ SIMD_INLINE void AddPoints(const Solid *solid, PetscInt first, const Frame *fram
 }
 
 /* Additions and multiplications for the force of one element */
-static PetscLogDouble CountAffineFlops(PetscBool linear)
+SIMD_INLINE PetscLogDouble CountAffineFlops(PetscBool linear)
 {
   const PetscInt of_gradient = DIM == 2 ? 4 : 18, of_stress = DIM == 3 ? (linear ? 20 : 68) : (linear ? 9 : 30);
   PetscInt       count = NODES * DIM * (3 * DIM + 1) + 9 * DIM + 10; /* nodes and frame */

@@ -21,11 +21,7 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
     PetscBool      affine = PETSC_FALSE;
     Frame          frame;
 
-    /* one by one: an initialiser of all of F is a loop over bytes */
-    for (PetscInt part = 0; part < SIMD_PARTS; part++)
-      for (PetscInt i = 0; i < DIM; i++)
-#pragma GCC unroll 8
-        for (PetscInt k = 0; k < MODES; k++) F[part][i][k] = (SimdVector){0};
+    ZeroModes(F);
     /* gradients one point ahead, where there is one point that of the next batch: read in whole right after it is written in parts, H would
        have to go through the cache */
     if (POINTS == 1) {
@@ -133,11 +129,9 @@ SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
     affine = GetFrame(X, &frame);
-    if (affine)
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) at.determinant[p] = frame.determinant[p];
+    if (affine) SetFrame(&frame, &at);
     for (PetscInt g = 0; g < POINTS; g++) {
-      if (affine) GetFrameGradients(&frame, U, points[g], at.H);
-      else GetGradients(X, U, points[g], &at);
+      GetGradientsOf(affine, &frame, X, U, points[g], &at);
       SolidEnergy(solid, first, g, (const SimdReal *)at.H, W, work);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) flowed[p] += at.determinant[p] * work[p];
