@@ -11,6 +11,7 @@ typedef struct {
 
 typedef struct {
   PetscBool        linear;
+  PetscReal        modulus;        /* of a linear material [Pa] */
   const PetscReal *coordinates;    /* of the rank's nodes; owned by the body */
   PetscReal       *inverse_length; /* of the coordinate of the second node less that of the first, so it may be negative [1/m] */
   PetscReal       *pull_area;      /* cross-section, with the sign of the length: an element may run against the axis [m^2] */
@@ -72,6 +73,7 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
              ((PetscObject)element->material)->type_name);
   element->flops = 6; /* strain 2, stress 1 where it is linear, force 3 */
   PetscCall(MaterialIsLinear(element->material, &bar->linear));
+  PetscCall(MaterialGetUniaxialModulus(element->material, &bar->modulus));
   PetscCall(PetscMalloc4(element->count, &bar->inverse_length, element->count, &bar->pull_area, element->count, &bar->strain,
                          element->count, &bar->stress));
   for (PetscInt e = 0; e < element->count; e++) {
@@ -136,15 +138,40 @@ static void AddPulls(const Bar2 *bar, const PetscInt nodes[], const PetscReal st
   }
 }
 
+/* The same for bars of a linear material that follow each other, from displacements on, with the same bits; `pull`: work space, of all
+   elements [N]. True where one of these is not a number. */
+SIMD_CLONES static PetscBool AddLinearPulls(const Bar2 *bar, const Run *run, const PetscScalar u[], PetscReal pull[], PetscScalar f[])
+{
+  const PetscReal *inverse_length = bar->inverse_length + run->element, *area = bar->pull_area + run->element, modulus = bar->modulus;
+  const PetscInt   n   = run->length;
+  int              bad = 0;
+
+  for (PetscInt e = 0; e < n; e++) pull[e] = area[e] * (modulus * ((u[e + 1] - u[e]) * inverse_length[e]));
+  for (PetscInt e = 0; e < n; e++) bad |= pull[e] != pull[e]; /* NOLINT(misc-redundant-expression): the test that vectorises */
+  f[0] -= pull[0];
+#pragma omp simd
+  for (PetscInt e = 1; e < n; e++) f[e] += pull[e - 1] - pull[e];
+  f[n] += pull[n - 1];
+  return (PetscBool)bad;
+}
+
 static PetscErrorCode ElementInternalForce_Bar2(Element element, const PetscScalar u[], PetscScalar f[])
 {
-  const Bar2 *bar = (const Bar2 *)element->data;
+  const Bar2     *bar   = (const Bar2 *)element->data;
+  const PetscInt *nodes = element->connectivity;
 
   PetscFunctionBegin;
-  ComputeStrains(bar, element->connectivity, u);
-  PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
-  AddPulls(bar, element->connectivity, bar->stress, f);
-  NoteInverted(element, bar->strain, bar->stress);
+  if (bar->linear && bar->n_runs == 1 && bar->runs->follow) {
+    PetscReal *pull = bar->stress;
+
+    element->inverted = -1;
+    if (AddLinearPulls(bar, bar->runs, u + nodes[0], pull, f + nodes[0])) NoteInverted(element, bar->strain, pull);
+  } else {
+    ComputeStrains(bar, nodes, u);
+    PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
+    AddPulls(bar, nodes, bar->stress, f);
+    NoteInverted(element, bar->strain, bar->stress);
+  }
   PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)element->count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -32,8 +32,8 @@ SIMD_INLINE void AddProduct(PetscInt dim, PetscInt k, const PetscReal a[], const
 }
 
 /* Node i, to part k of the sums */
-SIMD_INLINE void AddNode(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscInt i, PetscInt k,
-                         PetscReal sum[QUANTITIES][PARTS])
+SIMD_INLINE void AddNode(PetscInt dim, PetscBool diagonal, PetscBool linear, PetscBool staggered, const Nodes *nodes, PetscInt i,
+                         PetscInt k, PetscReal sum[QUANTITIES][PARTS])
 {
   PetscReal place[3], momentum[3], arm[3];
 
@@ -44,7 +44,7 @@ SIMD_INLINE void AddNode(PetscInt dim, PetscBool diagonal, PetscBool linear, con
     place[d]    = nodes->x[dof] + nodes->u[dof];
     arm[d]      = nodes->mass[dof] * (nodes->x[dof] - nodes->centre[d]);
     sum[KINETIC][k] += nodes->v[dof] * momentum[d];
-    sum[STAGGERED][k] += nodes->a[dof] * (diagonal ? nodes->mass[dof] * nodes->a[dof] : nodes->ma[dof]);
+    if (staggered) sum[STAGGERED][k] += nodes->a[dof] * (diagonal ? nodes->mass[dof] * nodes->a[dof] : nodes->ma[dof]);
     sum[MOMENTUM + d][k] += momentum[d];
     if (linear) sum[POTENTIAL][k] += nodes->u[dof] * nodes->force[dof];
   }
@@ -53,7 +53,8 @@ SIMD_INLINE void AddNode(PetscInt dim, PetscBool diagonal, PetscBool linear, con
 }
 
 /* Block by block, whose sums are so much smaller than all that round-off is too */
-SIMD_INLINE void AddNodes(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
+SIMD_INLINE void AddNodes(PetscInt dim, PetscBool diagonal, PetscBool linear, PetscBool staggered, const Nodes *nodes,
+                          PetscReal sums[QUANTITIES])
 {
   const PetscInt parts = dim == 1 ? PARTS : 1;
 
@@ -63,27 +64,36 @@ SIMD_INLINE void AddNodes(PetscInt dim, PetscBool diagonal, PetscBool linear, co
     PetscReal      sum[QUANTITIES][PARTS] = {{0}};
 
     for (PetscInt i = begin; i < whole; i += parts)
-      for (PetscInt k = 0; k < parts; k++) AddNode(dim, diagonal, linear, nodes, i + k, k, sum);
-    for (PetscInt i = whole; i < end; i++) AddNode(dim, diagonal, linear, nodes, i, 0, sum);
+      for (PetscInt k = 0; k < parts; k++) AddNode(dim, diagonal, linear, staggered, nodes, i + k, k, sum);
+    for (PetscInt i = whole; i < end; i++) AddNode(dim, diagonal, linear, staggered, nodes, i, 0, sum);
     for (PetscInt q = 0; q < QUANTITIES; q++)
       for (PetscInt k = 0; k < parts; k++) sums[q] += sum[q][k];
   }
 }
 
 /* A loop for each case, with what does not change in it known to the compiler */
-SIMD_INLINE void AddIn(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
+SIMD_INLINE void AddIn(PetscInt dim, PetscBool diagonal, PetscBool linear, PetscBool staggered, const Nodes *nodes,
+                       PetscReal sums[QUANTITIES])
 {
-  if (diagonal && linear) AddNodes(dim, PETSC_TRUE, PETSC_TRUE, nodes, sums);
-  else if (diagonal) AddNodes(dim, PETSC_TRUE, PETSC_FALSE, nodes, sums);
-  else if (linear) AddNodes(dim, PETSC_FALSE, PETSC_TRUE, nodes, sums);
-  else AddNodes(dim, PETSC_FALSE, PETSC_FALSE, nodes, sums);
+  if (diagonal && linear) AddNodes(dim, PETSC_TRUE, PETSC_TRUE, staggered, nodes, sums);
+  else if (diagonal) AddNodes(dim, PETSC_TRUE, PETSC_FALSE, staggered, nodes, sums);
+  else if (linear) AddNodes(dim, PETSC_FALSE, PETSC_TRUE, staggered, nodes, sums);
+  else AddNodes(dim, PETSC_FALSE, PETSC_FALSE, staggered, nodes, sums);
 }
 
-SIMD_CLONES static void Add(PetscInt dim, PetscBool diagonal, PetscBool linear, const Nodes *nodes, PetscReal sums[QUANTITIES])
+SIMD_INLINE void AddAny(PetscInt dim, PetscBool diagonal, PetscBool linear, PetscBool staggered, const Nodes *nodes,
+                        PetscReal sums[QUANTITIES])
 {
-  if (dim == 1) AddIn(1, diagonal, linear, nodes, sums);
-  else if (dim == 2) AddIn(2, diagonal, linear, nodes, sums);
-  else AddIn(3, diagonal, linear, nodes, sums);
+  if (staggered) AddIn(dim, diagonal, linear, PETSC_TRUE, nodes, sums);
+  else AddIn(dim, diagonal, linear, PETSC_FALSE, nodes, sums);
+}
+
+SIMD_CLONES static void Add(PetscInt dim, PetscBool diagonal, PetscBool linear, PetscBool staggered, const Nodes *nodes,
+                            PetscReal sums[QUANTITIES])
+{
+  if (dim == 1) AddAny(1, diagonal, linear, staggered, nodes, sums);
+  else if (dim == 2) AddAny(2, diagonal, linear, staggered, nodes, sums);
+  else AddAny(3, diagonal, linear, staggered, nodes, sums);
 }
 
 /* Of this rank's nodes: kinetic energy, staggered for central differences and as it is [J], half the work of the internal forces
@@ -113,7 +123,7 @@ PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *moving, Pe
     if (staggered > 0) PetscCall(BodyMultiplyMass(body, a, body->work.nodes[1]));
   }
   for (PetscInt k = 0; k < n_arrays; k++) PetscCall(VecGetArrayRead(vecs[k], arrays[k]));
-  Add(body->mesh.dim, (PetscBool)(body->mass.diagonal != NULL), body->model.linear, &nodes, sums);
+  Add(body->mesh.dim, (PetscBool)(body->mass.diagonal != NULL), body->model.linear, (PetscBool)(staggered > 0), &nodes, sums);
   for (PetscInt k = n_arrays - 1; k >= 0; k--) PetscCall(VecRestoreArrayRead(vecs[k], arrays[k]));
   *kinetic   = 0.5 * (staggered > 0 ? sums[KINETIC] - staggered * sums[STAGGERED] : sums[KINETIC]);
   *moving    = 0.5 * sums[KINETIC];
