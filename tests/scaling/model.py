@@ -2,15 +2,18 @@
 
 A step of `hex8` boxes is the sum of parts that ranks wait for one after the other:
 
-- elements: time for one, times the elements of the largest rank;
+- elements: time for one, times the elements of the largest rank. It grows with each doubling of these, as less of them stays in the caches, up to
+  CACHED, where all comes from memory;
 - halos: messages times latency, bytes over bandwidth;
 - reductions: each takes the logarithm of the number of ranks times latency;
-- solutions with the factors of surfaces: the massless layers of both bodies, and the interface problem. Factors of a sheet of n nodes in nested
-  dissection have a constant times n log2 n entries, all of them read once for each direction. Ranks share the subtrees, but separators near the
-  root lie on the path of all of them, and two messages go over each level of the tree.
+- solutions with the factors of surfaces: one with each of the massless layers, and in contact one with both joined by the rows between them. Factors
+  of a sheet of n nodes in nested dissection have a constant times n log2 n entries, all of them read once for each direction; those of joined layers
+  are JOINED times as many. Small layers are factored whole on every rank. Of larger ones, and of joined ones, ranks share the subtrees, but
+  separators near the root lie on the path of all of them, and two messages go over each level of the tree.
 
-Times for an element and for an entry of factors, to which all that contact takes is put down, are taken from runs of one size on one rank, and how
-much less factors gain from two ranks than they should from one on two; other sizes show how good that is.
+Times for an element and for an entry of layers' factors and of joined ones, to which all else that contact takes is put down, are taken from runs of
+one size on one rank, and what caches do, and how much less joined factors gain from two ranks than they should, from two; other sizes show how good
+that is.
 """
 
 import json
@@ -18,10 +21,15 @@ import math
 import subprocess
 
 PARTS = ("elements", "halos", "reductions", "solutions")
-# Of a step, from counts on 2 to 16 ranks (make scaling): reductions, messages to each neighbour of the boxes, solutions with factors
+# Elements of a rank beyond which none stays in the caches: some 30 MB
+CACHED = 1e5
+# Of a step, from counts on 2 to 16 ranks (make scaling): reductions, messages to each neighbour of the boxes
 REDUCTIONS = 50
 MESSAGES = 75
-SOLUTIONS = {False: 2, True: 6}  # apart; in contact
+# Operations of a solution with the joined factors of two layers of 2401 and 1681 nodes, beside those with each
+JOINED = 2.75
+# Nodes of a layer whose factors are whole on every rank: a third of the unknowns of MAX_REDUNDANT_SIZE in src/solver/solverchoice.c
+WHOLE = 5000 / 3
 # Unknowns of a node, of which factors have blocks of 3 x 3; entries of the lower triangle of a sheet of n nodes: about this times n log2 n blocks
 BLOCK = 9
 FILL = 31 / 4
@@ -69,21 +77,30 @@ def counts(elements, nodes, ranks):
     return share, HALO_BYTES * halo * min(1, math.log2(max(ranks, 1)) / 6), neighbours
 
 
-def entries_read(surfaces, contact, ranks):
-    """Numbers in factors that the busiest rank waits for in a step."""
-    read = sum(sheet_entries(nodes) / ranks + sheet_path(nodes, ranks) for nodes in surfaces)
-    return SOLUTIONS[contact] / 2 * read
+def divided(surfaces, ranks):
+    """Numbers in factors of these surfaces that the busiest rank waits for, where ranks share them."""
+    return sum(sheet_entries(nodes) / ranks + sheet_path(nodes, ranks) for nodes in surfaces)
+
+
+def element_time(rates, share):
+    """Seconds of one of so many elements of a rank."""
+    doublings = math.log2(min(share, CACHED) / min(rates["elements"], CACHED))
+    return max(0.3 * rates["element"], rates["element"] + rates["cache"] * doublings)
 
 
 def parts(rates, elements, surfaces, contact, ranks):
     """Seconds of the parts of a step; `surfaces`: nodes of the two surfaces that may touch."""
     share, halo, neighbours = counts(elements, max(surfaces), ranks)
+    loss = rates["solve_loss"] if ranks > 1 else 1
+    whole, shared = ([nodes for nodes in surfaces if (nodes <= WHOLE) == small] for small in (True, False))
+    layers = divided(whole, 1) + divided(shared, ranks) * loss
+    joined = JOINED * divided(surfaces, ranks) * loss if contact else 0
+    solutions = (len(shared) > 0) + contact  # of all ranks together, one after the other
     return {
-        "elements": share * rates["element"],
+        "elements": share * element_time(rates, share),
         "halos": neighbours * MESSAGES * rates["latency"] + halo / (1e9 * rates["network_GB_per_s"]),
         "reductions": REDUCTIONS * rates["reduction"] * math.log2(ranks),
-        "solutions": entries_read(surfaces, contact, ranks) * rates["entry"] * (rates["solve_loss"] if ranks > 1 else 1)
-        + SOLUTIONS[contact] * 2 * math.log2(ranks) * rates["latency"],
+        "solutions": 2 * (layers * rates["layer"] + joined * rates["joined"]) + solutions * 2 * math.log2(ranks) * rates["latency"],
     }
 
 
@@ -91,17 +108,18 @@ def predict(rates, elements, surfaces, contact, ranks):
     return sum(parts(rates, elements, surfaces, contact, ranks).values())
 
 
-def fit(rates, elements, surfaces, times):
-    """The rates from seconds of a step by (contact, ranks)."""
-    more = [entries_read(surfaces, True, ranks) - entries_read(surfaces, False, ranks) for ranks in (1, 2)]
+def fit(rates, elements, surfaces, times, layers):
+    """The rates from seconds of a step by (contact, ranks), and of its solutions with layers on one rank."""
+    joined = [2 * JOINED * divided(surfaces, ranks) for ranks in (1, 2)]
     contact = [times[True, ranks] - times[False, ranks] for ranks in (1, 2)]
-    entry = contact[0] / more[0]
-    messages = (SOLUTIONS[True] - SOLUTIONS[False]) * 2 * rates["latency"]
+    entry = contact[0] / joined[0]
+    one = dict(rates, elements=elements, element=(times[False, 1] - layers) / elements, cache=0, layer=layers / (2 * divided(surfaces, 1)), joined=0, solve_loss=1)
+    beside = predict(one, elements, surfaces, False, 2) - elements / 2 * one["element"]  # all but the elements of two ranks
     return dict(
-        rates,
-        element=(times[False, 1] - entries_read(surfaces, False, 1) * entry) / elements,
-        entry=entry,
-        solve_loss=max(1, (contact[1] - messages) / more[1] / entry),
+        one,
+        cache=max(0, one["element"] - (times[False, 2] - beside) / (elements / 2)),
+        joined=entry,
+        solve_loss=max(1, (contact[1] - 2 * rates["latency"]) / joined[1] / entry),
     )
 
 
@@ -109,8 +127,11 @@ def moved(rates, bandwidth, machine):
     """The rates on another machine, where a core does as much as its share of the memory's bandwidth lets it."""
     slower = bandwidth / machine["memory_GB_per_s"]
     return {
+        "elements": rates["elements"],
         "element": rates["element"] * slower,
-        "entry": rates["entry"] * slower,
+        "cache": rates["cache"] * slower,
+        "layer": rates["layer"] * slower,
+        "joined": rates["joined"] * slower,
         "solve_loss": rates["solve_loss"],
         "latency": machine["latency"],
         "reduction": machine["latency"],

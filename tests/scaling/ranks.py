@@ -90,6 +90,18 @@ def run_counting(arguments, options, ranks, steps, event, column="Count"):
         return made
 
 
+def run_timing(arguments, options, steps, event):
+    """Seconds of a step on one rank that an event of PETSc's log takes, in all stages."""
+    seconds = []
+    for n in steps:
+        with tempfile.TemporaryDirectory() as directory:
+            log = Path(directory) / "log.csv"
+            run(arguments, options, 1, n, ("-log_view", f":{log}:ascii_csv"))
+            with log.open(encoding="utf-8") as file:
+                seconds.append(sum(float(row["Time"]) for row in csv.DictReader(file) if row["Event Name"] == event))
+    return (seconds[1] - seconds[0]) / (steps[1] - steps[0])
+
+
 def all_reductions(arguments, options, ranks, steps):
     """Reductions of a whole run on the rank with most of them, set-up and output included."""
     with tempfile.TemporaryDirectory() as directory:
@@ -256,7 +268,7 @@ def model(arguments, found, lines):
         lines += ["## Model", "", "This machine has one core: not measured.", ""]
         return
     sizes = sorted({2 * arguments.size // 3, arguments.size, 4 * arguments.size // 3})
-    steps, measured = (4, 24), {}
+    steps, measured = (4, 44), {}
     for _ in range(arguments.repeats):
         for size in sizes:
             for contact in (False, True):
@@ -270,7 +282,8 @@ def model(arguments, found, lines):
         small = max(2, 5 * size // 6)
         shapes[size] = (2 * size**3 + max(2, 5 * 2 * size // 6) * small**2, ((size + 1) ** 2, (small + 1) ** 2))
     of_size = {(contact, ranks): times[arguments.size, contact, ranks] for contact in (False, True) for ranks in (1, 2)}
-    rates = performance.fit(performance.messages(arguments), *shapes[arguments.size], of_size)
+    layers = min(run_timing(arguments, boxes(arguments.size, contact=False), steps, "MatSolve") for _ in range(arguments.repeats))
+    rates = performance.fit(performance.messages(arguments), *shapes[arguments.size], of_size, layers)
     rows = []
     for (size, contact, ranks), time in times.items():
         guess = performance.predict(rates, *shapes[size], contact, ranks)
@@ -279,7 +292,7 @@ def model(arguments, found, lines):
     many = performance.large(machine_rates)
     found["model"] = {"rates": rates, "rows": rows, "machine": performance.ARCHER2, "machine_rates": machine_rates, "large": many}
     lines += [f"## Model, fitted to boxes of {arguments.size}x{arguments.size}x{2 * arguments.size} and 5/6 of that", ""]
-    lines += [f"Processor time of the first rank, the least of {arguments.repeats} repeats. An element takes {number(1e6 * rates['element'])} us, an entry of factors {number(1e9 * rates['entry'])} ns, {number(rates['solve_loss'])} times that on several ranks; a message {number(1e6 * rates['latency'])} us, a reduction {number(1e6 * rates['reduction'])} us.", ""]
+    lines += [f"Processor time of the first rank, the least of {arguments.repeats} repeats. An element takes {number(1e6 * rates['element'])} us, {number(1e6 * rates['cache'])} us less with each halving of a rank's number, an entry of a layer's factors {number(1e9 * rates['layer'])} ns, of joined ones {number(1e9 * rates['joined'])} ns, {number(rates['solve_loss'])} times that on several ranks; a message {number(1e6 * rates['latency'])} us, a reduction {number(1e6 * rates['reduction'])} us.", ""]
     cells = [[row["size"], "yes" if row["contact"] else "no", row["ranks"], number(1e3 * row["measured"]), number(1e3 * row["model"]), f"{100 * row['error']:+.0f} %"] for row in rows]
     lines += table([["size", "contact", "ranks", "measured (ms)", "model (ms)", "error"], *cells])
     lines += [f"1e8 elements with 1e6 contact nodes on each side, on cores of {performance.ARCHER2['name']} ({performance.ARCHER2['source']}), ms of a step:", ""]
