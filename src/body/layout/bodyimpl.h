@@ -60,6 +60,7 @@ typedef struct {
   PetscBool  linearized;         /* forces are those of the linearized element at present */
   Mat        stiffness;          /* of the undeformed body; NULL until BodyGetStiffness() */
   PetscReal  least_inverting;    /* energy of a linear body with an element inside out, at least; 0 until BodyGetInverted() [J] */
+  PetscReal  least_stretch;      /* how far the displacements of an element must differ for that, at least, see inverted.c [m] */
 } BodyModel;
 
 typedef struct {

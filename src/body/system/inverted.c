@@ -6,6 +6,11 @@
    V the volume, and c = 1 where strains are constant, 4^-dim where they have as many modes along each axis. As long as the whole body
    stores less than that, which the energy balance knows anyway, no element is looked at. That holds for fully integrated elements; those of
    other formulations are looked at whenever the body stores energy.
+
+   Of an element the displacements of its nodes are compared first. Edges M that meet at a corner become M + E, which is singular only where
+   the norm of E is at least the smallest singular value of M. Each of the dim edges in E is at most the diagonal of the box around the
+   displacements, and that singular value is at least |det M| over the largest product of the others, (|M|^2 / 2) in space and |M| in the
+   plane.
 */
 #include "corners.h"
 
@@ -22,8 +27,39 @@ SIMD_INLINE PetscReal Jacobian(PetscInt dim, PetscReal place[][3], PetscInt corn
          e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0]);
 }
 
+/* How far apart displacements must be for such a corner to be inside out, at least [m] */
+SIMD_INLINE PetscReal LeastStretch(PetscInt dim, PetscReal place[][3], PetscInt corner, const PetscInt ends[3], PetscReal jacobian)
+{
+  PetscReal squares = 0;
+
+  for (PetscInt i = 0; i < dim; i++)
+    for (PetscInt d = 0; d < dim; d++) squares += PetscSqr(place[ends[i]][d] - place[corner][d]);
+  if (dim == 1) return jacobian;
+  return jacobian / (dim == 2 ? PetscSqrtReal(2 * squares) : 0.86602540378443865 * squares);
+}
+
+/* Whether the displacements of the nodes of a cell differ by less than that */
+SIMD_INLINE PetscBool IsNearlyRigid(PetscInt dim, PetscInt n, const PetscInt nodes[], const PetscScalar u[], PetscReal least)
+{
+  PetscReal squares = 0;
+
+  for (PetscInt d = 0; d < dim; d++) {
+    PetscReal lower = PetscRealPart(u[nodes[0] * dim + d]), upper = lower;
+
+    for (PetscInt a = 1; a < n; a++) {
+      const PetscReal at = PetscRealPart(u[nodes[a] * dim + d]);
+
+      lower = PetscMin(lower, at);
+      upper = PetscMax(upper, at);
+    }
+    squares += PetscSqr(upper - lower);
+  }
+  return (PetscBool)(squares < PetscSqr(least));
+}
+
 /* How many cells have a corner that is inside out in the state u and was not before, and the first of them; -1: none */
-SIMD_INLINE PetscInt CountInverted(PetscInt dim, const BodyMesh *mesh, const Corners *shape, const PetscScalar u[], PetscInt *found)
+SIMD_INLINE PetscInt CountInverted(PetscInt dim, const BodyMesh *mesh, const Corners *shape, const PetscScalar u[], PetscReal least,
+                                   PetscInt *found)
 {
   PetscInt number = 0;
 
@@ -33,6 +69,7 @@ SIMD_INLINE PetscInt CountInverted(PetscInt dim, const BodyMesh *mesh, const Cor
     PetscReal       place[MOST_CORNERS][3], smallest = PETSC_MAX_REAL;
     PetscBool       inside = PETSC_FALSE;
 
+    if (IsNearlyRigid(dim, mesh->cell_nodes, nodes, u, least)) continue;
     CornersGetPlaces(dim, mesh->cell_nodes, nodes, mesh->coordinates, u, place);
     for (PetscInt c = 0; c < shape->corners; c++) smallest = PetscMin(smallest, Jacobian(dim, place, c, shape->ends[c]));
     if (smallest > 0) continue;
@@ -48,12 +85,13 @@ SIMD_INLINE PetscInt CountInverted(PetscInt dim, const BodyMesh *mesh, const Cor
   return number;
 }
 
-/* The energy that the body must store before an element of this rank can be inside out; infinity where nobody can tell [J]. Volumes are
-   those of the corners' Jacobians, scaled so that their sum is the volume of the body, with thickness and cross section. */
-static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscReal *energy)
+/* The energy that the body must store before an element can be inside out; infinity where nobody can tell [J]. Volumes are those of the
+   corners' Jacobians, scaled so that their sum is the volume of the body, with thickness and cross section. And by how much the
+   displacements of an element must differ [m]. */
+static PetscErrorCode ComputeLeast(Body body, const Corners *shape, PetscReal *energy, PetscReal *stretch)
 {
   const BodyMesh *mesh = &body->mesh;
-  PetscReal       sum = 0, least = PETSC_MAX_REAL, modulus, density, place[MOST_CORNERS][3];
+  PetscReal       sum = 0, least[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, modulus, density, place[MOST_CORNERS][3];
   const char     *formulation;
   PetscBool       full;
 
@@ -64,11 +102,14 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscR
       const PetscReal jacobian = Jacobian(mesh->dim, place, c, shape->ends[c]);
 
       sum += jacobian / (PetscReal)shape->corners;
-      if (jacobian > 0) least = PetscMin(least, jacobian);
+      if (!(jacobian > 0)) continue;
+      least[0] = PetscMin(least[0], jacobian);
+      least[1] = PetscMin(least[1], LeastStretch(mesh->dim, place, c, shape->ends[c], jacobian));
     }
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)body)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, least, 2, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)body)));
+  *stretch = least[1];
   PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
   PetscCall(MaterialGetDensity(body->model.material, &density));
   /* nothing is known of other formulations and of several materials, and volumes of rings grow with their radius: their elements are looked
@@ -77,7 +118,7 @@ static PetscErrorCode ComputeLeastEnergy(Body body, const Corners *shape, PetscR
   PetscCall(PetscStrcmp(formulation, ELEMENT_FULL, &full)); /* NULL where blocks differ in it */
   *energy = !full || body->model.element->blocks || body->model.element->axisymmetric
                 ? PETSC_REAL_MIN
-                : 0.5 * modulus * shape->part * least / sum * body->mass.total / density;
+                : 0.5 * modulus * shape->part * least[0] / sum * body->mass.total / density;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -115,12 +156,12 @@ PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number,
   PetscAssertPointer(centre, 4);
   *number = 0;
   if (!body->model.linear || !shape) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!body->model.least_inverting) PetscCall(ComputeLeastEnergy(body, shape, &body->model.least_inverting));
+  if (!body->model.least_inverting) PetscCall(ComputeLeast(body, shape, &body->model.least_inverting, &body->model.least_stretch));
   if (!(potential >= body->model.least_inverting)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetLocalRead(body, body->state.u, &local, &u));
-  if (body->mesh.dim == 3) *number = CountInverted(3, &body->mesh, shape, u, &found);
-  else if (body->mesh.dim == 2) *number = CountInverted(2, &body->mesh, shape, u, &found);
-  else *number = CountInverted(1, &body->mesh, shape, u, &found);
+  if (body->mesh.dim == 3) *number = CountInverted(3, &body->mesh, shape, u, body->model.least_stretch, &found);
+  else if (body->mesh.dim == 2) *number = CountInverted(2, &body->mesh, shape, u, body->model.least_stretch, &found);
+  else *number = CountInverted(1, &body->mesh, shape, u, body->model.least_stretch, &found);
   PetscCall(BodyRestoreLocalRead(body, body->state.u, &local, &u));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, number, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   if (*number) PetscCall(BodyFindFirstElement(body, found < 0 ? -1 : found / body->mesh.cells_of_element, &first, centre));
