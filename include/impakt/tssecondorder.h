@@ -12,6 +12,7 @@ typedef PetscErrorCode TSRigidFn(TS, PetscReal, PetscReal, Vec, Vec, void *);
 
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDifferenceFn *, void *);
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS, Vec);
+PETSC_EXTERN PetscErrorCode TSCentralDifferenceLeaveVelocity(TS);
 PETSC_EXTERN PetscErrorCode TSRigidSetAdvance(TS, TSRigidFn *, void *);
 PETSC_EXTERN PetscErrorCode TSSecondOrderInitializePackage(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderFinalizePackage(void);

@@ -10,7 +10,8 @@
 typedef struct {
   TSCentralDifferenceFn *acceleration;
   void                  *ctx;
-  Vec                    A; /* acceleration at ts->ptime; it belongs to the caller of TSCentralDifferenceSetAccelerationVec() */
+  Vec                    A;      /* acceleration at ts->ptime; it belongs to the caller of TSCentralDifferenceSetAccelerationVec() */
+  PetscBool              leaves; /* the function has left the acceleration, and the velocity at the end of the step, to others */
 } TS_CentralDifference;
 
 /* v += half a, and, if dt is not 0, u += dt v: in one pass over memory, which is what takes the time with large bodies */
@@ -49,8 +50,9 @@ static PetscErrorCode TSStep_CentralDifference(TS ts)
 
   PetscFunctionBegin;
   PetscCall(Kick(ts->vec_sol, ts->vec_dot, cd->A, half, ts->time_step));
+  cd->leaves = PETSC_FALSE;
   PetscCall((*cd->acceleration)(ts, ts->ptime + ts->time_step, ts->vec_sol, ts->vec_dot, cd->A, cd->ctx));
-  PetscCall(Kick(NULL, ts->vec_dot, cd->A, half, 0));
+  if (!cd->leaves) PetscCall(Kick(NULL, ts->vec_dot, cd->A, half, 0));
   PetscCall(TSAdaptChoose(ts->adapt, ts, ts->time_step, NULL, &next, &accept));
   ts->ptime += ts->time_step;
   ts->time_step = next;
@@ -86,6 +88,7 @@ static PetscErrorCode TSDestroy_CentralDifference(TS ts)
   PetscCall(TSReset_CentralDifference(ts));
   PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C", NULL));
   PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C", NULL));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceLeaveVelocity_C", NULL));
   PetscCall(PetscFree(ts->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -108,6 +111,13 @@ static PetscErrorCode TSCentralDifferenceSetAccelerationVec_CentralDifference(TS
   PetscCall(PetscObjectReference((PetscObject)A));
   PetscCall(VecDestroy(&cd->A));
   cd->A = A;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TSCentralDifferenceLeaveVelocity_CentralDifference(TS ts)
+{
+  PetscFunctionBegin;
+  ((TS_CentralDifference *)ts->data)->leaves = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -156,6 +166,30 @@ PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS ts, Vec A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  TSCentralDifferenceLeaveVelocity - leaves the velocity at mid-step in this step
+
+  Not Collective
+
+  Input Parameter:
+. ts - the `TSCENTRALDIFFERENCE`
+
+  Level: developer
+
+  Note:
+  For the function of `TSCentralDifferenceSetAcceleration()`, where it has not computed the acceleration: who does that later adds half a
+  step of it to the velocity.
+
+.seealso: `TSCENTRALDIFFERENCE`, `TSCentralDifferenceSetAcceleration()`
+@*/
+PetscErrorCode TSCentralDifferenceLeaveVelocity(TS ts)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
+  PetscTryMethod(ts, "TSCentralDifferenceLeaveVelocity_C", (TS), (ts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*MC
    TSCENTRALDIFFERENCE - explicit Newmark scheme (beta = 0, gamma = 1/2) for second-order systems; second order, stable for
    dt < 2 / omega_max
@@ -184,5 +218,7 @@ PetscErrorCode TSCreate_CentralDifference(TS ts)
                                        TSCentralDifferenceSetAcceleration_CentralDifference));
   PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C",
                                        TSCentralDifferenceSetAccelerationVec_CentralDifference));
+  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceLeaveVelocity_C",
+                                       TSCentralDifferenceLeaveVelocity_CentralDifference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

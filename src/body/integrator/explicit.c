@@ -78,10 +78,12 @@ static PetscErrorCode Accelerate(Body body, PetscReal t, PetscBool known, Vec fo
 {
   const PetscReal position   = GetPosition(body);
   const PetscBool prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
-  PetscBool       outside    = BodyHasOutsideForce(body, PETSC_TRUE);
+  /* contact forces that act on massless nodes alone accelerate nothing */
+  const PetscBool contact = (PetscBool)(known || !body->mass.inverse || !((BodyExplicit *)body->integrator->data)->layer_alone);
+  PetscBool       outside = BodyHasOutsideForce(body, contact);
 
   PetscFunctionBegin;
-  if (outside && !known) PetscCall(BodyComputeOutsideForce(body, t, position, PETSC_TRUE, U, force));
+  if (outside && !known) PetscCall(BodyComputeOutsideForce(body, t, position, contact, U, force));
   if (body->state.damping) {
     if (!outside) PetscCall(VecZeroEntries(force));
     PetscCall(VecAXPY(force, -1, body->state.damping));
@@ -109,12 +111,14 @@ static PetscBool KnowsForce(Body body)
   return (PetscBool)(GetLayer(body) && !body->rows.n_robin);
 }
 
-/* What LayerBalanceSolve() has found is all that the rows depend on: the acceleration is left to Complete() */
+/* What LayerBalanceSolve() has found is all that the rows depend on: the acceleration, which is zero on massless nodes, is left to
+   Complete(), and counts as changed on all ranks */
 static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
   PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
-  if (!body->state.incomplete) PetscCall(VecZeroEntries(A));
+  if (body->held.n && !body->state.incomplete) PetscCall(VecZeroEntries(A)); /* of held nodes it is not */
+  else PetscCall(PetscObjectStateIncrease((PetscObject)A));
   body->state.incomplete = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -126,11 +130,12 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   Vec  force = body->work.nodes[0];
 
   PetscFunctionBegin;
-  (void)ts;
   PetscCall(PlaceRows(body, t, U, force));
   if (body->state.damping) PetscCall(BodyMultiplyDamping(body, U, V, body->state.damping));
-  if (((BodyExplicit *)body->integrator->data)->layer_alone) PetscCall(LeaveIncomplete(body, U, A));
-  else PetscCall(Accelerate(body, t, KnowsForce(body), force, U, A));
+  if (((BodyExplicit *)body->integrator->data)->layer_alone) {
+    PetscCall(LeaveIncomplete(body, U, A));
+    PetscCall(TSCentralDifferenceLeaveVelocity(ts));
+  } else PetscCall(Accelerate(body, t, KnowsForce(body), force, U, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
