@@ -187,6 +187,49 @@ static void can_be_put_at_another_time(void **state)
   destroy_springs(&other);
 }
 
+static PetscErrorCode LeaveEverySecond(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
+{
+  PetscInt *calls = (PetscInt *)ctx;
+
+  PetscFunctionBegin;
+  if (*calls % 2 == 0) PetscCall(TSCentralDifferenceLeaveVelocity(ts));
+  else PetscCall(Accelerate(ts, t, U, V, A, NULL));
+  ++*calls;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A step whose acceleration has been left to the caller ends with the velocity at mid-step; with the rest it is the same as any other, and
+   the next step leaves nothing unless asked again */
+static void may_leave_the_velocity(void **state)
+{
+  const PetscReal dt = 0.1;
+  Springs         whole, left;
+  PetscReal       a[2], b[2];
+
+  (void)state;
+  create_springs(&whole, dt);
+  create_springs(&left, dt);
+  ok(TSCentralDifferenceSetAcceleration(left.ts, LeaveEverySecond, &left.evaluations));
+  for (PetscInt k = 0; k < 4; k++) {
+    step(&whole, 1);
+    step(&left, 1);
+    if (k % 2 == 0) {
+      ok(Accelerate(left.ts, 0, left.u, left.v, left.a, NULL));
+      get(whole.v, a);
+      get(left.v, b);
+      assert_true(a[0] != b[0]);
+      ok(VecAXPY(left.v, 0.5 * dt, left.a));
+    }
+    for (PetscInt i = 0; i < 3; i++) {
+      get(i == 0 ? whole.u : i == 1 ? whole.v : whole.a, a);
+      get(i == 0 ? left.u : i == 1 ? left.v : left.a, b);
+      for (PetscInt d = 0; d < 2; d++) near(a[d], b[d], 1e-15);
+    }
+  }
+  destroy_springs(&left);
+  destroy_springs(&whole);
+}
+
 static void refuses_to_set_up_without_its_parts(void **state)
 {
   Vec u, v, a;
@@ -221,11 +264,9 @@ static void refuses_to_set_up_without_its_parts(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(is_of_second_order),
-      cmocka_unit_test(has_the_frequency_of_central_differences),
-      cmocka_unit_test(conserves_staggered_energy),
-      cmocka_unit_test(can_be_put_at_another_time),
-      cmocka_unit_test(refuses_to_set_up_without_its_parts),
+      cmocka_unit_test(is_of_second_order),         cmocka_unit_test(has_the_frequency_of_central_differences),
+      cmocka_unit_test(conserves_staggered_energy), cmocka_unit_test(can_be_put_at_another_time),
+      cmocka_unit_test(may_leave_the_velocity),     cmocka_unit_test(refuses_to_set_up_without_its_parts),
   };
 
   return impakt_main(argc, argv, tests);
