@@ -22,10 +22,10 @@
 SIMD_INLINE PetscReal FindThinness(PetscInt dim, const BodyMesh *mesh, const Corners *corners, const PetscScalar u[])
 {
   const PetscInt of_element = mesh->cells_of_element;
-  PetscReal      largest = 0, squares = 0;
+  PetscReal      largest = 0, squares = 0, place[MOST_CORNERS][3] = {{0}};
 
   for (PetscInt e = 0; e < mesh->n_cells; e++) {
-    PetscReal of_cell = 0, place[MOST_CORNERS][3];
+    PetscReal of_cell = 0;
 
     if (e % of_element == 0) squares = 0;
     CornersGetPlaces(dim, mesh->cell_nodes, mesh->cell_connectivity + e * mesh->cell_nodes, mesh->coordinates, u, place);

@@ -61,21 +61,20 @@ SIMD_INLINE PetscBool IsNearlyRigid(PetscInt dim, PetscInt n, const PetscInt nod
 SIMD_INLINE PetscInt CountInverted(PetscInt dim, const BodyMesh *mesh, const Corners *shape, const PetscScalar u[], PetscReal least,
                                    PetscInt *found)
 {
-  PetscInt number = 0;
+  PetscReal place[MOST_CORNERS][3] = {{0}}, before[MOST_CORNERS][3] = {{0}};
+  PetscInt  number = 0;
 
   *found = -1;
   for (PetscInt e = 0; e < mesh->n_cells; e++) {
-    const PetscInt *nodes = mesh->cell_connectivity + e * mesh->cell_nodes;
-    PetscReal       place[MOST_CORNERS][3], smallest = PETSC_MAX_REAL;
-    PetscBool       inside = PETSC_FALSE;
+    const PetscInt *nodes    = mesh->cell_connectivity + e * mesh->cell_nodes;
+    PetscReal       smallest = PETSC_MAX_REAL;
+    PetscBool       inside   = PETSC_FALSE;
 
     if (IsNearlyRigid(dim, mesh->cell_nodes, nodes, u, least)) continue;
     CornersGetPlaces(dim, mesh->cell_nodes, nodes, mesh->coordinates, u, place);
     for (PetscInt c = 0; c < shape->corners; c++) smallest = PetscMin(smallest, Jacobian(dim, place, c, shape->ends[c]));
     if (smallest > 0) continue;
     for (PetscInt c = 0; c < shape->corners && !inside; c++) {
-      PetscReal before[MOST_CORNERS][3];
-
       CornersGetPlaces(dim, mesh->cell_nodes, nodes, mesh->coordinates, NULL, before);
       inside = (PetscBool)(Jacobian(dim, place, c, shape->ends[c]) <= 0 && Jacobian(dim, before, c, shape->ends[c]) > 0);
     }
@@ -91,7 +90,7 @@ SIMD_INLINE PetscInt CountInverted(PetscInt dim, const BodyMesh *mesh, const Cor
 static PetscErrorCode ComputeLeast(Body body, const Corners *shape, PetscReal *energy, PetscReal *stretch)
 {
   const BodyMesh *mesh = &body->mesh;
-  PetscReal       sum = 0, least[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, modulus, density, place[MOST_CORNERS][3];
+  PetscReal       sum = 0, least[2] = {PETSC_MAX_REAL, PETSC_MAX_REAL}, modulus, density, place[MOST_CORNERS][3] = {{0}};
   const char     *formulation;
   PetscBool       full;
 
