@@ -148,22 +148,6 @@ SIMD_INLINE void GetGradientsOf(PetscBool affine, const Frame *frame, SimdVector
   else GetGradients(X, U, xi, at);
 }
 
-/* The forces of a batch of any material, by monomials */
-SIMD_INLINE void AddPoints(const Solid *solid, PetscInt first, const Frame *frame, SimdVector U[SIMD_PARTS][DIM][MODES],
-                           SimdVector F[SIMD_PARTS][DIM][MODES])
-{
-  SimdReal H[2][9], P[9];
-
-  ZeroAcross(H[0]);
-  ZeroAcross(H[1]);
-  GetFrameGradients(frame, U, points[0], H[0]);
-  for (PetscInt g = 0; g < POINTS; g++) {
-    if (g + 1 < POINTS) GetFrameGradients(frame, U, points[g + 1], H[(g + 1) % 2]);
-    SolidStress(solid, first, g, (const SimdReal *)H[g % 2], P);
-    for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, frame->cofactor[part], points[g], F[part]);
-  }
-}
-
 /* Additions and multiplications for the force of one element */
 SIMD_INLINE PetscLogDouble CountAffineFlops(PetscBool linear)
 {
@@ -174,12 +158,4 @@ SIMD_INLINE PetscLogDouble CountAffineFlops(PetscBool linear)
     for (PetscInt t = 0; t < TERMS; t++) count += of_stress + terms[t].n * DIM * (4 * DIM + 1);
   else count += POINTS * (2 * DIM * of_gradient + of_stress + 2 * DIM * DIM * (2 * DIM - 1));
   return (PetscLogDouble)count;
-}
-
-/* The forces of a batch, by monomials */
-SIMD_INLINE void AddAffine(const Solid *solid, PetscInt first, const Frame *frame, SimdVector U[SIMD_PARTS][DIM][MODES],
-                           SimdVector F[SIMD_PARTS][DIM][MODES])
-{
-  if (solid->linear) AddTerms(solid, first, frame, U, F);
-  else AddPoints(solid, first, frame, U, F);
 }

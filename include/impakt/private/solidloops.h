@@ -11,6 +11,7 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
 {
   PetscInt  inverted = -1;
   Gradients at[2]    = {0};
+  Frame     frame    = {0};
 
   *n_affine = 0;
   if (count && POINTS == 1) GetFirstGradients(solid, connectivity, 0, count, u, &at[0]);
@@ -18,8 +19,7 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES];
     SimdReal       P[9], nodal[DIM][NODES], check = {0};
-    PetscBool      affine = PETSC_FALSE;
-    Frame          frame;
+    PetscBool      affine = PETSC_FALSE, by_terms = PETSC_FALSE;
 
     ZeroModes(F);
     /* gradients one point ahead, where there is one point that of the next batch: read in whole right after it is written in parts, H would
@@ -31,14 +31,16 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
       GetModes(connectivity, first, count, solid->coordinates, X);
       GetModes(connectivity, first, count, u, U);
       affine = GetFrame(X, &frame);
-      if (affine) AddAffine(solid, first, &frame, U, F);
-      else GetGradients(X, U, points[0], &at[0]);
       *n_affine += affine ? in_batch : 0;
+      by_terms = (PetscBool)(affine && solid->linear);
+      for (PetscInt k = 0; k < 2 && affine && !by_terms; k++) SetFrame(&frame, &at[k]);
+      if (by_terms) AddTerms(solid, first, &frame, U, F);
+      else GetGradientsOf(affine, &frame, X, U, points[0], &at[0]);
     }
-    for (PetscInt g = 0; g < POINTS && !affine; g++) {
+    for (PetscInt g = 0; g < POINTS && !by_terms; g++) {
       const PetscInt now = (POINTS == 1 ? first / SIMD_WIDTH : g) % 2;
 
-      if (g + 1 < POINTS) GetGradients(X, U, points[g + 1], &at[1 - now]);
+      if (g + 1 < POINTS) GetGradientsOf(affine, &frame, X, U, points[g + 1], &at[1 - now]);
       SolidStress(solid, first, g, (const SimdReal *)at[now].H, P);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at[now].cofactor[part], points[g], F[part]);
     }

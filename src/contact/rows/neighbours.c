@@ -15,6 +15,8 @@
 #define DROPPED 3.5
 /* Pairs are looked for again before what was taken is used up, with room for steps that become faster */
 #define STEPS_AHEAD 2
+/* Why the pairs of a body stay */
+#define HELD "has prescribed displacements"
 
 /* Whether the pairs of all bodies are so many that they come and go */
 PetscErrorCode ContactHasMany(Contact contact, PetscBool *many)
@@ -37,7 +39,7 @@ static const char *FindUnsuited(Contact contact)
   return NULL;
 }
 
-/* The same of one body, as ranks know it */
+/* The same of one body, as this rank knows it: of held displacements those with the nodes do */
 static PetscErrorCode FindUnsuitedBody(Body body, const char **why)
 {
   PetscBool       is_static, near;
@@ -48,7 +50,7 @@ static PetscErrorCode FindUnsuitedBody(Body body, const char **why)
   PetscCall(BodyIsStatic(body, &is_static));
   PetscCall(BodyGetMassRedistributeNear(body, &near));
   PetscCall(BodyGetHeldDofs(body, &n, &held));
-  *why = is_static ? "is static" : near ? "has -mass_redistribute near" : n ? "has prescribed displacements" : NULL;
+  *why = is_static ? "is static" : near ? "has -mass_redistribute near" : n ? HELD : NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -71,7 +73,7 @@ PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
   else if (!*suits) {
     PetscCall(FindUnsuitedBody(contact->bodies[first], &of_body));
     PetscCall(PetscSNPrintf(neighbours->stay, sizeof(neighbours->stay), "body '%s' %s", ((PetscObject)contact->bodies[first])->name,
-                            of_body ? of_body : "has prescribed displacements"));
+                            of_body ? of_body : HELD));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
