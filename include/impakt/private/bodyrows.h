@@ -116,6 +116,8 @@ PETSC_EXTERN PetscErrorCode BodyProposeRepeat(Body, BodyWord *);
 PETSC_EXTERN PetscErrorCode BodyBeginExchange(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyEndExchange(Body);
 PETSC_EXTERN PetscErrorCode BodyExpectRepeat(Body, const PetscScalar[], const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyLeaveLayer(Body);
+PETSC_EXTERN PetscErrorCode BodyGetLayerMissing(Body, PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);

@@ -4,7 +4,9 @@
 typedef struct {
   LayerBalance layer;       /* NULL: no node is massless, on any rank */
   PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
-  Vec          expected;    /* how far the layer goes under forces that are to come; NULL where it does not answer linearly and alone */
+  /* NULL where the layer does not answer linearly and alone: how far it goes under forces that are to come, and what it lacks for balance
+     where it has been left */
+  Vec expected, missing;
 } BodyExplicit;
 
 static LayerBalance GetLayer(Body body)
@@ -59,8 +61,8 @@ static PetscReal GetPosition(Body body)
   return (PetscReal)(body->time.substep + 1) / body->time.substeps;
 }
 
-/* Held and contact conditions on U, with the massless layer in balance. Where there are forces from outside, and a layer, `force` becomes
-   them. */
+/* Held and contact conditions on U, with the massless layer in balance, or left where it is. Where there are forces from outside, and a
+   layer, `force` becomes them. */
 static PetscErrorCode PlaceRows(Body body, PetscReal t, Vec U, Vec force)
 {
   const LayerBalance layer    = GetLayer(body);
@@ -69,7 +71,10 @@ static PetscErrorCode PlaceRows(Body body, PetscReal t, Vec U, Vec force)
   PetscFunctionBegin;
   PetscCall(BodyPrescribeHeld(body, t, U, NULL, NULL));
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
-  if (layer) PetscCall(LayerBalanceSolve(layer, body, t, position, PETSC_TRUE, U, force));
+  body->layer.left = body->layer.leave;
+  if (body->layer.left)
+    PetscCall(LayerBalanceFindMissing(layer, body, t, position, U, force, ((BodyExplicit *)body->integrator->data)->missing));
+  else if (layer) PetscCall(LayerBalanceSolve(layer, body, t, position, PETSC_TRUE, U, force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,7 +121,7 @@ static PetscBool KnowsForce(Body body)
 static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
-  PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
+  if (!body->layer.left) PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
   if (body->held.n && !body->state.incomplete) PetscCall(VecZeroEntries(A)); /* of held nodes it is not */
   else PetscCall(PetscObjectStateIncrease((PetscObject)A));
   body->state.incomplete = PETSC_TRUE;
@@ -227,14 +232,16 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
 }
 
 /* Where the layer alone answers: it is moved by what is known, or else (NULL) put in place anew from where it is, and all else is as it was
-   at mid-step */
+   at mid-step. One that was left off balance gets into it. */
 static PetscErrorCode MoveLayer(Body body, Vec known)
 {
   PetscFunctionBegin;
   body->time.substep = 0;
   if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
-  if (known) PetscCall(LayerBalanceMove(GetLayer(body), known, body->state.u));
-  else PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
+  if (known) {
+    PetscCall(LayerBalanceMove(GetLayer(body), known, body->state.u));
+    body->layer.left = PETSC_FALSE;
+  } else PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
   PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
   PetscCall(FinishSubstep(body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -265,6 +272,17 @@ static PetscErrorCode Follow(Body body)
 {
   PetscFunctionBegin;
   PetscCall(MoveLayer(body, ((BodyExplicit *)body->integrator->data)->expected));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode GetMissing(Body body, PetscScalar missing[])
+{
+  const PetscScalar *lacks;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(((BodyExplicit *)body->integrator->data)->missing, &lacks));
+  PetscCall(PetscArraycpy(missing, lacks, body->layer.n_dofs));
+  PetscCall(VecRestoreArrayRead(((BodyExplicit *)body->integrator->data)->missing, &lacks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -350,9 +368,11 @@ static PetscErrorCode SetUp(Body body)
     integrator->ops.repeat   = RepeatLayer;
     integrator->ops.complete = Complete;
     if (body->model.linear) {
-      integrator->ops.expect = Expect;
-      integrator->ops.follow = Follow;
+      integrator->ops.expect     = Expect;
+      integrator->ops.follow     = Follow;
+      integrator->ops.getmissing = GetMissing;
       PetscCall(LayerBalanceCreateVec(explicit->layer, &explicit->expected));
+      PetscCall(LayerBalanceCreateVec(explicit->layer, &explicit->missing));
     }
   } else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
@@ -366,6 +386,7 @@ static PetscErrorCode Destroy(Body body)
 {
   PetscFunctionBegin;
   PetscCall(VecDestroy(&((BodyExplicit *)body->integrator->data)->expected));
+  PetscCall(VecDestroy(&((BodyExplicit *)body->integrator->data)->missing));
   PetscCall(LayerBalanceDestroy(&((BodyExplicit *)body->integrator->data)->layer));
   PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -14,6 +14,7 @@ PETSC_INTERN PetscErrorCode LayerBalanceCreate(Body, LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceDestroy(LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceSetRows(LayerBalance, Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode LayerBalanceSolve(LayerBalance, Body, PetscReal, PetscReal, PetscBool, Vec, Vec);
+PETSC_INTERN PetscErrorCode LayerBalanceFindMissing(LayerBalance, Body, PetscReal, PetscReal, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode LayerBalanceMove(LayerBalance, Vec, Vec);
 PETSC_INTERN PetscErrorCode LayerBalanceCreateVec(LayerBalance, Vec *);
 PETSC_INTERN PetscErrorCode LayerBalanceGetForce(LayerBalance, Body, Vec, Vec);

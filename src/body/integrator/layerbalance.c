@@ -178,6 +178,19 @@ static PetscErrorCode ComputeMissing(LayerBalance layer, Body body, const LoadCa
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What LayerBalanceSolve() with contact would balance, of a linear layer, which stays where it is: the force that is `missing`, a vector of
+   the layer */
+PetscErrorCode LayerBalanceFindMissing(LayerBalance layer, Body body, PetscReal time, PetscReal position, Vec u, Vec force, Vec missing)
+{
+  const LoadCase load = {
+      .time = time, .position = position, .contact = PETSC_TRUE, .outside = BodyHasOutsideForce(body, PETSC_TRUE), .force = force};
+
+  PetscFunctionBegin;
+  PetscCall(ComputeMissing(layer, body, &load, load.outside, u));
+  PetscCall(VecCopy(layer->rhs, missing));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Moves the layer in u, a vector of the body */
 PetscErrorCode LayerBalanceMove(LayerBalance layer, Vec moved, Vec u)
 {

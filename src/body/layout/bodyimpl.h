@@ -97,6 +97,8 @@ typedef struct {
   PetscInt     *dofs;     /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */
   LayerElements elements; /* those that touch massless nodes; NULL until somebody balances them */
   LayerSolver   solver;   /* NULL until BodySolveLayer() */
+  PetscBool     leave;    /* the next integration leaves the layer where it is, off balance */
+  PetscBool     left;     /* the last one has */
 } BodyLayer;
 
 typedef struct {

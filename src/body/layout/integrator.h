@@ -35,6 +35,7 @@ typedef struct {
      setup() */
   PetscErrorCode (*expect)(Body, const PetscScalar[]);
   PetscErrorCode (*follow)(Body);
+  PetscErrorCode (*getmissing)(Body, PetscScalar[]); /* with those: what a layer that was left where it is lacks for balance [N] */
   /* (NULL) finds what TSStep() and repeat() have left out of the state, since rows do not depend on it, where they have marked it as
      incomplete; may be set in setup() */
   PetscErrorCode (*complete)(Body);

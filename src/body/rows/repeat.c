@@ -178,6 +178,58 @@ PetscErrorCode BodyExpectRepeat(Body body, const PetscScalar change[], const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  BodyLeaveLayer - lets the next `BodyTryIntegrateRows()` leave the massless layer where it is, off balance
+
+  Not Collective, but all ranks have to call it
+
+  Input Parameter:
+. body - the `Body`
+
+  Level: developer
+
+  Notes:
+  For a caller that finds the balance of the layers of several bodies together with the forces between them: where the layer lacks
+  `BodyGetLayerMissing()`, what the next `BodyExpectRepeat()` tells has to make up for it, and another `BodyTryIntegrateRows()` takes it.
+That one balances the layer itself where it is told nothing, or something else comes in.
+
+  Bodies that do not answer linearly by a layer alone are as if they were not asked.
+
+.seealso: `Body`, `BodyTryIntegrateRows()`, `BodyGetLayerMissing()`, `BodyExpectRepeat()`, `BodyGetLayerMatrices()`
+@*/
+PetscErrorCode BodyLeaveLayer(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  body->layer.leave = (PetscBool)(body->integrator->ops.getmissing && !body->rows.n_prescribed && !body->rows.n_robin);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetLayerMissing - what a massless layer lacks for balance
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`
+
+  Output Parameter:
+. missing - force on the dofs of the layer that this rank has, in the order of the rows of the stiffness that `BodyGetLayerMatrices()`
+gives; zero where the layer is in balance [N]
+
+  Level: developer
+
+.seealso: `Body`, `BodyLeaveLayer()`
+@*/
+PetscErrorCode BodyGetLayerMissing(Body body, PetscScalar missing[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->layer.left) PetscCall((*body->integrator->ops.getmissing)(body, missing));
+  else PetscCall(PetscArrayzero(missing, body->layer.n_dofs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A whole integration has just been done */
 PetscErrorCode BodyNoteInputs(Body body)
 {
@@ -205,10 +257,10 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
     if (repeat->told) news[k] = (PetscBool)(repeat->news[k] != 0);
     else if (TellsOthers(body)) PetscCall(BodyAnyRank(body, &news[k]));
   }
-  any          = news[0];
+  any          = (PetscBool)(news[0] || body->layer.left);
   repeat->told = repeat->expects = PETSC_FALSE;
-  /* Without a change the state stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and acceleration,
-     which others feel through a mass matrix that is not diagonal alone. */
+  /* Without a change a state in balance stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and
+     acceleration, which others feel through a mass matrix that is not diagonal alone. */
   if (any && !news[1]) PetscCall((*body->integrator->ops.follow)(body));
   else if (any || (body->rows.have_mass && body->mass.matrix)) {
     if (body->integrator->ops.bringchanges && !body->rows.exchange.open)

@@ -27,6 +27,7 @@ struct _n_InterfaceDirect {
   PetscObjectId    *rows;          /* B_b */
   PetscInt          solutions;     /* by conjugate gradients, for the rows as they are */
   PetscBool         filled;        /* the matrix is that of these rows, and factored */
+  PetscBool         was_filled;    /* it was so, with good factors, at the checkpoint that the run goes on from */
   PetscBool         fails;         /* it has no good factors */
   PC                factors;
   Vec               rhs, solution;
@@ -95,8 +96,7 @@ void InterfaceDirectForget(InterfaceDirect d)
 {
   if (!d) return;
   d->solutions = 0;
-  d->filled    = PETSC_FALSE;
-  d->answers   = PETSC_FALSE;
+  d->filled = d->was_filled = d->answers = PETSC_FALSE;
 }
 
 /* Notes the layers and rows as they are. Where any has changed since the last call what is there of them is forgotten, and where rows are
@@ -264,6 +264,27 @@ static PetscErrorCode CreateFactors(InterfaceOperator op)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Layers that have been left where they are have yet to find their balance: u is how far they go back, and what they lack is in rhs */
+static PetscErrorCode AddMissing(InterfaceOperator op, PetscScalar rhs[])
+{
+  InterfaceDirect d     = op->direct;
+  PetscInt        begin = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < d->n; k++) {
+    const Body body = op->contact->bodies[d->bodies[k]];
+    PetscInt   n;
+    Mat        K;
+
+    PetscCall(BodyGetLayerMatrices(body, &K, NULL));
+    PetscCall(MatGetLocalSize(K, &n, NULL));
+    PetscCall(BodyGetLayerMissing(body, rhs + begin));
+    for (PetscInt j = 0; j < n; j++) rhs[begin + j] = -rhs[begin + j];
+    begin += n;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* solution = matrix^{-1} rhs */
 static PetscErrorCode SolveJoined(InterfaceOperator op, const PetscScalar x[])
 {
@@ -273,6 +294,7 @@ static PetscErrorCode SolveJoined(InterfaceOperator op, const PetscScalar x[])
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(d->rhs));
   PetscCall(VecGetArray(d->rhs, &rhs));
+  PetscCall(AddMissing(op, rhs));
   for (PetscInt i = 0; i < op->contact->rows.n; i++) rhs[d->offset + i] = InterfaceIsIn(op, i) ? x[i] : 0;
   PetscCall(VecRestoreArray(d->rhs, &rhs));
   PetscCall(PCApply(d->factors, d->rhs, d->solution));
@@ -323,7 +345,18 @@ static PetscErrorCode Factor(InterfaceOperator op)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = (S + diagonal)^{-1} x on this rank's rows that are in, zero on the others; solved: false where there are no factors, and conjugate
+/* Whether the next solution for the rows as they are comes from factors that are there */
+PetscErrorCode InterfaceDirectIsReady(InterfaceOperator op, PetscBool *ready)
+{
+  PetscFunctionBegin;
+  PetscCall(TakeState(op));
+  if (op->direct->was_filled && !op->direct->filled) PetscCall(Factor(op));
+  *ready = (PetscBool)(op->direct->filled && !op->direct->fails);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = (S + diagonal)^{-1} x on this rank's rows that are in, zero on the others; where layers have been left off balance x is to be what
+   it becomes when they find it. solved: false where there are no factors, and conjugate
    gradients are to do it */
 PetscErrorCode InterfaceDirectSolve(InterfaceOperator op, const PetscScalar x[], PetscScalar y[], PetscBool *solved)
 {
@@ -387,15 +420,19 @@ PetscErrorCode InterfaceDirectVisit(InterfaceOperator op, Checkpoint checkpoint)
 {
   InterfaceDirect d         = op->direct;
   PetscInt        solutions = 0;
+  PetscBool       filled    = PETSC_FALSE;
 
   PetscFunctionBegin;
   if (d) { /* what has changed since the last solution shows now, and not after the checkpoint */
     PetscCall(TakeState(op));
     solutions = d->solutions;
+    filled    = (PetscBool)(d->was_filled || (d->filled && !d->fails));
   }
   PetscCall(CheckpointVisitInts(checkpoint, "solutions", 1, &solutions));
+  PetscCall(CheckpointVisitBools(checkpoint, "filled", 1, &filled));
   if (!d || !CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   InterfaceDirectForget(d);
-  d->solutions = solutions;
+  d->solutions  = solutions;
+  d->was_filled = filled;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -64,6 +64,7 @@ PETSC_INTERN PetscErrorCode InterfaceDirectCreate(InterfaceOperator, InterfaceDi
 PETSC_INTERN PetscErrorCode InterfaceDirectDestroy(InterfaceDirect *);
 PETSC_INTERN void           InterfaceDirectForget(InterfaceDirect);
 PETSC_INTERN PetscErrorCode InterfaceDirectSolve(InterfaceOperator, const PetscScalar[], PetscScalar[], PetscBool *);
+PETSC_INTERN PetscErrorCode InterfaceDirectIsReady(InterfaceOperator, PetscBool *);
 PETSC_INTERN PetscErrorCode InterfaceDirectTell(InterfaceOperator);
 
 PETSC_INTERN PetscErrorCode InterfacePreconditionerCreate(InterfaceOperator, InterfacePreconditioner *);

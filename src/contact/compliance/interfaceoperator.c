@@ -131,6 +131,15 @@ PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the next solution finds the balance of massless layers that have been left where they are with the forces between them */
+PetscErrorCode InterfaceOperatorBalances(InterfaceOperator op, PetscBool *balances)
+{
+  PetscFunctionBegin;
+  *balances = PETSC_FALSE;
+  if (!op->dense && op->factored && InterfaceIsDirect(op)) PetscCall(InterfaceDirectIsReady(op, balances));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The forces of the last solution are to be taken from those on the rows: bodies whose answer has been found with it are told */
 PetscErrorCode InterfaceOperatorTellAnswers(InterfaceOperator op)
 {

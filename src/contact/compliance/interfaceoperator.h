@@ -54,6 +54,7 @@ PETSC_INTERN PetscErrorCode InterfaceOperatorMultiplyListed(InterfaceOperator, I
                                                             PetscScalar[]);
 /* on the rows of this rank, dense or not */
 PETSC_INTERN PetscErrorCode InterfaceOperatorSolve(InterfaceOperator, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode InterfaceOperatorBalances(InterfaceOperator, PetscBool *);
 PETSC_INTERN PetscErrorCode InterfaceOperatorTellAnswers(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator, InterfaceMap, const PetscScalar[], PetscScalar[]);
 /* on the rows of this rank, where S is only multiplied with: what preconditions it */

@@ -375,12 +375,75 @@ static void an_answer_that_is_told_is_taken(void **state)
   bar_destroy(&body, options);
 }
 
+/* A layer that is left off balance tells what it lacks: the solution with its stiffness, told back, takes it where it gets by itself, and
+   so does another integration that is told nothing */
+static void a_layer_that_is_left_gets_into_balance(void **state)
+{
+  Body         body;
+  BodyTraces   traces;
+  NodeRows     rows;
+  PetscScalar  alone[ROWS], left[ROWS], back[ROWS], change[ROWS] = {0}, *missing;
+  Mat          K;
+  KSP          ksp;
+  Vec          lacks, moves;
+  PetscOptions options = solid_body_create(&body, BLOCK "-ts_type centraldifference -material_type linear_elastic");
+
+  (void)state;
+  touch_side(body, "ymax");
+  ok(BodySetControllerStep(body, 0, STEP));
+  set_node_rows(body, ROWS, row_nodes, row_directions, &rows);
+  ok(BodySetUp(body));
+  ok(BodyGetTraces(body, &traces));
+  ok(BodySetInitialState(body, Spinning, NULL));
+  condition_rows(body, &rows, BODY_FORCED);
+  sweep(body, &rows, &traces, 1e-3, alone);
+  ok(BodyGetLayerMatrices(body, &K, NULL));
+  ok(MatCreateVecs(K, &moves, &lacks));
+  ok(KSPCreate(PETSC_COMM_WORLD, &ksp));
+  ok(KSPSetOperators(ksp, K, K));
+  ok(KSPSetTolerances(ksp, 1e-14, PETSC_DEFAULT, PETSC_DEFAULT, 10000));
+  for (PetscInt told = 0; told < 2; told++) {
+    PetscReal norm;
+
+    ok(BodyRestore(body));
+    ok(BodyLeaveLayer(body));
+    sweep(body, &rows, &traces, 1e-3, left);
+    for (PetscInt i = 0; i < rows.local; i++) assert_true(PetscAbsScalar(left[i] - alone[i]) > 1e-8);
+    ok(VecGetArrayWrite(lacks, &missing));
+    ok(BodyGetLayerMissing(body, missing));
+    ok(VecRestoreArrayWrite(lacks, &missing));
+    ok(VecNorm(lacks, NORM_2, &norm));
+    assert_true(norm > 0);
+    ok(KSPSolve(ksp, lacks, moves));
+    if (told) {
+      const PetscScalar *array;
+
+      ok(VecGetArrayRead(moves, &array));
+      ok(BodyExpectRepeat(body, change, array));
+      ok(VecRestoreArrayRead(moves, &array));
+    }
+    sweep(body, &rows, &traces, 1e-3, back);
+    for (PetscInt i = 0; i < rows.local; i++) near(back[i], alone[i], 1e-12);
+    ok(VecGetArrayWrite(lacks, &missing));
+    ok(BodyGetLayerMissing(body, missing));
+    ok(VecRestoreArrayWrite(lacks, &missing));
+    ok(VecNorm(lacks, NORM_2, &norm));
+    assert_true(norm == 0);
+    ok(BodyCompleteStep(body, NULL));
+  }
+  ok(KSPDestroy(&ksp));
+  ok(VecDestroy(&lacks));
+  ok(VecDestroy(&moves));
+  bar_destroy(&body, options);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(explicit_bodies_repeat_as_they_turn),   cmocka_unit_test(implicit_bodies_repeat_as_they_turn),
-      cmocka_unit_test(what_is_kept_comes_back_with_its_work), cmocka_unit_test(a_step_is_completed_once),
-      cmocka_unit_test(a_lag_from_step_to_step_is_refused),    cmocka_unit_test(an_answer_that_is_told_is_taken),
+      cmocka_unit_test(explicit_bodies_repeat_as_they_turn),    cmocka_unit_test(implicit_bodies_repeat_as_they_turn),
+      cmocka_unit_test(what_is_kept_comes_back_with_its_work),  cmocka_unit_test(a_step_is_completed_once),
+      cmocka_unit_test(a_lag_from_step_to_step_is_refused),     cmocka_unit_test(an_answer_that_is_told_is_taken),
+      cmocka_unit_test(a_layer_that_is_left_gets_into_balance),
   };
 
   return impakt_main(argc, argv, tests);

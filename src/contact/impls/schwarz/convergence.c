@@ -120,7 +120,9 @@ PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
   /* what is left of the gap of a tie with mass becomes a force of 4 / dt^2 times that mass: Newton's method closes it to round-off, where
      the predictor alone would be near enough for positions */
   if (schwarz->tied.any && schwarz->newton && !schwarz->swept && worst > 0) schwarz->converged = PETSC_FALSE;
-  schwarz->swept = PETSC_TRUE;
+  if (schwarz->leaves) schwarz->converged = PETSC_FALSE;
+  schwarz->swept  = PETSC_TRUE;
+  schwarz->leaves = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

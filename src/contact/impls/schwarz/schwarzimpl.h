@@ -174,6 +174,7 @@ typedef struct {
   PetscBool  *solved_active;    /* per row: the active set that the Jacobian belongs to */
   PetscBool  *by_force;         /* per row: its unknown was a force in the last round */
   PetscBool   swept;            /* `previous` is of this step */
+  PetscBool   leaves;           /* the next sweep leaves massless layers off balance, for Newton's step to find it */
   PetscReal   change, position; /* of the last sweep: the body with the worst ratio */
   PetscReal   growth;           /* of the change over that of the sweep before */
   PetscBool   converged;

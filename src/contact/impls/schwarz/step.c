@@ -35,6 +35,27 @@ static PetscErrorCode PrepareSweeps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lets the first sweep leave massless layers where they are, where Newton's step finds their balance and the forces between them in one
+   solution with factors that are there: rows that stay in contact take no solution of each layer then */
+static PetscErrorCode LeaveLayers(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+  PetscInt max_it;
+
+  PetscFunctionBegin;
+  schwarz->leaves = (PetscBool)(schwarz->step == STEP_WHOLE && schwarz->newton && schwarz->exact && schwarz->full_steps &&
+                                !schwarz->substeps && schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN &&
+                                !contact->turns.n && !schwarz->groups.on && !schwarz->outer.watched);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!contact->pairs[p].by_force) schwarz->leaves = PETSC_FALSE;
+  if (!schwarz->leaves) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetTolerances(schwarz->outer.snes, NULL, NULL, NULL, &max_it, NULL));
+  if (max_it > 0) PetscCall(InterfaceOperatorBalances(schwarz->jacobian.S, &schwarz->leaves));
+  else schwarz->leaves = PETSC_FALSE;
+  for (PetscInt b = 0; b < contact->n_bodies && schwarz->leaves; b++) PetscCall(BodyLeaveLayer(contact->bodies[b]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The outer iteration with the active set as it is; once more for pairs whose gaps would have to be turned too far */
 static PetscErrorCode Iterate(Contact contact)
 {
@@ -47,6 +68,7 @@ static PetscErrorCode Iterate(Contact contact)
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     schwarz->swept = PETSC_FALSE;
     if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_FALSE);
+    PetscCall(LeaveLayers(contact));
     PetscCall(OuterSolverSolve(contact, &schwarz->outer, SchwarzSweep, &schwarz->converged));
     PetscCall(SchwarzCheckConverged(contact));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
