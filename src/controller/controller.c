@@ -1,8 +1,12 @@
 /* The class and its time loop. */
 #include "controllerimpl.h"
 #include <impakt/private/bodyrows.h>
+#include <sys/largepages.h>
 #include <sys/resource.h>
 #include <sys/stages.h>
+
+/* From so many bodies on their memory is on large pages */
+#define MANY_BODIES 16
 
 /*@
   ControllerCreate - creates a simulation without bodies
@@ -84,6 +88,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   }
   PetscCall(ControllerSetUpSupports(controller));
   PetscCall(ControllerSetUpProbes(controller));
+  if (n >= MANY_BODIES) UseLargePages();
   PetscCall(PetscTime(&end));
   controller->setup_seconds += end - begin;
   controller->setup = PETSC_TRUE;

@@ -111,7 +111,8 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
     body->state.incomplete = PETSC_FALSE;
     PetscCall(BodyHistoryEnd(body));
     PetscCall(BodyCheckSubstep(body));
-    PetscCall(BodyWriteTraces(body, body->time.substeps));
+    /* rows of massless nodes are where they were, and all that they do but for reactions and what is held is known */
+    if (body->held.any || body->rows.n_prescribed || body->rows.n_robin) PetscCall(BodyWriteTraces(body, body->time.substeps));
     PetscCall(PetscTime(&end));
     body->statistics.seconds += end - begin;
     PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));

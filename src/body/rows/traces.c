@@ -30,11 +30,12 @@ static PetscErrorCode ExtendFromStage(Body body, PetscInt level, PetscScalar rea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement, velocity and acceleration of all rows, and the force along prescribed and Robin ones, as they are now */
+/* Displacement, velocity and acceleration of all rows, and the force along prescribed and Robin ones, as they are now. Massless nodes,
+   which all rows are on where the state may be incomplete, have no acceleration unless they are held. */
 PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 {
   const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
-  PetscScalar    *reaction, *displacement, *force_in;
+  PetscScalar    *reaction, *displacement, *acceleration, *force_in;
 
   PetscFunctionBegin;
   if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
@@ -44,7 +45,10 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
   }
   PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.u, body->traces.displacement, level));
   PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.v, body->traces.velocity, level));
-  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.a, body->traces.acceleration, level));
+  if (body->state.incomplete && !body->held.any) {
+    PetscCall(TraceGetLevel(body->traces.acceleration, level, &acceleration));
+    PetscCall(PetscArrayzero(acceleration, body->rows.local));
+  } else PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.a, body->traces.acceleration, level));
   if (body->rows.n_prescribed) {
     Vec             force   = body->state.internal_force;
     const PetscBool inertia = (PetscBool)(body->rows.traction == BODY_TRACTION_REACTION || body->rows.tied_mass);

@@ -203,7 +203,8 @@ PetscErrorCode ContactBookWork(Contact contact)
   energy->largest_force = PetscMax(energy->largest_force, SumForces(contact));
   PetscCall(PetscArraycpy(energy->accepted_force, contact->end.force, contact->rows.n));
   PetscCall(BookLevel(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++) energy->last_stored[i] = (*contact->ops->stored)(contact, i, contact->end.gap[i]);
+  for (PetscInt i = 0; i < contact->rows.n && contact->ops->stored != ContactStoresNothing; i++)
+    energy->last_stored[i] = (*contact->ops->stored)(contact, i, contact->end.gap[i]);
   PetscCall(PetscArrayzero(room, 2 * contact->n_bodies));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     room[energy->group[b]] += energy->room[b];

@@ -13,6 +13,21 @@ PetscReal ContactStoresNothing(Contact contact, PetscInt row, PetscReal gap)
   return 0;
 }
 
+/* Whether forces act on any row of body b in the step */
+static PetscBool IsLoaded(Contact contact, PetscInt b)
+{
+  const ContactBodyRows *of    = &contact->body_rows[b];
+  const PetscReal       *force = contact->end.force, *last = contact->energy.last_force;
+  PetscBool              any = PETSC_FALSE;
+
+  for (PetscInt k = 0; k < of->n && !any; k++) {
+    const PetscInt i = of->rows[k];
+
+    any = (PetscBool)(contact->end.active[i] || force[i] != 0 || last[i] != 0 || ContactRowFades(contact, i));
+  }
+  return any;
+}
+
 /* Adds the work on body b to that of the pairs */
 static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
 {
@@ -25,6 +40,7 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   PetscInt               substeps;
 
   PetscFunctionBegin;
+  if (!IsLoaded(contact, b)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
   PetscCall(BodyGetMeanForces(contact->bodies[b], &by_mean));
   PetscCall(TraceGetLevel(traces->displacement, 0, &first));
@@ -54,6 +70,7 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
 /* Adds the energy that the springs of each pair have gained in the step. `across`: those across the normals too */
 static void AddSprings(Contact contact, PetscBool across, PetscReal sums[])
 {
+  if (contact->ops->stored == ContactStoresNothing) return;
   for (PetscInt i = 0; i < contact->rows.n; i++)
     if (across || !ContactRowRubs(contact, i))
       sums[2 * contact->rows.pair[i]] += (*contact->ops->stored)(contact, i, contact->end.gap[i]) - contact->energy.last_stored[i];

@@ -163,6 +163,8 @@ PetscErrorCode ContactAddImpulses(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, *last = impulse + 3, *normal = impulse + 6, force[3], now = 0;
 
+    /* pairs that are far have no forces */
+    if (contact->pairs[p].far && last[0] == 0 && last[1] == 0 && last[2] == 0 && normal[1] == 0) continue;
     if (contact->energy.changed) SumForces(contact, &contact->pairs[p], contact->start.force, last);
     SumForces(contact, &contact->pairs[p], contact->end.force, force);
     for (PetscInt d = 0; d < 3; d++) {
@@ -211,6 +213,14 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a row of this rank touches, or has a force */
+static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
+{
+  for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++)
+    if (contact->end.active[i] || contact->end.force[i] != 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* This rank's sums and largest values over the rows of pair p */
 static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
 {
@@ -220,10 +230,18 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   TransferRows       rows;
 
   PetscFunctionBegin;
-  PetscCall(TransferGetRows(pair->transfer, &rows));
   PetscCall(PetscArrayzero(sums, N_SUMS));
-  maxima[MAX_PENETRATION] = -PETSC_MAX_REAL;
-  maxima[MAX_TENSION]     = 0;
+  PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->resultants.impulse + N_KEPT * p, 3));
+  sums[SUM_NORMAL_IMPULSE] = contact->resultants.impulse[N_KEPT * p + 6];
+  sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
+  maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
+  maxima[MAX_TENSION]      = 0;
+  if (!IsLoaded(contact, pair)) {
+    for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++)
+      maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(TransferGetRows(pair->transfer, &rows));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
     const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0;
@@ -243,9 +261,6 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   }
   SumForces(contact, pair, contact->end.force, sums + SUM_VECTOR);
   PetscCall(SumMoments(contact, pair, sums + SUM_MOMENT));
-  PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->resultants.impulse + N_KEPT * p, 3));
-  sums[SUM_NORMAL_IMPULSE] = contact->resultants.impulse[N_KEPT * p + 6];
-  sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,10 +9,10 @@
 /* Up to so many pairs of bodies that the program has chosen all of them are there all the time */
 #define MANY_PAIRS 100
 /* Boxes that are closer than this, beyond the reach of a controller step, must have rows [edges of the larger contact elements] */
-#define NEAR 1
+#define NEAR 0.25
 /* Pairs are taken whose boxes are closer than this [edges], and dropped where they are farther apart than DROPPED */
-#define TAKEN   2.5
-#define DROPPED 3.5
+#define TAKEN   0.75
+#define DROPPED 1.25
 /* Pairs are looked for again before what was taken is used up, with room for steps that become faster */
 #define STEPS_AHEAD 2
 /* Why the pairs of a body stay */

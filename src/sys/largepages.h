@@ -1,0 +1,4 @@
+/* Memory on large pages. Private to src. */
+#pragma once
+
+extern void UseLargePages(void);
