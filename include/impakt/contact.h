@@ -211,7 +211,7 @@ typedef enum { SCHWARZ_UNCONVERGED_ERROR, SCHWARZ_UNCONVERGED_ACCEPT } SchwarzUn
    Values:
 + `SCHWARZ_CONDENSE_NEVER`  - they integrate every body
 . `SCHWARZ_CONDENSE_ALWAYS` - they do, and it is an error where the compliance does not tell all
-- `SCHWARZ_CONDENSE_AUTO`   - they do where it tells all
+- `SCHWARZ_CONDENSE_AUTO`   - they do where it tells all, and bodies do not make so many substeps that these take less time
 
    Level: advanced
 

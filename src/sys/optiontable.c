@@ -261,7 +261,8 @@ static const KnownOption options[] = {
     {"schwarz", OPTION_OF_RUN, "schwarz_convergence", "auto|position|contact_position|mismatch",
      "what change of position is compared with the tolerance, default auto"},
     {"schwarz", OPTION_OF_RUN, "schwarz_condense", "0|1|auto",
-     "whether sweeps run on the interface compliance of linear bodies, default auto: in two and three dimensions"},
+     "whether sweeps run on the interface compliance of linear bodies, default auto: unless a body makes so many substeps that they take "
+     "less time"},
     {"schwarz", OPTION_OF_RUN, "schwarz_dense_limit", "n",
      "interface unknowns up to which matrices on the interface are dense, conjugate gradients beyond, default 2000"},
     {"schwarz", OPTION_OF_RUN, "schwarz_recheck", "true|false",

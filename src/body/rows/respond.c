@@ -13,6 +13,9 @@
 */
 #include "complianceimpl.h"
 
+/* Up to so many rows of a body sums are made here, and not by BLAS */
+#define FEW_ROWS 8
+
 /*@
   BodySetBase - takes the integration just made, under forces only, as what `BodyRespond()` counts changes from
 
@@ -291,6 +294,29 @@ PetscErrorCode BodyProposeInputs(Body body, BodyWord *word)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* u += W f for few rows, where calling a library takes longer than the sum */
+static inline void AddFew(PetscInt n, PetscInt leading, const PetscScalar W[], const PetscScalar f[], PetscScalar u[])
+{
+  for (PetscInt j = 0; j < n; j++)
+    for (PetscInt i = 0; i < n; i++) u[i] += W[j * leading + i] * f[j];
+}
+
+/* What the forces of substep k and those before have done by its end */
+static PetscErrorCode AddResponses(const struct _BodyCompliance *c, PetscInt n, PetscInt k, PetscScalar u[])
+{
+  const PetscScalar *W;
+  PetscInt           leading;
+
+  PetscFunctionBegin;
+  for (PetscInt l = 0; l <= k; l++) {
+    ComplianceGetMatrix(c->matrices, k - l, &leading, &W);
+    if (n <= FEW_ROWS) AddFew(n, leading, W, c->force + l * n, u);
+    else PetscCall(DenseMultiplyAdd(n, leading, W, 1, c->force + l * n, u));
+  }
+  if (n <= FEW_ROWS) PetscCall(PetscLogFlops(2.0 * (PetscLogDouble)n * (PetscLogDouble)n * (PetscLogDouble)(k + 1)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Substep k, with those before it done */
 static PetscErrorCode RespondSubstep(Body body, PetscInt k)
 {
@@ -309,11 +335,9 @@ static PetscErrorCode RespondSubstep(Body body, PetscInt k)
   PetscCall(PetscArraycpy(u, c->known_displacement + k * n, n));
   for (PetscInt i = 0; i < n; i++) f[i] = input[i] - base[i];
   for (PetscInt i = 0; i < c->n_solved; i++) f[place[c->solved[i]]] = 0;
-  for (PetscInt l = 0; l <= k; l++) {
-    ComplianceGetMatrix(c->matrices, k - l, &leading, &W);
-    PetscCall(DenseMultiplyAdd(n, leading, W, 1, c->force + l * n, u));
-  }
+  PetscCall(AddResponses(c, n, k, u));
   if (!c->n_solved) PetscFunctionReturn(PETSC_SUCCESS);
+  ComplianceGetMatrix(c->matrices, 0, &leading, &W);
   for (PetscInt i = 0; i < c->n_solved; i++) {
     const PetscInt  row = c->solved[i], at = place[row];
     const PetscReal flexibility = c->all_flexibility[row];

@@ -236,7 +236,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
   maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
   maxima[MAX_TENSION]      = 0;
-  if (!IsLoaded(contact, pair)) {
+  if (!contact->held.merger && !IsLoaded(contact, pair)) { /* moments of merged rows take a word of all ranks */
     for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++)
       maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
     PetscFunctionReturn(PETSC_SUCCESS);
