@@ -8,7 +8,6 @@
 #if defined(__linux__)
 #  include <stdint.h>
 #  include <stdio.h>
-#  include <stdlib.h>
 #  include <string.h>
 #  include <sys/mman.h>
 #  if !defined(MADV_COLLAPSE)
@@ -27,14 +26,13 @@ void UseLargePages(void)
 
   if (!maps) return;
   while (fgets(line, sizeof(line), maps)) { /* begin-end ... [heap] */
-    char     *rest;
-    uintptr_t first, last;
+    void *begin, *end;
+    char *first, *last;
 
-    if (!strstr(line, "[heap]")) continue;
-    first = ((uintptr_t)strtoull(line, &rest, 16) + PAGE - 1) / PAGE * PAGE;
-    if (*rest != '-') continue;
-    last = (uintptr_t)strtoull(rest + 1, NULL, 16) / PAGE * PAGE;
-    if (first < last) (void)madvise((void *)first, last - first, MADV_COLLAPSE);
+    if (!strstr(line, "[heap]") || sscanf(line, "%p-%p", &begin, &end) != 2) continue;
+    first = (char *)begin + (PAGE - (uintptr_t)begin % PAGE) % PAGE;
+    last  = (char *)end - (uintptr_t)end % PAGE;
+    if (first < last) (void)madvise(first, (size_t)(last - first), MADV_COLLAPSE);
   }
   (void)fclose(maps);
 #endif
