@@ -189,9 +189,9 @@ PetscErrorCode BodyExpectRepeat(Body body, const PetscScalar change[], const Pet
   Level: developer
 
   Notes:
-  For a caller that finds the balance of the layers of several bodies together with the forces between them: where the layer lacks
-  `BodyGetLayerMissing()`, what the next `BodyExpectRepeat()` tells has to make up for it, and another `BodyTryIntegrateRows()` takes it.
-That one balances the layer itself where it is told nothing, or something else comes in.
+  For a caller that finds the balance of the layers of several bodies together with the forces between them. What the next
+  `BodyExpectRepeat()` tells has to make up for what `BodyGetLayerMissing()` gives, too, and another `BodyTryIntegrateRows()` takes it,
+  which balances the layer itself where it is told nothing, or where something else comes in.
 
   Bodies that do not answer linearly by a layer alone are as if they were not asked.
 
@@ -214,8 +214,8 @@ PetscErrorCode BodyLeaveLayer(Body body)
 . body - the `Body`
 
   Output Parameter:
-. missing - force on the dofs of the layer that this rank has, in the order of the rows of the stiffness that `BodyGetLayerMatrices()`
-gives; zero where the layer is in balance [N]
+. missing - force on the dofs of the layer that this rank has, in the order of the rows of its stiffness in `BodyGetLayerMatrices()`;
+            zero where the layer is in balance [N]
 
   Level: developer
 

@@ -109,17 +109,21 @@ PetscErrorCode ContactDropShared(Contact contact)
 }
 
 /* How far apart surfaces may be that touch in the next controller step [m], from the way that the fastest nodes of the two fastest bodies
-   make towards each other */
+   make towards each other; where pairs come and go, or are left alone while they are far, also from how bodies at rest set out in it */
 static PetscErrorCode GetReach(Contact contact, PetscReal *near)
 {
   PetscReal first = 0, second = 0;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Vec velocity;
+    Vec       velocity, acceleration;
+    PetscReal faster = 0;
 
-    PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
+    PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, &acceleration));
     PetscCall(GetLargest(velocity, &contact->work.speeds[b]));
+    if (!contact->neighbours.come_and_go) continue;
+    PetscCall(GetLargest(acceleration, &faster));
+    contact->work.speeds[b] += 0.5 * faster * contact->step;
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, contact->work.speeds, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MAX,
