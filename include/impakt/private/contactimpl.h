@@ -411,7 +411,7 @@ typedef struct {
 
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
-  PetscReal     *speeds;       /* per body */
+  PetscReal     *speeds;       /* two per body */
   PetscReal     *traces;       /* six numbers per body, see ContactGetBodyTraces() */
   PetscInt      *counts;       /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
   BodyWord      *words;        /* per body: see ContactTellWords() */

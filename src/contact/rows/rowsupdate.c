@@ -108,31 +108,42 @@ PetscErrorCode ContactDropShared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far apart surfaces may be that touch in the next controller step [m], from the way that the fastest nodes of the two fastest bodies
-   make towards each other; where pairs come and go, or are left alone while they are far, also from how bodies at rest set out in it */
-static PetscErrorCode GetReach(Contact contact, PetscReal *near)
+/* The sum of the two largest speeds of all bodies */
+static PetscReal TwoFastest(Contact contact, const PetscReal speeds[])
 {
   PetscReal first = 0, second = 0;
 
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    second = PetscMax(second, PetscMin(first, speeds[b]));
+    first  = PetscMax(first, speeds[b]);
+  }
+  return first + second;
+}
+
+/* How far apart surfaces may be that touch in the next controller step [m], from the way that the fastest nodes of the two fastest bodies
+   make towards each other. `reach`: the same of bodies, where pairs come and go, with what accelerations at the start add: those at rest
+   have no speed yet. */
+static PetscErrorCode GetReach(Contact contact, PetscReal *near, PetscReal *reach)
+{
+  const PetscReal ahead  = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * contact->step;
+  const PetscBool gains  = contact->neighbours.come_and_go;
+  PetscReal      *speeds = contact->work.speeds, *faster = speeds + contact->n_bodies;
+
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Vec       velocity, acceleration;
-    PetscReal faster = 0;
+    Vec velocity, acceleration;
 
     PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, &acceleration));
-    PetscCall(GetLargest(velocity, &contact->work.speeds[b]));
-    if (!contact->neighbours.come_and_go) continue;
-    PetscCall(GetLargest(acceleration, &faster));
-    contact->work.speeds[b] += 0.5 * faster * contact->step;
+    PetscCall(GetLargest(velocity, &speeds[b]));
+    if (!gains) continue;
+    PetscCall(GetLargest(acceleration, &faster[b]));
+    faster[b] = speeds[b] + 0.5 * faster[b] * contact->step;
   }
   if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, contact->work.speeds, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MAX,
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speeds, (PetscMPIInt)((gains ? 2 : 1) * contact->n_bodies), MPIU_REAL, MPIU_MAX,
                                PetscObjectComm((PetscObject)contact)));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    second = PetscMax(second, PetscMin(first, contact->work.speeds[b]));
-    first  = PetscMax(first, contact->work.speeds[b]);
-  }
-  *near = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * (first + second) * contact->step;
+  *near  = ahead * TwoFastest(contact, speeds);
+  *reach = gains ? ahead * TwoFastest(contact, faster) : *near;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -277,14 +288,14 @@ static void Affect(Contact contact, const ContactPair *pair, PetscBool rebuilt)
    near contact follow. Rows in contact that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
-  PetscReal near = 0;
+  PetscReal near = 0, reach = 0;
   PetscBool any = PETSC_FALSE, built = PETSC_FALSE, logged;
 
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || (!contact->n_pairs && !contact->neighbours.come_and_go))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetReach(contact, &near));
-  PetscCall(ContactRenewNeighbours(contact, near, PETSC_FALSE, &any));
+  PetscCall(GetReach(contact, &near, &reach));
+  PetscCall(ContactRenewNeighbours(contact, reach, PETSC_FALSE, &any));
   if (contact->attempt.again) PetscCall(ContactRestoreRows(contact));
   else PetscCall(ContactSaveRows(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -298,7 +309,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));
   PetscCall(StageBegin(STAGE_SEARCH, &logged));
   PetscCall(ContactMoveSurfaces(contact));
-  PetscCall(ContactFindFarPairs(contact, near));
+  PetscCall(ContactFindFarPairs(contact, reach));
   PetscCall(StageEnd(logged));
   PetscCall(ContactUpdatePairs(contact, near));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
