@@ -7,8 +7,6 @@
 
 /* Boxes that are farther apart, beyond the reach of a controller step, are far [edges of the contact elements] */
 #define FAR 4
-/* The same where pairs come and go, of the larger ones of both bodies: all that is farther away costs nothing in a step */
-#define CLOSE 0.25
 /* Up to so many such pairs all have their rows always, and gaps are those of the surfaces however far they are apart */
 #define FEW_PAIRS 16
 
@@ -50,7 +48,7 @@ static PetscErrorCode FindFarNeighbours(Contact contact, PetscReal near)
 
     if (pair->obstacle) continue;
     pair->distance = ContactBoxDistance(boxes + 6 * pair->place[0], boxes + 6 * pair->place[1]);
-    pair->far      = (PetscBool)(pair->distance > near + CLOSE * PetscMax(edge[pair->body[0]], edge[pair->body[1]]));
+    pair->far      = (PetscBool)(pair->distance > near + PetscMax(edge[pair->body[0]], edge[pair->body[1]]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
