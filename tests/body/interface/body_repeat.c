@@ -319,6 +319,22 @@ static void sweep(Body body, const NodeRows *rows, const BodyTraces *traces, Pet
   ok(PetscArraycpy(displacement, row, rows->local));
 }
 
+/* A linear explicit body whose rows are on a massless layer, and take forces */
+static PetscOptions layered_body_create(Body *made, BodyTraces *traces, NodeRows *rows)
+{
+  PetscOptions options = solid_body_create(made, BLOCK "-ts_type centraldifference -material_type linear_elastic");
+  Body         body    = *made;
+
+  touch_side(body, "ymax");
+  ok(BodySetControllerStep(body, 0, STEP));
+  set_node_rows(body, ROWS, row_nodes, row_directions, rows);
+  ok(BodySetUp(body));
+  ok(BodyGetTraces(body, traces));
+  ok(BodySetInitialState(body, Spinning, NULL));
+  condition_rows(body, rows, BODY_FORCED);
+  return options;
+}
+
 /* A layer that has been told where it gets under a change of forces goes there, be it true or not, if forces change so on all ranks;
    else it finds out itself */
 static void an_answer_that_is_told_is_taken(void **state)
@@ -328,16 +344,9 @@ static void an_answer_that_is_told_is_taken(void **state)
   NodeRows     rows;
   PetscScalar *row, before[ROWS], after[ROWS], other[ROWS], told[ROWS], change[ROWS], *answer;
   Vec          u, from;
-  PetscOptions options = solid_body_create(&body, BLOCK "-ts_type centraldifference -material_type linear_elastic");
+  PetscOptions options = layered_body_create(&body, &traces, &rows);
 
   (void)state;
-  touch_side(body, "ymax");
-  ok(BodySetControllerStep(body, 0, STEP));
-  set_node_rows(body, ROWS, row_nodes, row_directions, &rows);
-  ok(BodySetUp(body));
-  ok(BodyGetTraces(body, &traces));
-  ok(BodySetInitialState(body, Spinning, NULL));
-  condition_rows(body, &rows, BODY_FORCED);
   ok(BodyGetSolution(body, &u, NULL, NULL));
   ok(VecDuplicate(u, &from));
   ok(PetscMalloc1(body->layer.n_dofs, &answer));
@@ -386,16 +395,9 @@ static void a_layer_that_is_left_gets_into_balance(void **state)
   Mat          K;
   KSP          ksp;
   Vec          lacks, moves;
-  PetscOptions options = solid_body_create(&body, BLOCK "-ts_type centraldifference -material_type linear_elastic");
+  PetscOptions options = layered_body_create(&body, &traces, &rows);
 
   (void)state;
-  touch_side(body, "ymax");
-  ok(BodySetControllerStep(body, 0, STEP));
-  set_node_rows(body, ROWS, row_nodes, row_directions, &rows);
-  ok(BodySetUp(body));
-  ok(BodyGetTraces(body, &traces));
-  ok(BodySetInitialState(body, Spinning, NULL));
-  condition_rows(body, &rows, BODY_FORCED);
   sweep(body, &rows, &traces, 1e-3, alone);
   ok(BodyGetLayerMatrices(body, &K, NULL));
   ok(MatCreateVecs(K, &moves, &lacks));
