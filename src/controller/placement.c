@@ -8,7 +8,8 @@
 #include <impakt/mesh.h>
 #include <impakt/tssecondorder.h>
 
-/* Cells up to which an explicit body is small: the elements of one with more take as long as some reductions */
+/* Cells up to which a body is small: the elements of one with more take as long as some reductions. Static bodies are not asked: all ranks
+   take part in each of their steps, wherever their meshes are. */
 #define SMALL 2000
 /* So many small bodies for each rank, at least: the ranks are to have as much work each, to a quarter */
 #define MANY 4
@@ -25,7 +26,7 @@ static PetscErrorCode IsSmall(Body body, PetscBool *small, PetscBool *asks, Pets
   char        type[64] = "";
   const char *prefix   = ((PetscObject)body)->prefix;
   PetscInt    cells;
-  PetscBool   may, is_explicit, rigid = PETSC_FALSE;
+  PetscBool   may, is_explicit, is_implicit = PETSC_TRUE, rigid = PETSC_FALSE;
 
   PetscFunctionBegin;
   *small = PETSC_FALSE;
@@ -33,7 +34,8 @@ static PetscErrorCode IsSmall(Body body, PetscBool *small, PetscBool *asks, Pets
   PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
   PetscCall(PetscStrcasecmp(type, TSCENTRALDIFFERENCE, &is_explicit));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-rigid", &rigid, NULL));
-  may = (PetscBool)(may && is_explicit && !rigid);
+  if (type[0]) PetscCall(PetscStrcasecmp(type, TSALPHA2, &is_implicit));
+  may = (PetscBool)(may && (is_explicit || is_implicit) && !rigid);
   if (!may && !*asks) PetscFunctionReturn(PETSC_SUCCESS); /* its mesh is read of when it is made, so that errors are not said to be its */
   PetscCall(MeshEstimate(prefix, &cells, place));
   *small = (PetscBool)(may && cells > 0 && cells <= SMALL);

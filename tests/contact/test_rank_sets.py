@@ -23,6 +23,8 @@ BOX = "-right_dm_plex_box_faces 5,3,3 -right_dm_plex_box_upper 0.5,0.3,0.3 -righ
 BALL = "-right_dm_plex_shape ball -right_ball_divisions 2 -right_ball_radius 0.2 -right_ball_centre 0.8002,0.2,0.15 -right_ball_pole -1,0,0 -contact_pairs left:right.surface "
 ROD = "-right_dm_plex_shape rod -right_rod_divisions 2 -right_rod_elements 5 -right_rod_radius 0.1 -right_rod_length 0.4 -right_rotate 0,1,0,90 -right_translate 0.6002,0.2,0.15 "
 FILE = "-right_dm_plex_filename {file} -right_translate 0.6002,0.05,0.02 "
+ADDITIVE = "-schwarz_sweep additive "
+PLASTIC = " ".join(f"-{body}_material_type j2 -{body}_yield_stress 4e6 -{body}_hardening_modulus 2e8" for body in ("left", "right")) + " "
 FRICTION = "-contact_law coulomb -contact_friction 0.3 "
 NEO_HOOKEAN = "-left_material_type neo_hookean -right_material_type neo_hookean "
 CASES = {
@@ -33,6 +35,9 @@ CASES = {
     "plane, penalty": PLANE + "-contact_type penalty",
     "plane, multipliers": PLANE + "-contact_type lagrange",
     "plane, neo-Hookean, multipliers": PLANE + NEO_HOOKEAN + "-contact_type lagrange",
+    "plane, neo-Hookean, additive": PLANE + NEO_HOOKEAN + ADDITIVE,
+    "plane, neo-Hookean, additive, damped, long steps": PLANE.replace("1e-5", "5e-5") + NEO_HOOKEAN + ADDITIVE + "-left_damping_stiffness 1e-6",
+    "space, plastic, additive": SPACE + BOX + PLASTIC + ADDITIVE,
     "plane, sweeps on bodies": PLANE + "-schwarz_condense 0",
     "plane, tied": PLANE.replace("1.005,0.1", "1,0") + "-contact_law tied",
     "plane, rigid": PLANE + "-right_rigid",
@@ -56,6 +61,7 @@ CASES = {
 SETS = {2: ["-left_ranks 0 -right_ranks 1", "-left_ranks 1"], 3: ["-left_ranks 0,2 -right_ranks 1", "-left_ranks 1-2 -right_ranks 1-2", "-left_ranks 2 -right_ranks 0-1"]}
 SHORT = {
     ("plane", 2, 0), ("plane, neo-Hookean, friction", 3, 0), ("plane, explicit, friction", 3, 1), ("plane, implicit and explicit", 3, 2),
+    ("plane, neo-Hookean, additive", 2, 0), ("plane, neo-Hookean, additive, damped, long steps", 3, 0), ("space, plastic, additive", 2, 0),
     ("plane, multipliers", 2, 0), ("plane, rigid", 3, 0), ("space", 3, 1), ("space, neo-Hookean, explicit, friction", 3, 0), ("space, factors of MUMPS", 2, 0),
     ("space, explicit, tied, substeps", 2, 1), ("ball, explicit", 3, 2),
     ("rod", 3, 2), ("tet4 of a file", 3, 0), ("tet10 of a file, explicit", 3, 2), ("composite ball, explicit", 3, 1),
@@ -92,16 +98,17 @@ def figures(run):
 
 @pytest.mark.parametrize(("name", "ranks", "which"), [*(case for case in ALL if case in SHORT), *long(*(case for case in ALL if case not in SHORT))])
 def test_ranks(name, ranks, which, options, shared_run):
-    """Energies, momenta, forces, and rows in contact at every step. Seen: 2.3e-13 of the largest at most."""
+    """Energies, momenta, forces, and rows in contact at every step. Seen: 2.3e-13 of the largest at most; where material flows, whose steps end at a
+    tolerance, 2.1e-10, with a mesh that is divided among all ranks as well."""
     alone, apart = (shared_run(words, n) for words, n in ((options(name), 1), (f"{options(name)} {SETS[ranks][which]}", ranks)))
     expected, found = figures(alone), figures(apart)
     assert expected.keys() == found.keys()
     for figure, values in expected.items():
-        assert np.abs(found[figure] - values).max() <= 1e-11 * np.abs(values).max(), figure
+        assert np.abs(found[figure] - values).max() <= (1e-9 if "plastic" in name else 1e-11) * np.abs(values).max(), figure
     assert max(values.max() for figure, values in expected.items() if figure.endswith("active")) > 1
 
 
-@pytest.mark.parametrize("name", ["plane, neo-Hookean, friction", *long("plane, explicit, friction", "space, explicit")])
+@pytest.mark.parametrize("name", ["plane, neo-Hookean, friction", "space, plastic, additive", *long("plane, neo-Hookean, additive", "plane, explicit, friction", "space, explicit")])
 def test_restart(name, run_in, folder, same_runs):
     """With the same ranks to the last bit; on another number of them with others, to round-off (2.8e-14 seen); and not with others on as many."""
     whole, other = folder("whole"), folder("continued")
@@ -112,7 +119,7 @@ def test_restart(name, run_in, folder, same_runs):
     same_runs(whole, other)
     for number, sets in ((2, "-left_ranks 1 -right_ranks 0"), (1, "")):
         run_in(f"{case} {sets}", other, number, "-restart", "c.prev.h5", change, fields=False)
-        assert differences(whole, other, 1e-10) == []
+        assert differences(whole, other, 1e-7 if "plastic" in name else 1e-10) == []
         assert summary(other)["run"]["complete"]
     history = (other / "h.h5").read_bytes()
     for sets, more, message in (

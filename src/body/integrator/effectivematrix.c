@@ -20,6 +20,19 @@ static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where a local body was linearised last its rank alone knows, and has factors that no column of others is of; before all ranks have rows
+   to hold, they all do */
+static PetscErrorCode Agree(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Bcast(&implicit->deformed[body->time.level], 1, MPI_C_BOOL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  PetscCall(ConstrainedSolverForgetColumns(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Brings what BodyImplicitCorrect() needs from ranks with rows */
 static PetscErrorCode BringChanges(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
@@ -46,6 +59,7 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
   integrator->ops.visit          = BodyImplicitVisit;
   integrator->ops.copypoint      = CopyPoint;
+  integrator->ops.agree          = Agree;
   integrator->ops.destroy        = BodyImplicitDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,18 +72,21 @@ static PetscErrorCode AssembleMatrix(Body body, Vec u)
   const PetscInt level    = body->time.level;
   const Vec      point    = implicit->points[level];
   ElementHistory before;
+  Mat            A;
 
   PetscFunctionBegin;
+  PetscCall(BodyBeginAssembly(body, implicit->matrix, &A));
   implicit->deformed[level] = (PetscBool)(u != NULL);
   if (u && u != point) PetscCall(VecCopy(u, point));
   if (u && u != point && body->history) PetscCall(BodyHistoryCopyStart(body, implicit->history[level], &implicit->history_step[level]));
   if (u && body->history) BodyHistoryUse(body, implicit->history[level], implicit->history_step[level], &before);
-  PetscCall(BodyAssembleTangent(body, u, implicit->matrix));
+  PetscCall(BodyAssembleTangent(body, u, A));
   if (u && body->history) BodyHistoryLookBack(body, &before);
-  if (implicit->shift > 0) PetscCall(BodyAddMassMatrix(body, implicit->shift, implicit->matrix));
-  PetscCall(BodyAddDampingMatrix(body, u, implicit->shift_velocity, implicit->matrix));
-  PetscCall(BodyAddSpringStiffness(body, implicit->matrix));
-  PetscCall(BodyEliminateHeld(body, implicit->matrix));
+  if (implicit->shift > 0) PetscCall(BodyAddMassMatrix(body, implicit->shift, A));
+  PetscCall(BodyAddDampingMatrix(body, u, implicit->shift_velocity, A));
+  PetscCall(BodyAddSpringStiffness(body, A));
+  PetscCall(BodyEliminateHeld(body, A));
+  PetscCall(BodyEndAssembly(implicit->matrix, A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,6 +251,7 @@ PetscErrorCode BodyImplicitDestroy(Body body)
   PetscFunctionBegin;
   for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
   for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&implicit->lead[k]));
+  PetscCall(BodyImplicitDestroyOwnStep(body));
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
     PetscCall(MatDestroy(&implicit->matrices[k]));
     PetscCall(VecDestroy(&implicit->points[k]));

@@ -100,8 +100,12 @@ static PetscErrorCode SetUp(Body body)
     PetscCall(BodyCreateVec(body, &body->rows.stage_balance));
   }
   /* other masses are factored when they are needed first, which may be in a substep */
-  body->integrator->is_local = (PetscBool)(body->model.linear && ConstrainedSolverIsHome(body->solver) &&
-                                           (body->mass.diagonal || body->time.substeps == 1));
+  body->integrator->is_local = (PetscBool)(ConstrainedSolverIsHome(body->solver) && (body->mass.diagonal || body->time.substeps == 1));
+  /* iterations of Newton's method cannot bring forces from other ranks */
+  if (!body->model.linear) {
+    if (!body->integrator->affine || body->time.substeps > 1) body->integrator->is_local = PETSC_FALSE;
+    if (body->integrator->is_local) PetscCall(BodyImplicitSetUpOwnStep(body, ComputeResidual, Predict));
+  }
   /* a mass matrix that is not diagonal hands the acceleration of prescribed nodes to others */
   if (body->rows.have_mass && body->mass.matrix) body->integrator->ops.repeat = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);

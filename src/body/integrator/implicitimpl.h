@@ -18,15 +18,22 @@ typedef struct {
   Vec        lead[4];                     /* work of BodyImplicitCarry() */
   Vec        stage_u, stage_v, stage_a;   /* of a linear body, at the stage: NULL where its residual does not read them, or is at the end */
   Vec        u, v, a, next;               /* state of a body at rest while a column of the compliance is made; NULL until then */
+  struct _BodyOwnStep *own;               /* of a nonlinear body that one of several ranks has: see ownstep.c; or NULL */
+  PetscBool            alone;             /* the substep under way is that rank's alone */
 } BodyImplicit;
 
 typedef PetscErrorCode BodyResidualFn(TS, PetscReal, Vec, Vec, Vec, Vec, void *);
 typedef PetscErrorCode BodyPredictorFn(TS, Vec, Vec, Vec, Vec, void *);
+typedef PetscErrorCode BodyJacobianFn(TS, PetscReal, Vec, Vec, Vec, PetscReal, PetscReal, Mat, Mat, void *);
 
 PETSC_INTERN PetscErrorCode BodyImplicitCreate(BodyIntegrator);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUp(Body, BodyResidualFn *, BodyPredictorFn *);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUpLinear(Body);
+PETSC_INTERN PetscErrorCode BodyImplicitSetUpNewton(Body, TS, Mat, BodyJacobianFn *, BodyPredictorFn *);
+PETSC_INTERN PetscErrorCode BodyImplicitSetUpOwnStep(Body, BodyResidualFn *, BodyPredictorFn *);
+PETSC_INTERN PetscErrorCode BodyImplicitGetSNES(Body, SNES *);
+PETSC_INTERN PetscErrorCode BodyImplicitDestroyOwnStep(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitNoteForce(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitCreateSolver(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitComputeUnitStrainForce(Body);

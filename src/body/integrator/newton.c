@@ -18,12 +18,29 @@
 /* What a sum of a few products loses, in units of the largest number in it: a node belongs to some 8 elements */
 #define ROUND_OFF (8 * PETSC_MACHINE_EPSILON)
 
-/* sqrt(sum of (a_i b_i)^2) over all dofs, in the first work vector */
-static PetscErrorCode ProductNorm(Vec a, Vec b, Vec work, PetscReal *norm)
+/* 2-norm of a vector laid out as displacements; of a substep that one rank makes alone, of that rank's part. Of a local body no other rank
+   need have seen that the vector has changed: there PETSc's own would give some ranks the norm that they remember. */
+static PetscErrorCode GetNorm(Body body, Vec vec, PetscReal *norm)
+{
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (!body->local) {
+    PetscCall(VecNorm(vec, NORM_2, norm));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(BodyGetLocalDot(vec, vec, norm));
+  if (!implicit->alone) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, norm, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  *norm = PetscSqrtReal(*norm);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* sqrt(sum of (a_i b_i)^2) over all dofs, in a work vector */
+static PetscErrorCode ProductNorm(Body body, Vec a, Vec b, Vec work, PetscReal *norm)
 {
   PetscFunctionBegin;
   PetscCall(VecPointwiseMult(work, a, b));
-  PetscCall(VecNorm(work, NORM_2, norm));
+  PetscCall(GetNorm(body, work, norm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,17 +53,17 @@ static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
   PetscReal     force, stiffness, mass = 0, position = 0, start = 0, motion = 0;
 
   PetscFunctionBegin;
-  PetscCall(VecNorm(body->state.internal_force, NORM_2, &force));
+  PetscCall(GetNorm(body, body->state.internal_force, &force));
   /* the internal force is a sum of displacements times stiffnesses, which may cancel: a body that moves as a whole has none */
   PetscCall(MatGetDiagonal(implicit->matrix, product));
-  PetscCall(ProductNorm(product, U, product, &stiffness));
+  PetscCall(ProductNorm(body, product, U, product, &stiffness));
   if (inertia) {
-    PetscCall(VecNorm(inertia, NORM_2, &mass));
+    PetscCall(GetNorm(body, inertia, &mass));
     /* the acceleration is a difference of displacements, and of what the velocity makes of them, over dt^2: either displacement may be zero
      */
-    PetscCall(ProductNorm(body->mass.row_sum, U, product, &position));
-    PetscCall(ProductNorm(body->mass.row_sum, body->substep_start.u, product, &start));
-    PetscCall(ProductNorm(body->mass.row_sum, body->substep_start.v, product, &motion));
+    PetscCall(ProductNorm(body, body->mass.row_sum, U, product, &position));
+    PetscCall(ProductNorm(body, body->mass.row_sum, body->substep_start.u, product, &start));
+    PetscCall(ProductNorm(body, body->mass.row_sum, body->substep_start.v, product, &motion));
   }
   implicit->terms     = force + mass;
   implicit->round_off = ROUND_OFF *
@@ -94,7 +111,7 @@ PetscErrorCode BodyImplicitComputeUnitStrainForce(Body body)
   PetscCall(BodyAssembleTangent(body, NULL, implicit->matrix));
   PetscCall(MatGetDiagonal(implicit->matrix, body->work.nodes[0]));
   PetscCall(GetShortestEdges(body, body->work.nodes[1]));
-  PetscCall(ProductNorm(body->work.nodes[0], body->work.nodes[1], body->work.nodes[0], &implicit->unit_strain));
+  PetscCall(ProductNorm(body, body->work.nodes[0], body->work.nodes[1], body->work.nodes[0], &implicit->unit_strain));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -194,9 +211,8 @@ static PetscErrorCode RefuseLagBetweenSubsteps(Body body)
 }
 
 /* Newton's method of a nonlinear body, whose linear systems go to the factors of the effective matrix with constraints */
-static PetscErrorCode SetUpNewton(Body body, BodyPredictorFn *predictor)
+PetscErrorCode BodyImplicitSetUpNewton(Body body, TS ts, Mat J, BodyJacobianFn *jacobian, BodyPredictorFn *predictor)
 {
-  BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
   SNESLineSearch line_search;
   SNES           snes;
   KSP            ksp;
@@ -204,14 +220,12 @@ static PetscErrorCode SetUpNewton(Body body, BodyPredictorFn *predictor)
   char           outer[128];
 
   PetscFunctionBegin;
-  body->integrator->uses_newton = PETSC_TRUE;
-  PetscCall(TSSetI2Jacobian(body->time.ts, implicit->matrix, implicit->matrix, ComputeJacobian, body));
-  PetscCall(TSAlpha2SetPredictor(body->time.ts, predictor, body));
-  PetscCall(TSGetSNES(body->time.ts, &snes));
+  PetscCall(TSSetI2Jacobian(ts, J, J, jacobian, body));
+  PetscCall(TSAlpha2SetPredictor(ts, predictor, body));
+  PetscCall(TSGetSNES(ts, &snes));
   PetscCall(SNESGetLineSearch(snes, &line_search));
   PetscCall(SNESSetTolerances(snes, NEWTON_UNDERFLOW, NEWTON_TOLERANCE, NEWTON_STEP, NEWTON_ITERATIONS, PETSC_CURRENT));
   PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
-  PetscCall(RefuseLagBetweenSubsteps(body));
   PetscCall(SNESSetFromOptions(snes));
   PetscCall(SNESSetConvergenceTest(snes, StopInBalance, body, NULL));
   /* BodyImplicitCheckSubstep() tells, with body and time */
@@ -232,7 +246,8 @@ static PetscErrorCode SetUpNewton(Body body, BodyPredictorFn *predictor)
 /* The effective matrix and its factors, which a linear body keeps for good, and how the TS makes its steps */
 PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
 {
-  Vec vec;
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+  Vec                 vec;
 
   PetscFunctionBegin;
   PetscCall(BodyImplicitCreateSolver(body, NULL));
@@ -242,7 +257,11 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
   PetscCall(TSSetErrorIfStepFails(body->time.ts, PETSC_FALSE));
   if (!body->model.linear || !body->integrator->affine || body->time.substeps > 1) body->integrator->ops.repeat = NULL;
   if (body->model.linear) PetscCall(BodyImplicitSetUpLinear(body));
-  else PetscCall(SetUpNewton(body, predictor));
+  else {
+    body->integrator->uses_newton = PETSC_TRUE;
+    PetscCall(RefuseLagBetweenSubsteps(body));
+    PetscCall(BodyImplicitSetUpNewton(body, body->time.ts, implicit->matrix, ComputeJacobian, predictor));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -272,6 +291,7 @@ static PetscErrorCode CheckLinearSolver(Body body, PetscBool *failed)
 /* Notes Newton's method that did not converge, with body, time and what to do. Of a linear body the solver alone can fail. */
 PetscErrorCode BodyImplicitCheckSubstep(Body body)
 {
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   SNESConvergedReason reason;
   PetscInt            iterations, element;
   PetscReal           centre[3] = {0}, largest;
@@ -282,13 +302,14 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   PetscFunctionBegin;
   PetscCall(CheckLinearSolver(body, &unsolved));
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TSGetSNES(body->time.ts, &snes));
+  PetscCall(BodyImplicitGetSNES(body, &snes));
+  if (!snes) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetConvergedReason(snes, &reason));
   PetscCall(SNESGetIterationNumber(snes, &iterations));
   if (reason >= 0 && !unsolved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyNoteInverted(body, PETSC_FALSE));
+  PetscCall(BodyNoteInverted(body, implicit->alone));
   PetscCall(SNESGetFunction(snes, &residual, NULL, NULL));
-  PetscCall(BodyLocateLargest(body, residual, &element, centre, &largest));
+  PetscCall(BodyLocateLargest(body, implicit->alone, residual, &element, centre, &largest));
   PetscCall(StepFailureSet(
       &body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
       "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT

@@ -60,7 +60,8 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     if (body->substep_start.damping) PetscCall(VecCopy(body->state.damping, body->substep_start.damping));
     if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyTurnToMeanForce(body));
     PetscCall(BodyHistoryBegin(body));
-    PetscCall(TSStep(body->time.ts));
+    if (body->integrator->ops.step) PetscCall((*body->integrator->ops.step)(body));
+    else PetscCall(TSStep(body->time.ts));
     body->state.step++;
     body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
     PetscCall(BodyCheckSubstep(body));

@@ -224,6 +224,7 @@ static PetscErrorCode TellRanks(Body body)
   PetscCallMPI(
       MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(values), MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) *values[k] = told[k];
+  if (body->integrator->ops.agree) PetscCall((*body->integrator->ops.agree)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

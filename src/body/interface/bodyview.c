@@ -26,7 +26,7 @@ static PetscErrorCode ViewLayer(Body body, PetscViewer viewer)
   const BodyMass *mass = &body->mass;
 
   PetscFunctionBegin;
-  if (!mass->factor) PetscFunctionReturn(PETSC_SUCCESS);
+  if (mass->least_factor == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: factor %g to %g on the masses that are left\n",
                                    (double)mass->least_factor, (double)mass->largest_factor));
   if (mass->shift[0] != 0 || mass->shift[1] != 0 || mass->shift[2] != 0)

@@ -76,8 +76,8 @@ PetscErrorCode BodyGetMassRedistribution(Body body, PetscReal *least, PetscReal 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
-  if (least) *least = body->mass.factor ? body->mass.least_factor : 1;
-  if (largest) *largest = body->mass.factor ? body->mass.largest_factor : 1;
+  if (least) *least = body->mass.least_factor > 0 ? body->mass.least_factor : 1; /* also where this rank has no node */
+  if (largest) *largest = body->mass.least_factor > 0 ? body->mass.largest_factor : 1;
   for (PetscInt d = 0; shift && d < body->mesh.dim; d++) shift[d] = body->mass.shift[d];
   if (inertia) *inertia = body->mass.inertia_error;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -338,11 +338,13 @@ PETSC_INTERN PetscErrorCode BodyGetElementMassParts(Body, PetscInt, PetscBool, P
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyBeginAssembly(Body, Mat, Mat *);
+PETSC_INTERN PetscErrorCode BodyEndAssembly(Mat, Mat);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyNoteInverted(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyFindFirstElement(Body, PetscInt, PetscMPIInt *, PetscReal[3]);
-PETSC_INTERN PetscErrorCode BodyLocateLargest(Body, Vec, PetscInt *, PetscReal[3], PetscReal *);
+PETSC_INTERN PetscErrorCode BodyLocateLargest(Body, PetscBool, Vec, PetscInt *, PetscReal[3], PetscReal *);
 PETSC_INTERN PetscErrorCode BodySubtractHeldInertia(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyCheckHeld(Body);
 PETSC_INTERN PetscErrorCode BodyDescribeMotions(PetscInt, const PetscReal[], size_t, char[]);

@@ -21,6 +21,7 @@ typedef struct {
   PetscErrorCode (*setlevel)(Body); /* (NULL) the controller step is cut in halves another number of times, body->time.level: matrix and
                                        solver are those of this level, made where there are none yet */
   PetscErrorCode (*renew)(Body);    /* (NULL) of a nonlinear body: matrix and factors anew, at the saved displacement */
+  PetscErrorCode (*step)(Body);     /* (NULL) makes a substep in place of TSStep(); may be set in setup() */
   PetscErrorCode (*checksubstep)(
       Body); /* (NULL) after TSStep(): notes in the body's failure where, and why, the equations of the substep were not solved */
   /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever else of the state the TS leaves undone
@@ -46,8 +47,8 @@ typedef struct {
    * present
    */
   PetscErrorCode (*visit)(Body, PetscInt, Checkpoint);
-  PetscErrorCode (*agree)(Body); /* (NULL) of a local body whose rows are to be prescribed: all ranks get to know what one of them remembers
-                                    of the steps that it has made alone */
+  PetscErrorCode (*agree)(Body); /* (NULL) of a local body whose rows are to be prescribed, or whose state is to be saved: all ranks get to
+                                    know what one of them remembers of the steps that it has made alone */
   /* (NULL) of a nonlinear body: where its factors for whole controller steps have been made, and two numbers of them, to a vector of the
      body; or (true) back, with factors that are made there */
   PetscErrorCode (*copypoint)(Body, PetscBool, Vec, PetscReal[2]);

@@ -67,15 +67,17 @@ PetscErrorCode BodySetUpHistory(Body body)
   const ElementHistory  *of_element = &body->model.element->history;
   struct _n_BodyHistory *history;
   char                  *first;
+  size_t                 room;
 
   PetscFunctionBegin;
   if (!of_element->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(&history));
   body->history = history;
   history->size = GetSize(of_element, body->model.element->count);
-  PetscCall(PetscCalloc1(N_BUFFERS * history->size * sizeof(PetscReal) + ALIGNMENT, &history->memory));
+  room          = PetscMax(history->size, ALIGNMENT / sizeof(PetscReal)); /* where they are tells buffers apart, also those of no element */
+  PetscCall(PetscCalloc1(N_BUFFERS * room * sizeof(PetscReal) + ALIGNMENT, &history->memory));
   first = history->memory + (ALIGNMENT - (size_t)history->memory % ALIGNMENT) % ALIGNMENT;
-  for (size_t k = 0; k < N_BUFFERS; k++) history->buffers[k] = (PetscReal *)(void *)first + k * history->size;
+  for (size_t k = 0; k < N_BUFFERS; k++) history->buffers[k] = (PetscReal *)(void *)first + k * room;
   history->saved = history->start = history->now = history->buffers[0];
   history->end                                   = FindFree(history);
   Hold(body, history->now);

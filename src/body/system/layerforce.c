@@ -318,12 +318,10 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[],
   PetscInt           dofs[ELEMENT_MAX_DOFS];
   PetscScalar        element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
   const PetscScalar *at;
-  PetscBool          alone = PETSC_FALSE;
-  Mat                all   = K;
+  Mat                all = K;
 
   PetscFunctionBegin;
-  if (body->mesh.whole) PetscCall(MatAssembled(K, &alone));
-  if (alone) PetscCall(MatMPIAIJGetSeqAIJ(all, &K, NULL, NULL)); /* the block of this rank: its assembly sends nothing */
+  PetscCall(BodyBeginAssembly(body, all, &K));
   PrepareHistory(body);
   if (layer->history && history) {
     layer->element->history.start = history;
@@ -340,7 +338,7 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[],
   PetscCall(VecRestoreArrayRead(near, &at));
   PetscCall(MatAssemblyBegin(K, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(K, MAT_FINAL_ASSEMBLY));
-  if (alone) PetscCall(PetscObjectStateIncrease((PetscObject)all));
+  PetscCall(BodyEndAssembly(all, K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

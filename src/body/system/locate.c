@@ -84,8 +84,9 @@ static PetscInt FindElementOfNode(Body body, PetscInt node)
 }
 
 /* BodyLocateLargest - an element at the largest entry of a vector of forces: its number, rank after rank from 0, where it lies in the
-   undeformed mesh [m], and that entry without its sign [N]; the number is -1 where no element has it. Collective. */
-PetscErrorCode BodyLocateLargest(Body body, Vec forces, PetscInt *number, PetscReal centre[3], PetscReal *largest)
+   undeformed mesh [m], and that entry without its sign [N]; the number is -1 where no element has it. Collective; but `alone`: where the
+   rank that has the body looks without the others. */
+PetscErrorCode BodyLocateLargest(Body body, PetscBool alone, Vec forces, PetscInt *number, PetscReal centre[3], PetscReal *largest)
 {
   MPI_Comm           comm = PetscObjectComm((PetscObject)body);
   PetscReal          here = 0;
@@ -101,7 +102,8 @@ PetscErrorCode BodyLocateLargest(Body body, Vec forces, PetscInt *number, PetscR
       node = i / body->mesh.dim;
     }
   PetscCall(VecRestoreArrayRead(forces, &array));
-  PetscCallMPI(MPIU_Allreduce(&here, largest, 1, MPIU_REAL, MPIU_MAX, comm));
-  PetscCall(Locate(body, PETSC_FALSE, node >= 0 && here == *largest ? FindElementOfNode(body, node) : -1, number, centre));
+  *largest = here;
+  if (!alone) PetscCallMPI(MPIU_Allreduce(&here, largest, 1, MPIU_REAL, MPIU_MAX, comm));
+  PetscCall(Locate(body, alone, node >= 0 && here == *largest ? FindElementOfNode(body, node) : -1, number, centre));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -200,14 +200,20 @@ PetscErrorCode BodySetUpMassSolver(Body body)
 /* A += scale M; held dofs and massless nodes too */
 PetscErrorCode BodyAddMassMatrix(Body body, PetscReal scale, Mat A)
 {
-  Vec diagonal = body->work.nodes[0];
+  Vec         diagonal = body->work.nodes[0];
+  Mat         mass     = body->mass.matrix;
+  PetscMPIInt size;
 
   PetscFunctionBegin;
   if (body->mass.diagonal) {
     PetscCall(VecCopy(body->mass.diagonal, diagonal));
     PetscCall(VecScale(diagonal, scale));
     PetscCall(MatDiagonalSet(A, diagonal, ADD_VALUES));
-  } else PetscCall(MatAXPY(A, scale, body->mass.matrix, SAME_NONZERO_PATTERN)); /* a subset would take memory in each call */
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)A), &size));
+  if (size < body->rows.size) PetscCall(MatMPIAIJGetSeqAIJ(mass, &mass, NULL, NULL)); /* A is the block of this rank */
+  PetscCall(MatAXPY(A, scale, mass, SAME_NONZERO_PATTERN));                           /* a subset would take memory in each call */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

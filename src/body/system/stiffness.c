@@ -103,6 +103,27 @@ PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The matrix to put values in, in place of one that has had some: itself, or, of a body that one of several ranks has, the block of this
+   rank, whose assembly sends nothing and waits for nobody */
+PetscErrorCode BodyBeginAssembly(Body body, Mat all, Mat *here)
+{
+  PetscBool assembled = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  *here = all;
+  if (body->mesh.whole) PetscCall(MatAssembled(all, &assembled));
+  if (assembled) PetscCall(MatMPIAIJGetSeqAIJ(all, here, NULL, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solvers see that the matrix has other values */
+PetscErrorCode BodyEndAssembly(Mat all, Mat here)
+{
+  PetscFunctionBegin;
+  if (here != all) PetscCall(PetscObjectStateIncrease((PetscObject)all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* K = tangent stiffness at displacement u; NULL: undeformed [N/m] */
 PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
 {

@@ -1,0 +1,233 @@
+/*
+   Substeps of a nonlinear body that one of several ranks makes without the others.
+
+   Newton's method asks for norms in each iteration, and on the communicator of the body all ranks would have to answer: bodies on different
+   ranks would be integrated one after the other. So the rank that has the body has a TSALPHA2 of its own beside that of the body, with the
+   same equations and the same options. Its vectors lend their arrays to vectors that are laid out as the body's while these are computed
+   with. Numbers, and their order, are those that the TS of the body would see.
+
+   The TS of the body makes the first substep, in which PETSc makes what takes all ranks, and those in which rows are prescribed, or in
+   which other ranks have rows and forces have not been brought before the step (body/rows/exchange.c).
+*/
+#include "implicitimpl.h"
+
+#define LENT 4 /* at most so many vectors at a time */
+
+struct _BodyOwnStep {
+  TS               ts;         /* NULL on ranks that have nothing of the body */
+  Vec              u, v;       /* what it steps, with the arrays of the state */
+  Vec              lent[LENT]; /* laid out as those of the body */
+  BodyResidualFn  *residual;
+  BodyPredictorFn *predictor;
+};
+
+/* The array of a vector of this rank to one that is laid out as those of the body; `writes`: what is done to that is meant for it */
+static PetscErrorCode Lend(struct _BodyOwnStep *own, PetscInt k, PetscBool writes, Vec vec)
+{
+  const PetscScalar *read;
+  PetscScalar       *array;
+
+  PetscFunctionBegin;
+  if (writes) {
+    PetscCall(VecGetArray(vec, &array));
+    read = array;
+  } else PetscCall(VecGetArrayRead(vec, &read));
+  PetscCall(VecPlaceArray(own->lent[k], read));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode TakeBack(struct _BodyOwnStep *own, PetscInt k, PetscBool writes, Vec vec)
+{
+  const PetscScalar *read;
+  PetscScalar       *array;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(own->lent[k], &read));
+  array = (PetscScalar *)read;
+  PetscCall(VecRestoreArrayRead(own->lent[k], &read));
+  PetscCall(VecResetArray(own->lent[k]));
+  read = array;
+  if (writes) PetscCall(VecRestoreArray(vec, &array));
+  else PetscCall(VecRestoreArrayRead(vec, &read));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static struct _BodyOwnStep *OwnStep(Body body)
+{
+  return ((BodyImplicit *)body->integrator->data)->own;
+}
+
+static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)
+{
+  struct _BodyOwnStep *own    = OwnStep((Body)ctx);
+  Vec                  vecs[] = {U, V, A, F};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < LENT; k++) PetscCall(Lend(own, k, (PetscBool)(k > 0), vecs[k]));
+  PetscCall((*own->residual)(ts, t, own->lent[0], own->lent[1], own->lent[2], own->lent[3], ctx));
+  for (PetscInt k = 0; k < LENT; k++) PetscCall(TakeBack(own, k, (PetscBool)(k > 0), vecs[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
+{
+  struct _BodyOwnStep *own    = OwnStep((Body)ctx);
+  Vec                  vecs[] = {X0, V0, A0, X1};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < LENT; k++) PetscCall(Lend(own, k, (PetscBool)(k > 1), vecs[k]));
+  PetscCall((*own->predictor)(ts, own->lent[0], own->lent[1], own->lent[2], own->lent[3], ctx));
+  for (PetscInt k = 0; k < LENT; k++) PetscCall(TakeBack(own, k, (PetscBool)(k > 1), vecs[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shift_v, PetscReal shift_a, Mat J, Mat P,
+                                      void *ctx)
+{
+  struct _BodyOwnStep *own = OwnStep((Body)ctx);
+
+  PetscFunctionBegin;
+  (void)ts;
+  (void)t;
+  (void)V;
+  (void)A;
+  (void)shift_v;
+  (void)shift_a;
+  (void)J;
+  (void)P;
+  PetscCall(Lend(own, 0, PETSC_FALSE, U));
+  PetscCall(BodyImplicitRefactor((Body)ctx, own->lent[0]));
+  PetscCall(TakeBack(own, 0, PETSC_FALSE, U));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ApplySolver(PC pc, Vec b, Vec x)
+{
+  struct _BodyOwnStep *own;
+  Body                 body;
+
+  PetscFunctionBegin;
+  PetscCall(PCShellGetContext(pc, &body));
+  own = OwnStep(body);
+  PetscCall(Lend(own, 0, PETSC_FALSE, b));
+  PetscCall(Lend(own, 1, PETSC_TRUE, x));
+  PetscCall(ConstrainedSolverSolve(body->solver, own->lent[0], own->lent[1]));
+  PetscCall(TakeBack(own, 1, PETSC_TRUE, x));
+  PetscCall(TakeBack(own, 0, PETSC_FALSE, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The integrator of the rank that has the body, as that of the body is */
+static PetscErrorCode CreateTS(Body body)
+{
+  const BodyImplicit  *implicit = (const BodyImplicit *)body->integrator->data;
+  struct _BodyOwnStep *own      = implicit->own;
+  const PetscInt       n        = body->mesh.owned_nodes * body->mesh.dim;
+  TSAdapt              adapt;
+  PetscReal            end;
+  SNES                 snes;
+  KSP                  ksp;
+  PC                   pc;
+  Mat                  J;
+
+  PetscFunctionBegin;
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, body->mesh.dim, n, NULL, &own->u));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, body->mesh.dim, n, NULL, &own->v));
+  PetscCall(TSCreate(PETSC_COMM_SELF, &own->ts));
+  PetscCall(TSSetOptionsPrefix(own->ts, ((PetscObject)body)->prefix));
+  PetscCall(TSSetType(own->ts, TSALPHA2));
+  PetscCall(TSAlpha2SetParams(own->ts, implicit->alpha_m, implicit->alpha_f, implicit->gamma, implicit->beta));
+  PetscCall(TSGetAdapt(own->ts, &adapt));
+  PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
+  PetscCall(TS2SetSolution(own->ts, own->u, own->v));
+  PetscCall(TSGetMaxTime(body->time.ts, &end));
+  PetscCall(TSSetMaxTime(own->ts, end));
+  PetscCall(TSSetExactFinalTime(own->ts, TS_EXACTFINALTIME_STEPOVER));
+  PetscCall(TSSetI2Function(own->ts, NULL, ComputeResidual, body));
+  PetscCall(TSSetErrorIfStepFails(own->ts, PETSC_FALSE));
+  /* its solver is a shell: of the matrix it takes the size */
+  PetscCall(MatMPIAIJGetSeqAIJ(implicit->matrix, &J, NULL, NULL));
+  PetscCall(BodyImplicitSetUpNewton(body, own->ts, J, ComputeJacobian, Predict));
+  PetscCall(TSGetSNES(own->ts, &snes));
+  PetscCall(SNESGetKSP(snes, &ksp));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCShellSetApply(pc, ApplySolver));
+  PetscCall(TSSetUp(own->ts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the next substep is one rank's alone, as all ranks know */
+static PetscBool IsAlone(Body body)
+{
+  return (PetscBool)(BodyStepsAlone(body) && body->time.stepped && (body->rows.at_home || !body->rows.global || body->rows.exchange.open));
+}
+
+/* In place of TSStep() */
+static PetscErrorCode MakeStep(Body body)
+{
+  BodyImplicit        *implicit = (BodyImplicit *)body->integrator->data;
+  struct _BodyOwnStep *own      = implicit->own;
+  PetscScalar         *u, *v;
+
+  PetscFunctionBegin;
+  implicit->alone = IsAlone(body);
+  if (!implicit->alone) {
+    PetscCall(TSStep(body->time.ts));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!own->ts) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArray(body->state.u, &u));
+  PetscCall(VecGetArray(body->state.v, &v));
+  PetscCall(VecPlaceArray(own->u, u));
+  PetscCall(VecPlaceArray(own->v, v));
+  PetscCall(TSSecondOrderSetState(own->ts, body->state.time, body->time.step, body->state.step));
+  PetscCall(TSStep(own->ts));
+  PetscCall(VecResetArray(own->v));
+  PetscCall(VecResetArray(own->u));
+  PetscCall(VecRestoreArray(body->state.v, &v));
+  PetscCall(VecRestoreArray(body->state.u, &u));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For a body with factors of one of several ranks; collective */
+PetscErrorCode BodyImplicitSetUpOwnStep(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
+{
+  BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
+  const PetscInt n        = body->mesh.owned_nodes * body->mesh.dim;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&implicit->own));
+  implicit->own->residual  = residual;
+  implicit->own->predictor = predictor;
+  for (PetscInt k = 0; k < LENT; k++)
+    PetscCall(VecCreateMPIWithArray(PetscObjectComm((PetscObject)body), body->mesh.dim, n, PETSC_DETERMINE, NULL, &implicit->own->lent[k]));
+  if (body->mesh.is_owner) PetscCall(CreateTS(body));
+  body->integrator->ops.step = MakeStep;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* That which has made the last substep, or has tried; NULL where it was another rank's */
+PetscErrorCode BodyImplicitGetSNES(Body body, SNES *snes)
+{
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  *snes = NULL;
+  if (!implicit->alone) PetscCall(TSGetSNES(body->time.ts, snes));
+  else if (implicit->own->ts) PetscCall(TSGetSNES(implicit->own->ts, snes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyImplicitDestroyOwnStep(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (!implicit->own) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TSDestroy(&implicit->own->ts));
+  PetscCall(VecDestroy(&implicit->own->u));
+  PetscCall(VecDestroy(&implicit->own->v));
+  for (PetscInt k = 0; k < LENT; k++) PetscCall(VecDestroy(&implicit->own->lent[k]));
+  PetscCall(PetscFree(implicit->own));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
