@@ -8,6 +8,10 @@
    bodies bulge its place comes to lie beside that line by more than the line is bent. Weights that make up for that are the larger the
    straighter it is: there a force keeps its moment about the line. */
 #define LINE 0.1
+/* Of a node at a corner, whose normal is not that of its faces, what lies before a face lies the more beside the normal the farther it is
+   away. Where all of the partner's nodes are farther beside than this, in parts of the face, weights that make up for it continue the
+   partner as a line to where it is not. */
+#define BESIDE 2
 /* Square of the chord of the angle, 50 degrees, by which the normal of a node may differ from the mean of a row if the surface is bent
    there rather than has an edge */
 #define BENT_CHORD 0.715
@@ -38,12 +42,13 @@ static PetscReal Remainder(PetscInt a, PetscReal lower[3][3], const PetscReal co
   return rest[a];
 }
 
-/* Whether the partner's nodes lie all but on a line across what the a-th condition is about, and the place of a row beside it */
-static PetscBool IsBesideLine(PetscInt a, PetscReal lower[3][3], PetscInt n, const PetscReal x[], PetscReal tangents[2][3], PetscReal size,
-                              const PetscReal *partners[], const PetscReal weights[])
+/* Whether the partner's nodes lie all but on a line across what the a-th condition is about, and the place of a row beside it, or the place
+   is far beside all of them */
+static PetscBool IsBeside(PetscInt a, PetscReal lower[3][3], PetscInt n, const PetscReal x[], PetscReal tangents[2][3], PetscReal size,
+                          const PetscReal *partners[], const PetscReal weights[])
 {
   const PetscReal place[3] = {1, 0, 0}, there = Remainder(a, lower, place);
-  PetscReal       least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
+  PetscReal       least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL, beside;
 
   for (PetscInt j = 0; j < n; j++) {
     PetscReal condition[3], rest;
@@ -54,12 +59,13 @@ static PetscBool IsBesideLine(PetscInt a, PetscReal lower[3][3], PetscInt n, con
     least = PetscMin(least, rest);
     most  = PetscMax(most, rest);
   }
-  return (PetscBool)(most - least < LINE && PetscMax(least - there, there - most) > most - least);
+  beside = PetscMax(least - there, there - most);
+  return (PetscBool)(beside > BESIDE || (most - least < LINE && beside > most - least));
 }
 
 /* Changes the weights by as little as possible, each in proportion to its size, such that they sum to one and sum_j P_j x_j - x is along
    the normal: then a force along the normal has the same resultant and the same moment on both sides. Along a tangent in which the
-   partner's nodes do not differ, or by too little, nothing is changed. */
+   partner's nodes do not differ, or by too little, or lie far away, nothing is changed. */
 void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size,
                 PetscReal weights[])
 {
@@ -88,7 +94,7 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     }
   }
   for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
-    if (gram[a][a] < NOTHING_NEW || (a && IsBesideLine(a, lower, n, x, tangents, size, partners, weights))) {
+    if (gram[a][a] < NOTHING_NEW || (a && IsBeside(a, lower, n, x, tangents, size, partners, weights))) {
       for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
       rest[a] = 0;
       continue;
