@@ -19,6 +19,17 @@ SHORT = [
     ("-options_file options/twisting-column.opts -time_end 0.05", 1, 0.55),  # nonlinear, rows that are built again
     ("-options_file options/bars-3d.opts -time_end 6e-5", 1, 0.7),  # columns of a large body, found together
 ]
+# Three blocks in a row, tied, the middle one nonlinear: factors of its layer are made anew shortly before the checkpoint
+TIED = (
+    "-bodies a,b,c -contact_law tied -contact_pairs auto -schwarz_dense_limit 1 "
+    "-a_dm_plex_dim 2 -a_dm_plex_box_faces 3,3 -a_dm_plex_box_lower -0.69672796314051,0 -a_dm_plex_box_upper 0.34644424749263,0.397085015809089 "
+    "-a_density 1000 -a_youngs_modulus 1e8 -a_ts_type centraldifference -a_mass_redistribute false -a_initial_velocity -1.62992805583067,6.93673993660053 "
+    "-b_dm_plex_dim 2 -b_dm_plex_box_faces 8,5 -b_dm_plex_box_lower -0.383723378611867,0.397085015809089 -b_dm_plex_box_upper 0.381537698164339,0.898117619153813 "
+    "-b_density 1000 -b_youngs_modulus 1e8 -b_poissons_ratio 0.4 -b_material_type mooney_rivlin -b_ts_type centraldifference -b_ts_time_step auto "
+    "-c_dm_plex_dim 2 -c_dm_plex_box_faces 4,3 -c_dm_plex_box_lower -0.381660627644701,0.898117619153813 -c_dm_plex_box_upper 0.381660627644701,1.12262303165238 "
+    "-c_density 1000 -c_youngs_modulus 1e8 -c_ts_type centraldifference -time_step 2.06644108548791e-05 -time_end 0.000206644108548791"
+)
+SHORT.append((TIED, 1, 0.55))
 # Two blocks off-centre, with meshes that do not match
 BLOCKS = (
     "-bodies left,right -left_dm_plex_box_faces 8,8 -left_density 1000 -left_youngs_modulus 1e9 -left_poissons_ratio 0.25 -left_initial_velocity 20,1 "

@@ -415,7 +415,7 @@ PetscErrorCode InterfaceDirectTell(InterfaceOperator op)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* State for a checkpoint: the factors are made again when they are needed. The bodies have been loaded before. */
+/* State for a checkpoint: the factors are made again when they are needed. The bodies have been loaded before, see ContactVisit(). */
 PetscErrorCode InterfaceDirectVisit(InterfaceOperator op, Checkpoint checkpoint)
 {
   InterfaceDirect d         = op->direct;

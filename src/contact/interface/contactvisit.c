@@ -267,6 +267,8 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(VisitRows(contact, checkpoint));
   PetscCall(VisitHeld(contact, checkpoint));
   PetscCall(VisitMatrices(contact, checkpoint));
+  /* before the method, which notes the matrices of their layers as they are */
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisit(contact->bodies[b], checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "contact method"));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, visit, checkpoint);
   PetscCall(CheckpointBegin(checkpoint, "contact states"));
@@ -275,6 +277,5 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(ContactVisitTold(contact, checkpoint));
   PetscCall(VisitObstacleTraces(contact, checkpoint));
   if (contact->turns.n) PetscCall(CheckpointVisitReals(checkpoint, "turned", contact->rows.n, contact->turns.turned));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisit(contact->bodies[b], checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
