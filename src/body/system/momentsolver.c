@@ -9,8 +9,8 @@
 #define ITERATIONS 60
 #define HALVINGS   6
 #define PROGRESS   0.99
-/* Coefficients of soft conditions are what is missing over the softness, of the centre up to 1e6 times that: so much of them is round-off in
-   what is missing, up to a bound. Else it would be a matter of chance, of the number of ranks too, whether the conditions are satisfied. */
+/* Coefficients of soft conditions are what is missing over the softness, of the centre up to 1e6 times that: so much of them is round-off
+   in what is missing, up to a bound. Else it would be a matter of chance, of the number of ranks too, whether conditions are satisfied. */
 #define ROUND_OFF      (4 * PETSC_MACHINE_EPSILON)
 #define MOST_TOLERANCE 1e-11
 /* Where that fails, stiffnesses of the springs that hold the coefficients near those before, from 1 down */
