@@ -44,12 +44,11 @@ PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator op, PetscInt b, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same of those that are solved for, then of those that are known, if the body answers to forces on them */
+/* The same of those that are solved for, then of those that are known */
 static PetscErrorCode ListKnownRows(InterfaceOperator op, PetscInt b, PetscInt *n)
 {
   PetscFunctionBegin;
   *n = 0;
-  if (!op->has_rows[b]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(InterfaceOperatorListBodyRows(op, b, 0, op->n, n));
   PetscCall(InterfaceOperatorListBodyRows(op, b, op->n, op->n_known, n));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -93,8 +92,8 @@ static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, 
     PetscLogDouble apply, extend;
     PetscInt       n;
 
+    if (!op->has_rows[b]) continue;
     PetscCall(ListKnownRows(op, b, &n));
-    if (!n) continue;
     PetscCall(BodyGetComplianceFlops(op->contact->bodies[b], n, op->body_rows, &apply, &extend));
     if (op->feels[b]) *product += apply;
     *dense += extend;
@@ -139,7 +138,7 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
 }
 
 /* Lists the rows of the problem: `marks` of this rank's rows. Where matrices are dense, the bodies get to know the rows that are solved for
-   or known; else nothing but the marks is kept. Collective. */
+   or known, those too that answer to their forces in later substeps alone; else nothing but the marks is kept. Collective. */
 PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMark marks[], PetscInt levels)
 {
   Contact  contact  = op->contact;
