@@ -338,7 +338,7 @@ static PetscErrorCode IsNeeded(Contact contact, PetscBool *needed)
 {
   PetscFunctionBegin;
   *needed = PETSC_FALSE;
-  if (!contact->options.balanced_start || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->options.balanced_start || !(contact->n_pairs || contact->neighbours.come_and_go)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool is_static;
 
