@@ -71,47 +71,18 @@ static PetscErrorCode FillUnits(ConstrainedSolver s, PetscInt n, const PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* rhs = B^T e for n rows, with what stays zero left out, on the rank that has A; the others need nothing */
-static PetscErrorCode CreateSparseUnits(ConstrainedSolver s, PetscInt n, const PetscInt rows[], PetscBool here, Mat *rhs)
-{
-  Mat taken, units;
-  IS  is;
-
-  PetscFunctionBegin;
-  *rhs = NULL;
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)s->B), here ? n : 0, rows, PETSC_USE_POINTER, &is));
-  PetscCall(MatCreateSubMatrix(s->B, is, NULL, MAT_INITIAL_MATRIX, &taken));
-  PetscCall(ISDestroy(&is));
-  units = taken;
-  if (s->size > 1) PetscCall(MatGetDiagonalBlock(taken, &units)); /* all columns are this rank's, or none */
-  if (here) PetscCall(MatCreateTranspose(units, rhs));
-  PetscCall(MatDestroy(&taken));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* x = A^{-1} B^T e for n rows. MUMPS of one rank is told where right-hand sides have their entries, and leaves out what stays zero, which
-   takes a third of the time; that of several ranks would want them all on the first one. */
+/* x = A^{-1} B^T e for n rows, of factors that several ranks have together: MUMPS would want sparse right-hand sides all on the first one
+ */
 static PetscErrorCode SolveBlock(ConstrainedSolver s, PetscInt n, const PetscInt rows[], Mat x)
 {
-  const PetscBool sparse = (PetscBool)(s->size == 1 || s->home);
-  PetscBool       here;
-  PetscInt        mine;
-  Mat             factors, rhs;
+  Mat factors, rhs;
 
   PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(s->rhs, &mine));
-  here = (PetscBool)(!s->home || mine > 0);
-  if (sparse) PetscCall(CreateSparseUnits(s, n, rows, here, &rhs));
-  else {
-    PetscCall(MatDuplicate(x, MAT_DO_NOT_COPY_VALUES, &rhs));
-    PetscCall(FillUnits(s, n, rows, rhs));
-  }
-  if (s->home) PetscCall(MatDenseGetLocalMatrix(x, &x));
-  if (here) {
-    PetscCall(PCFactorGetMatrix(s->factors, &factors));
-    PetscCall(MatMumpsSetIcntl(factors, 27, (PetscInt)MAX_BLOCK));
-    PetscCall(MatMatSolve(factors, rhs, x));
-  }
+  PetscCall(MatDuplicate(x, MAT_DO_NOT_COPY_VALUES, &rhs));
+  PetscCall(FillUnits(s, n, rows, rhs));
+  PetscCall(PCFactorGetMatrix(s->factors, &factors));
+  PetscCall(MatMumpsSetIcntl(factors, 27, (PetscInt)MAX_BLOCK));
+  PetscCall(MatMatSolve(factors, rhs, x));
   PetscCall(MatDestroy(&rhs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -152,10 +123,146 @@ static PetscErrorCode ExtendByBlock(ConstrainedSolver s, PetscInt n, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rows of B that any ranks have, on the rank that has A: `part`, of which the columns are all this rank's; others take part, and have none
+ */
+static PetscErrorCode TakeRows(ConstrainedSolver s, IS rows, Mat *taken, Mat *part)
+{
+  PetscFunctionBegin;
+  PetscCall(MatCreateSubMatrix(s->B, rows, NULL, MAT_INITIAL_MATRIX, taken));
+  *part = *taken;
+  if (s->size > 1) PetscCall(MatGetDiagonalBlock(*taken, part));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = A^{-1} C^T for n rows C of B from number k on among those that have been taken, on the rank that has A. MUMPS is told where
+   right-hand sides have their entries, and leaves out what stays zero, which takes a third of the time. */
+static PetscErrorCode SolveHere(ConstrainedSolver s, Mat taken, PetscInt k, PetscInt n, Mat *x)
+{
+  PetscInt size;
+  IS       is;
+  Mat      factors, rows, rhs;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetLocalSize(taken, NULL, &size));
+  PetscCall(ISCreateStride(PETSC_COMM_SELF, n, k, 1, &is));
+  PetscCall(MatCreateSubMatrix(taken, is, NULL, MAT_INITIAL_MATRIX, &rows));
+  PetscCall(ISDestroy(&is));
+  PetscCall(MatCreateTranspose(rows, &rhs));
+  PetscCall(MatDestroy(&rows));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, size, n, NULL, x));
+  PetscCall(PCFactorGetMatrix(s->factors, &factors));
+  PetscCall(MatMumpsSetIcntl(factors, 27, (PetscInt)MAX_BLOCK));
+  PetscCall(MatMatSolve(factors, rhs, *x));
+  PetscCall(MatDestroy(&rhs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A column of A^{-1} B^T from the rank that has A, and `w`, that of W on all rows of B; both NULL on others */
+static PetscErrorCode TakeColumn(ConstrainedSolver s, PetscInt j, const PetscScalar column[], const PetscScalar w[])
+{
+  PetscScalar *kept;
+  PetscInt     size;
+
+  PetscFunctionBegin;
+  if (s->keeps) {
+    if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+    PetscCall(VecGetLocalSize(s->rhs, &size));
+    PetscCall(VecGetArrayWrite(s->columns[j], &kept));
+    if (column) PetscCall(PetscArraycpy(kept, column, size));
+    PetscCall(VecRestoreArrayWrite(s->columns[j], &kept));
+    s->fresh[j] = PETSC_TRUE;
+  }
+  PetscCall(ComplianceSetWholeColumn(s->compliance, j, w));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether one rank makes so many rows known */
+static PetscBool IsHere(ConstrainedSolver s, PetscInt n)
+{
+  return (PetscBool)(n > 1 && s->block > 1 && (s->size == 1 || s->home));
+}
+
+/* Brings rows that are to become known, and all that answer, to the rank that has A: then no other is asked for anything when they do. For
+   all bodies before ConstrainedSolverExtend() is called for the first of them, so that ranks that have others solve at the same time.
+   Collective. */
+PetscErrorCode ConstrainedSolverBringRows(ConstrainedSolver s, PetscInt n, const PetscInt rows[])
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)s->B);
+  PetscInt mine;
+  IS       some, all;
+
+  PetscFunctionBegin;
+  if (!IsHere(s, n)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ConstrainedSolverDropTaken(s));
+  PetscCall(VecGetLocalSize(s->rhs, &mine));
+  PetscCall(ISCreateGeneral(comm, mine ? n : 0, rows, PETSC_COPY_VALUES, &some));
+  PetscCall(ISCreateStride(comm, mine ? s->global : 0, 0, 1, &all));
+  PetscCall(TakeRows(s, some, &s->taken[0], &s->part[0]));
+  PetscCall(TakeRows(s, all, &s->taken[1], &s->part[1]));
+  PetscCall(ISDestroy(&some));
+  PetscCall(ISDestroy(&all));
+  s->n_taken = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ConstrainedSolverDropTaken(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2; k++) PetscCall(MatDestroy(&s->taken[k]));
+  s->n_taken = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes rows known by the solutions of the rank that has A. It tells the others nothing: columns that wait are theirs when they are added
+   up. */
+static PetscErrorCode ExtendHere(ConstrainedSolver s, PetscInt n, const PetscInt rows[])
+{
+  PetscInt  mine;
+  PetscBool here;
+  Mat       x = NULL;
+  Vec       w = NULL;
+
+  PetscFunctionBegin;
+  if (s->n_taken != n) PetscCall(ConstrainedSolverBringRows(s, n, rows));
+  PetscCall(VecGetLocalSize(s->rhs, &mine));
+  here = (PetscBool)(mine > 0);
+  if (here) PetscCall(MatCreateVecs(s->part[1], NULL, &w));
+  for (PetscInt k = 0; k < n; k += s->block) {
+    const PetscInt width = PetscMin(s->block, n - k);
+
+    if (here) PetscCall(SolveHere(s, s->part[0], k, width, &x));
+    for (PetscInt i = 0; i < width; i++) {
+      const PetscScalar *column = NULL, *displacement = NULL;
+      Vec                vec;
+
+      if (here) {
+        PetscCall(MatDenseGetColumnVecRead(x, i, &vec));
+        PetscCall(MatMult(s->part[1], vec, w));
+        PetscCall(VecGetArrayRead(vec, &column));
+        PetscCall(VecGetArrayRead(w, &displacement));
+      }
+      PetscCall(TakeColumn(s, rows[k + i], column, displacement));
+      if (here) {
+        PetscCall(VecRestoreArrayRead(w, &displacement));
+        PetscCall(VecRestoreArrayRead(vec, &column));
+        PetscCall(MatDenseRestoreColumnVecRead(x, i, &vec));
+      }
+    }
+    PetscCall(MatDestroy(&x));
+  }
+  PetscCall(VecDestroy(&w));
+  PetscCall(ConstrainedSolverDropTaken(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes rows known to the compliance, at its first level; `rows`: of any rank, the same on every rank, none of them known. Collective. */
 PetscErrorCode ConstrainedSolverExtend(ConstrainedSolver s, PetscInt n, const PetscInt rows[])
 {
   PetscFunctionBegin;
+  if (IsHere(s, n)) {
+    PetscCall(ExtendHere(s, n, rows));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt k = 0; k < n; k += s->block) {
     const PetscInt width = PetscMin(s->block, n - k);
 

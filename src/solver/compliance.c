@@ -165,8 +165,8 @@ void ComplianceTakeWaiting(Compliance c)
   c->waits                   = PETSC_FALSE;
 }
 
-/* Displacements of this rank's rows under a unit force on a row, at the first `levels` of the levels; collective */
-PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, const PetscScalar mine[])
+/* Room for a column of some levels, the last one that waits; `values`: where they belong, of the known rows of every rank */
+static PetscErrorCode BeginColumn(Compliance c, PetscInt row, PetscInt levels, PetscScalar *values[])
 {
   PetscInt j;
 
@@ -174,15 +174,46 @@ PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, 
   if (c->place[row] < 0) PetscCall(AddRow(c, row));
   j = c->place[row];
   PetscCall(MakeWaitingRoom(c, levels * c->n));
-  ComplianceSpread(c, levels, mine, c->values + c->n_values);
+  *values                    = c->values + c->n_values;
   c->waiting[c->n_waiting++] = (Waiting){.place = j, .levels = levels, .n = c->n};
   c->n_values += levels * c->n;
   c->known[j]   = PetscMax(c->known[j], levels);
   c->ramp_valid = PETSC_FALSE;
   c->state++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The values are there: unless they are to wait, ranks add them up */
+static PetscErrorCode EndColumn(Compliance c)
+{
+  PetscFunctionBegin;
   if (c->waits) PetscFunctionReturn(PETSC_SUCCESS);
   if (c->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->values, (PetscMPIInt)c->n_values, MPIU_SCALAR, MPIU_SUM, c->comm));
   ComplianceTakeWaiting(c);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacements of this rank's rows under a unit force on a row, at the first `levels` of the levels; collective */
+PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, const PetscScalar mine[])
+{
+  PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(BeginColumn(c, row, levels, &values));
+  ComplianceSpread(c, levels, mine, values);
+  PetscCall(EndColumn(c));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same, at the first level, of the rows of all ranks from one that has found them; NULL: this is another. Collective. */
+PetscErrorCode ComplianceSetWholeColumn(Compliance c, PetscInt row, const PetscScalar all[])
+{
+  PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(BeginColumn(c, row, 1, &values));
+  for (PetscInt i = 0; i < c->n; i++) values[i] = all ? all[c->rows[i]] : 0;
+  PetscCall(EndColumn(c));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -14,6 +14,7 @@ PETSC_INTERN PetscErrorCode ComplianceCreate(MPI_Comm, PetscInt, PetscInt, Petsc
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *);
 PETSC_INTERN PetscErrorCode ComplianceReserve(Compliance, PetscInt);
 PETSC_INTERN PetscErrorCode ComplianceSetColumn(Compliance, PetscInt, PetscInt, const PetscScalar[]);
+PETSC_INTERN PetscErrorCode ComplianceSetWholeColumn(Compliance, PetscInt, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode ComplianceForget(Compliance, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode ComplianceTruncate(Compliance, PetscInt);
 PETSC_INTERN void           ComplianceWait(Compliance);

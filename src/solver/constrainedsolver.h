@@ -25,6 +25,7 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyCompliance(ConstrainedSolv
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFree(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverBringRows(ConstrainedSolver, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverExtend(ConstrainedSolver, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscBool          ConstrainedSolverIsHome(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverBring(ConstrainedSolver, const PetscScalar[], const PetscScalar[]);

@@ -139,6 +139,7 @@ PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);
 PETSC_EXTERN PetscErrorCode BodyGetComplianceMatrices(Body, Mat *, Mat *);
 PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);
+PETSC_EXTERN PetscErrorCode BodyPrepareCompliance(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyProposeCompliance(Body, PetscInt, const PetscInt[], BodyWord *);
 PETSC_EXTERN PetscErrorCode BodyTakeCompliance(Body);
 PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);

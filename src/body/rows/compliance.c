@@ -51,21 +51,35 @@ Compliance BodyGetSharedCompliance(Body body)
   return body->model.linear ? body->compliance->matrices : NULL;
 }
 
-/* Columns of the rows that are not known yet. With one substep the body's solver has them, where its compliance is this one. */
+/* Whether the body's solver has the columns: with one substep, where its compliance is this one */
+static PetscBool SolverHasColumns(Body body)
+{
+  return (PetscBool)(body->time.substeps == 1 && body->solver && !body->integrator->ops.compliancecolumns && BodyGetSharedCompliance(body));
+}
+
+/* Those of some rows that are not known yet */
+static PetscInt ListUnknown(struct _BodyCompliance *c, PetscInt n, const PetscInt rows[])
+{
+  PetscInt count = 0;
+
+  for (PetscInt i = 0; i < n; i++)
+    if (!ComplianceKnows(c->matrices, rows[i])) c->unknown[count++] = rows[i];
+  return count;
+}
+
+/* Columns of the rows that are not known yet */
 static PetscErrorCode ProbeCompliance(Body body, PetscInt n, const PetscInt rows[])
 {
-  const PetscBool         shares = (PetscBool)(body->time.substeps == 1 && body->solver && BodyGetSharedCompliance(body));
-  struct _BodyCompliance *c      = body->compliance;
-  PetscInt                count  = 0;
+  struct _BodyCompliance *c = body->compliance;
+  PetscInt                count;
 
   PetscFunctionBegin;
   if (body->integrator->ops.compliancecolumns) {
     PetscCall((*body->integrator->ops.compliancecolumns)(body, n, rows, c->matrices));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt i = 0; i < n; i++)
-    if (!ComplianceKnows(c->matrices, rows[i])) c->unknown[count++] = rows[i];
-  if (shares) {
+  count = ListUnknown(c, n, rows);
+  if (SolverHasColumns(body)) {
     PetscCall(ConstrainedSolverExtend(body->solver, count, c->unknown));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -103,6 +117,37 @@ PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[]
   if (word.n)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, word.values, (PetscMPIInt)word.n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscCall(BodyTakeCompliance(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyPrepareCompliance - brings what `BodyExtendCompliance()` or `BodyProposeCompliance()` needs of other ranks
+
+  Collective
+
+  Input Parameters:
++ body - the `Body`, set up
+. n    - number of rows
+- rows - rows of any rank, the same on every rank, and those of the call that follows
+
+  Level: developer
+
+  Note:
+  Called for all bodies before the first of these calls, it lets ranks that have a body each find its columns at the same time. It may be
+  left out.
+
+.seealso: `Body`, `BodyExtendCompliance()`, `BodyProposeCompliance()`
+@*/
+PetscErrorCode BodyPrepareCompliance(Body body, PetscInt n, const PetscInt rows[])
+{
+  PetscInt count;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCheck(body->compliance, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  if (!SolverHasColumns(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  count = ListUnknown(body->compliance, n, rows);
+  PetscCall(ConstrainedSolverBringRows(body->solver, count, body->compliance->unknown));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -280,127 +325,5 @@ PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
   else PetscCall(VecZeroEntries(displacement));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   PetscCall(StageEnd(logged));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetLayerMatrices - what makes up the compliance of rows that answer by a massless contact layer alone
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameters:
-+ stiffness - K of the layer, held by the rest of the body [N/m]; `NULL` where rows answer otherwise
-- rows      - B, the rows on the dofs of the layer, without held ones; or `NULL`
-
-  Level: developer
-
-  Note:
-  The compliance is B K^{-1} B^T. Both matrices are owned by the body, which gives them new values where layer or rows change, or puts
-  others in their place.
-
-.seealso: `Body`, `BodyApplyCompliance()`
-@*/
-PetscErrorCode BodyGetLayerMatrices(Body body, Mat *stiffness, Mat *rows)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (stiffness) *stiffness = NULL;
-  if (rows) *rows = NULL;
-  if (body->integrator->answers_by_layer) PetscCall(ConstrainedSolverGetMatrices(body->solver, stiffness, rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetComplianceMatrices - what makes up the compliance of the rows of a body with one substep
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameters:
-+ matrix - A, the effective matrix of an implicit body or the stiffness of the layer by which an explicit one answers [N/m]; `NULL` where
-           rows answer otherwise
-- rows   - B, the rows on its dofs, without held ones; or `NULL`
-
-  Level: developer
-
-  Note:
-  The compliance is B A^{-1} B^T. Both matrices are owned by the body, as those of `BodyGetLayerMatrices()` are.
-
-.seealso: `Body`, `BodyApplyCompliance()`, `BodyGetLayerMatrices()`
-@*/
-PetscErrorCode BodyGetComplianceMatrices(Body body, Mat *matrix, Mat *rows)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (matrix) *matrix = NULL;
-  if (rows) *rows = NULL;
-  if (body->solver && body->time.substeps == 1) PetscCall(ConstrainedSolverGetMatrices(body->solver, matrix, rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyCountUnknown - how many of some rows its compliance does not know yet
-
-  Not Collective
-
-  Input Parameters:
-+ body - the `Body`, set up
-. n    - number of rows
-- rows - rows of any rank
-
-  Output Parameter:
-. unknown - how many of them `BodyExtendCompliance()` would have to make known
-
-  Level: developer
-
-.seealso: `Body`, `BodyExtendCompliance()`, `BodyGetComplianceFlops()`
-@*/
-PetscErrorCode BodyCountUnknown(Body body, PetscInt n, const PetscInt rows[], PetscInt *unknown)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(unknown, 4);
-  *unknown = 0;
-  for (PetscInt i = 0; i < n; i++) *unknown += !ComplianceKnows(body->compliance->matrices, rows[i]);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetComplianceFlops - operations of one `BodyApplyCompliance()`, and of making rows known
-
-  Not Collective
-
-  Input Parameters:
-+ body - the `Body`, set up
-. n    - number of rows
-- rows - rows of any rank
-
-  Output Parameters:
-+ apply  - floating-point operations of a solution with the factors, counted from their entries, not measured: the same in every run
-- extend - those of `BodyExtendCompliance()` for these rows; where many rows become known together, as many as would take that time one
-           after the other
-
-  Level: developer
-
-.seealso: `Body`, `BodyApplyCompliance()`, `BodyExtendCompliance()`
-@*/
-PetscErrorCode BodyGetComplianceFlops(Body body, PetscInt n, const PetscInt rows[], PetscLogDouble *apply, PetscLogDouble *extend)
-{
-  PetscInt unknown;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(apply, 4);
-  PetscAssertPointer(extend, 5);
-  *apply = *extend = 0;
-  if (!body->solver) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyCountUnknown(body, n, rows, &unknown));
-  *apply  = ConstrainedSolverGetFlops(body->solver);
-  *extend = ConstrainedSolverGetExtendFlops(body->solver, unknown);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -165,6 +165,12 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
   PetscCall(InterfaceOperatorFindGroups(op));
   PetscCall(ChooseDense(op));
   if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies && contact->ranks.size > 1; b++) {
+    PetscInt n;
+
+    PetscCall(ListKnownRows(op, b, &n));
+    if (n) PetscCall(BodyPrepareCompliance(contact->bodies[b], n, op->body_rows));
+  }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt n;
 
