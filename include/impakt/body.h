@@ -119,6 +119,8 @@ PETSC_EXTERN PetscErrorCode BodyGetMassType(Body, BodyMassType *);
 PETSC_EXTERN PetscErrorCode BodySetMassRedistribute(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodySetFromOptions(Body);
 PETSC_EXTERN PetscErrorCode BodySetUpDiscretization(Body);
+PETSC_EXTERN PetscErrorCode BodyBeginSetUp(Body);
+PETSC_EXTERN PetscErrorCode BodyFactor(Body);
 PETSC_EXTERN PetscErrorCode BodySetUp(Body);
 PETSC_EXTERN PetscErrorCode BodyRefuseNewtonOptions(PetscInt, const Body[]);
 PETSC_EXTERN PetscErrorCode BodyView(Body, PetscViewer);

@@ -62,16 +62,23 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B, Compliance complian
   PetscCall(
       PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
   PetscCall(PetscCalloc3(2 * s->global, &s->changes, s->global, &s->coefficients, s->local, &s->column));
-  PetscCall(ChooseColumns(s));
-  PetscCall(ConstrainedSolverChooseBlock(s));
-  s->room = s->keeps ? s->global : FEW_ROWS;
-  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
   s->n          = 0;
   s->dense      = PETSC_FALSE;
   s->shares     = (PetscBool)(compliance != NULL);
   s->compliance = compliance;
   if (!compliance) PetscCall(ComplianceCreate(comm, s->local, s->begin, s->global, 1, &s->compliance));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What depends on the price of a solution */
+static PetscErrorCode ChooseForRows(ConstrainedSolver s)
+{
+  PetscFunctionBegin;
+  PetscCall(ChooseColumns(s));
+  PetscCall(ConstrainedSolverChooseBlock(s));
+  s->room = s->keeps ? s->global : FEW_ROWS;
+  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,11 +108,13 @@ PetscErrorCode ConstrainedSolverReplaceRows(ConstrainedSolver s, Mat B, Complian
   PetscFunctionBegin;
   PetscCall(DestroyRows(s));
   PetscCall(CreateRows(s, B, compliance));
+  PetscCall(ChooseForRows(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A is the matrix of a body in `dim` dimensions; `compliance`: where W is kept, or NULL for one of the solver's own */
-PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], Compliance compliance, ConstrainedSolver *solver)
+/* A is the matrix of a body in `dim` dimensions; `compliance`: where W is kept, or NULL for one of the solver's own. There are no factors
+   yet. */
+PetscErrorCode ConstrainedSolverBegin(Mat A, Mat B, PetscInt dim, const char prefix[], Compliance compliance, ConstrainedSolver *solver)
 {
   ConstrainedSolver s;
   MPI_Comm          comm = PetscObjectComm((PetscObject)A);
@@ -122,17 +131,49 @@ PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char pr
   PetscCall(ConstrainedSolverChoose(s->ksp, A, dim));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(ConstrainedSolverAdjust(s->ksp));
-  PetscCall(KSPSetUp(s->ksp));
-  PetscCall(KSPSetUpOnBlocks(s->ksp)); /* now, not with the first solution */
+  PetscCall(KSPSetUp(s->ksp)); /* which makes factors that several ranks have, and none of one rank's */
   PetscCall(PetscObjectTypeCompare((PetscObject)s->ksp, KSPPREONLY, &direct));
   if (direct) PetscCall(KSPGetPC(s->ksp, &s->direct));
   PetscCall(ConstrainedSolverFindFactors(s, A));
-  PetscCall(ConstrainedSolverCountFlops(s, A));
-
   PetscCall(MatCreateVecs(A, NULL, &s->rhs));
   PetscCall(VecDuplicate(s->rhs, &s->product));
   PetscCall(CreateRows(s, B, compliance));
   *solver = s;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the factors where one rank has all of A, there. Not collective: where that is done for the solvers of many bodies, ranks factor at
+   the same time. */
+PetscErrorCode ConstrainedSolverFactor(ConstrainedSolver s)
+{
+  PetscInt mine;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(s->rhs, &mine));
+  if (s->home && mine && s->factors) PetscCall(PCSetUp(s->factors));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The solver can be used. Collective. */
+PetscErrorCode ConstrainedSolverEnd(ConstrainedSolver s)
+{
+  Mat A;
+
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverFactor(s));
+  PetscCall(KSPSetUpOnBlocks(s->ksp)); /* now, not with the first solution */
+  PetscCall(KSPGetOperators(s->ksp, &A, NULL));
+  PetscCall(ConstrainedSolverCountFlops(s, A));
+  PetscCall(ChooseForRows(s));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ConstrainedSolverBegin() and what has to follow */
+PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], Compliance compliance, ConstrainedSolver *solver)
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverBegin(A, B, dim, prefix, compliance, solver));
+  PetscCall(ConstrainedSolverEnd(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,6 +5,9 @@
 
 typedef struct _n_ConstrainedSolver *ConstrainedSolver;
 
+PETSC_INTERN PetscErrorCode     ConstrainedSolverBegin(Mat, Mat, PetscInt, const char[], Compliance, ConstrainedSolver *);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverFactor(ConstrainedSolver);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverEnd(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverCreate(Mat, Mat, PetscInt, const char[], Compliance, ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverDestroy(ConstrainedSolver *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverRefactor(ConstrainedSolver);

@@ -119,7 +119,9 @@ def test_restart(name, run_in, folder, same_runs):
     same_runs(whole, other)
     for number, sets in ((2, "-left_ranks 1 -right_ranks 0"), (1, "")):
         run_in(f"{case} {sets}", other, number, "-restart", "c.prev.h5", change, fields=False)
-        assert differences(whole, other, 1e-7 if "plastic" in name else 1e-10) == []
+        # where material flows sweeps end at a tolerance, now and then one earlier or later
+        others = differences(whole, other, 1e-7 if "plastic" in name else 1e-10)
+        assert [figure for figure in others if "plastic" not in name or not figure.endswith("schwarz/iterations")] == []
         assert summary(other)["run"]["complete"]
     history = (other / "h.h5").read_bytes()
     for sets, more, message in (

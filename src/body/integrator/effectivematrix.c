@@ -148,8 +148,10 @@ PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
   if (!body->model.linear && implicit->unit_strain == 0) PetscCall(BodyImplicitComputeUnitStrainForce(body));
   PetscCall(AssembleMatrix(body, u));
   PetscCall(SetNearNullSpace(body, implicit->matrix));
-  PetscCall(ConstrainedSolverCreate(implicit->matrix, body->rows.free_matrix, body->mesh.dim, ((PetscObject)body)->prefix,
-                                    BodyGetSharedCompliance(body), &body->solver));
+  PetscCall(ConstrainedSolverBegin(implicit->matrix, body->rows.free_matrix, body->mesh.dim, ((PetscObject)body)->prefix,
+                                   BodyGetSharedCompliance(body), &body->solver));
+  body->solver_begun = PETSC_TRUE;
+  if (body->setup) PetscCall(BodyEndSolver(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -232,6 +232,69 @@ static PetscErrorCode SetUpSubstepStart(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The factors are there, and what depends on how many numbers they have */
+PetscErrorCode BodyEndSolver(Body body)
+{
+  PetscFunctionBegin;
+  if (body->solver_begun) PetscCall(ConstrainedSolverEnd(body->solver));
+  body->solver_begun = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyBeginSetUp - the part of `BodySetUp()` before matrices are factored
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, with mesh and material
+
+  Level: developer
+
+  Note:
+  Where this is called for all bodies, then `BodyFactor()`, and then `BodySetUp()`, ranks that have a body each make its factors at the same
+  time.
+
+.seealso: `Body`, `BodySetUp()`, `BodyFactor()`
+@*/
+PetscErrorCode BodyBeginSetUp(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->begun) PetscFunctionReturn(PETSC_SUCCESS);
+  body->begun = PETSC_TRUE;
+  PetscCall(BodySetUpSteps(body));
+  PetscCall(BodyCreateTraces(body));
+  PetscCall(BodySetUpHistory(body));
+  PetscCall(BodyCreateCompliance(body));
+  PetscCall(BodySetUpDamping(body));
+  PetscCall(BodySetUpPoints(body));
+  PetscCall(BodySetUpTime(body));
+  PetscCall(BodySetUpRepeat(body));
+  body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyFactor - factors the matrix of a body that one of several ranks has, on that rank
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, after `BodyBeginSetUp()`
+
+  Level: developer
+
+.seealso: `Body`, `BodySetUp()`, `BodyBeginSetUp()`
+@*/
+PetscErrorCode BodyFactor(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->solver_begun) PetscCall(ConstrainedSolverFactor(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodySetUp - makes mass, matrices, integrator and initial state
 
@@ -249,15 +312,8 @@ PetscErrorCode BodySetUp(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodySetUpSteps(body));
-  PetscCall(BodyCreateTraces(body));
-  PetscCall(BodySetUpHistory(body));
-  PetscCall(BodyCreateCompliance(body));
-  PetscCall(BodySetUpDamping(body));
-  PetscCall(BodySetUpPoints(body));
-  PetscCall(BodySetUpTime(body));
-  PetscCall(BodySetUpRepeat(body));
-  body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local);
+  PetscCall(BodyBeginSetUp(body));
+  PetscCall(BodyEndSolver(body));
   if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) PetscCall(SetUpSubstepStart(body));
   if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &body->substep_start.damping));
   PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));

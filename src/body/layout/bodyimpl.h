@@ -224,6 +224,8 @@ typedef struct {
 struct _p_Body {
   PETSCHEADER(int);
   PetscBool setup;
+  PetscBool begun;        /* BodyBeginSetUp() has been called */
+  PetscBool solver_begun; /* `solver` has no factors yet */
   /* The mesh is whole on one of several ranks, and steps of the integrator need nothing of others but where rows are prescribed: see
      src/body/README.md. What a substep finds out of the body as a whole (works, stable step, failure) that rank alone knows. */
   PetscBool         local;
@@ -338,6 +340,7 @@ PETSC_INTERN PetscErrorCode BodyGetElementMassParts(Body, PetscInt, PetscBool, P
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyEndSolver(Body);
 PETSC_INTERN PetscErrorCode BodyBeginAssembly(Body, Mat, Mat *);
 PETSC_INTERN PetscErrorCode BodyEndAssembly(Mat, Mat);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);

@@ -135,6 +135,10 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ShareControllerStep(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StatusLineTell("matrices of body %s", ((PetscObject)contact->bodies[b])->name);
+    PetscCall(BodyBeginSetUp(contact->bodies[b]));
+  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFactor(contact->bodies[b]));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodySetUp(contact->bodies[b]));
     PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
   }
