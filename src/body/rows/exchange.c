@@ -8,12 +8,12 @@
 */
 #include <body/layout/bodyimpl.h>
 
-/* Whether a step needs only the forces at its end, which are known before it. Where rows go over from others it needs both, and so it does
-   inside of a step with substeps. */
+/* Whether a step needs only the forces at its end, which are known before it. Inside of a step with substeps it needs both. What goes over
+   from other rows has gone by the end (handover.c). */
 static PetscBool Exchanges(Body body)
 {
   return (PetscBool)(BodyStepsAlone(body) && !body->rows.at_home && body->rows.global && body->time.substeps == 1 &&
-                     body->integrator->affine && !BodyHandsOver(body));
+                     body->integrator->affine);
 }
 
 /* B^T f of forces at the end of the controller step */
