@@ -20,26 +20,20 @@ typedef struct {
   PetscInt *ranks; /* of each body of the controller, PETSC_DECIDE: it is divided */
 } Placement;
 
-/* Whether a body may be given to one rank, as its options say, and whether it has to */
-static PetscErrorCode IsSmall(Body body, PetscBool *small, PetscBool *asks, PetscReal place[3], PetscReal *work)
+/* Whether a body may be given to one rank if it is small, as its options say, and whether it has to */
+static PetscErrorCode MayBePlaced(Body body, PetscBool *may, PetscBool *asks)
 {
   char        type[64] = "";
   const char *prefix   = ((PetscObject)body)->prefix;
-  PetscInt    cells;
-  PetscBool   may, is_explicit, is_implicit = PETSC_TRUE, rigid = PETSC_FALSE;
+  PetscBool   is_explicit, is_implicit = PETSC_TRUE, rigid = PETSC_FALSE;
 
   PetscFunctionBegin;
-  *small = PETSC_FALSE;
-  PetscCall(MeshMayBeWhole(PetscObjectComm((PetscObject)body), prefix, &may, asks));
+  PetscCall(MeshMayBeWhole(PetscObjectComm((PetscObject)body), prefix, may, asks));
   PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), NULL));
   PetscCall(PetscStrcasecmp(type, TSCENTRALDIFFERENCE, &is_explicit));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-rigid", &rigid, NULL));
   if (type[0]) PetscCall(PetscStrcasecmp(type, TSALPHA2, &is_implicit));
-  may = (PetscBool)(may && (is_explicit || is_implicit) && !rigid);
-  if (!may && !*asks) PetscFunctionReturn(PETSC_SUCCESS); /* its mesh is read of when it is made, so that errors are not said to be its */
-  PetscCall(MeshEstimate(prefix, &cells, place));
-  *small = (PetscBool)(may && cells > 0 && cells <= SMALL);
-  *work  = (PetscReal)PetscMax(cells, 1);
+  *may = (PetscBool)(*may && (is_explicit || is_implicit) && !rigid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,12 +87,44 @@ static PetscErrorCode Halve(Placement *p, PetscInt n, PetscInt list[], PetscMPII
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Lists the bodies that are small, or ask for one rank, with their places and work. Where none can come of it, options of meshes are read
+   when these are made, so that errors in others are not said to be in them. */
+static PetscErrorCode List(Controller controller, PetscInt begin, PetscMPIInt size, Placement *p, PetscInt *small, PetscBool asks[])
+{
+  const PetscInt n          = controller->n_bodies - begin;
+  PetscInt       candidates = 0;
+  PetscBool     *may;
+
+  PetscFunctionBegin;
+  *small = 0;
+  PetscCall(PetscMalloc1(n, &may));
+  for (PetscInt b = 0; b < n; b++) {
+    PetscCall(MayBePlaced(controller->bodies[begin + b], &may[b], &asks[b]));
+    candidates += may[b];
+  }
+  for (PetscInt b = 0; b < n; b++) {
+    PetscInt  cells;
+    PetscBool is_small;
+
+    p->ranks[b] = PETSC_DECIDE;
+    if (!asks[b] && (!may[b] || size == 1 || candidates < MANY * size)) continue;
+    PetscCall(MeshEstimate(((PetscObject)controller->bodies[begin + b])->prefix, &cells, p->places[p->n]));
+    p->work[p->n] = (PetscReal)PetscMax(cells, 1);
+    is_small      = (PetscBool)(may[b] && cells > 0 && cells <= SMALL);
+    if (!is_small && !asks[b]) continue;
+    *small += is_small;
+    p->bodies[p->n++] = b;
+  }
+  PetscCall(PetscFree(may));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* ControllerPlaceBodies - tells bodies from options that are to be whole on one rank on which, before their meshes are made */
 PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
 {
-  const PetscInt n     = controller->n_bodies - begin;
-  Placement      p     = {0};
-  PetscInt       small = 0, *list;
+  const PetscInt n = controller->n_bodies - begin;
+  Placement      p = {0};
+  PetscInt       small, *list;
   PetscBool     *asks;
   PetscMPIInt    size;
 
@@ -107,15 +133,7 @@ PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
   if (n < 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc5(n, &p.bodies, n, &p.places, n, &p.work, n, &p.ranks, n, &list));
   PetscCall(PetscMalloc1(n, &asks));
-  for (PetscInt b = 0; b < n; b++) {
-    PetscBool is_small = PETSC_FALSE;
-
-    p.ranks[b] = PETSC_DECIDE;
-    PetscCall(IsSmall(controller->bodies[begin + b], &is_small, &asks[b], p.places[p.n], &p.work[p.n]));
-    if (!is_small && !asks[b]) continue;
-    if (is_small) small++;
-    p.bodies[p.n++] = b;
-  }
+  PetscCall(List(controller, begin, size, &p, &small, asks));
   if (small < MANY * size) { /* those alone that ask for it */
     PetscInt kept = 0;
 

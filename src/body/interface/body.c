@@ -262,7 +262,6 @@ PetscErrorCode BodyBeginSetUp(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->begun) PetscFunctionReturn(PETSC_SUCCESS);
-  body->begun = PETSC_TRUE;
   PetscCall(BodySetUpSteps(body));
   PetscCall(BodyCreateTraces(body));
   PetscCall(BodySetUpHistory(body));
@@ -272,6 +271,7 @@ PetscErrorCode BodyBeginSetUp(Body body)
   PetscCall(BodySetUpTime(body));
   PetscCall(BodySetUpRepeat(body));
   body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local);
+  body->begun = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
