@@ -24,15 +24,15 @@ typedef struct {
 
 typedef PetscErrorCode BodyResidualFn(TS, PetscReal, Vec, Vec, Vec, Vec, void *);
 typedef PetscErrorCode BodyPredictorFn(TS, Vec, Vec, Vec, Vec, void *);
-typedef PetscErrorCode BodyJacobianFn(TS, PetscReal, Vec, Vec, Vec, PetscReal, PetscReal, Mat, Mat, void *);
 
 PETSC_INTERN PetscErrorCode BodyImplicitCreate(BodyIntegrator);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUp(Body, BodyResidualFn *, BodyPredictorFn *);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUpLinear(Body);
-PETSC_INTERN PetscErrorCode BodyImplicitSetUpNewton(Body, TS, Mat, BodyJacobianFn *, BodyPredictorFn *);
+PETSC_INTERN PetscErrorCode BodyImplicitSetUpNewton(Body, TS, Mat, BodyPredictorFn *);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUpOwnStep(Body, BodyResidualFn *, BodyPredictorFn *);
 PETSC_INTERN PetscErrorCode BodyImplicitGetSNES(Body, SNES *);
+PETSC_INTERN PetscErrorCode BodyImplicitLinearize(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroyOwnStep(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitNoteForce(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitCreateSolver(Body, Vec);

@@ -156,7 +156,7 @@ static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, P
   (void)shift_a;
   (void)J;
   (void)P;
-  PetscCall(BodyImplicitRefactor(body, U));
+  PetscCall(BodyImplicitLinearize(body, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,7 +211,7 @@ static PetscErrorCode RefuseLagBetweenSubsteps(Body body)
 }
 
 /* Newton's method of a nonlinear body, whose linear systems go to the factors of the effective matrix with constraints */
-PetscErrorCode BodyImplicitSetUpNewton(Body body, TS ts, Mat J, BodyJacobianFn *jacobian, BodyPredictorFn *predictor)
+PetscErrorCode BodyImplicitSetUpNewton(Body body, TS ts, Mat J, BodyPredictorFn *predictor)
 {
   SNESLineSearch line_search;
   SNES           snes;
@@ -220,7 +220,7 @@ PetscErrorCode BodyImplicitSetUpNewton(Body body, TS ts, Mat J, BodyJacobianFn *
   char           outer[128];
 
   PetscFunctionBegin;
-  PetscCall(TSSetI2Jacobian(ts, J, J, jacobian, body));
+  PetscCall(TSSetI2Jacobian(ts, J, J, ComputeJacobian, body));
   PetscCall(TSAlpha2SetPredictor(ts, predictor, body));
   PetscCall(TSGetSNES(ts, &snes));
   PetscCall(SNESGetLineSearch(snes, &line_search));
@@ -260,7 +260,7 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
   else {
     body->integrator->uses_newton = PETSC_TRUE;
     PetscCall(RefuseLagBetweenSubsteps(body));
-    PetscCall(BodyImplicitSetUpNewton(body, body->time.ts, implicit->matrix, ComputeJacobian, predictor));
+    PetscCall(BodyImplicitSetUpNewton(body, body->time.ts, implicit->matrix, predictor));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -81,23 +81,19 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ComputeJacobian(TS ts, PetscReal t, Vec U, Vec V, Vec A, PetscReal shift_v, PetscReal shift_a, Mat J, Mat P,
-                                      void *ctx)
+/* BodyImplicitRefactor() at a displacement of the present TS, the body's or that of this rank */
+PetscErrorCode BodyImplicitLinearize(Body body, Vec U)
 {
-  struct _BodyOwnStep *own = OwnStep((Body)ctx);
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  (void)ts;
-  (void)t;
-  (void)V;
-  (void)A;
-  (void)shift_v;
-  (void)shift_a;
-  (void)J;
-  (void)P;
-  PetscCall(Lend(own, 0, PETSC_FALSE, U));
-  PetscCall(BodyImplicitRefactor((Body)ctx, own->lent[0]));
-  PetscCall(TakeBack(own, 0, PETSC_FALSE, U));
+  if (!implicit->alone) {
+    PetscCall(BodyImplicitRefactor(body, U));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(Lend(implicit->own, 0, PETSC_FALSE, U));
+  PetscCall(BodyImplicitRefactor(body, implicit->own->lent[0]));
+  PetscCall(TakeBack(implicit->own, 0, PETSC_FALSE, U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,7 +143,7 @@ static PetscErrorCode CreateTS(Body body)
   PetscCall(TSSetErrorIfStepFails(own->ts, PETSC_FALSE));
   /* its solver is a shell: of the matrix it takes the size */
   PetscCall(MatMPIAIJGetSeqAIJ(implicit->matrix, &J, NULL, NULL));
-  PetscCall(BodyImplicitSetUpNewton(body, own->ts, J, ComputeJacobian, Predict));
+  PetscCall(BodyImplicitSetUpNewton(body, own->ts, J, Predict));
   PetscCall(TSGetSNES(own->ts, &snes));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
