@@ -49,6 +49,7 @@ static PetscErrorCode TSStep_CentralDifference(TS ts)
   PetscBool             accept;
 
   PetscFunctionBegin;
+  PetscCall(TSSecondOrderCheckSolution(ts));
   PetscCall(Kick(ts->vec_sol, ts->vec_dot, cd->A, half, ts->time_step));
   cd->leaves = PETSC_FALSE;
   PetscCall((*cd->acceleration)(ts, ts->ptime + ts->time_step, ts->vec_sol, ts->vec_dot, cd->A, cd->ctx));
@@ -64,7 +65,7 @@ static PetscErrorCode TSSetUp_CentralDifference(TS ts)
   TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
 
   PetscFunctionBegin;
-  PetscCheck(ts->vec_sol && ts->vec_dot, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TS2SetSolution() first");
+  PetscCall(TSSecondOrderKeepNoStart(ts));
   PetscCheck(cd->acceleration, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE,
              "Call TSCentralDifferenceSetAcceleration() first");
   PetscCheck(cd->A, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSCentralDifferenceSetAccelerationVec() first");
@@ -197,8 +198,8 @@ PetscErrorCode TSCentralDifferenceLeaveVelocity(TS ts)
    Level: beginner
 
    Note:
-   One evaluation of the acceleration in a step. It conserves the staggered energy 1/2 v'Mv - dt^2/8 a'Ma + potential. There is no
-   `TSRollBack()`: whoever wants to undo a step keeps displacement, velocity and acceleration, and calls `TSSecondOrderSetState()`.
+   One evaluation of the acceleration in a step. It conserves the staggered energy 1/2 v'Mv - dt^2/8 a'Ma + potential. `TSRollBack()` is
+   refused: whoever wants to undo a step keeps displacement, velocity and acceleration, and calls `TSSecondOrderSetState()`.
 
 .seealso: `TSALPHA2`, `TSCentralDifferenceSetAcceleration()`
 M*/

@@ -15,6 +15,7 @@ static PetscErrorCode TSStep_Rigid(TS ts)
   PetscBool accept;
 
   PetscFunctionBegin;
+  PetscCall(TSSecondOrderCheckSolution(ts));
   PetscCall((*rigid->advance)(ts, ts->ptime, ts->time_step, ts->vec_sol, ts->vec_dot, rigid->ctx));
   PetscCall(TSAdaptChoose(ts->adapt, ts, ts->time_step, NULL, &next, &accept));
   ts->ptime += ts->time_step;
@@ -27,7 +28,7 @@ static PetscErrorCode TSSetUp_Rigid(TS ts)
   TS_Rigid *rigid = (TS_Rigid *)ts->data;
 
   PetscFunctionBegin;
-  PetscCheck(ts->vec_sol && ts->vec_dot, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TS2SetSolution() first");
+  PetscCall(TSSecondOrderKeepNoStart(ts));
   PetscCheck(rigid->advance, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSRigidSetAdvance() first");
   PetscCall(TSGetAdapt(ts, &ts->adapt));
   PetscCall(TSAdaptCandidatesClear(ts->adapt));
@@ -81,7 +82,7 @@ PetscErrorCode TSRigidSetAdvance(TS ts, TSRigidFn *advance, void *ctx)
    Level: beginner
 
    Note:
-   There is no `TSRollBack()`: whoever wants to undo a step keeps displacement and velocity, and calls `TSSecondOrderSetState()`.
+   `TSRollBack()` is refused: whoever wants to undo a step keeps displacement and velocity, and calls `TSSecondOrderSetState()`.
 
 .seealso: `TSALPHA2`, `TSRigidSetAdvance()`, `BodySetRigid()`
 M*/

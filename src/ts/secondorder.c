@@ -20,6 +20,35 @@ static PetscErrorCode TSCreate_Static(TS ts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscErrorCode RollBack(TS ts)
+{
+  PetscFunctionBegin;
+  SETERRQ(PetscObjectComm((PetscObject)ts), PETSC_ERR_SUP,
+          "A step of this integrator cannot be rolled back: keep its vectors, put them back and call TSSecondOrderSetState()");
+}
+
+/* Of an integrator that cannot roll back, when it is set up. `TSStep()` copies the solution for those that can, in a pass over memory that
+   is a good part of a step; of a vector to itself it copies nothing. */
+PetscErrorCode TSSecondOrderKeepNoStart(TS ts)
+{
+  PetscFunctionBegin;
+  PetscCheck(ts->vec_sol && ts->vec_dot, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TS2SetSolution() first");
+  PetscCall(PetscObjectReference((PetscObject)ts->vec_sol));
+  PetscCall(VecDestroy(&ts->vec_sol0));
+  ts->vec_sol0      = ts->vec_sol;
+  ts->ops->rollback = RollBack;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of a step of such an integrator: TSStep() has copied the solution to the vector that was set before it */
+PetscErrorCode TSSecondOrderCheckSolution(TS ts)
+{
+  PetscFunctionBegin;
+  PetscCheck(ts->vec_sol0 == ts->vec_sol, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE,
+             "TS2SetSolution() has set another vector after the set-up: set the entries of the first one instead");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   TSSecondOrderRegisterAll - registers Impakt's time integrators with `TS`
 
@@ -122,7 +151,8 @@ PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step,
 
   Note:
   For linear equations, which need one solution and no Newton's method: its `SNES`, and the nine vectors that it works with, are not made.
-  What the function is to know comes with `TSGetI2Function()` and `TSAlpha2GetParams()`.
+  What the function is to know comes with `TSGetI2Function()` and `TSAlpha2GetParams()`. `TSRollBack()` is refused, and other vectors may
+  be set with `TS2SetSolution()` before the first step alone.
 
 .seealso: `TSALPHA2`, `TSSecondOrderSetState()`
 @*/
@@ -131,7 +161,7 @@ PetscErrorCode TSAlpha2SetStep(TS ts, TSAlpha2StepFn *step)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
   ts->ops->step  = step;
-  ts->ops->setup = NULL;
+  ts->ops->setup = TSSecondOrderKeepNoStart;
   ts->usessnes   = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -187,6 +187,23 @@ static void can_be_put_at_another_time(void **state)
   destroy_springs(&other);
 }
 
+/* What TSStep() would copy for a step back is not kept: a step back is refused, and so is another vector to go on with */
+static void refuses_to_roll_back(void **state)
+{
+  Springs s;
+  Vec     other;
+
+  (void)state;
+  create_springs(&s, 0.1);
+  ok(VecDuplicate(s.u, &other));
+  step(&s, 1);
+  refused(PETSC_ERR_SUP, "cannot be rolled back", TSRollBack(s.ts));
+  ok(TS2SetSolution(s.ts, other, s.v));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "another vector", TSStep(s.ts));
+  ok(VecDestroy(&other));
+  destroy_springs(&s);
+}
+
 static PetscErrorCode LeaveEverySecond(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
 {
   PetscInt *calls = (PetscInt *)ctx;
@@ -264,9 +281,13 @@ static void refuses_to_set_up_without_its_parts(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(is_of_second_order),         cmocka_unit_test(has_the_frequency_of_central_differences),
-      cmocka_unit_test(conserves_staggered_energy), cmocka_unit_test(can_be_put_at_another_time),
-      cmocka_unit_test(may_leave_the_velocity),     cmocka_unit_test(refuses_to_set_up_without_its_parts),
+      cmocka_unit_test(is_of_second_order),
+      cmocka_unit_test(has_the_frequency_of_central_differences),
+      cmocka_unit_test(conserves_staggered_energy),
+      cmocka_unit_test(can_be_put_at_another_time),
+      cmocka_unit_test(may_leave_the_velocity),
+      cmocka_unit_test(refuses_to_roll_back),
+      cmocka_unit_test(refuses_to_set_up_without_its_parts),
   };
 
   return impakt_main(argc, argv, tests);
