@@ -68,6 +68,7 @@ typedef struct {
   PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
   PetscReal *bow;                  /* depth that the bend of the partner's faces makes of surfaces that only touch [m] */
+  PetscReal *dip;                  /* how far the partner's closest point near the node was below the row's gap at the build [m] */
   PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
@@ -197,7 +198,8 @@ PETSC_INTERN PetscErrorCode SurfaceKeepFaces(Surface, const PetscBool[]);
 PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(MPI_Comm, Surface, Vec, Surface, Vec, PetscReal *);
 
 PETSC_INTERN void           SurfaceMirrorNormals(Surface);
-PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscInt *, Share *[]);
+PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscReal[], PetscInt *,
+                                              Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);

@@ -18,7 +18,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
   PetscCall(PetscMemzero(set, sizeof(*set)));
   PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1,
                          &set->offsets));
-  PetscCall(PetscCalloc2(n, &set->rest, n, &set->bow));
+  PetscCall(PetscCalloc3(n, &set->rest, n, &set->bow, n, &set->dip));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -27,7 +27,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree7(set->opposite, set->beyond, set->changed, set->gap, set->area, set->normals, set->offsets));
-  PetscCall(PetscFree2(set->rest, set->bow));
+  PetscCall(PetscFree3(set->rest, set->bow, set->dip));
   PetscCall(PetscFree2(set->shares, set->columns));
   PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -130,9 +130,10 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes
    that touch, and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
-   touches when the end of the partner does, not before or after. */
+   touches when the end of the partner does, not before or after. `lowest`: the gap of the partner's closest point near the node [m]. */
 static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[],
-                                const PetscReal column_normals[], PetscReal end, PetscReal ahead, PetscReal behind, RowSet *set)
+                                const PetscReal column_normals[], PetscReal end, PetscReal lowest, PetscReal ahead, PetscReal behind,
+                                RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
@@ -181,7 +182,9 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     present = end;
   }
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind, set->bow[row]));
-  if (set->opposite[row]) set->gap[row] = gap;
+  if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
+  set->gap[row] = gap;
+  set->dip[row] = PetscMax(present - lowest, 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,6 +230,7 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
   set->gap[row]      = transfer->rows.gap[row];
   set->rest[row]     = transfer->rows.rest[row];
   set->bow[row]      = transfer->rows.bow[row];
+  set->dip[row]      = transfer->rows.dip[row];
   for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
 }
 
@@ -280,15 +284,15 @@ static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
-  PetscReal         *lumped, *ends, *x, *reference, *normals, behind;
+  PetscReal         *lumped, *ends, *lowest, *x, *reference, *normals, behind;
   PetscInt           n_shares, *marks;
   Share             *shares;
   RowSet             set;
 
   PetscFunctionBegin;
   PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, &behind));
-  PetscCall(PetscMalloc3(dirichlet->n_nodes, &marks, dirichlet->n_nodes, &lumped, dirichlet->n_nodes, &ends));
-  PetscCall(TransferIntegrate(transfer, near, behind, marks, lumped, ends, &n_shares, &shares));
+  PetscCall(PetscMalloc4(dirichlet->n_nodes, &marks, dirichlet->n_nodes, &lumped, dirichlet->n_nodes, &ends, dirichlet->n_nodes, &lowest));
+  PetscCall(TransferIntegrate(transfer, near, behind, marks, lumped, ends, lowest, &n_shares, &shares));
   PetscCall(KeepShares(transfer, lumped, &n_shares, &shares));
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &set));
   PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
@@ -304,7 +308,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   for (PetscInt row = 0; row < transfer->n; row++) {
     set.beyond[row] = (PetscBool)(transfer->keep[row] ? transfer->rows.beyond[row] : marks[row] == MARK_BEYOND);
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
-    else PetscCall(FinishRow(transfer, row, x, reference, normals, ends[row], near, behind, &set));
+    else PetscCall(FinishRow(transfer, row, x, reference, normals, ends[row], lowest[row], near, behind, &set));
     set.area[row] = set.opposite[row] ? lumped[row] : 0;
   }
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
@@ -313,7 +317,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(TransferAllocateColumns(transfer));
   PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
   PetscCall(PetscFree3(x, reference, normals));
-  PetscCall(PetscFree3(marks, lumped, ends));
+  PetscCall(PetscFree4(marks, lumped, ends, lowest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -272,6 +272,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->followed = transfer->followed;
   rows->slip     = transfer->slip;
   rows->bow      = set->bow;
+  rows->dip      = set->dip;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,7 +5,7 @@
 #include "interfaceimpl.h"
 #include "transfervisit.h"
 
-#define N_ROW     40 /* numbers of a node of the first side: key, 37 more */
+#define N_ROW     40 /* numbers of a node of the first side: key, 38 more */
 #define N_SHARE   8  /* key of its row, position of the partner's node, weight and goal */
 #define N_PARTNER 12 /* key, place at the last build, place and motion at the last update */
 
@@ -20,6 +20,7 @@ static void CopyRow(Transfer transfer, PetscInt i, PetscBool back, PetscReal *pa
   TablesCopyReals(back, 1, &rows->gap[i], &packed);
   TablesCopyReals(back, 1, &rows->area[i], &packed);
   TablesCopyReals(back, 1, &rows->bow[i], &packed);
+  TablesCopyReals(back, 1, &rows->dip[i], &packed);
   TablesCopyReals(back, 1, &rows->rest[i], &packed);
   TablesCopyReals(back, dim, rows->normals + dim * i, &packed);
   packed += 3 - dim;

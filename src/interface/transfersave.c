@@ -13,6 +13,7 @@ static PetscErrorCode CopyNumbers(PetscInt dim, PetscInt n, const RowSet *from, 
   PetscCall(PetscArraycpy(to->normals, from->normals, dim * n));
   PetscCall(PetscArraycpy(to->rest, from->rest, n));
   PetscCall(PetscArraycpy(to->bow, from->bow, n));
+  PetscCall(PetscArraycpy(to->dip, from->dip, n));
   PetscCall(PetscArraycpy(to->shares, from->shares, from->offsets[n]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

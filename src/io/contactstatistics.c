@@ -42,6 +42,7 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   contact->force_peak      = PetscMax(contact->force_peak, state->force);
   contact->tension_max     = PetscMax(contact->tension_max, state->tension);
   contact->max_penetration = PetscMax(contact->max_penetration, -state->gap);
+  contact->overlap_unfelt  = PetscMax(contact->overlap_unfelt, state->overlap_unfelt);
   contact->area_max        = PetscMax(contact->area_max, state->area);
   contact->active_max      = PetscMax(contact->active_max, state->active);
   contact->sliding_max     = PetscMax(contact->sliding_max, state->sliding);
@@ -89,7 +90,8 @@ PetscErrorCode StatisticsAddContact(Statistics s, const ControllerFrame *frame)
     any.sliding += frame->pairs[i].sliding;
     any.friction_loss += frame->pairs[i].friction_loss;
     any.obstacle_work += frame->pairs[i].obstacle_work;
-    any.tension = PetscMax(any.tension, frame->pairs[i].tension);
+    any.tension        = PetscMax(any.tension, frame->pairs[i].tension);
+    any.overlap_unfelt = PetscMax(any.overlap_unfelt, frame->pairs[i].overlap_unfelt);
   }
   AddContact(&r->contact, &s->any, &any, frame->time);
   r->steps++;

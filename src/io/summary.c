@@ -21,6 +21,7 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SummarySetReal(object, "tension_max", contact->tension_max));
   PetscCall(SummarySetReal(object, "impulse", contact->impulse));
   PetscCall(SummarySetReal(object, "max_penetration", contact->max_penetration));
+  PetscCall(SummarySetReal(object, "overlap_unfelt", contact->overlap_unfelt));
   PetscCall(SummarySetReal(object, "area_max", contact->area_max));
   PetscCall(SummarySetInteger(object, "active_max", contact->active_max));
   PetscCall(SummarySetReal(object, "gap_final", contact->gap_final));

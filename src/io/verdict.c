@@ -75,6 +75,7 @@ static PetscErrorCode AddNumbers(Verdict *verdict)
       [VERDICT_UNTIED]   = {"pair", "pairs", "the ties of which tie nothing"},
       [VERDICT_BEYOND]   = {"pair", "pairs", "of which nodes beyond the end of the partner bear much"},
       [VERDICT_INSIDE]   = {"pair", "pairs", "that end inside each other"},
+      [VERDICT_UNFELT]   = {"pair", "pairs", "that were inside each other between nodes"},
   };
 
   PetscFunctionBegin;
@@ -201,7 +202,7 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   const char *name;
   ContactLaw  law;
   PetscReal   depth;
-  PetscBool   inside;
+  PetscBool   inside, unfelt;
   PetscInt    side;
 
   PetscFunctionBegin;
@@ -218,6 +219,13 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
                   "tip; set -contact_rows %s, or refine the surface",
                   (double)(100 * state->beyond_impulse / PetscAbsReal(state->normal_impulse)), name, side ? "first" : "second"));
   }
+  PetscCall(ContactIsUnfelt(contact, p, results->pairs[p].overlap_unfelt, &unfelt));
+  if (unfelt)
+    PetscCall(
+        AddOfKind(verdict, VERDICT_UNFELT,
+                  "%s were about %.3g m inside each other between nodes while none touched, as where a corner comes between two: name the body "
+                  "with the corner first in -contact_pairs, or refine the surfaces",
+                  name, (double)results->pairs[p].overlap_unfelt));
   if (inside) PetscCall(AddOfKind(verdict, VERDICT_INSIDE, "%s end %.3g m inside each other", name, (double)depth));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,6 +11,7 @@ typedef enum {
   VERDICT_UNTIED,
   VERDICT_BEYOND,
   VERDICT_INSIDE,
+  VERDICT_UNFELT,
   VERDICT_KINDS
 } VerdictKind;
 

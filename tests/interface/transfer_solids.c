@@ -66,6 +66,7 @@ static void flat_rows(void **state)
         assert_true(interface.rows.opposite[i]);
         assert_true(interface.rows.changed[i]);
         near(interface.rows.area[i], data->areas[i], 1e-14);
+        near(interface.rows.dip[i], 0, 1e-14); /* no point of the partner is closer than the row says */
         if (variant < 2) near(interface.rows.gap[i], 0, 1e-14);
       }
       interface_destroy(&interface);

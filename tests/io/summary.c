@@ -81,6 +81,7 @@ static const char *const keys[] = {
     "contact.force_peak",
     "contact.impulse",
     "contact.max_penetration",
+    "contact.overlap_unfelt",
     "contact.gap_final",
     "schwarz.max",
     "schwarz.mean_all_steps",

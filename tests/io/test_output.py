@@ -32,6 +32,7 @@ CONTACT = {
     "tension_max": float,
     "impulse": float,
     "max_penetration": float,
+    "overlap_unfelt": float,
     "area_max": float,
     "active_max": int,
     "gap_final": float,

@@ -4,6 +4,8 @@
 /* Depth from which on bodies are inside each other, in parts of a contact element: what penalty springs, and faces that do not match, leave
    of depth is less where they do what they should */
 #define INSIDE 0.02
+/* The same somewhere between nodes, while no node of the pair touches: discs of 16 edges that roll over a plane have 0.05 */
+#define UNFELT 0.1
 
 /* Size of the smallest contact element of both bodies [m] */
 static PetscErrorCode LeastElement(Contact contact, const ContactPair *pair, PetscReal *least)
@@ -47,6 +49,17 @@ PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Size of the smallest contact element of what pair `pair` tells of [m] */
+static PetscErrorCode LeastTold(Contact contact, PetscInt pair, PetscReal *least)
+{
+  PetscFunctionBegin;
+  *least = PETSC_MAX_REAL;
+  if (!contact->neighbours.come_and_go) PetscCall(LeastElement(contact, &contact->pairs[pair], least));
+  else
+    for (PetscInt b = 0; b < contact->n_bodies; b++) *least = PetscMin(*least, contact->neighbours.edge[b]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactGetOverlap - how deep the bodies of a pair are inside each other
 
@@ -75,10 +88,40 @@ PetscErrorCode ContactGetOverlap(Contact contact, PetscInt pair, const ContactPa
   PetscAssertPointer(depth, 4);
   PetscAssertPointer(inside, 5);
   *depth = PetscMax(-state->gap, 0);
-  if (contact->neighbours.come_and_go) {
-    least = PETSC_MAX_REAL;
-    for (PetscInt b = 0; b < contact->n_bodies; b++) least = PetscMin(least, contact->neighbours.edge[b]);
-  } else PetscCall(LeastElement(contact, &contact->pairs[pair], &least));
+  PetscCall(LeastTold(contact, pair, &least));
   *inside = (PetscBool)(contact->options.law != CONTACT_LAW_TIED && *depth > INSIDE * least);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactIsUnfelt - whether bodies were deep inside each other where no row felt it
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+. pair    - 0 to the number of pairs - 1
+- overlap - the largest `overlap_unfelt` of its states [m]
+
+  Output Parameter:
+. unfelt - whether that is more than a tenth of a contact element
+
+  Level: intermediate
+
+  Note:
+  A sharp corner that comes between two nodes of the surface that has the rows is not felt before the faces beside it reach these nodes.
+  With rows on the body that has the corner it is, at once.
+
+.seealso: `Contact`, `ContactPairState`, `ContactGetOverlap()`
+@*/
+PetscErrorCode ContactIsUnfelt(Contact contact, PetscInt pair, PetscReal overlap, PetscBool *unfelt)
+{
+  PetscReal least;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(unfelt, 4);
+  PetscCall(LeastTold(contact, pair, &least));
+  *unfelt = (PetscBool)(overlap > UNFELT * least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

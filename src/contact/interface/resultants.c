@@ -20,7 +20,7 @@ enum {
 #define N_KEPT CONTACT_IMPULSES
 
 /* Of what the largest value of a pair's rows is found */
-enum { MAX_PENETRATION, MAX_TENSION, N_MAXIMA };
+enum { MAX_PENETRATION, MAX_TENSION, MAX_UNFELT, N_MAXIMA };
 
 /* Makes room for the resultants of all pairs, and notes cross-sections */
 PetscErrorCode ContactSetUpPairResultants(Contact contact)
@@ -221,6 +221,24 @@ static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
   return PETSC_FALSE;
 }
 
+/* The largest gap, with its sign turned, of rows that do not touch, and how far the partner's points near them are beyond [m] */
+static PetscErrorCode FindUnloaded(Contact contact, const ContactPair *pair, PetscReal maxima[])
+{
+  TransferRows rows;
+
+  PetscFunctionBegin;
+  if (pair->far) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  for (PetscInt i = pair->begin; i < pair->end; i++) {
+    const PetscInt node = (i - pair->begin) / pair->components;
+
+    maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
+    if (contact->rows.opposite[i] && !rows.beyond[node])
+      maxima[MAX_UNFELT] = PetscMax(maxima[MAX_UNFELT], rows.dip[node] - contact->end.gap[i]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* This rank's sums and largest values over the rows of pair p */
 static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
 {
@@ -235,10 +253,9 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   sums[SUM_NORMAL_IMPULSE] = contact->resultants.impulse[N_KEPT * p + 6];
   sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
   maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
-  maxima[MAX_TENSION]      = 0;
+  maxima[MAX_TENSION] = maxima[MAX_UNFELT] = 0;
   if (!contact->held.merger && !IsLoaded(contact, pair)) { /* moments of merged rows take a word of all ranks */
-    for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++)
-      maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
+    PetscCall(FindUnloaded(contact, pair, maxima));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(TransferGetRows(pair->transfer, &rows));
@@ -293,6 +310,7 @@ PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscIn
     }
     state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
     state->beyond_impulse = sums[SUM_BEYOND];
+    state->overlap_unfelt = state->active || state->force != 0 || contact->options.law == CONTACT_LAW_TIED ? 0 : maxima[MAX_UNFELT];
     state->sliding        = (PetscInt)sums[SUM_SLIDING];
     state->friction_loss  = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
     state->obstacle_work  = contact->friction.pair_driven ? contact->friction.pair_driven[p] : 0;

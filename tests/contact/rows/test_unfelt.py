@@ -1,0 +1,50 @@
+"""A sharp corner that comes between two nodes of a plate, corner first: the gaps of the plate's rows are means around its nodes, and do not see it.
+
+A square of 0.2 m stands on its corner 2 mm above the middle of a face of the plate, and falls at 10 m/s. Its faces are at 45 degrees: the plate's nodes, half a face h
+away, meet them once the corner is h / 2 deep, and their rows, which are means, a little before. The square's own row for its corner is closed in time.
+"""
+
+import pytest
+from setups import box, material
+
+GAP, SPEED, STEP, HALF_DIAGONAL = 0.002, 10, 1e-5, 0.1 * 2**0.5
+FACES = 53
+SQUARE = f"{box('a', (4, 4), (-0.1, -0.1), (0.1, 0.1), '-a_dm_plex_simplex 0')} -a_rotate 45 -a_translate 0,{GAP + HALF_DIAGONAL!r} -a_initial_velocity 0,-{SPEED}"
+PLATE = box("b", (FACES, 10), (-0.5, -0.2), (0.5, 0), "-b_dm_plex_simplex 0")
+BODIES = " ".join(f"{material(name, e=1e8, rho=1000)} -{name}_ts_type centraldifference" for name in "ab")
+CASE = f"-bodies a,b {SQUARE} {PLATE} {BODIES} -contact_facing false -time_step {STEP} -time_end 1.1e-3"
+
+
+def warned(run):
+    return [text for text in run.summary["warnings"] if "between nodes while none touched" in text]
+
+
+@pytest.mark.parametrize("ranks", [1, 2, 3])
+@pytest.mark.parametrize("pairs", ["auto", "b:a"])
+def test_corner_between_two_nodes(impakt, pairs, ranks):
+    """The run says how deep the corner was inside the plate when the nodes beside it touched, which is how far it had come by then."""
+    run = impakt(f"{CASE} -contact_pairs {pairs}", ranks)
+    deepest = run.summary["contact"]["overlap_unfelt"]
+    travelled = SPEED * (run.summary["contact"]["first_contact_time"] - STEP) - GAP  # until the last step without contact
+    assert deepest == pytest.approx(travelled, rel=1e-3)  # nothing else moves before
+    assert 0.3 <= deepest * FACES <= 0.5  # of a face of the plate
+    assert len(warned(run)) == 1
+    assert f"{deepest:.3g} m" in warned(run)[0]
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+def test_corner_that_has_a_row(impakt, ranks):
+    run = impakt(f"{CASE} -contact_pairs a:b", ranks)
+    assert run.summary["contact"]["overlap_unfelt"] <= 1e-12
+    assert not warned(run)
+    # the step in which the corner arrives, at the end of which it may just not touch
+    assert GAP / SPEED - STEP <= run.summary["contact"]["first_contact_time"] <= GAP / SPEED + 2 * STEP
+
+
+def test_flat_bodies_that_bounce_say_nothing(impakt):
+    """A square that falls flat on a plate whose faces do not match."""
+    flat = SQUARE.replace("-a_rotate 45", "-a_rotate 0").replace(repr(GAP + HALF_DIAGONAL), repr(GAP + 0.1))
+    run = impakt(f"{CASE.replace(SQUARE, flat)} -contact_pairs auto -time_end 6e-3")
+    assert run.summary["contact"]["steps_in_contact"] > 10
+    assert run.summary["contact"]["overlap_unfelt"] * FACES <= 0.05  # of a face
+    assert not warned(run)
