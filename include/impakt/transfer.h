@@ -45,6 +45,7 @@ typedef struct {
   const PetscReal *slip;     /* by how much the partner had slipped between the two last builds of the row, in parts of the face size */
   const PetscReal *dip;      /* how far the closest point of the partner near the node was below the row's gap when it was built last: gaps
                                 are means around their nodes [m] */
+  PetscReal        most_dip; /* the largest of these on this rank [m] */
   const PetscReal *bow;      /* depth that the row may have between surfaces which only touch, since the partner's faces are bent [m] */
 } TransferRows;
 

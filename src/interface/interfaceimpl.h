@@ -69,6 +69,7 @@ typedef struct {
   PetscReal *gap, *area, *normals; /* normals: dim each */
   PetscReal *bow;                  /* depth that the bend of the partner's faces makes of surfaces that only touch [m] */
   PetscReal *dip;                  /* how far the partner's closest point near the node was below the row's gap at the build [m] */
+  PetscReal  most_dip;             /* the largest of them */
   PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
@@ -210,6 +211,7 @@ PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
+PETSC_INTERN void           RowSetFindMostDip(PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetConnectColumns(MPI_Comm, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],

@@ -33,6 +33,12 @@ PetscErrorCode RowSetDestroy(RowSet *set)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+void RowSetFindMostDip(PetscInt n, RowSet *set)
+{
+  set->most_dip = 0;
+  for (PetscInt row = 0; row < n; row++) set->most_dip = PetscMax(set->most_dip, set->dip[row]);
+}
+
 /* Orders shares by row, then by displacement, then by value, so that sums do not depend on the order in which ranks and faces add to them
  */
 static int CompareShares(const void *a, const void *b, void *context)
@@ -184,7 +190,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind, set->bow[row]));
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
   set->gap[row] = gap;
-  set->dip[row] = PetscMax(present - lowest, 0);
+  set->dip[row] = PetscMax(present - lowest, 0); /* 0 where it is not known, as between points, which have no other beside them */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -311,6 +317,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
     else PetscCall(FinishRow(transfer, row, x, reference, normals, ends[row], lowest[row], near, behind, &set));
     set.area[row] = set.opposite[row] ? lumped[row] : 0;
   }
+  RowSetFindMostDip(transfer->n, &set);
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;

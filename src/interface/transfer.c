@@ -273,6 +273,7 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->slip     = transfer->slip;
   rows->bow      = set->bow;
   rows->dip      = set->dip;
+  rows->most_dip = set->most_dip;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

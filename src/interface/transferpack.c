@@ -5,7 +5,7 @@
 #include "interfaceimpl.h"
 #include "transfervisit.h"
 
-#define N_ROW     40 /* numbers of a node of the first side: key, 38 more */
+#define N_ROW     40 /* numbers of a node of the first side: key, 37 more */
 #define N_SHARE   8  /* key of its row, position of the partner's node, weight and goal */
 #define N_PARTNER 12 /* key, place at the last build, place and motion at the last update */
 
@@ -233,6 +233,7 @@ PetscErrorCode TransferUnpack(Transfer transfer, const char pair[], Tables table
     PetscCall(PetscArraycpy(copy, packed + N_ROW * row, N_ROW));
     CopyRow(transfer, i, PETSC_TRUE, copy + 3);
   }
+  RowSetFindMostDip(transfer->n, &transfer->rows);
   transfer->saved.builds = 0;
   if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Name(pair, "partners", name, sizeof(name)));

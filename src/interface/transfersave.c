@@ -14,6 +14,7 @@ static PetscErrorCode CopyNumbers(PetscInt dim, PetscInt n, const RowSet *from, 
   PetscCall(PetscArraycpy(to->rest, from->rest, n));
   PetscCall(PetscArraycpy(to->bow, from->bow, n));
   PetscCall(PetscArraycpy(to->dip, from->dip, n));
+  to->most_dip = from->most_dip;
   PetscCall(PetscArraycpy(to->shares, from->shares, from->offsets[n]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -25,6 +25,7 @@ static PetscErrorCode VisitRows(Transfer transfer, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "normals", dim * n, rows->normals));
   PetscCall(CheckpointVisitReals(checkpoint, "bow", n, rows->bow));
   PetscCall(CheckpointVisitReals(checkpoint, "dip", n, rows->dip));
+  RowSetFindMostDip(n, rows);
   PetscCall(CheckpointVisitReals(checkpoint, "rest", n, rows->rest));
   if (!CheckpointLoads(checkpoint) || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, n, rows));

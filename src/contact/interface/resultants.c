@@ -228,11 +228,11 @@ static PetscErrorCode FindUnloaded(Contact contact, const ContactPair *pair, Pet
 
   PetscFunctionBegin;
   if (pair->far) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = pair->begin; i < pair->end; i++) maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  for (PetscInt i = pair->begin; i < pair->end; i++) {
+  for (PetscInt i = pair->begin; i < pair->end && rows.most_dip > -maxima[MAX_PENETRATION]; i++) {
     const PetscInt node = (i - pair->begin) / pair->components;
 
-    maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
     if (contact->rows.opposite[i] && !rows.beyond[node])
       maxima[MAX_UNFELT] = PetscMax(maxima[MAX_UNFELT], rows.dip[node] - contact->end.gap[i]);
   }

@@ -1,7 +1,8 @@
-"""A sharp corner that comes between two nodes of a plate, corner first: the gaps of the plate's rows are means around its nodes, and do not see it.
+"""A sharp corner that meets a plate whose nodes have the rows: their gaps are means around the nodes, and do not see it as it is.
 
-A square of 0.2 m stands on its corner 2 mm above the middle of a face of the plate, and falls at 10 m/s. Its faces are at 45 degrees: the plate's nodes, half a face h
-away, meet them once the corner is h / 2 deep, and their rows, which are means, a little before. The square's own row for its corner is closed in time.
+A square of 0.2 m stands on its corner 2 mm above the plate, and falls at 10 m/s. Where its faces are at 45 degrees and the corner is above the middle of a face of the
+plate, the nodes beside, half a face h away, meet them once the corner is h / 2 deep, and their rows, which are means, a little before. The square's own row for its
+corner is closed in time.
 """
 
 import pytest
