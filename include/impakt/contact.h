@@ -242,8 +242,8 @@ typedef struct {
   PetscReal friction_loss;   /* energy that friction has taken so far [J] */
   PetscReal obstacle_work;   /* work that an obstacle whose surface moves has done so far [J] */
   PetscInt  sliding;         /* of the nodes in contact those that slide, with friction */
-  PetscReal overlap_unfelt;  /* about how deep the bodies are inside each other somewhere while no node of the pair touches: gaps are means
-                                around the nodes that have the rows. 0 or positive, and never of ties [m] */
+  PetscReal overlap_unfelt;  /* about how deep the bodies are inside each other somewhere before any node of the pair has touched: gaps are
+                                means around the nodes that have the rows. 0 or positive, and never of ties [m] */
   PetscReal beyond_impulse;  /* what nodes beyond the end of the partner bear of that, see `TransferSetGuards()`; not trapezoidal [N s] */
 } ContactPairState;
 

@@ -17,7 +17,7 @@ typedef struct {
   PetscReal force_peak, tension_max;          /* over the whole run [N] */
   PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */
   PetscReal max_penetration;                  /* of the rows, whose gaps are means around nodes; 0 or positive [m] */
-  PetscReal overlap_unfelt;                   /* the largest of a point while no node of the pair touches; 0 or positive [m] */
+  PetscReal overlap_unfelt;                   /* the largest of a point before any node of the pair has touched; 0 or positive [m] */
   ContactTimesResults times;                  /* inside controller steps, by interpolation */
   PetscReal           impulse_vector[3]; /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
   PetscReal           area_max;          /* in contact at the same time [m^2] */

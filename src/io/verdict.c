@@ -223,7 +223,7 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   if (unfelt)
     PetscCall(AddOfKind(
         verdict, VERDICT_UNFELT,
-        "%s were about %.3g m inside each other between nodes while none touched, as where a corner comes between two: name the body "
+        "%s were about %.3g m inside each other between nodes before any touched, as where a corner comes between two: name the body "
         "with the corner first in -contact_pairs, or refine the surfaces",
         name, (double)results->pairs[p].overlap_unfelt));
   if (inside) PetscCall(AddOfKind(verdict, VERDICT_INSIDE, "%s end %.3g m inside each other", name, (double)depth));

@@ -4,7 +4,7 @@
 /* Depth from which on bodies are inside each other, in parts of a contact element: what penalty springs, and faces that do not match, leave
    of depth is less where they do what they should */
 #define INSIDE 0.02
-/* The same somewhere between nodes, while no node of the pair touches: discs of 16 edges that roll over a plane have 0.05 */
+/* The same somewhere between nodes, before any node of the pair has touched: discs of 16 edges that meet have up to 0.05 */
 #define UNFELT 0.1
 
 /* Size of the smallest contact element of both bodies [m] */
@@ -94,7 +94,7 @@ PetscErrorCode ContactGetOverlap(Contact contact, PetscInt pair, const ContactPa
 }
 
 /*@
-  ContactIsUnfelt - whether bodies were deep inside each other where no row felt it
+  ContactIsUnfelt - whether bodies were deep inside each other before any row felt it
 
   Not Collective
 

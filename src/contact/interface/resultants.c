@@ -221,6 +221,10 @@ static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
   return PETSC_FALSE;
 }
 
+/* Rows with gaps of more than this part of a face have no corner beside them of which they should feel something: they look along the
+   flanks of bodies that pass each other */
+#define CLOSE 0.5
+
 /* The largest gap, with its sign turned, of rows that do not touch, and how far the partner's points near them are beyond [m] */
 static PetscErrorCode FindUnloaded(Contact contact, const ContactPair *pair, PetscReal maxima[])
 {
@@ -233,7 +237,7 @@ static PetscErrorCode FindUnloaded(Contact contact, const ContactPair *pair, Pet
   for (PetscInt i = pair->begin; i < pair->end && rows.most_dip > -maxima[MAX_PENETRATION]; i++) {
     const PetscInt node = (i - pair->begin) / pair->components;
 
-    if (contact->rows.opposite[i] && !rows.beyond[node])
+    if (contact->rows.opposite[i] && !rows.beyond[node] && contact->end.gap[i] <= CLOSE * rows.size[node])
       maxima[MAX_UNFELT] = PetscMax(maxima[MAX_UNFELT], rows.dip[node] - contact->end.gap[i]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -310,10 +314,13 @@ PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscIn
     }
     state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
     state->beyond_impulse = sums[SUM_BEYOND];
-    state->overlap_unfelt = state->active || state->force != 0 || contact->options.law == CONTACT_LAW_TIED ? 0 : maxima[MAX_UNFELT];
-    state->sliding        = (PetscInt)sums[SUM_SLIDING];
-    state->friction_loss  = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
-    state->obstacle_work  = contact->friction.pair_driven ? contact->friction.pair_driven[p] : 0;
+    /* once they have touched, rows of surfaces that roll on each other are older than what they say of points between nodes */
+    if (!state->active && state->force == 0 && sums[SUM_NORMAL_IMPULSE] == 0 && contact->options.law != CONTACT_LAW_TIED)
+      state->overlap_unfelt = maxima[MAX_UNFELT];
+    else state->overlap_unfelt = 0;
+    state->sliding       = (PetscInt)sums[SUM_SLIDING];
+    state->friction_loss = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
+    state->obstacle_work = contact->friction.pair_driven ? contact->friction.pair_driven[p] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
