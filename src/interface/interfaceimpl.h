@@ -68,7 +68,8 @@ typedef struct {
   PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
   PetscReal *bow;                  /* depth that the bend of the partner's faces makes of surfaces that only touch [m] */
-  PetscReal *dip;                  /* how far the partner's closest point near the node was below the row's gap at the build [m] */
+  PetscReal *dip;                  /* how far the partner's closest point near the node was below the row's gap at the build, 0 where
+                                      none was, or none is known, as between points [m] */
   PetscReal  most_dip;             /* the largest of them */
   PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */

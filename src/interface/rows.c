@@ -9,6 +9,8 @@
 #define PRUNE 1e-12 /* smaller weights are round-off, and would only fill the matrices */
 /* In a rebuild, partners are looked for this far behind at least [parts of the smallest face] */
 #define LEAST_DEPTH 0.5
+/* Points of the partner that are closer than the gap of a row by less than this are round-off of a flat one [parts of the face] */
+#define FLAT 1e-6
 /* Gaps are along normals, which may be oblique to the shortest way out of an overlap: this many times as long, at 60 degrees */
 #define OBLIQUE 2
 
@@ -190,7 +192,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind, set->bow[row]));
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
   set->gap[row] = gap;
-  set->dip[row] = PetscMax(present - lowest, 0); /* 0 where it is not known, as between points, which have no other beside them */
+  set->dip[row] = present - lowest > FLAT * data->sizes[row] ? present - lowest : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -237,7 +237,7 @@ static PetscErrorCode FindUnloaded(Contact contact, const ContactPair *pair, Pet
   for (PetscInt i = pair->begin; i < pair->end && rows.most_dip > -maxima[MAX_PENETRATION]; i++) {
     const PetscInt node = (i - pair->begin) / pair->components;
 
-    if (contact->rows.opposite[i] && !rows.beyond[node] && contact->end.gap[i] <= CLOSE * rows.size[node])
+    if (rows.dip[node] > 0 && contact->rows.opposite[i] && !rows.beyond[node] && contact->end.gap[i] <= CLOSE * rows.size[node])
       maxima[MAX_UNFELT] = PetscMax(maxima[MAX_UNFELT], rows.dip[node] - contact->end.gap[i]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
