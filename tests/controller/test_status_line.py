@@ -15,7 +15,7 @@ import pytest
 from conftest import IMPAKT, MPIEXEC, ROOT
 
 RUN = [IMPAKT, "-options_file", ROOT / "options/bars-high-speed.opts", "-time_step", "2.5e-9"]  # of some seconds
-BAR = re.compile(r"\[[#.]+\] +\d+ %  \d+ (s|min) to go")
+BAR = re.compile(r"\[[#.]+\] +\d+ %  (\d+ h )?\d+ (s|min) to go")
 
 
 def set_width(terminal, columns):
