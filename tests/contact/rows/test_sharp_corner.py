@@ -42,6 +42,18 @@ def test_corner_that_has_a_row(impakt, ranks):
     assert GAP / SPEED - STEP <= run.summary["contact"]["first_contact_time"] <= GAP / SPEED + 2 * STEP
 
 
+@pytest.mark.parametrize("ranks", [1, 3])
+def test_corner_of_a_cube(impakt, ranks):
+    """On its corner above the middle of a face of a plate of hexahedra, which has the rows: by the end of the run it is 8 mm deep, and nothing has touched."""
+    end = 1e-3
+    cube = f"{box('a', (3, 3, 3), (-0.1,) * 3, (0.1,) * 3)} -a_rotate 1,-1,0,54.735610317 -a_translate 0.003,0.002,{GAP + 0.1 * 3**0.5!r} -a_initial_velocity 0,0,-{SPEED}"
+    plate = box("b", (17, 17, 3), (-0.3, -0.3, -0.1), (0.3, 0.3, 0))
+    run = impakt(f"-bodies a,b {cube} {plate} {BODIES} -contact_facing false -contact_pairs b:a -time_step {STEP} -time_end {end}", ranks)
+    assert run.summary["contact"]["steps_in_contact"] == 0
+    assert run.summary["contact"]["overlap_unfelt"] == pytest.approx(SPEED * end - GAP, rel=1e-6)
+    assert len(warned(run)) == 1
+
+
 def test_flat_bodies_that_bounce_say_nothing(impakt):
     """A square that falls flat on a plate whose faces do not match."""
     flat = SQUARE.replace("-a_rotate 45", "-a_rotate 0").replace(repr(GAP + HALF_DIAGONAL), repr(GAP + 0.1))
