@@ -225,7 +225,7 @@ static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
    flanks of bodies that pass each other */
 #define CLOSE 0.5
 
-/* The largest gap, with its sign turned, of rows that do not touch, and how far the partner's points near them are beyond [m] */
+/* Of a pair that does not touch: the smallest gap, with its sign turned, and how deep the partner's points near the nodes are [m] */
 static PetscErrorCode FindUnloaded(Contact contact, const ContactPair *pair, PetscReal maxima[])
 {
   TransferRows rows;
