@@ -7,7 +7,6 @@
 #   INDICES=64              PETSc with indices of 64 bits, for more than 2^31 unknowns, in build/indices-64 (.setup/petsc --indices-64)
 #   COVERAGE=1              counts the lines that run, in build/coverage
 #   TESTS="tests/contact -k x"  what `make test` hands to pytest  V=1      show whole commands
-#   WITHIN=3600             tests that have not begun after so many seconds are skipped, and counted as skipped
 #   PREFIX=/usr/local       where `make install` puts program, library and headers; DESTDIR=stage puts them under a stage
 
 cores := $(shell nproc)
@@ -119,7 +118,7 @@ ifneq ($(filter analyse coverage,$(MAKECMDGOALS)),)
 analysis := $(dir $(shell .setup/python --analysis))
 endif
 
-.PHONY: all run paper test test-all test-long bench bench-compare scaling docs format lint analyse coverage fuzz fuzzers install force
+.PHONY: all run paper test test-all validate mutants bench bench-compare scaling docs format lint analyse coverage fuzz fuzzers install force
 .DELETE_ON_ERROR:
 .SECONDARY: $(addsuffix .o,$(units) $(replays))
 
@@ -145,23 +144,29 @@ run: $(BUILD)/impakt ## the paper's high-speed impact: results table, history, s
 	@$(PYTHON) plots/impact.py out/impact-high-speed.h5 out/impact-high-speed.png
 	@printf '%s\n' 'history  out/impact-high-speed.h5' 'summary  out/impact-high-speed.json' 'plot     out/impact-high-speed.png'
 
-paper: $(BUILD)/impakt ## all figures and tables of the paper, and a report, in out/paper/
-	@status=0; export PYTHONPATH=plots IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD); \
-	$(PYTHON) -m paper --program $(BUILD)/impakt --out out/paper || status=$$?; \
-	$(PYTHON) -m pytest -q -p no:cacheprovider --rootdir=. tests/paper/golden.py || status=$$?; exit $$status
+# No test may hang for ever: one that does not end within 1500 s fails, and shows where it was
+pytest := IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" $(PYTHON) -m pytest -q -n $(cores) --dist worksteal --durations 10 \
+  --timeout 1500 -p no:cacheprovider --rootdir=.
+report := PYTHONPATH=plots $(PYTHON) -m paper --program $(BUILD)/impakt --out out/paper
 
-# Where TESTS does not say what is wanted, `make test` leaves out what is marked as long.
-test: ## unit tests on 1 to 3 ranks and regression tests, without the long ones; or what TESTS names
-test-all: ## all tests
-test-long: ## the tests that `make test` leaves out, but for the longest
-test-longest: ## those that take more than 40 s each
-test: marked := $(if $(filter file,$(origin TESTS)),-m "not long")
-test-long: marked := -m "long and not longest"
-test-longest: marked := -m longest
-# No test may hang for ever: one that does not end within 1500 s (the longest takes 180 s) fails, and shows where it was
-test test-all test-long test-longest: $(BUILD)/impakt $(units) $(replays)
-	@IMPAKT=$(CURDIR)/$(BUILD)/impakt IMPAKT_BUILD=$(CURDIR)/$(BUILD) MPIEXEC="$(MPIEXEC)" \
-	$(PYTHON) -m pytest -q -n $(cores) --dist worksteal --timeout 1500 -p no:cacheprovider --rootdir=. $(if $(WITHIN),--begin-within $(WITHIN)) $(TESTS) $(marked)
+paper: $(BUILD)/impakt ## all figures and tables of the paper, and a report, in out/paper/
+	@status=0; $(report) || status=$$?; $(pytest) tests/paper/golden.py || status=$$?; exit $$status
+
+# Three tiers. What TESTS names runs with both of the first two, for what is left to `make validate` with that alone.
+test: ## after every change: unit tests and short runs, 5 minutes; or what TESTS names
+test-all: ## what CI runs: those and the long ones, 20 minutes with make analyse
+test: marked := $(if $(filter file,$(origin TESTS)),not long and not validate,not validate)
+test-all: marked := not validate
+test test-all: $(BUILD)/impakt $(units) $(replays)
+	@$(pytest) $(TESTS) -m "$(marked)"
+
+validate: $(BUILD)/impakt $(units) ## theory, peers and the paper at full length, random variants: before an issue about physics is called done
+	@status=0; $(if $(filter file,$(origin TESTS)),$(report) || status=$$?;) \
+	$(pytest) $(TESTS) $(if $(filter file,$(origin TESTS)),tests/paper/golden.py) -m validate || status=$$?; exit $$status
+
+# Each fault of tests/mutants/faults.json: MUTANTS="name other-name" names some of them
+mutants: $(BUILD)/impakt $(units) ## deliberate faults in src, one after the other: does a test find each of them?
+	@$(PYTHON) tests/mutants/run.py --build $(BUILD) --petsc "$(PETSC_ROOT)" --python "$(PYTHON)" --mpiexec "$(MPIEXEC)" $(MUTANTS)
 
 # BENCH="--largest 10000" makes it shorter
 bench: $(BUILD)/impakt $(BUILD)/yardstick $(BUILD)/yardstick_hex8 $(BUILD)/yardstick_solids ## time and memory, beside plain C yardsticks: a report in out/bench
@@ -187,10 +192,11 @@ docs: $(BUILD)/impakt ## the table of options in options/README.md, as the progr
 format: ## clang-format over all C
 	@$(bin)clang-format -i $(c_files)
 
-lint: ## clang-format, ruff, and shellcheck where there is one
+lint: ## clang-format, ruff, shellcheck where there is one, subjects of commits, lines of Markdown
 	@$(bin)clang-format --dry-run -Werror $(c_files)
 	$(bin)ruff check --no-cache plots tests
 	@if [ -x $(bin)shellcheck ]; then set -x; $(bin)shellcheck -x $(sh_files); fi
+	@$(PYTHON) tests/analysis/wording.py
 
 analyse: $(members:.o=.tidy) $(BUILD)/src/main.tidy ## clang-tidy and cppcheck over src, which have to find nothing
 	@$(analysis)cppcheck --quiet -j $(cores) --std=c11 --enable=warning,performance,portability --inline-suppr --error-exitcode=1 \

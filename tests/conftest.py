@@ -189,30 +189,9 @@ def impakt(tmp_path):
             done.history.close()
 
 
-def pytest_addoption(parser):
-    parser.addoption("--begin-within", type=float, metavar="SECONDS", help="tests that have not begun after so many seconds are skipped, and counted as skipped")
-
-
 def pytest_configure(config):
-    within = config.getoption("--begin-within")
-    config.begin_before = time.monotonic() + within if within is not None else float("inf")
-    config.addinivalue_line(
-        "markers",
-        "long: what `make test` leaves to `make test-long`. A test is long if it takes more than 2 s of a core, with the runs that it alone needs, or if it "
-        "repeats at some cost, for one more mesh, pairing or number of ranks, what a quicker case shows of the same feature.",
-    )
-    config.addinivalue_line("markers", "longest: long, and more than 40 s by itself, which is left to `make test-longest`.")
-
-
-@pytest.hookimpl(tryfirst=True)
-def pytest_runtest_setup(item):
-    if time.monotonic() > item.config.begin_before:
-        pytest.skip("left out: the time of --begin-within is over")
-
-
-def pytest_itemcollected(item):
-    if item.get_closest_marker("longest"):
-        item.add_marker("long")
+    config.addinivalue_line("markers", "long: what `make test` leaves to `make test-all`: a test that takes more than 2 s of a core, or a further mesh, pairing or number of ranks.")
+    config.addinivalue_line("markers", "validate: what both leave to `make validate`: comparisons at full length, and random variants.")
 
 
 def tally(config):

@@ -69,15 +69,14 @@ def test_nothing_is_left_out():
     assert len(FILES) == sum(text.count("\n```opts\n") for text in TEXT.values()) >= 1
 
 
-@pytest.mark.parametrize("command", of_kind("make"))
-def test_make(command):
+def test_make():
+    """Targets and variables that are given to make."""
     makefile = (ROOT / "Makefile").read_text()
-    assigned = re.compile(r"[A-Z_]+=")
-    for word in shlex.split(command):
-        if assigned.match(word):
-            assert word.split("=")[0] in makefile, word
-        elif word != "make" and not word.startswith("-"):
-            assert re.search(rf"^{word}:.*##", makefile, re.MULTILINE), f"no target {word}"
+    words = {word for command in of_kind("make") for word in shlex.split(command)}
+    given = {word.split("=")[0] for word in words if re.match(r"[A-Z_]+=", word)}
+    targets = {word for word in words - {"make"} if not re.match(r"[A-Z_]+=|-", word)}
+    assert not [name for name in given if name not in makefile]
+    assert targets <= set(re.findall(r"^([\w-]+):.*##", makefile, re.MULTILINE))
 
 
 def like_the_repository(folder):
@@ -108,7 +107,10 @@ def run_with_history(history):
     return next((command.removeprefix("build/impakt ") for command in commands), DEFAULTS)
 
 
-@pytest.mark.parametrize("command", of_kind("run"))
+PICTURES = [command for command in of_kind("run") if "plots/" in command and not command.endswith(("/two-blocks.png", "/history.png"))]
+
+
+@pytest.mark.parametrize("command", [command if command not in PICTURES else pytest.param(command, marks=pytest.mark.long) for command in of_kind("run")])
 def test_command(command, shared_run, launch, tmp_path):
     """As it stands, in a folder that looks like the repository; figures are made of a history or of fields that are there already."""
     like_the_repository(tmp_path)
@@ -166,22 +168,18 @@ def headings(text):
         yield re.sub(r"[^\w\- ]", "", line.lower()).replace(" ", "-")
 
 
-@pytest.mark.parametrize("name", list(TEXT))
-def test_links(name):
-    """Those within the repository lead to something that is there."""
-    targets = re.findall(r"\]\(([^)\s]+)\)", TEXT[name])
+def test_links():
+    """Those within the repository lead to something that is there, and from the first README to the others."""
     broken = []
-    for target in targets:
-        if re.match(r"https?://", target):
-            continue
-        place, _, anchor = target.partition("#")
-        path = (ROOT / name).parent / place if place else ROOT / name
-        if not path.exists() or (anchor and anchor not in headings(path.read_text())):
-            broken.append(target)
+    for name, text in TEXT.items():
+        for target in re.findall(r"\]\(([^)\s]+)\)", text):
+            if re.match(r"https?://", target):
+                continue
+            place, _, anchor = target.partition("#")
+            path = (ROOT / name).parent / place if place else ROOT / name
+            if not path.exists() or (anchor and anchor not in headings(path.read_text())):
+                broken.append(f"{name}: {target}")
     assert not broken
-
-
-def test_the_first_one_leads_to_the_others():
     linked = set(re.findall(r"\]\(([^)#]+README\.md)", TEXT["README.md"]))
     assert {"options/README.md", "src/README.md", "tests/README.md", "tests/scaling/README.md", "plots/README.md"} <= linked
 
@@ -219,23 +217,25 @@ def test_files_that_are_named():
     assert not missing
 
 
-@pytest.mark.parametrize("name", [name for name, text in TEXT.items() if name.startswith("src/") and "\n| file | holds |\n" in text])
-def test_tables_of_files(name):
+def test_tables_of_files():
     """In a table of the files of a folder of src/, all sources of that folder are, and no others."""
-    table = TEXT[name].split("\n| file | holds |\n")[1].split("\n\n")[0]
-    listed = {word for line in table.splitlines()[1:] for word in re.findall(r"`([\w.]+)`", line.split(" | ")[0])}
-    here = {path.name for path in (ROOT / name).parent.glob("*.[ch]")}
-    assert listed <= here
-    assert {file for file in here if file.endswith(".c")} <= listed
+    wrong = []
+    for name in [name for name, text in TEXT.items() if name.startswith("src/") and "\n| file | holds |\n" in text]:
+        table = TEXT[name].split("\n| file | holds |\n")[1].split("\n\n")[0]
+        listed = {word for line in table.splitlines()[1:] for word in re.findall(r"`([\w.]+)`", line.split(" | ")[0])}
+        here = {path.name for path in (ROOT / name).parent.glob("*.[ch]")}
+        missing = {file for file in here if file.endswith(".c")} - listed
+        wrong += [f"{name}: {file}" for file in sorted(missing | (listed - here))]
+    assert not wrong
 
 
 def test_functions_that_are_named():
     """`Function()` in a README of src/ is a function or macro of Impakt, or one of PETSc."""
-    code = "\n".join(path.read_text() for path in SOURCES)
+    called = {word for path in SOURCES for word in re.findall(r"\b(\w+)\(", path.read_text())}
     petsc = re.compile(r"(TS|SNES|Petsc|DM|KSP|Mat|Vec|PC)[A-Z2]\w*|DMPlex\w+")
     named = {(name, word) for name, text in TEXT.items() if name.startswith("src/") for word in re.findall(r"`([A-Z]\w+)\(\)`", text)}
     assert len(named) > 80
-    missing = sorted(f"{name}: {word}" for name, word in named if not re.search(rf"\b{word}\(", code) and not petsc.fullmatch(word) and not word.endswith(("Xxx", "_Xxx")))
+    missing = sorted(f"{name}: {word}" for name, word in named if word not in called and not petsc.fullmatch(word) and not word.endswith(("Xxx", "_Xxx")))
     assert not missing
 
 

@@ -1,5 +1,6 @@
-"""The CMocka programs, which are the C files of all folders here but fuzz, scaling and library, each on 1, 2 and 3 ranks or on those that a comment
-in it names: /* ranks: 1 2 */. On those that another one names, /* long: 3 */, only where long tests are run; on all, if it names none: /* long */"""
+"""The CMocka programs, which are the C files of all folders here but fuzz, scaling and library, each on one rank or on those that a comment in it
+names, where something parallel is tested: /* ranks: 1 3 */. On those that another one names, /* long: 3 */, only where long tests are run; on all, if it
+names none: /* long */"""
 
 import os
 import re
@@ -19,7 +20,7 @@ def cases():
             continue
         text = source.read_text()
         named, long = RANKS.search(text), LONG.search(text)
-        for ranks in re.findall(r"\d+", named.group(1)) if named else "123":
+        for ranks in re.findall(r"\d+", named.group(1)) if named else "1":
             is_long = long and (long.group(1) is None or ranks in re.findall(r"\d+", long.group(1)))
             yield pytest.param(program, int(ranks), id=f"{program}-{ranks}", marks=[pytest.mark.long] if is_long else [])
 

@@ -6,6 +6,7 @@ import sys
 import cattaneo
 import numpy as np
 import pytest
+from cases import long, validate
 from conftest import ROOT
 
 CYLINDERS = "-options_file options/cattaneo-cylinders.opts"
@@ -27,11 +28,12 @@ def errors(run, step):
     return np.abs(np.abs(ends) - cattaneo.stick(2, run.q[step])).max() / element, np.abs(off).max(), np.sqrt(np.mean(off**2)), element
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("options", ["", OTHER, f"{OTHER} {SWAPPED}"])
+@pytest.mark.parametrize("options", [*long(""), *validate(OTHER, f"{OTHER} {SWAPPED}")])
 def test_cylinders(options, shared_run):
-    """In each of the 20 steps in which the force across grows."""
-    run = read(shared_run(f"{CYLINDERS} {options}"))
+    """In each of the 20 steps in which the force across grows. Before, while equal cylinders of equal meshes are pressed, nothing slides by symmetry, though each normal
+    is turned by what the surfaces are pressed flat by."""
+    made = shared_run(f"{CYLINDERS} {options}")
+    run = read(made)
     pushed = np.flatnonzero(run.time > 0.51)
     assert len(pushed) == 20
     assert run.a[-1] < run.radius / 10 and run.q[-1] == pytest.approx(0.91, abs=0.02)
@@ -43,6 +45,9 @@ def test_cylinders(options, shared_run):
         assert rms <= 0.025  # measured: 0.010, 0.020, 0.019
         assert most <= 0.1  # at c, where theory has a corner. Measured: 0.037, 0.079, 0.077
     assert run.loss[-1] > 0
+    if not options:
+        before = run.time < 0.51
+        assert np.abs(run.loss[before]).max() <= 1e-12 * made.history["body/upper/potential"][before][-1]
 
 
 PRESSED = f"{CYLINDERS} -time_end 0.5"
@@ -50,22 +55,12 @@ STIFF = f"{PRESSED} -upper_youngs_modulus 1e11 -contact_friction 0.05"
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("options", [STIFF, f"{STIFF} {SWAPPED}"])
-def test_unequal_stiffness(options, shared_run):
+def test_unequal_stiffness(shared_run):
     """A cylinder that is 100 times as stiff keeps its shape: rows that lie as it does from the start take as much of the energy as those that are built again in
     each step (6.61 J for 5.93 J with rows half way between both)."""
-    once, again = (shared_run(f"{options} {more}").summary["contact"] for more in ("", "-contact_angle_bound 1e-5"))
-    assert once["friction_tilt"] <= 1e-3  # measured: 3e-4, 7e-4
-    assert once["friction_loss"] == pytest.approx(again["friction_loss"], rel=5e-3)  # measured: 3.1e-3, 2.0e-3
-
-
-@pytest.mark.long
-def test_equal_cylinders_are_pressed_without_friction(shared_run):
-    """In whatever steps: by symmetry nothing slides, though each normal is turned by what the surfaces are pressed flat by."""
-    for step in (0.025, 0.5):
-        run = shared_run(f"{PRESSED} -time_step {step}")
-        assert abs(run.summary["contact"]["friction_loss"]) <= 1e-12 * run.summary["bodies"]["upper"]["potential"]
-        assert run.summary["contact"]["friction_tilt"] <= 0.02  # measured: 0.0085
+    once, again = (shared_run(f"{STIFF} {more}").summary["contact"] for more in ("", "-contact_angle_bound 1e-5"))
+    assert once["friction_tilt"] <= 1e-3  # measured: 3e-4
+    assert once["friction_loss"] == pytest.approx(again["friction_loss"], rel=5e-3)  # measured: 3.1e-3
 
 
 SPHERES = "-options_file options/cattaneo-spheres.opts"
@@ -80,7 +75,7 @@ def test_loop_loss_is_the_area_of_the_loop():
     assert cattaneo.loop_loss(1, 1, 1, q) == pytest.approx(area, rel=1e-6)
 
 
-@pytest.mark.longest
+@pytest.mark.validate
 def test_spheres(shared_run):
     """A loop at q = 0.9, on a mesh that has five elements to the radius of the contact. q is that of the rows: the plane of contact turns by 2 % of mu, and the loss
     goes with the sixth power of q."""
@@ -99,41 +94,17 @@ def test_spheres(shared_run):
     assert half == pytest.approx(theory, rel=0.02)
 
 
-@pytest.mark.longest
-@pytest.mark.parametrize(
-    ("options", "pressed", "moved", "error"),
-    [
-        ("", 0.0125, 0.00126, 0.06),  # measured: +4.8 %
-        ("-lower_ball_divisions 14", 0.0125, 0.00126, 0.06),  # measured: +5.4 %
-        (f"-lower_ball_divisions 14 {SWAPPED}", 0.0125, 0.00126, 0.06),  # measured: +3.7 %
-        # half of the contact, with six elements to its radius; with seven +2.7 %, with five +3.9 %
-        ("-upper_ball_divisions 16 -lower_ball_divisions 16 -upper_ball_grading 170 -lower_ball_grading 170", 0.003125, 0.000285, 0.035),  # measured: +2.9 %
-    ],
-    ids=["as they are", "other mesh", "other mesh, swapped", "half of the contact"],
-)
-def test_spheres_with_rows_of_the_start(options, pressed, moved, error, impakt):
-    """With rows that stay as they were built the loss goes to that of theory as the contact gets smaller beside the spheres; q is along the axes and the rows."""
-    way = f"0,{moved}*(t<1?0:t<3?(t-1)/2:4-t),-{pressed}*min(1,t)"
-    run = read(impakt(f"{SPHERES} -contact_angle_bound 0.1 {options} -upper_boundary_displacement_back {way}"))
-    turn, back = run.step(3), run.step(5)
-    load, q = run.of_rows(turn)
-    assert load == pytest.approx(run.load[turn], rel=1e-6)
-    assert q == pytest.approx(run.q[turn], rel=1e-4)
-    assert 0.86 <= q <= 0.94
-    assert run.loss[back] - run.loss[turn] == pytest.approx(run.half_loop(turn, back), rel=error)
-
-
-@pytest.mark.longest
-def test_figure(shared_run, launch, tmp_path):
+@pytest.mark.parametrize("cases", [*long([CYLINDERS]), *validate([CYLINDERS, SPHERES])])
+def test_figure(cases, shared_run, launch, tmp_path):
     figure = tmp_path / "figure.png"
-    histories = [shared_run(options).folder / "history.h5" for options in (CYLINDERS, SPHERES)]
+    histories = [shared_run(options).folder / "history.h5" for options in cases]
     run = launch([sys.executable, ROOT / "plots/cattaneo.py", *histories, figure], env={**os.environ, "MPLBACKEND": "Agg"})
     assert run.returncode == 0, run.stderr
     assert not run.stderr
     assert figure.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
 
 
-@pytest.mark.longest
+@pytest.mark.validate
 def test_spheres_on_ranks(shared_run):
     """Three ranks that divide graded balls between them: MUMPS ran out of the memory that it had expected to take, and the run ended with its error."""
     first, other = (shared_run(f"{SPHERES} -time_step 1 -time_end 1 {SWAPPED}", n).summary["contact"] for n in (1, 3))

@@ -14,8 +14,7 @@ NEVER = {
 }
 
 
-@pytest.mark.parametrize("cuts", [pytest.param(0, marks=pytest.mark.long), 2])
-@pytest.mark.parametrize("method", NEVER)
+@pytest.mark.parametrize(("method", "cuts"), [("schwarz", 0), *((method, 2) for method in NEVER)])
 def test_step_time_and_pair(method, cuts, impakt):
     options, who = NEVER[method]
     run = impakt(f"{BLOCKS} {options} -controller_step_cuts {cuts}", expect_failure=True)
@@ -30,8 +29,7 @@ def test_pairs_in_contact_of_many(impakt):
     check_message(run, ["in controller step ", "in contact: "])
 
 
-@pytest.mark.parametrize("method", ["-contact_type penalty -penalty_snes_linesearch_type", "-schwarz_snes_linesearch_type"])
-@pytest.mark.parametrize("search", ["bt", "nleqerr"])
+@pytest.mark.parametrize(("method", "search"), [("-contact_type penalty -penalty_snes_linesearch_type", "bt"), ("-schwarz_snes_linesearch_type", "nleqerr")])
 def test_line_searches_that_want_slopes(impakt, method, search):
     """They multiply with the Jacobian, which is there only to be divided by."""
     run = impakt(f"-options_file {ROOT}/options/impact-high-speed.opts {method} {search}", expect_failure=True)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from cases import joined, worst_energy_error
+from cases import joined, long, worst_energy_error
 
 PULSE = "-options_file options/shear-pulse.opts"
 SLOPE = "-options_file options/slope.opts"
@@ -22,8 +22,10 @@ def drift(run):
     return change.min(), change.max()
 
 
-@pytest.mark.parametrize("integrators", ["", EXPLICIT], ids=["II", "EE"])
-@pytest.mark.parametrize("more", ["", "-contact_penalty_scale 1", "-contact_friction 3 -contact_penalty_scale 1"], ids=["slides", "soft", "sticks"])
+SOFT = "-contact_penalty_scale 1"
+
+
+@pytest.mark.parametrize(("more", "integrators"), [("", EXPLICIT), (f"-contact_friction 3 {SOFT}", EXPLICIT), *long((SOFT, ""))], ids=["slides", "sticks", "soft"])
 def test_energy_of_springs(more, integrators, shared_run):
     """Springs along and across the normals, which stick, slide and swing: measured 3e-15 of the energy."""
     run = shared_run(joined(PULSE, PENALTY, more, integrators))
@@ -36,16 +38,7 @@ def test_energy_of_springs(more, integrators, shared_run):
         assert run.summary["contact"]["friction_loss"] <= 1e-12  # nothing slides, though springs give
 
 
-def test_converges(shared_run):
-    """What friction takes differs from that of the Schwarz method in proportion to the give of the springs: 2.3e-4 J with ten times the stiffness of the
-    elements, 2.3e-6 J with a thousand times; augmented by what springs give of 4e-10 of the size, and of the law of each round."""
-    loss = [shared_run(joined(PULSE, more)).summary["contact"]["friction_loss"] for more in ("", f"{PENALTY} -contact_penalty_scale 10", f"{PENALTY} -contact_penalty_scale 1000", AUGMENTED)]
-    off = [abs(each - loss[0]) for each in loss[1:]]
-    assert 50 <= off[0] / off[1] <= 200
-    assert off[2] <= 3e-4 * loss[0]
-
-
-@pytest.mark.parametrize("method", [AUGMENTED, PENALTY])
+@pytest.mark.parametrize("method", [PENALTY, *long(AUGMENTED)])
 def test_slope(method, shared_run):
     """tan 30 is above 0.3: the block slides by g (sin 30 - 0.3 cos 30); and below 0.6: it stays, the springs stretched by its weight."""
     run, reference = (shared_run(joined(SLOPE, each)) for each in (method, ""))
@@ -63,11 +56,17 @@ def test_slope(method, shared_run):
         assert still.history["penalty_energy"][-1] == pytest.approx(0.5 * weight**2 / stiffness, rel=0.25)
 
 
-@pytest.mark.parametrize("method", [AUGMENTED, PENALTY])
-@pytest.mark.parametrize("more", ["-time_step 1e-4 -controller_step_cuts 0", "-time_step 1e-3 -controller_step_cuts 4"])
-def test_long_steps(more, method, shared_run):
+@pytest.mark.parametrize(
+    ("method", "more", "view"),
+    [
+        (AUGMENTED, "-time_step 1e-4 -controller_step_cuts 0", "augmented until gaps and slips are within"),
+        (PENALTY, "-time_step 1e-3 -controller_step_cuts 4", "along the normals and across them"),
+    ],
+)
+def test_long_steps(method, more, view, shared_run):
     """Energy with what springs hold does not grow, at any step."""
     run = shared_run(joined(BLOCKS, method, more))
+    assert view in run.stdout
     assert drift(run)[1] <= 1e-3
     energy = sum(body["kinetic"] + body["potential"] for body in run.summary["bodies"].values())
     assert run.summary["contact"]["friction_least"] >= -1e-7 * energy
@@ -80,14 +79,10 @@ def test_one_force(shared_run):
     assert np.abs(other - one).max() <= 1e-3 * np.abs(one).max()
 
 
-@pytest.mark.parametrize("ranks", [2, 3])
-@pytest.mark.parametrize("method", [AUGMENTED, PENALTY])
+@pytest.mark.parametrize(("method", "ranks"), [(AUGMENTED, 3), *long((PENALTY, 2))])
 def test_ranks(method, ranks, shared_run):
     one, more = (shared_run(joined(SLOPE, method, "-time_end 0.1"), n) for n in (1, ranks))
     assert more.summary["contact"]["friction_loss"] == pytest.approx(one.summary["contact"]["friction_loss"], rel=1e-10)
     assert worst_energy_error(more.summary) <= 1e-4
 
 
-def test_view(shared_run):
-    assert "along the normals and across them" in shared_run(joined(SLOPE, PENALTY)).stdout
-    assert "augmented until gaps and slips are within" in shared_run(joined(SLOPE, AUGMENTED)).stdout

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from cases import DEFAULTS
+from cases import DEFAULTS, long
 
 STEP = 1e-7
 MASS, ENERGY = 2.5e-4, 1.25  # rho A L and half of that times v0^2, of one bar
@@ -25,7 +25,7 @@ def energies(run, name, frame=0):
     return kinetic - MASS * frame * velocity + MASS * frame**2 / 2, potential
 
 
-@pytest.mark.parametrize("gap", [0.02, 0.0200037], ids=["end-of-step", "inside-step"])
+@pytest.mark.parametrize("gap", [0.0200037, *long(0.02)], ids=["inside-step", "end-of-step"])
 @pytest.mark.parametrize("change", ["moving", "mirrored", "swapped"])
 def test_invariance(change, gap, shared_run):
     reference = shared_run(bars(gap))
@@ -45,11 +45,8 @@ def test_invariance(change, gap, shared_run):
         pairs = zip(energies(run, name, frame=50 if change == "moving" else 0), energies(reference, name), strict=True)
         for values, wanted in pairs:
             assert np.abs(values - wanted).max() <= 1e-9 * ENERGY  # measured: 3e-11
-
-
-def test_mirrored_positions(shared_run):
-    reference, run = shared_run(bars(0.02)), shared_run(bars(0.02, mirrored=True))
-    for name in ("left", "right"):
-        for key in ("contact_position", "contact_velocity", "mean_velocity"):
-            values, wanted = (each.history[f"body/{name}/{key}"][()] for each in (run, reference))
-            np.testing.assert_allclose(-values, wanted, rtol=0, atol=1e-6 * np.abs(wanted).max(), err_msg=f"{name} {key}")
+    if change == "mirrored":
+        for name in ("left", "right"):
+            for key in ("contact_position", "contact_velocity", "mean_velocity"):
+                values, wanted = (each.history[f"body/{name}/{key}"][()] for each in (run, reference))
+                np.testing.assert_allclose(-values, wanted, rtol=0, atol=1e-6 * np.abs(wanted).max(), err_msg=f"{name} {key}")

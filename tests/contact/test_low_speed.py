@@ -37,46 +37,25 @@ def test_free_flight(options, shared_run):
     assert run.summary["system"]["momentum_error_max"] <= 1e-12
 
 
-@pytest.mark.parametrize("options", [LAGRANGE, PENALTY], ids=["lagrange", "penalty"])
-@pytest.mark.parametrize("parts", [1, 10])
-def test_impulse(options, parts, shared_run):
+@pytest.mark.parametrize("options", [LAGRANGE, f"{LAGRANGE} -time_step {10 * STEP}", f"{PENALTY} -time_step {10 * STEP}"], ids=["lagrange", "lagrange-10", "penalty-10"])
+def test_impulse(options, shared_run):
     """It is what the momentum of a bar changes by, also where a controller step has many times that both bars have: forces at its ends alone missed 8 %."""
-    run = shared_run(f"{options} -time_step {parts * STEP}")
+    run = shared_run(options)
     momentum = run.history["body/left/momentum"][()]
     assert run.summary["contact"]["impulse"] == pytest.approx(momentum[0] - momentum[-1], rel=1e-12)
 
 
-def test_lagrange_penetration(shared_run):
-    """The multiplier holds the bars together: neither penetration nor motion of the contact point while they touch."""
-    run = shared_run(LAGRANGE)
-    _, data = series(run)
-    assert run.summary["contact"]["max_penetration"] <= 1e-12 * GAP
-    assert np.abs(data["x"][data["active"] > 0]).max() <= 1e-12 * GAP
-
-
 def test_lagrange_force(shared_run):
-    """v0 sqrt(E rho) A. Its scatter is the ringing behind the wave front, which the mesh resolves with 20 elements."""
+    """The multiplier holds the bars together: neither penetration nor motion of the contact point while they touch. The force is v0 sqrt(E rho) A; its scatter is the ringing behind the wave front, which the mesh resolves with 20 elements."""
     run = shared_run(LAGRANGE)
     time, data = series(run)
     contact = run.summary["contact"]
+    assert contact["max_penetration"] <= 1e-12 * GAP
+    assert np.abs(data["x"][data["active"] > 0]).max() <= 1e-12 * GAP
     assert contact["force_mean"] == pytest.approx(FORCE, rel=2e-4)  # measured: -9e-5
     assert contact["force_std"] <= 2.2e-3 * FORCE  # measured: 1.7e-3
     middle = (time > IMPACT + 0.2 * DURATION) & (time < IMPACT + 0.8 * DURATION)
     np.testing.assert_allclose(data["force"][middle], FORCE, rtol=7e-3)  # measured: 5e-3
-
-
-def test_lagrange_release(shared_run):
-    """The front of the release wave is smeared over two elements, and 2 h / c are 1/20 of the time in contact."""
-    run = shared_run(LAGRANGE)
-    late = run.summary["errors"]["release_time"]  # measured: 0.030, which is 1.3 steps
-    assert 0 <= late <= 1 / ELEMENTS
-    # the contact point is late by as much from then on, and never further from the exact one than it moves in 2 h / c
-    time, data = series(run)
-    release = IMPACT + DURATION
-    exact = np.where(time < IMPACT, SPEED * time - GAP, np.where(time > release, SPEED * (release - time), 0))
-    assert np.abs(data["x"] - exact).max() <= SPEED * DURATION / ELEMENTS  # measured: 1.3 steps of v0; this is 2.2
-    # in the mean over the run: that lag over the 52 us after release, relative to the 0.15 mm that positions are on average
-    assert run.summary["errors"]["contact_position"] <= 0.055  # measured: 0.042
 
 
 def test_lagrange_energy(shared_run):
@@ -85,19 +64,6 @@ def test_lagrange_energy(shared_run):
     assert -0.05 <= system["energy_error_min"] <= -1 / (2 * ELEMENTS)  # measured: -0.032, with what ringing takes
     assert system["energy_error_max"] <= 1e-12
     assert system["energy_error_final"] == pytest.approx(system["energy_error_min"], rel=1e-6)
-
-
-def test_penalty_overclosure(shared_run):
-    """v0 sqrt(E rho) A / tau = 0.1016 mm, in the second half of contact: it is approached with the time constant below."""
-    run = shared_run(PENALTY)
-    time, data = series(run)
-    late = (time > IMPACT + 0.5 * DURATION) & (time < IMPACT + DURATION)
-    # measured: -1.6e-3; of the way there, exp(-5) to exp(-10) are missing, and the wave front rings by 1/20^2
-    assert -data["gap"][late].mean() == pytest.approx(FORCE / STIFFNESS, rel=5e-3)
-    assert data["x"][late].mean() == pytest.approx(FORCE / STIFFNESS / 2, rel=5e-3)
-    assert run.summary["contact"]["max_penetration"] == pytest.approx(FORCE / STIFFNESS, rel=0.01)
-    touching = data["active"] > 0
-    np.testing.assert_allclose(data["force"][touching], -STIFFNESS * data["gap"][touching], rtol=1e-12)
 
 
 def test_penalty_force_and_release(shared_run):
@@ -116,6 +82,9 @@ def test_penalty_force_and_release(shared_run):
     touching = (s > 0) & (after < 1.67835)
     error = np.linalg.norm((data["force"] / FORCE - exact)[touching]) / np.linalg.norm(exact[touching])
     assert error <= 0.01  # measured: 0.0069
+    touching = data["active"] > 0
+    np.testing.assert_allclose(data["force"][touching], -STIFFNESS * data["gap"][touching], rtol=1e-12)
+    assert run.summary["contact"]["max_penetration"] == pytest.approx(FORCE / STIFFNESS, rel=0.01)
     # the springs give back what they held
     assert abs(run.summary["system"]["energy_error_final"]) <= 2e-3  # measured: -1.4e-3
     assert run.summary["system"]["penalty_energy_max"] == pytest.approx(FORCE**2 / (2 * STIFFNESS), rel=0.013)  # measured: 0.0098

@@ -10,6 +10,7 @@ import re
 import h5py
 import numpy as np
 import pytest
+from cases import long, validate
 from pile import pile
 
 STACK = "-options_file options/stack.opts -time_end 0.3"
@@ -17,6 +18,12 @@ BALLS = "-options_file options/ten-balls.opts -time_end 0.5"
 EXPLICIT = " ".join(f"-{b}_ts_type centraldifference -{b}_ts_time_step auto" for b in "abcde")
 ROUND_OFF = 1e-12  # what energies may grow by where nothing else makes them
 DEPTH = 2e-12  # m: the outer iteration stops at 1e-12 m
+
+
+def disc(name, centre, more="", radius=0.1, modulus=1e8):
+    """Options of a disc with 16 nodes around; @ stands for the prefix of the body."""
+    words = f"-@dm_plex_dim 2 -@dm_plex_shape ball -@ball_radius {radius} -@ball_centre {centre} -@ball_divisions 4 -@ball_keep_volume false -@density 1000 -@youngs_modulus {modulus}"
+    return f"{words} -@poissons_ratio 0.25 {more}".replace("@", f"{name}_")
 
 
 def depths(run):
@@ -40,6 +47,7 @@ def test_stack(more, shared_run):
     assert momentum + impulse == pytest.approx(-mass * 9.81 * 0.3, rel=1e-10)  # round-off; measured: 3e-15
 
 
+@pytest.mark.long
 def test_stack_converges(shared_run):
     """A fifth of the step, about a tenth of the loss: measured 0.09. At steps in between it is 0.3 to 2.3 times that of 1e-4 s, since blocks that tilt meet in other places."""
     losses = [-shared_run(f"{STACK} {more}").summary["system"]["energy_error_min"] for more in ("", "-time_step 2e-5")]
@@ -77,7 +85,7 @@ def settles(run):
     return kinetic
 
 
-@pytest.mark.longest
+@pytest.mark.validate
 def test_ten_balls_with_friction(shared_run):
     """They come to rest by damping, which takes what friction leaves; neither brings energy."""
     run = shared_run("-options_file options/ten-balls-friction.opts -output_fields_interval 1000")
@@ -87,7 +95,7 @@ def test_ten_balls_with_friction(shared_run):
     assert contact["friction_least"] >= -1e-7 * kinetic.max()  # measured: -7e-8 J of 68 J
 
 
-@pytest.mark.longest
+@pytest.mark.validate
 def test_ten_balls_with_friction_in_three_dimensions(shared_run):
     """options/ten-balls-3d-friction.opts: rubber balls that roll and slide come to rest, and neither contact nor friction brings energy."""
     run = shared_run("-options_file options/ten-balls-3d-friction.opts -output_fields_interval 100000")
@@ -122,8 +130,7 @@ def test_ten_balls_explicit(shared_run):
 )
 def test_two_discs_of_other_steps(steps, loss, shared_run):
     """The Dirichlet side makes substeps that the other does not have, and contact begins and ends: momentum stays, where 1 % of it was lost with 10 to 1."""
-    disc = "-{0}_dm_plex_dim 2 -{0}_dm_plex_shape ball -{0}_ball_radius 0.1 -{0}_ball_centre {1} -{0}_ball_divisions 4 -{0}_ball_keep_volume false -{0}_density 1000 -{0}_youngs_modulus 1e8 -{0}_poissons_ratio 0.25 -{0}_initial_velocity {2}"
-    bodies = " ".join(disc.format(*each) for each in (("a", "0,0", "1,0"), ("b", "0.205,0.03", "-1,0")))
+    bodies = disc("a", "0,0", "-@initial_velocity 1,0") + " " + disc("b", "0.205,0.03", "-@initial_velocity -1,0")
     run = shared_run(f"-bodies a,b -contact_pairs a:b -contact_facing false {bodies} -a_ts_type centraldifference {steps} -time_step 2e-4 -time_end 0.02 -controller_step_cuts 0")
     system = run.summary["system"]
     assert run.history["contact"]["a:b"]["active"][-1] == 0 < run.summary["contact"]["onsets"]
@@ -157,9 +164,9 @@ def test_ten_balls_in_three_dimensions(shared_run):
 def test_explicit_disc_that_turns(gap, shared_run):
     """A neo-Hookean disc with a massless rim spins by more than a turn, and falls on the floor meanwhile or not: the rim's matrix is made anew as the body
     turns, since that of the undeformed one gives no balance in 100 rounds any more after 23 degrees."""
-    disc = f"-a_dm_plex_dim 2 -a_dm_plex_shape ball -a_ball_radius 0.1 -a_ball_centre 0,{0.1 + gap} -a_ball_divisions 4 -a_ball_keep_volume false -a_density 1000 -a_material_type neo_hookean -a_youngs_modulus 1e8 -a_poissons_ratio 0.25"
+    spinning = disc("a", f"0,{0.1 + gap}", f"-@material_type neo_hookean -@initial_velocity '-20*(y-{0.1 + gap}),20*x-0.1' -@ts_type centraldifference -@ts_time_step auto")
     floor = "-obstacles floor -floor_obstacle_type plane -floor_point 0,0,0 -floor_normal 0,1,0 -contact_facing false"
-    run = shared_run(f"-bodies a {floor} {disc} -a_initial_velocity '-20*(y-{0.1 + gap}),20*x-0.1' -a_ts_type centraldifference -a_ts_time_step auto -time_step 2e-4 -time_end 0.4")
+    run = shared_run(f"-bodies a {floor} {spinning} -time_step 2e-4 -time_end 0.4")
     system = run.summary["system"]
     assert (run.summary["contact"]["onsets"] > 0) == (gap < 0.1)
     assert (-8.3e-7 if gap == 1 else -2.1e-3) <= system["energy_error_min"]  # measured: 6.4e-7; 1.6e-3, where contact begins inside a step
@@ -177,15 +184,11 @@ def cloud(n=7, speed=20.0):
     for i, angle in enumerate(angles):
         distance = 0.7 + 0.11 * i
         centre, velocity = distance * np.exp(1j * angle), -speed * np.exp(1j * (angle + 0.05))
-        words.append(
-            f"-d{i}_dm_plex_dim 2 -d{i}_dm_plex_shape ball -d{i}_ball_radius 0.1 -d{i}_ball_divisions 4 -d{i}_ball_keep_volume false -d{i}_density 1000 -d{i}_youngs_modulus 1e8"
-            f" -d{i}_poissons_ratio 0.25 -d{i}_material_type neo_hookean -d{i}_ts_type centraldifference -d{i}_ball_centre {centre.real:.9f},{centre.imag:.9f}"
-            f" -d{i}_initial_velocity {velocity.real:.9f},{velocity.imag:.9f}"
-        )
+        words.append(disc(f"d{i}", f"{centre.real:.9f},{centre.imag:.9f}", f"-@material_type neo_hookean -@ts_type centraldifference -@initial_velocity {velocity.real:.9f},{velocity.imag:.9f}"))
     return " ".join(words)
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
+@pytest.mark.parametrize("ranks", [1, *long(2)])
 def test_pairs_that_are_far_apart(ranks, impakt):
     """Chosen pairs have no rows with a partner while their bodies are far apart. Pairs that are named have them always; all else is the same, to what
     round-off becomes in six impacts."""
@@ -213,40 +216,6 @@ def named(n):
     return ",".join(f"d{i}:d{j}" for i in range(n) for j in range(i + 1, n))
 
 
-@pytest.mark.parametrize(
-    ("kind", "ranks"),
-    [("explicit", 1), pytest.param("implicit", 1, marks=pytest.mark.long), pytest.param("substeps", 1, marks=pytest.mark.long), pytest.param("nonlinear", 2, marks=pytest.mark.longest)],
-)
-def test_pairs_that_come_and_go(kind, ranks, impakt):
-    """Of more than 100 chosen pairs those alone have rows whose bodies are near. Pairs that are named have them always; all else is the same, to what round-off
-    becomes in the impacts."""
-    words = cloud(15).replace("-time_end 0.045", "-time_end 0.03")
-    if kind != "nonlinear":
-        words = words.replace("neo_hookean", "linear_elastic")
-    if kind == "implicit":
-        words = words.replace("-time_step 3e-5", "-time_step 1e-4").replace("centraldifference", "alpha2")
-    if kind == "substeps":
-        words = words.replace("-time_step 3e-5", "-time_step 1e-4") + "".join(f" -d{i}_ts_time_step auto" for i in range(15))
-    some, all_ = impakt(f"{words} -contact_pairs auto", ranks), impakt(f"{words} -contact_pairs {named(15)}", ranks)
-    assert contact_nodes(all_) == 105 * 16 and not re.search(r"\d contact node", some.stdout)  # at the start none is near another
-    assert list(some.summary["pairs"]) == [f"d{i}:others" for i in range(15)]
-    assert some.summary["contact"]["onsets"] >= 3  # they do meet
-    scale = max(np.abs(all_.history["body"][body]["momentum"][()]).max() for body in all_.history["body"])
-    for body in all_.history["body"]:
-        a, b = (run.history["body"][body]["momentum"][()] for run in (some, all_))
-        np.testing.assert_allclose(a, b, rtol=0, atol=1e-9 * scale, err_msg=body)  # measured: 1e-13; 5e-11 of neo-Hookean discs
-    # what a body does to all others is the sum of what it does to each, whichever of them the pair is named for
-    forces = {f"d{i}": np.zeros(3) for i in range(15)}
-    for name, pair in all_.history["contact"].items():
-        first, second = name.split(":")
-        forces[first] = forces[first] + pair["impulse"][-1]
-        forces[second] = forces[second] - pair["impulse"][-1]
-    for body, impulse in forces.items():
-        np.testing.assert_allclose(some.history["contact"][f"{body}:others"]["impulse"][-1], impulse, rtol=0, atol=1e-9 * scale, err_msg=body)
-    both = [sum(pair["force"][()].sum() for pair in run.history["contact"].values()) for run in (some, all_)]
-    assert both[0] == pytest.approx(both[1], rel=1e-6)  # each contact counts once
-
-
 FORCES = {
     "friction": "-contact_law coulomb -contact_friction 0.3",
     "penalty": "-contact_type penalty",
@@ -257,51 +226,77 @@ FORCES = {
 
 
 def moving(kind, cuts=False):
-    """The discs with forces of another kind; at ten times the step, which is cut in halves as bodies meet."""
-    words = cloud(15).replace("neo_hookean", "linear_elastic").replace("-time_end 0.045", "-time_end 0.03") + f" {FORCES[kind]}"
-    return words.replace("-time_step 3e-5", "-time_step 6e-4").replace("centraldifference", "alpha2") if cuts else words
+    """The discs with forces of another kind, or other integrators; at ten times the step, which is cut in halves as bodies meet."""
+    words = cloud(15).replace("-time_end 0.045", "-time_end 0.03") + " " + FORCES.get(kind, "")
+    if kind != "nonlinear":
+        words = words.replace("neo_hookean", "linear_elastic")
+    if kind in ("implicit", "substeps"):
+        words = words.replace("-time_step 3e-5", "-time_step 1e-4")
+    if kind == "substeps":
+        words += "".join(f" -d{i}_ts_time_step auto" for i in range(15))
+    if cuts:
+        words = words.replace("-time_step 3e-5", "-time_step 6e-4")
+    return words.replace("centraldifference", "alpha2") if cuts or kind == "implicit" else words
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("kind", "cuts", "ranks"),
-    [("friction", False, 1), ("penalty", False, 1), ("springs", True, 1), ("augmented", False, 1), ("lagrange", True, 1), ("friction", True, 2)],
+    [
+        ("explicit", False, 1),
+        *long(("implicit", False, 1), ("substeps", False, 1), ("springs", True, 1), ("augmented", False, 1), ("lagrange", True, 1), ("friction", True, 2)),
+        *validate(("friction", False, 1), ("penalty", False, 1), ("nonlinear", False, 2)),
+    ],
 )
 def test_pairs_that_come_and_go_with_other_forces(kind, cuts, ranks, impakt):
-    """Friction, whose forces are remembered from step to step, and springs: where pairs come and go all is as with all pairs."""
+    """Of more than 100 chosen pairs those alone have rows whose bodies are near. Pairs that are named have them always; all else is the same, to what round-off becomes
+    in the impacts, with friction, whose forces are remembered from step to step, and springs too."""
     some, all_ = impakt(f"{moving(kind, cuts)} -contact_pairs auto", ranks), impakt(f"{moving(kind, cuts)} -contact_pairs {named(15)}", ranks)
-    assert not re.search(r"\d contact node", some.stdout)  # at the start none is near another
-    assert some.summary["contact"]["onsets"] == all_.summary["contact"]["onsets"] >= 3
+    assert contact_nodes(all_) == 105 * 16 and not re.search(r"\d contact node", some.stdout)  # at the start none is near another
+    assert list(some.summary["pairs"]) == [f"d{i}:others" for i in range(15)]
+    assert some.summary["contact"]["onsets"] == all_.summary["contact"]["onsets"] >= 3  # they do meet
     assert (some.summary["step_control"]["step_cuts"] > 0) == cuts and some.summary["step_control"]["step_cuts"] == all_.summary["step_control"]["step_cuts"]
+    scales = {}
     for figure in ("momentum", "potential"):
-        scale = max(np.abs(all_.history["body"][body][figure][()]).max() for body in all_.history["body"])
+        scales[figure] = max(np.abs(all_.history["body"][body][figure][()]).max() for body in all_.history["body"])
         for body in all_.history["body"]:
             a, b = (run.history["body"][body][figure][()] for run in (some, all_))
-            np.testing.assert_allclose(a, b, rtol=0, atol=1e-10 * scale, err_msg=f"{body} {figure}")  # measured: 2e-12
-    if "coulomb" in FORCES[kind]:
+            close = 1e-9 if kind == "nonlinear" else 1e-10  # measured: 2e-12; 5e-11 of neo-Hookean discs
+            np.testing.assert_allclose(a, b, rtol=0, atol=close * scales[figure], err_msg=f"{body} {figure}")
+    # what a body does to all others is the sum of what it does to each, whichever of them the pair is named for
+    forces = {f"d{i}": np.zeros(3) for i in range(15)}
+    for name, pair in all_.history["contact"].items():
+        first, second = name.split(":")
+        forces[first] = forces[first] + pair["impulse"][-1]
+        forces[second] = forces[second] - pair["impulse"][-1]
+    for body, impulse in forces.items():
+        np.testing.assert_allclose(some.history["contact"][f"{body}:others"]["impulse"][-1], impulse, rtol=0, atol=1e-9 * scales["momentum"], err_msg=body)
+    both = [sum(pair["force"][()].sum() for pair in run.history["contact"].values()) for run in (some, all_)]
+    assert both[0] == pytest.approx(both[1], rel=1e-6)  # each contact counts once
+    if "coulomb" in FORCES.get(kind, ""):
         # pairs have gone before the end: what friction has taken there still counts, with one body each
         losses = [sum(pair["friction_loss"][()] for pair in run.history["contact"].values()) for run in (some, all_)]
         assert some.summary["contact"]["friction_loss"] > 1
         np.testing.assert_allclose(losses[0], losses[1], rtol=0, atol=1e-9 * losses[1].max())
         assert sum(pair["sliding"][()].sum() for pair in some.history["contact"].values()) == sum(pair["sliding"][()].sum() for pair in all_.history["contact"].values()) > 0
-    if "penalty" in FORCES[kind]:
+    if "penalty" in FORCES.get(kind, ""):
         stored = all_.history["penalty_energy"][()]
         np.testing.assert_allclose(some.history["penalty_energy"][()], stored, rtol=0, atol=1e-9 * stored.max())
 
 
-@pytest.mark.long
-@pytest.mark.parametrize(("kind", "cuts", "ranks"), [("friction", True, 3), ("penalty", False, 2), ("springs", True, 2), ("augmented", False, 2)])
+@pytest.mark.parametrize(
+    ("kind", "cuts", "ranks"), [("explicit", False, 1), *long(("friction", True, 3), ("springs", True, 2)), *validate(("penalty", False, 2), ("augmented", False, 2))]
+)
 def test_restart_where_pairs_with_other_forces_come_and_go(kind, cuts, ranks, impakt):
-    """With the same bits, and on other ranks to round-off, which impacts make larger."""
+    """The checkpoint has the pairs that are near, and when they are looked for again: with the same bits, and on other ranks to round-off, which impacts make larger."""
     words = f"{moving(kind, cuts)} -contact_pairs auto -checkpoint_interval {25 if cuts else 600}"
     whole = impakt(f"{words} -checkpoint c.h5")
     begin = 26 if cuts else 601
-    for each, close in ((1, 0), (ranks, 1e-10)):
+    for each, close in {1: 0, ranks: 1e-10 if ranks > 1 else 0}.items():
         rest = impakt(f"{words} -checkpoint d.h5 -restart {whole.folder / 'c.prev.h5'}", each)
-        assert whole.history["time"][begin] == rest.history["time"][0]
-        for group, figures in (("body", ("momentum", "kinetic", "potential")), ("contact", ("impulse", "force", "friction_loss"))):
+        assert whole.history["time"][begin] == rest.history["time"][0] and len(whole.history["time"]) == begin + len(rest.history["time"])
+        for group, figures in (("body", ("momentum", "kinetic", "potential")), ("contact", ("impulse", "gap", "force", "friction_loss"))):
             for figure in figures:
-                if figure not in whole.history[group][next(iter(whole.history[group]))]:
+                if figure not in whole.history[group][next(iter(whole.history[group]))] or (figure == "gap" and each > 1):
                     continue
                 scale = max(np.abs(item[figure][()]).max() for item in whole.history[group].values())
                 for name, item in whole.history[group].items():
@@ -315,24 +310,7 @@ def test_friction_says_at_the_start_what_it_needs(impakt):
         assert message in impakt(words.replace(*change), expect_failure=True).stderr
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
-def test_restart_where_pairs_come_and_go(ranks, impakt):
-    """The checkpoint has the pairs that are near, and when they are looked for again."""
-    words = cloud(15).replace("neo_hookean", "linear_elastic").replace("-time_end 0.045", "-time_end 0.03") + " -contact_pairs auto -checkpoint_interval 600"
-    whole = impakt(f"{words} -checkpoint c.h5", ranks)
-    rest = impakt(f"{words} -checkpoint d.h5 -restart {whole.folder / 'c.prev.h5'}", ranks)
-    begin = len(whole.history["time"]) - len(rest.history["time"])
-    assert begin == 601 and whole.history["time"][begin] == rest.history["time"][0]
-    for body in whole.history["body"]:
-        for figure in ("momentum", "kinetic", "potential"):
-            assert np.array_equal(whole.history["body"][body][figure][begin:], rest.history["body"][body][figure][()]), f"{body} {figure}"
-    for pair in whole.history["contact"]:
-        for figure in ("impulse", "gap", "force"):
-            assert np.array_equal(whole.history["contact"][pair][figure][begin:], rest.history["contact"][pair][figure][()]), f"{pair} {figure}"
-
-
-@pytest.mark.long
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [*long(2), *validate(1)])
 def test_pile_with_sparse_factors(ranks, impakt):
     """Discs that press on each other have one matrix of contact forces, whose factors are sparse. It never gains energy, and goes on from a checkpoint with the
     same bits; the floor bears what weight and momentum say."""
@@ -349,7 +327,7 @@ def test_pile_with_sparse_factors(ranks, impakt):
             assert np.array_equal(whole.history["body"][body][figure][begin:], rest.history["body"][body][figure][()]), f"{body} {figure}"
 
 
-@pytest.mark.long
+@pytest.mark.validate
 def test_a_pile_settles(impakt):
     """100 soft discs fall on each other and come to rest by Rayleigh damping: the floor bears their weight, and each round of the active set goes on from the last."""
     run = impakt(pile(5, 20, end=0.42))
@@ -368,18 +346,14 @@ def grid(n):
     words = [f"-bodies {','.join(f'd{i}' for i in range(n))} -contact_pairs auto -contact_facing false -obstacles floor,x0,x1 -time_step 3e-5 -time_end 3e-4"]
     walls = {"floor": ("0,0", "0,1"), "x0": ("0,0", "1,0"), "x1": (f"{0.25 * columns + 0.05},0", "-1,0")}
     words += [f"-{name}_obstacle_type plane -{name}_point {point} -{name}_normal {normal}" for name, (point, normal) in walls.items()]
-    for i in range(n):
-        words.append(
-            f"-d{i}_dm_plex_dim 2 -d{i}_dm_plex_shape ball -d{i}_ball_radius 0.1 -d{i}_ball_keep_volume false -d{i}_ball_divisions 4 -d{i}_density 1000 -d{i}_youngs_modulus 1e8"
-            f" -d{i}_ball_centre {0.15 + 0.25 * (i % columns)},{0.12 + 0.25 * (i // columns)} -d{i}_gravity 0,-9.81 -d{i}_ts_type centraldifference"
-        )
+    words += [disc(f"d{i}", f"{0.15 + 0.25 * (i % columns)},{0.12 + 0.25 * (i // columns)}", "-@gravity 0,-9.81 -@ts_type centraldifference") for i in range(n)]
     return " ".join(words)
 
 
-@pytest.mark.parametrize("forces", ["", *[pytest.param(FORCES[kind], marks=pytest.mark.long) for kind in ("friction", "penalty", "augmented")]], ids=["schwarz", "friction", "penalty", "augmented"])
-def test_rows_go_with_near_pairs(forces, impakt):
+@pytest.mark.parametrize("forces", ["", *long(FORCES["springs"])], ids=["schwarz", "springs"])
+def test_rows_go_with_near_pairs(forces, shared_run):
     """Not with the square of the number of bodies: 4 times as many discs have 4 times as many contact nodes, but for what is missing at the rim."""
-    counts = {n: contact_nodes(impakt(f"{grid(n)} {forces}")) for n in (25, 100)}
+    counts = {n: contact_nodes(shared_run(f"{grid(n)} {forces}".strip())) for n in (25, 100)}
     assert counts[25] <= 25 * 6 * 16  # 2 to 4 neighbours, of which each has its rows once, and obstacles
     assert counts[100] / 100 <= 1.2 * counts[25] / 25
 
@@ -389,15 +363,12 @@ def test_bodies_that_set_out_from_rest_within_a_step(impakt):
     it the pairs were left alone, and contact came a step late without a word."""
     words = ["-bodies", ",".join(f"d{i}" for i in range(20)), "-contact_pairs auto -contact_facing false -time_step 0.02 -time_end 0.02"]
     for i in range(20):
-        words.append(
-            f"-d{i}_dm_plex_dim 2 -d{i}_dm_plex_shape ball -d{i}_ball_radius 0.01 -d{i}_ball_divisions 4 -d{i}_ball_centre {0.03 * (i % 10)},{0.0215 * (i // 10)}"
-            f" -d{i}_density 1000 -d{i}_youngs_modulus 1e6 -d{i}_poissons_ratio 0.25 -d{i}_material_type neo_hookean"
-        )
-        if i >= 10:
-            words.append(f"-d{i}_gravity 0,-9.81")
+        more = "-@material_type neo_hookean" + (" -@gravity 0,-9.81" if i >= 10 else "")
+        words.append(disc(f"d{i}", f"{0.03 * (i % 10)},{0.0215 * (i // 10)}", more, radius=0.01, modulus=1e6))
     assert impakt(" ".join(words)).summary["contact"]["first_contact_time"] == pytest.approx(0.02)
 
 
+@pytest.mark.validate
 def test_set_up_goes_with_the_number_of_bodies(impakt):
     """Not with its square. A list of all options for each body, which PETSc makes in time that goes with the square of their number, took 42 s of 640 discs and 1 s
     of 160; four times as many bodies take 3 to 5 times as long, and on a busy machine some more."""
@@ -415,16 +386,17 @@ def test_set_up_goes_with_the_number_of_bodies(impakt):
     ],
     ids=["facing", "finer", "held", "near"],
 )
-def test_a_run_says_why_all_pairs_have_rows(more, why, impakt):
+def test_a_run_says_why_all_pairs_have_rows(more, why, shared_run):
     """Rows of all pairs take memory with the square of the number of bodies, which nobody could guess from one body that is held."""
-    head = [line for line in impakt(f"{grid(20)} {more}").stdout.splitlines() if "all pairs have rows all the time" in line]
+    words = grid(20).replace("-time_end 3e-4", "-time_end 3e-5")
+    head = [line for line in shared_run(f"{words} {more}").stdout.splitlines() if "all pairs have rows all the time" in line]
     assert len(head) == 1 and why in head[0]
-    assert "all pairs have rows" not in impakt(grid(20)).stdout
+    assert "all pairs have rows" not in shared_run(words).stdout
 
 
-def test_history_of_many_bodies_is_small(impakt):
+def test_history_of_many_bodies_is_small(shared_run):
     """Every series takes a whole chunk for its first record: with chunks of 1024 records these 100 discs took 53 MB for 10 steps. Measured now: 13 MB."""
-    history = impakt(grid(100)).history
+    history = shared_run(grid(100)).history
     chunks = {}
     history.visititems(lambda name, item: chunks.update({name: item}) if isinstance(item, h5py.Dataset) else None)
     assert len(chunks) > 1000
@@ -439,28 +411,27 @@ def pairs_of_discs(numbers, words):
     all_words.append(f"-contact_facing false -contact_slip_bound 1e-9 -contact_angle_bound 1e-9 -controller_step_cuts 0 -time_end 0.02 {words}")
     for k in numbers:
         for body, x, y, speed in ((f"a{k}", 0, 0.5 * k, 1 + 0.3 * k), (f"b{k}", 0.201 + 0.0003 * k, 0.5 * k + 0.03 * (k % 3), -1)):
-            all_words.append(
-                f"-{body}_dm_plex_dim 2 -{body}_dm_plex_shape ball -{body}_ball_radius 0.1 -{body}_ball_divisions 4 -{body}_ball_keep_volume false -{body}_density 1000"
-                f" -{body}_youngs_modulus 1e7 -{body}_poissons_ratio 0.25 -{body}_material_type neo_hookean -{body}_ball_centre {x},{y} -{body}_initial_velocity {speed},0"
-            )
+            all_words.append(disc(body, f"{x},{y}", f"-@material_type neo_hookean -@initial_velocity {speed},0", modulus=1e7))
             if "explicit" in words:
                 all_words.append(f"-{body}_ts_type centraldifference")
     return " ".join(all_words).replace("explicit", "")
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(3, marks=pytest.mark.long)])
 @pytest.mark.parametrize(
-    ("words", "sweeps", "close"),
-    [("explicit -time_step 2e-4", 1.16, 1e-8), ("explicit -time_step 2e-4 -schwarz_transmission robin", 1.16, 1e-8), ("-time_step 2e-3 -contact_energy_excess 0", 2.0, 1e-10)],
-    ids=["explicit", "robin", "limited"],
+    ("words", "sweeps", "close", "pairs", "ranks"),
+    [
+        ("explicit -time_step 2e-4", 1.16, 1e-8, (2, 5), 1),
+        *long(("explicit -time_step 2e-4", 1.16, 1e-8, range(6), 3), ("-time_step 2e-3 -contact_energy_excess 0", 2.0, 1e-10, range(6), 1)),
+    ],
+    ids=["two", "explicit", "limited"],
 )
-def test_groups_that_have_converged_rest(words, sweeps, close, ranks, impakt):
-    """Six pairs of discs in one run are where each of them is alone, and cost little more: what one pair has to do again, as its active set changes or it would
-    gain energy, is nothing to the others. Measured: integrations at most 1.13 and 1.78 times those alone (1.56 and 5.45 where all bodies take part in all sweeps),
-    momenta 1.3e-9, that the convergence of nonlinear bodies is worth, and 2.4e-11."""
-    together = impakt(pairs_of_discs(range(6), words), ranks)
+def test_groups_that_have_converged_rest(words, sweeps, close, pairs, ranks, impakt):
+    """Pairs of discs in one run are where each of them is alone, and cost little more: what one pair has to do again, as its active set changes or it would
+    gain energy, is nothing to the others. Measured for six pairs: integrations at most 1.13 and 1.78 times those alone (1.56 and 5.45 where all bodies take part in all
+    sweeps), momenta 1.3e-9, that the convergence of nonlinear bodies is worth, and 2.4e-11."""
+    together = impakt(pairs_of_discs(pairs, words), ranks)
     assert (together.summary["schwarz"]["energy_attempts"] > 0) == ("excess" in words)  # measured: 8
-    for k in range(6):
+    for k in pairs:
         alone = impakt(pairs_of_discs([k], words), ranks)
         for body in (f"a{k}", f"b{k}"):
             a, b = (run.history["body"][body]["momentum"][()] for run in (together, alone))
@@ -468,8 +439,7 @@ def test_groups_that_have_converged_rest(words, sweeps, close, ranks, impakt):
             assert together.summary["bodies"][body]["substeps"] <= sweeps * alone.summary["bodies"][body]["substeps"], body
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_loads_of_bodies_that_are_far_apart(ranks, impakt):
+def test_loads_of_bodies_that_are_far_apart(impakt):
     """Fifteen explicit bodies under a body force, none near another: massless nodes are brought into balance at the start although there is no pair yet. Else
     what acts on them, five ninths, goes over to the body half a substep late, and that momentum never comes back: 0.072 N s for 0.1 in the first step."""
     bodies = " ".join(
@@ -477,6 +447,6 @@ def test_loads_of_bodies_that_are_far_apart(ranks, impakt):
         f" -d{i}_ts_type centraldifference -d{i}_body_force 1000,0 -d{i}_material_type {('linear_elastic', 'neo_hookean')[i % 2]}"
         for i in range(15)
     )
-    run = impakt(f"-bodies {','.join(f'd{i}' for i in range(15))} -contact_pairs auto -contact_facing false {bodies} -time_step 1e-4 -time_end 1e-3", ranks)
+    run = impakt(f"-bodies {','.join(f'd{i}' for i in range(15))} -contact_pairs auto -contact_facing false {bodies} -time_step 1e-4 -time_end 1e-3", 2)
     for i in range(15):
         np.testing.assert_allclose(run.history[f"body/d{i}/momentum"][:, 0], 1000 * run.history["time"][()], rtol=1e-12)

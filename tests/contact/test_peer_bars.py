@@ -4,15 +4,11 @@ At 1e-6 s the waves have come to the far ends: 1e-3 m at 1000 m/s. Each bar is a
 front is some elements wide, and rings behind: that is what the bounds below leave room for, 1.1 to 1.3 times what was measured.
 """
 
-import sys
-
 import numpy as np
 import pytest
 import pyvista
-from conftest import ROOT
 
 RUN = "-options_file options/peer-bars.opts -exact impact -output_fields fields.h5 -output_fields_interval 200 -output_fields_precision double"
-STRAIN, LENGTH, HALF = 0.1, 1e-3, 5e-5  # v / c, of a bar and of its width [m]
 
 
 def test_energies(shared_run):
@@ -50,26 +46,3 @@ def test_stress(body, last):
     assert len(stress) == 9
     assert stress[0] == pytest.approx(-1e8, rel=0.029)  # measured: -9.76e7
     assert np.abs(stress[1:]).max() <= 4.2e5  # measured: 3.4e5
-
-
-def test_displacement(last):
-    """Plane sections come to rest one after the other: u = -0.1 x. Poisson's effect moves each side out by nu 0.1 times half of the width: 1.25e-6 m."""
-    x = last.points[:, 0]
-    assert x.min() == pytest.approx(-LENGTH) and x.max() == pytest.approx(LENGTH)
-    np.testing.assert_allclose(last["displacement"][:, 0], -STRAIN * x, rtol=0, atol=3.4e-6)  # of 1e-4 m; measured: 2.8e-6, at the far ends
-    middle = (np.abs(x) > 0.2 * LENGTH) & (np.abs(x) < 0.8 * LENGTH)
-    for sign in (-1, 1):
-        for axis in (1, 2):
-            for body in (-1, 1):
-                moved = sign * last["displacement"][middle & (body * x > 0) & np.isclose(last.points[:, axis], sign * HALF, atol=1e-9), axis]
-                assert len(moved) == 11 * 3
-                assert moved.mean() == pytest.approx(0.25 * STRAIN * HALF, rel=0.03)  # measured: 1.219e-6 m
-                assert np.abs(moved - 0.25 * STRAIN * HALF).max() <= 0.3e-6  # measured: 0.26e-6 m
-
-
-def test_picture(shared_run, launch, tmp_path):
-    """As that of README's gallery is made."""
-    fields = shared_run(RUN).folder / "fields.xdmf"
-    run = launch([sys.executable, ROOT / "plots/render.py", fields, tmp_path / "peer-bars.png", "--field", "stress_xx", "--size", "300x200"])
-    assert run.returncode == 0, run.stderr
-    assert (tmp_path / "peer-bars.png").stat().st_size > 3000

@@ -16,8 +16,9 @@ METHODS = {
     "IE": f"{EXPLICIT.format(b='r')} -r_ts_time_step 2e-7 {LUMPED}",
     "EI": f"{EXPLICIT.format(b='l')} -l_ts_time_step 2e-7 {LUMPED}",
     "EE": f"{BOTH_EXPLICIT} -l_ts_time_step 1e-6 -r_ts_time_step 5e-7",
-    "whole-bodies": f"{AVERAGED} -schwarz_condense 0",
-    "whole-bodies-IE": f"{EXPLICIT.format(b='r')} -r_ts_time_step 2e-7 {LUMPED} -schwarz_condense 0",
+    "II 1:7": f"{LUMPED} -r_ts_time_step {2e-6 / 7:.17g}",
+    "EE 3:5": f"{BOTH_EXPLICIT} -l_ts_time_step {2e-6 / 3:.17g} -r_ts_time_step 4e-7",
+    "EI 50:1": f"{EXPLICIT.format(b='l')} -l_ts_time_step 4e-8 {LUMPED}",
     "anderson": f"{AVERAGED} -schwarz_snes_type anderson",
     "nrichardson": f"{AVERAGED} -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5",
     "robin": f"{AVERAGED} -schwarz_transmission robin",
@@ -29,11 +30,19 @@ METHODS = {
     "lagrange": f"{AVERAGED} -contact_type lagrange",
     "lagrange-explicit": f"{WITH_MASS} {BOTH_EXPLICIT} -contact_type lagrange",
 }
-CASES = [(shape, method) for shape in SHAPES for method in METHODS if "over" not in shape or method in ("II", "EE", "penalty")]
-QUICK = ("quad4-turned", "hex8")  # of which `make test` takes all methods
+# Each method with one shape; each shape with one method or more
+QUICK = [
+    *(("quad4-turned", method) for method in ("II", "EI", "penalty", "augmented-lagrangian", "lagrange-explicit")),
+    *(("quad4-turned", method) for method in ("II 1:7", "EE 3:5", "EI 50:1")),
+    *(("hex8", method) for method in ("IE", "EE", "paper", "penalty-explicit", "lagrange")),
+]
+LONG = [
+    *(("quad4", "EE"), ("quad4", "robin"), ("quad4-over", "II"), ("quad4-over", "nrichardson"), ("quad4-turned", "EE"), ("quad4-turned", "impedance-IE")),
+    *(("hex8", "II"), ("hex8", "anderson"), ("hex8-turned", "EE"), ("hex8-turned", "penalty"), ("hex8-over", "II"), ("hex8-over", "lagrange-explicit")),
+]
 
 
-@pytest.mark.parametrize(("shape", "method"), [*(case for case in CASES if case[0] in QUICK), *long(*(case for case in CASES if case[0] not in QUICK))])
+@pytest.mark.parametrize(("shape", "method"), [*QUICK, *long(*LONG)])
 def test_impact(shape, method, shared_run):
     """At every step. Measured: 1e-12, as the outer iteration stops at 1e-12 m of displacements of 1e-2 m, and 1.4e-10 with the paper's method, which
     chatters. The figures themselves are tested in one dimension and in test_solids_exact.py, and here for what they must be in a rough way:
@@ -42,6 +51,10 @@ def test_impact(shape, method, shared_run):
     run = shared_run(options(shape, METHODS[method]))
     compare(figures(bars, "bar2"), figures(run, shape), 1e-9)
     assert run.summary["contact"]["onsets"] == bars.summary["contact"]["onsets"]
+    if ":" in method:  # whatever the substeps, there is one way through a step
+        assert run.summary["contact"]["release_time"] == bars.summary["contact"]["release_time"]
+        for name in ("schwarz/iterations", "time"):
+            np.testing.assert_array_equal(bars.history[name][()], run.history[name][()], err_msg=name)
     assert run.summary["contact"]["force_mean"] == pytest.approx(1e4, rel=2e-3 if method == "paper" else 1.5e-4)  # measured: 1.6e-3 and 1.2e-4
     assert 0.978 * 5 <= run.summary["contact"]["impulse"] <= 5  # 25 elements with mass on the contact nodes lose 2.1 %
     momentum = run.summary["system"]["momentum_error_max"]
@@ -50,31 +63,13 @@ def test_impact(shape, method, shared_run):
         assert momentum == pytest.approx(1.94e-2, rel=1e-2)
     elif method == "impedance-IE":  # between the times that both sides have, a mixture of force and displacement is linear, not the force
         assert momentum == pytest.approx(8.2e-5, rel=1e-2)
+    elif method == "II 1:7":  # round-off of each substep of an implicit side; measured: 7e-13 to 1.1e-12, as the processor has it
+        assert momentum <= 3e-12 * 7
     else:
         assert momentum <= 1e-12  # round-off of 500 steps; measured: 1.3e-13 at most
 
 
-@pytest.mark.parametrize("pairing", ["II", "IE", "EI", "EE"])
-@pytest.mark.parametrize("substeps", [(1, 1), (1, 7), (50, 1), (3, 5)], ids=lambda substeps: "{}:{}".format(*substeps))
-def test_substeps(substeps, pairing, shared_run):
-    """Without an option that says how, bars in one dimension and bars of solids do the same in as many sweeps, and let go in the same step, whatever
-    the substeps of both sides: there is one way through a step."""
-    words = " ".join(f"-{b}_ts_time_step {2e-6 / n:.17g} {EXPLICIT.format(b=b) if kind == 'E' else ''}" for b, kind, n in zip("lr", pairing, substeps, strict=True))
-    bars, solids = (shared_run(options(shape, f"{LUMPED} {words}")) for shape in ("bar2", "quad4-turned"))
-    compare(figures(bars, "bar2"), figures(solids, "quad4-turned"), 1e-9)
-    for name in ("schwarz/iterations", "time"):
-        np.testing.assert_array_equal(bars.history[name][()], solids.history[name][()], err_msg=name)
-    assert bars.summary["contact"]["release_time"] == solids.summary["contact"]["release_time"]
-    assert bars.summary["contact"]["onsets"] == solids.summary["contact"]["onsets"] == 1
-    for run in (bars, solids):
-        assert run.summary["schwarz"]["max"] == 2  # one to close the gaps, one to see that they are closed
-        # round-off of 500 steps, which more substeps have more of; measured: 7e-13 to 1.1e-12 for each substep of an implicit side, as the processor
-        # has it, 1e-15 of explicit ones
-        assert run.summary["system"]["momentum_error_max"] <= 3e-12 * max(substeps)
-
-
-@pytest.mark.parametrize("shape", ["quad4-turned", *long("hex8-turned")])
-@pytest.mark.parametrize("method", ["II", "IE", "EI", "EE", "anderson", "robin", "impedance-IE"])
+@pytest.mark.parametrize(("shape", "method"), [("quad4-turned", "IE"), *long(("hex8-turned", "robin"))])
 def test_condensed(shape, method, shared_run):
     """Sweeps on the interface compliance have the iterates of sweeps of whole bodies: measured 6e-13."""
     runs = [shared_run(options(shape, f"{METHODS[method]} -schwarz_condense {condense}")) for condense in (0, 1)]
@@ -82,8 +77,7 @@ def test_condensed(shape, method, shared_run):
     np.testing.assert_array_equal(*(run.history["schwarz/iterations"][()] for run in runs))
 
 
-@pytest.mark.parametrize("shape", ["quad4-turned", "hex8", *long(*(shape for shape in SHAPES if shape not in QUICK))])
-@pytest.mark.parametrize("pairs", ["auto", "l:r"])
+@pytest.mark.parametrize(("pairs", "shape"), [("auto", "quad4-turned"), ("l:r", "hex8"), *long(("auto", "hex8-over"), ("l:r", "quad4-over"))])
 def test_surfaces_not_named(shape, pairs, shared_run):
     """Of all the surface of the bars only the ends that face each other have gaps, and the figures are the same."""
     named = shared_run(options(shape, METHODS["II"]))
@@ -102,7 +96,7 @@ def test_surfaces_not_named(shape, pairs, shared_run):
         np.testing.assert_array_equal(np.isfinite(gap), ends)
 
 
-@pytest.mark.parametrize(("method", "ranks"), [("II", 2), *long(("II", 4)), ("IE", 3), ("penalty", 2), *long(("lagrange-explicit", 3))])
+@pytest.mark.parametrize(("method", "ranks"), [("IE", 3), *long(("II", 4), ("penalty", 2), ("lagrange-explicit", 3))])
 def test_ranks(method, ranks, shared_run):
     compare(*(figures(shared_run(options("hex8-turned", METHODS[method]), n), "hex8-turned") for n in (1, ranks)), 1e-9)
 

@@ -34,11 +34,9 @@ def test_own_substeps(shared_run):
     assert worst_energy_error(common.summary) <= 2e-5  # measured: 5.4e-6
     # 26 of 27 parts of the common steps' work is saved but for the short ones of the small block, which is one part: 27 * 10 / (26 + 10) at best
     assert work(common) / work(own) >= 5  # measured: 5.9
-    assert common.summary["timing"]["cpu"] / own.summary["timing"]["cpu"] >= 3  # measured: 7.3
 
 
-@pytest.mark.parametrize("sides", ["", *long("-contact_pairs striker:target")])
-@pytest.mark.parametrize("step", ["auto", *long("8e-7", "1.9e-6", "4e-6")])
+@pytest.mark.parametrize(("step", "sides"), [("auto", ""), *long(("8e-7", "-contact_pairs striker:target"), ("1.9e-6", ""), ("4e-6", "-contact_pairs striker:target"))])
 def test_other_steps(step, sides, shared_run):
     """The program's own choice, and steps in between and beyond, with substeps of both: nothing grows, and no momentum is lost."""
     run = shared_run(f"{STRIKER} -time_step {step} {sides}")

@@ -6,11 +6,13 @@ import sys
 import numpy as np
 import pytest
 import tube_expansion
+from cases import worst_energy_error
 from conftest import ROOT
 from impakt_results import read
 
 CASE = "-options_file options/tube-expansion.opts"
 SIDES = {"liner first": "", "shell first": "-contact_pairs shell.xmin:liner.xmax"}
+COARSE = "-liner_dm_plex_box_faces 15,4 -shell_dm_plex_box_faces 17,6 -time_step 0.2"
 PRESSURE = 150e6
 
 
@@ -21,24 +23,20 @@ def both(run):
     return tubes, result.time, tube_expansion.contact_pressure(result), tube_expansion.expected(tubes, result.time, pressure, PRESSURE)
 
 
-@pytest.mark.parametrize("side", SIDES)
-@pytest.mark.parametrize("mesh", ["", *[pytest.param("-liner_dm_plex_box_faces 15,4 -shell_dm_plex_box_faces 17,6 -time_step 0.2", id="coarse")]])
+@pytest.mark.parametrize(("side", "mesh"), [("liner first", ""), ("shell first", COARSE)], ids=["liner first", "shell first"])
 def test_expansion(shared_run, side, mesh):
     """At all times to 0.2 % of the largest pressure, and at the end to 1 %: nu = 0.499 instead of 1/2 and strains of 0.1 % are of this order.
     Measured: 0.08 % and 0.46 %, on a mesh twice as fine and in steps from 0.02 to 1 too. The liner flows through, and the clearance is open up to 25 MPa."""
-    tubes, time, found, exact = both(shared_run(f"{CASE} {SIDES[side]} {mesh}"))
+    run = shared_run(f"{CASE} {SIDES[side]} {mesh}".strip())
+    tubes, time, found, exact = both(run)
     assert tubes.radius(tubes.loaded(PRESSURE)) == tubes.b
     assert np.abs(found - exact).max() <= 2e-3 * exact.max()
     assert exact[-1] > 15e6
     assert found[-1] == pytest.approx(exact[-1], rel=1e-2)
     assert not found[time * PRESSURE < 20e6].any()
-
-
-def test_energy(shared_run):
-    """Work of the pressure is elastic energy and plastic work, to what steps of first order leave; measured 0.13 %, and 0.0025 % in steps a fifth as long."""
-    summary = shared_run(CASE).summary
-    assert summary["bodies"]["liner"]["plastic_work"] > 0
-    assert max(abs(summary["system"][f"energy_error_{end}"]) for end in ("min", "max")) <= 2e-3
+    assert run.summary["bodies"]["liner"]["plastic_work"] > 0
+    if not mesh:  # work of the pressure is elastic energy and plastic work, to what steps of first order leave: measured 0.13 %, and 0.0025 % in steps a fifth as long
+        assert worst_energy_error(run.summary) <= 2e-3
 
 
 def lame(inner, outer, modulus, ratio):
@@ -52,8 +50,14 @@ def lame(inner, outer, modulus, ratio):
     return widening
 
 
-@pytest.mark.parametrize("side", SIDES)
-@pytest.mark.parametrize("unlike", ["-liner_youngs_modulus 70e9 -liner_poissons_ratio 0.33 -shell_poissons_ratio 0.3", "-shell_youngs_modulus 1000e9 -liner_poissons_ratio 0.2 -shell_poissons_ratio 0.4"])
+@pytest.mark.parametrize(
+    ("side", "unlike"),
+    [
+        ("liner first", "-liner_youngs_modulus 70e9 -liner_poissons_ratio 0.33 -shell_poissons_ratio 0.3"),
+        ("shell first", "-shell_youngs_modulus 1000e9 -liner_poissons_ratio 0.2 -shell_poissons_ratio 0.4"),
+    ],
+    ids=["liner first", "shell first"],
+)
 def test_elastic(impakt, side, unlike):
     """No flow, unlike materials: Lame's compound tube with a clearance, to 0.1 %: that much do strains of 0.05 % change radii. Measured: 0.005 % and 0.013 %."""
     run = impakt(f"{CASE} {SIDES[side]} {unlike} -liner_yield_stress 1e9 -time_end 1")
@@ -67,13 +71,13 @@ def test_elastic(impakt, side, unlike):
     assert run.summary["bodies"]["liner"]["plastic_work"] == 0
 
 
-@pytest.mark.parametrize("ranks", [2, 3])
-def test_ranks(shared_run, ranks):
+def test_ranks(shared_run):
     """To 1e-8 of the largest pressure, as sweeps end there."""
-    one, more = (both(shared_run(f"{CASE} -time_step 0.2", n))[2] for n in (1, ranks))
+    one, more = (both(shared_run(f"{CASE} -time_step 0.2", n))[2] for n in (1, 3))
     assert np.abs(one - more).max() <= 1e-8 * one.max()
 
 
+@pytest.mark.long
 def test_figure(shared_run, launch, tmp_path):
     figure = tmp_path / "figure.png"
     run = launch([sys.executable, ROOT / "plots/tube_expansion.py", shared_run(CASE).folder / "history.h5", figure], env={**os.environ, "MPLBACKEND": "Agg"})

@@ -1,11 +1,14 @@
-"""The progress bar on a terminal: its width, the set-up, messages beside it, and `mpiexec`; lines in a log."""
+"""The progress bar of the program on a terminal: as wide as that, with messages beside it, under mpiexec, in the set-up. Each run stands still meanwhile,
+as long as the test likes. What is told when, also in a log, is tested with another clock, in tests/sys/status_line.c."""
 
 import contextlib
 import fcntl
 import os
 import pty
 import re
+import resource
 import select
+import signal
 import struct
 import subprocess
 import termios
@@ -13,8 +16,11 @@ import time
 
 import pytest
 from conftest import IMPAKT, MPIEXEC, ROOT
+from held import PATIENCE, held
+from pace import paced, paced_steps
 
-RUN = [IMPAKT, "-options_file", ROOT / "options/bars-high-speed.opts", "-time_step", "2.5e-9"]  # of some seconds
+RUN = [IMPAKT, ROOT / "options/blocks.opts", *paced(4e-7).split(), "-left_dm_plex_box_faces", "10,2", "-right_dm_plex_box_faces", "6,3"]
+AMID = paced_steps(1500) // 20
 BAR = re.compile(r"\[[#.]+\] +\d+ %  (\d+ h )?\d+ (s|min) to go")
 
 
@@ -23,36 +29,29 @@ def set_width(terminal, columns):
 
 
 @contextlib.contextmanager
-def on_terminal(command, columns, stdout=subprocess.DEVNULL):
-    """Starts a program with standard error on a terminal; yields this end of it. `stdout` None: that is there as well."""
+def terminal(columns):
+    """Both ends of a terminal: the user's, and that of programs."""
     leader, follower = pty.openpty()
     set_width(leader, columns)
-    process = subprocess.Popen(command, cwd=ROOT, stdin=subprocess.DEVNULL, stdout=follower if stdout is None else stdout, stderr=follower)
-    os.close(follower)
     try:
-        yield leader
+        yield leader, follower
     finally:
-        process.terminate()
-        # mpiexec heeds the signal only while somebody reads what it writes: a full terminal that is waited beside keeps it for ever
-        try:
-            read_until(leader, lambda _: process.poll() is not None, 20)
-        finally:
-            process.kill()
-            process.wait()
-            os.close(leader)
+        os.close(leader)
+        os.close(follower)
 
 
-def read_until(leader, found, seconds=60):
-    """What the terminal was sent until `found(text)`, or the end of the run."""
-    text, end = "", time.monotonic() + seconds
+def read_until(leader, found):
+    """What the terminal was sent until `found(text)`."""
+    text, end = "", time.monotonic() + PATIENCE
     while not found(text):
         assert time.monotonic() < end, text
         if select.select([leader], [], [], 0.1)[0]:
-            try:
-                text += os.read(leader, 65536).decode()
-            except OSError:  # what Linux tells of a terminal that nobody has open any more
-                break
+            text += os.read(leader, 65536).decode()
     return text
+
+
+def last(text):
+    return text.split("\r")[-1]
 
 
 def screen(text):
@@ -66,65 +65,61 @@ def screen(text):
     return lines
 
 
-def test_width(take_cores):
-    """As wide as the terminal, also when that changes; the last column is left free."""
-    take_cores(1)
-    with on_terminal(RUN, 120) as leader:
-        wide = read_until(leader, lambda text: text.count("to go") > 1)
+def test_width(tmp_path):
+    """As wide as the terminal, also when that changes; at the end it is erased."""
+    with terminal(120) as (leader, follower), held(RUN, tmp_path, stderr=follower) as run:
+        run.until(AMID)
+        wide = read_until(leader, lambda text: "to go" in last(text))
         set_width(leader, 60)
-        narrow = read_until(leader, lambda text: text.count("to go") > 2)
-        set_width(leader, 30)
-        none = read_until(leader, lambda text: text.count("to go") > 3)
-    assert re.search(r"\[[#.]{80}\] ", wide)
-    assert re.search(r"\[[#.]{20}\] ", narrow)
-    assert "[" not in none.split("\r")[-2]
-    for text, columns in ((wide, 120), (narrow.split("\r")[-1], 60), (none.split("\r")[-1], 30)):
-        assert all(len(part) < columns for part in text.split("\r"))
-
-
-def steps_per_second(run):
-    """Of a run on this machine, as busy as it is now: beside other work one rank or two make a few times fewer of them."""
-    with on_terminal([*run, "-monitor_interval", "100", "-progress", "false"], 150, stdout=None) as leader:
-        read_until(leader, lambda text: "step " in text)
-        begin = time.monotonic()
-        text = read_until(leader, lambda text: "step " in text and time.monotonic() > begin + 0.5)
-        return 100 * text.count("step ") / (time.monotonic() - begin)
+        narrow = read_until(leader, lambda text: text.count("to go") > 1 and "to go" in last(text))  # the first of them may have been drawn before
+        assert run.finish()[0] == 0
+        end = read_until(leader, lambda text: text.endswith(" \r"))
+    assert re.match(r"\[[#.]{80}\] ", last(wide)) and len(last(wide)) < 120
+    assert re.match(r"\[[#.]{20}\] ", last(narrow)) and len(last(narrow)) < 60
+    assert screen(last(narrow) + end) == [""]
 
 
 @pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
-def test_messages_have_lines_of_their_own(ranks, take_cores):
-    """The bar comes back where no message has come for 0.05 s, under `mpiexec` for 0.2 s: so messages are asked for every 0.4 s."""
+def test_messages_have_lines_of_their_own(ranks, take_cores, tmp_path):
+    """The run stands still whenever a pipe is full of what a solver tells of itself, a few steps further each time, until the bar has come back."""
     take_cores(ranks)
-    run = [*(MPIEXEC + ["-n", str(ranks)] if ranks > 1 else []), *RUN]
-    command = [*run, "-monitor_interval", str(int(0.4 * steps_per_second(run)))]
-    with on_terminal(command, 150, stdout=None) as leader:
-        text = read_until(leader, lambda text: len(text.split("energy error")) > 5 and "to go" in text.split("energy error")[-3])
-    lines = screen(text[: text.rindex("\n") + 1])
+    os.mkfifo(tmp_path / "pipe")
+    pipe = os.open(tmp_path / "pipe", os.O_RDONLY | os.O_NONBLOCK)
+    fcntl.fcntl(pipe, fcntl.F_SETPIPE_SZ, resource.getpagesize())
+    command = [*(MPIEXEC + ["-n", str(ranks)] if ranks > 1 else []), *RUN, "-monitor_interval", "1", "-schwarz_snes_view", f"ascii:{tmp_path}/pipe"]
+    text = ""
+    with terminal(150) as (leader, follower):
+        process = subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=follower, stderr=follower)
+        try:
+            for _ in range(4):
+                text += read_until(leader, lambda more: "energy error" in more and "to go" in more.split("energy error")[-1])
+                with contextlib.suppress(BlockingIOError):  # there may be nothing in it where steps take long
+                    os.read(pipe, resource.getpagesize())
+        finally:
+            os.close(pipe)
+            process.terminate()
+            # mpiexec heeds the signal only while somebody reads what it writes: a full terminal that is waited beside keeps it for ever
+            try:
+                read_until(leader, lambda _: process.poll() is not None)
+            finally:
+                process.kill()
+                process.wait()
+    lines = screen(text)
     steps = [line for line in lines if line.startswith("step ")]
-    assert len(steps) > 3
+    assert len(steps) >= 4
     pattern = r"step +\d+  time +\S+ s  energy error +\S+  gap +\S+ m  active \d+  force +\S+ N  sweeps \d+"
     assert not [line for line in steps if not re.fullmatch(pattern, line)]
     assert BAR.search(text)
     assert not [line for line in lines[:-1] if "to go" in line]
 
 
-def test_setup(take_cores):
-    """What is done before the first step is shown too: meshes, matrices, contact."""
-    take_cores(1)
-    command = [IMPAKT, "-options_file", ROOT / "options/blocks.opts", "-left_dm_plex_box_faces", "300,300", "-right_dm_plex_box_faces", "300,300"]
-    with on_terminal(command, 80) as leader:
+def test_setup(tmp_path):
+    """What is done before the first step is shown too, here a mesh that is to be written to a pipe that nobody reads; what a signal has it say has a line of its own."""
+    os.mkfifo(tmp_path / "pipe")
+    with terminal(80) as (leader, follower), held([*RUN, "-left_dm_view", f"ascii:{tmp_path}/pipe"], tmp_path, stderr=follower) as run:
         text = read_until(leader, lambda text: "so far" in text)
-    assert re.search(r"^\r((mesh|elements|matrices) of body (left|right)|contact (surfaces|method)|first state), [1-9]\d* s so far", text), text
-
-
-@pytest.mark.longest
-def test_lines_in_a_log(tmp_path):
-    """Where there is no terminal: the first line after one minute."""
-    with open(tmp_path / "log", "w") as log:
-        process = subprocess.Popen([*RUN, "-time_step", "1e-10"], stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=log)
-        time.sleep(62)
-        process.terminate()
-        process.wait()
-    lines = [line for line in (tmp_path / "log").read_text().splitlines() if line.startswith("impakt: after ")]
-    assert len(lines) == 1
-    assert re.fullmatch(r"impakt: after 60 s: step \d+ of \d+, \d+ %, \d+ (s|min|h \d\d min) to go", lines[0])
+        run.process.send_signal(signal.SIGTERM)
+        assert run.finish()[0] == 75
+        text += read_until(leader, lambda text: text.endswith("anew\r\n"))
+    assert re.match(r"\rmesh of body left, [1-9]\d* s so far", text), text
+    assert screen(text)[-2].startswith("impakt: ended by SIGTERM during the set-up")

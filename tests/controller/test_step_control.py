@@ -59,12 +59,9 @@ def test_verdict(shared_run):
     bad = shared_run(f"{BEAM} -time_step 2e-4 -controller_step_cuts 0 {UNLIMITED}")
     assert warnings(bad)[-1].startswith("impakt: warning: the energy error is +178 %")
     assert [f"impakt: warning: {text}" for text in bad.summary["warnings"]] == warnings(bad)[1:]
-    gains = []
-    for step in ("7e-6", "1e-5", "1.1e-5", "1.2e-5"):  # measured: 0.0012, 0.0111, 0.0151, 0.0118
-        run = shared_run(f"{BEAM} -time_step {step} -controller_step_cuts 0 {UNLIMITED}")
-        gains.append(run.summary["system"]["energy_error_max"])
-        assert any(line.startswith("impakt: warning: the energy error is +") for line in warnings(run)) == (gains[-1] > 0.01)
-    assert any(0.01 < gain < 0.05 for gain in gains)
+    run = shared_run(f"{BEAM} -time_step 1e-5 -controller_step_cuts 0 {UNLIMITED}")
+    assert 0.01 < run.summary["system"]["energy_error_max"] < 0.05  # measured: 0.0111
+    assert any(line.startswith("impakt: warning: the energy error is +") for line in warnings(run))
     good = shared_run("-options_file options/impact-high-speed.opts")
     assert good.summary["warnings"] == []
     assert not good.summary["contact"]["in_contact_at_end"]
@@ -102,7 +99,6 @@ def test_guard_where_contact_is_not_limited(impakt):
         ("-left_ts_alpha_radius 0.5", "different times of a step on both bodies"),
         ("-left_ts_alpha_radius 0.5 -right_ts_alpha_radius 0.5", None),
         ("-left_ts_alpha_radius 0.5 -right_ts_alpha_radius 0.5 -contact_law tied -contact_tie_distance 1e9", "times inside a step on tied nodes with mass"),
-        ("-left_ts_alpha_radius 0.5 -right_ts_alpha_radius 0.5 -contact_law tied -contact_tie_distance 1e9 -schwarz_transmission robin", None),
     ],
 )
 def test_forces_inside_a_step(options, said, impakt):

@@ -1,6 +1,5 @@
 /* Composite elements of six and ten nodes: load points, masses, linear displacements, forces against energies, nearest points, what is
  * refused. */
-/* ranks: 1 */
 #include "solid_mesh.h"
 
 #define MAX_POINTS 48
@@ -10,7 +9,6 @@ static const char *const    materials[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAI
 #define MATERIALS 3
 static const PetscInt  edge_ends[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
 static const PetscReal edges[3][3]     = {{1.1, 0.2, -0.1}, {0.3, 1.2, 0.1}, {0.2, 0.3, 0.8}};
-static const PetscReal stretch[3][3]   = {{0.11, 0.05, -0.07}, {-0.02, -0.08, 0.03}, {0.04, 0.06, 0.09}};
 
 /* One element, edges from its first corner the columns of a matrix; nodes in the middle of edges, or off it by up to `off` along each axis
  * [m] */
@@ -127,48 +125,6 @@ static void masses_are_positive_and_complete(void **state)
       }
       if (!curved) near(mass, 3 * get_volume(d), 1e-14);
       solid_destroy(&solid);
-    }
-}
-
-/* A linear displacement has the stress and the energy density of the linear element with the same corners, curved edges or not; forces
- * balance */
-static void gradients_of_linear_displacements_are_exact(void **state)
-{
-  (void)state;
-  for (PetscInt s = 0; s < 2; s++)
-    for (PetscInt m = 0; m < MATERIALS; m++) {
-      PetscReal u[MAX_DOFS], f[MAX_DOFS], stress[6], exact[6], density = 0;
-      Mesh      mesh;
-      Solid     solid;
-
-      mesh_composite(&mesh, simplices[s], 0);
-      set_linear(&mesh, stretch, u);
-      mesh.nodes = mesh.dim + 1;
-      solid_create(&solid, &mesh, materials[m], "");
-      ok((*solid.element->ops->stress)(solid.element, u, exact));
-      density = get_energy(&solid, u) / get_volume(mesh.dim);
-      solid_destroy(&solid);
-      for (PetscInt curved = 0; curved < 2; curved++) {
-        PetscReal positions[3 * MAX_POINTS], weights[MAX_POINTS], volume = 0;
-
-        mesh_composite(&mesh, simplices[s], 0.05 * curved);
-        create(&solid, &mesh, materials[m], "");
-        set_linear(&mesh, stretch, u);
-        ok((*solid.element->ops->stress)(solid.element, u, stress));
-        for (PetscInt k = 0; k < 6; k++) near(stress[k], exact[k], 1e-13 * largest_of(6, exact));
-        ok((*solid.element->ops->points)(solid.element, 0, positions, weights));
-        for (PetscInt g = 0; g < solid.element->n_points; g++) volume += weights[g];
-        near(get_energy(&solid, u), density * volume, 1e-13 * density * volume);
-        get_force(&solid, &mesh, u, f);
-        between(largest_of(mesh.dim * mesh.nodes, f), 1, 100);
-        for (PetscInt i = 0; i < mesh.dim; i++) {
-          PetscReal sum = 0;
-
-          for (PetscInt a = 0; a < mesh.nodes; a++) sum += f[mesh.dim * a + i];
-          near(sum, 0, 1e-13 * largest_of(mesh.dim * mesh.nodes, f));
-        }
-        solid_destroy(&solid);
-      }
     }
 }
 
@@ -320,7 +276,6 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(load_points_are_where_shape_functions_say),
       cmocka_unit_test(masses_are_positive_and_complete),
-      cmocka_unit_test(gradients_of_linear_displacements_are_exact),
       cmocka_unit_test(forces_and_tangents_are_derivatives),
       cmocka_unit_test(nearest_points_are_found),
       cmocka_unit_test(inverted_elements_are_told),

@@ -1,92 +1,67 @@
 """Runs that are killed, or asked to end, at any moment: continued by the same command they end with the bits of one that was not interrupted."""
 
-import contextlib
 import json
 import os
 import random
 import re
 import signal
-import subprocess
 import time
 
 import h5py
 import pytest
-from conftest import ALONE, cores
+from cases import long, validate
+from conftest import ROOT, start
+from held import handles, held, wait_for
+from pace import paced, paced_steps
 from restarts import command
 
-# Contact from the start on, fields of two dimensions, 600 steps in about a second
-CASE = "-options_file options/blocks.opts"
-# of a second or more on any machine, for what is to come amid the run
-SLOW = CASE + " -left_dm_plex_box_faces 100,20 -right_dm_plex_box_faces 90,18"
+# Contact from the start on, fields of two dimensions
+STEPS = paced_steps(1500)
+CASE = f"-options_file options/blocks.opts {paced(4e-7)} -left_dm_plex_box_faces 10,2 -right_dm_plex_box_faces 6,3"
+CHECKPOINTS = ("-checkpoint", "c.h5", "-restart", "c.h5")
+SELDOM = (*CHECKPOINTS, "-checkpoint_interval", 100000)
+# mpiexec, where a rank has gone, kills the others without giving them a second to end
+AT_ONCE = {"OMPI_MCA_odls_base_sigkill_timeout": "0"}
+AMID = STEPS // 20  # a step from which there is a long way to the end
 
 
-def children(pid):
-    with open(f"/proc/{pid}/task/{pid}/children") as file:
-        return [int(word) for word in file.read().split()]
+def hold(where, ranks, *more, **env):
+    return held(command(CASE, 1, *more), where, ranks, **env)
 
 
-def heed_interrupts():
-    """Who starts the tests in the background, or by nohup, has them ignore SIGINT or SIGHUP, and what they start would too."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
-    signal.signal(signal.SIGHUP, signal.SIG_DFL)
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory):
+    """whole(ranks): the folder of a run that was not interrupted."""
+    done = {}
+
+    def run(ranks=1):
+        if ranks not in done:
+            done[ranks] = tmp_path_factory.mktemp("whole")
+            (done[ranks] / "options").symlink_to(ROOT / "options")
+            finished = start(command(CASE, 1), ranks, cwd=done[ranks])
+            assert finished.returncode == 0, finished.stderr
+        return done[ranks]
+
+    return run
 
 
-def begin(where, ranks, *more, case=CASE):
-    return subprocess.Popen(
-        command(case, ranks, "-checkpoint", "c.h5", "-restart", "c.h5", *more),
-        cwd=where,
-        env=os.environ | (ALONE if ranks == 1 else {}),
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        start_new_session=True,
-        preexec_fn=heed_interrupts,  # noqa: PLW1509
-    )
-
-
-def caught(pid):
-    """Whether a process handles SIGINT itself: from when PETSc has been started, until one has come."""
-    with open(f"/proc/{pid}/status") as status:
-        mask = int(re.search(r"SigCgt:\s*(\w+)", status.read())[1], 16)
-    return bool(mask >> (signal.SIGINT - 1) & 1)
-
-
-def await_begun(process, where):
-    """Until the set-up has ended: the first record of the history is there."""
-    while not (where / "h.h5").exists():
-        assert process.poll() is None
-        time.sleep(0.01)
-
-
-def await_caught(process, expected=True):
-    late = time.monotonic() + 30
-    while caught(process.pid) != expected:
-        assert process.poll() is None and time.monotonic() < late
-        time.sleep(0.001)
-
-
-def kill_after(process, seconds, ranks, chance):
-    """Kills the run with signal 9: on several ranks one of them, as the kernel does where memory ends, or all."""
-    try:
-        process.wait(seconds)
-    except subprocess.TimeoutExpired:
-        victims = [process.pid] if ranks == 1 else children(process.pid)
-        for victim in victims if chance.random() < 0.5 else victims[-1:]:
-            with contextlib.suppress(ProcessLookupError):  # mpiexec ends the others as soon as one is gone
-                os.kill(victim, signal.SIGKILL)
-        process.wait(60)
-    return process.stderr.read()
-
-
-def kill_often(where, kills, ranks, interval, longest, seed):
-    """Continues a run that is killed again and again, then to its end; how many times there was something to continue."""
-    chance = random.Random(seed)
-    with cores(ranks):
-        told = [kill_after(begin(where, ranks, "-checkpoint_interval", interval), chance.uniform(0, longest), ranks, chance) for _ in range(kills)]
-        last = begin(where, ranks, "-checkpoint_interval", interval)
-        told.append(last.communicate(timeout=200)[1])
-    assert last.returncode == 0, told[-1]
-    return sum("continued from" in text for text in told)
+def kill_often(where, kills, ranks, interval, seed):
+    """Continues a run that is killed again and again, then to its end; how many times there was something to continue. Each run is killed from 0 to 20 ms
+    after it has begun to set up, or after one of its first steps; it stands still before its end as nobody reads what it prints."""
+    chance, told = random.Random(seed), []
+    for link in range(kills):
+        with hold(where, ranks, *CHECKPOINTS, "-checkpoint_interval", interval, **AT_ONCE) as run:
+            if link and chance.random() < 0.25:
+                run.processes()
+            else:
+                run.print_lines(interval + chance.randint(2, 2 + AMID))  # there is a checkpoint
+            time.sleep(chance.uniform(0, 0.02))
+            run.kill(one=chance.random() < 0.5)
+            told.append(run.stderr())
+    with hold(where, ranks, *SELDOM) as last:
+        code, stderr = last.finish()
+    assert code == 0, stderr
+    return sum("continued from" in text for text in [*told, stderr])
 
 
 def readable(where):
@@ -96,50 +71,38 @@ def readable(where):
             assert len(history["time"]) == len(history["schwarz/iterations"])
 
 
-@pytest.mark.parametrize(("interval", "seed"), [(40, 1), pytest.param(1, 2, marks=pytest.mark.long)])
-def test_kill(run_in, folder, same_runs, interval, seed):
-    """With an interval of one step most of the time goes into checkpoints: kills come while one is written."""
-    whole, other = folder("whole"), folder("killed")
-    run_in(CASE, whole)
-    assert kill_often(other, 3, 1, interval, 0.9, seed) > 0
-    readable(other)
-    same_runs(whole, other)
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(("ranks", "interval", "kills", "seed"), [(1, 30, 15, 3), (1, 1, 15, 4), (2, 20, 6, 5), (2, 1, 4, 6), (3, 20, 6, 7), (3, 1, 4, 8)])
-def test_many_kills(run_in, folder, same_runs, ranks, interval, kills, seed):
-    """50 kills in all. Ranks that share cores are slow to start, so that a kill comes later."""
-    whole = folder("whole")
-    run_in(CASE, whole, ranks)
-    chance, continued = random.Random(100 + seed), 0
-    while kills > 0:
-        chain = min(kills, 5)
-        other = folder(f"killed-{kills}")
-        continued += kill_often(other, chain, ranks, interval, 0.9 if ranks == 1 else 3.0, chance.random())
+@pytest.mark.parametrize(
+    ("ranks", "interval", "kills", "seed"),
+    [
+        (1, 1, 3, 1),  # most of the time goes into checkpoints: kills come while one is written
+        *long((1, 20, 6, 2), (1, 1, 3, 3), (2, 20, 3, 4), (2, 1, 3, 5)),
+        *validate((1, 30, 15, 6), (1, 1, 15, 7), (2, 20, 6, 8), (2, 1, 4, 9), (3, 20, 6, 10), (3, 1, 4, 11)),  # 50 kills
+    ],
+)
+def test_many_kills(folder, same_runs, whole, ranks, interval, kills, seed):
+    """By chains of three: the fastest machine does not come to the end of the run either, when each link makes its steps and a page of lines."""
+    interval, chance = interval if interval == 1 else paced_steps(interval), random.Random(seed)
+    for left in range(kills, 0, -3):
+        other = folder(f"killed-{left}")
+        assert kill_often(other, min(left, 3), ranks, interval, chance.random()) > 0
         readable(other)
-        same_runs(whole, other)
-        kills -= chain
-    assert continued > 0
+        same_runs(whole(ranks), other)
 
 
-def end_by(where, number, seconds, *more, ranks=1, case=CASE):
-    with cores(ranks):
-        process = begin(where, ranks, "-checkpoint_interval", 100000, *more, case=case)
-        await_begun(process, where)
-        time.sleep(seconds)
-        os.kill(process.pid, number)
-        stderr = process.communicate(timeout=60)[1]
-    return process.returncode, stderr
+def end_by(where, number, *more):
+    """Sends a signal to a run that is amid its steps."""
+    with hold(where, 1, *more) as run:
+        run.until(AMID)
+        run.process.send_signal(number)
+        return run.finish()
 
 
-@pytest.mark.parametrize("number", [signal.SIGTERM, pytest.param(signal.SIGINT, marks=pytest.mark.long), pytest.param(signal.SIGHUP, marks=pytest.mark.long)])
-def test_end_in_good_order(run_in, folder, same_runs, number):
-    whole, other = folder("whole"), folder("ended")
-    run_in(SLOW, whole)
-    code, stderr = end_by(other, number, 0.1, case=SLOW)
+@pytest.mark.parametrize("number", [signal.SIGTERM, *long(signal.SIGINT, signal.SIGHUP)])
+def test_end_in_good_order(run_in, folder, same_runs, whole, number):
+    other = folder("ended")
+    code, stderr = end_by(other, number, *SELDOM)
     assert code == 75, stderr
-    found = re.search(rf"^impakt: ended by {number.name} after controller step (\d+) of 600; to continue, give the same command with -restart c.h5$", stderr, re.MULTILINE)
+    found = re.search(rf"^impakt: ended by {number.name} after controller step (\d+) of {STEPS}; to continue, give the same command with -restart c.h5$", stderr, re.MULTILINE)
     assert found
     with h5py.File(other / "h.h5") as history:
         assert len(history["time"]) == int(found[1]) + 1
@@ -148,148 +111,121 @@ def test_end_in_good_order(run_in, folder, same_runs, number):
     assert figures["controller_steps"] == int(found[1])
     with h5py.File(other / "h.h5") as history:
         assert figures["time"] == pytest.approx(history["time"][-1], rel=1e-14)  # the same product, added up in other places
-    run_in(SLOW, other, 1, "-restart", "c.h5", "-checkpoint", "c.h5")
-    assert json.loads((other / "s.json").read_text())["run"] == json.loads((whole / "s.json").read_text())["run"]
-    same_runs(whole, other)
+    run_in(CASE, other, 1, "-restart", "c.h5", "-checkpoint", "c.h5")
+    assert json.loads((other / "s.json").read_text())["run"] == json.loads((whole() / "s.json").read_text())["run"]
+    same_runs(whole(), other)
 
 
-@pytest.mark.long
-def test_checkpoint_by_signal(run_in, folder, same_runs):
-    whole, other = folder("whole"), folder("asked")
-    run_in(SLOW, whole)
-    with cores(1):
-        process = begin(other, 1, "-checkpoint_interval", 100000, case=SLOW)
-        await_begun(process, other)
-        time.sleep(0.1)
-        os.kill(process.pid, signal.SIGUSR1)
-        process.communicate(timeout=60)
-    assert process.returncode == 0
-    same_runs(whole, other)
+def test_checkpoint_by_signal(run_in, folder, same_runs, whole):
+    other = folder("asked")
+    code, stderr = end_by(other, signal.SIGUSR1, *SELDOM)
+    assert code == 0, stderr
+    same_runs(whole(), other)
     with h5py.File(other / "c.prev.h5") as asked:
-        assert 0 < asked.attrs["step"] < 600
-    run_in(SLOW, other, 1, "-restart", "c.prev.h5")
-    same_runs(whole, other)
+        assert 0 < asked.attrs["step"] < STEPS
+    run_in(CASE, other, 1, "-restart", "c.prev.h5")
+    same_runs(whole(), other)
 
 
-@pytest.mark.long
 def test_second_interrupt(folder):
-    """Ends the run at once, though its step may take long."""
-    other = folder("interrupted")
-    with cores(1):
-        process = begin(other, 1, case="-options_file options/hertz-sphere.opts")
-        await_begun(process, other)
-        os.kill(process.pid, signal.SIGINT)
-        await_caught(process, False)  # the second one is sent when the first has been taken
-        os.kill(process.pid, signal.SIGINT)
-        process.communicate(timeout=20)
-    assert process.returncode == -signal.SIGINT
+    """Ends the run at once, though its step may take long: here for ever, as nobody reads what it prints."""
+    with hold(folder("interrupted"), 1, *CHECKPOINTS) as run:
+        run.until(AMID)
+        run.process.send_signal(signal.SIGINT)
+        wait_for("the first one", lambda: not handles(run.process.pid, signal.SIGINT), run.process)  # the second one is sent when it has been taken
+        run.process.send_signal(signal.SIGINT)
+        wait_for("the end", lambda: run.process.poll() is not None)
+        assert run.process.returncode == -signal.SIGINT
 
 
-def test_wall_time(run_in, folder, same_runs):
-    whole, other = folder("whole"), folder("limited")
-    run_in(SLOW, whole)
-    options = ("-checkpoint", "c.h5", "-restart", "c.h5", "-max_wall_time", "0:00:00.5")
-    done = run_in(SLOW, other, 1, *options, code=75)
-    assert "impakt: ended by -max_wall_time after controller step" in done.stderr
-    run_in(SLOW, other, 1, "-restart", "c.h5")
-    same_runs(whole, other)
+def test_wall_time(run_in, folder, same_runs, whole):
+    """The time passes while the run stands still."""
+    other = folder("limited")
+    with hold(other, 1, *CHECKPOINTS, "-max_wall_time", "0:00:00.2") as run:
+        wait_for("the first step", (other / "h.h5").exists, run.process)
+        time.sleep(0.2)
+        code, stderr = run.finish()
+    assert code == 75, stderr
+    found = re.search(r"^impakt: ended by -max_wall_time after controller step (\d+) of", stderr, re.MULTILINE)
+    with h5py.File(other / "c.h5") as checkpoint:
+        assert checkpoint.attrs["step"] == int(found[1])
+    run_in(CASE, other, 1, "-restart", "c.h5")
+    same_runs(whole(), other)
 
 
-@pytest.mark.long
 def test_without_checkpoint(folder):
     """The files are whole all the same, and it is said that the run cannot be continued."""
     where = folder("run")
-    with cores(1):
-        process = subprocess.Popen(
-            command(SLOW, 1),
-            cwd=where,
-            env=os.environ | ALONE,
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            text=True,
-            preexec_fn=heed_interrupts,  # noqa: PLW1509
-        )
-        await_begun(process, where)
-        process.send_signal(signal.SIGTERM)
-        stderr = process.communicate(timeout=30)[1]
-    assert process.returncode == 75
+    code, stderr = end_by(where, signal.SIGTERM)
+    assert code == 75
     assert "without -checkpoint the run cannot be continued" in stderr
     readable(where)
     assert (where / "s.json").exists()
 
 
 @pytest.mark.long
-def test_mpiexec(run_in, folder, same_runs):
+def test_mpiexec(run_in, folder, same_runs, whole):
     """Open MPI's mpiexec hands the signal on, and ends with a code of its own. What ranks say then it may hand on or not; their checkpoint is there."""
-    whole, other = folder("whole"), folder("ended")
-    case = SLOW + " -time_step 2e-7"  # 3000 steps: seconds also on quiet cores
-    run_in(case, whole, 2)
-    code, _ = end_by(other, signal.SIGTERM, 0.3, ranks=2, case=case)
-    assert code != 0
+    other = folder("ended")
+    with hold(other, 2, *SELDOM) as run:
+        run.until(AMID)
+        ranks = run.processes()
+        run.process.send_signal(signal.SIGTERM)
+        wait_for("the signal on all ranks", lambda: not any(handles(rank, signal.SIGTERM) for rank in ranks))
+        assert run.finish()[0] != 0
     with h5py.File(other / "c.h5") as asked:
-        assert 0 < asked.attrs["step"] < 3000
-    run_in(case, other, 2, "-restart", "c.h5")
-    same_runs(whole, other)
+        assert 0 < asked.attrs["step"] < STEPS
+    run_in(CASE, other, 2, "-restart", "c.h5")
+    same_runs(whole(2), other)
 
 
-# Three million degrees of freedom: set up for many seconds
-SETUP = CASE + " -left_dm_plex_box_faces 1000,1000"
+@pytest.fixture
+def in_setup(folder, tmp_path):
+    """A folder, and a run that waits there amid its set-up, on some ranks: its mesh is to be written to a pipe that nobody reads."""
+    os.mkfifo(tmp_path / "mesh")
+    return folder("run"), lambda where, ranks, *more: hold(where, ranks, *SELDOM, "-left_dm_view", f"ascii:{tmp_path}/mesh", *more)
 
 
-def await_setup(pid):
-    late = time.monotonic() + 30
-    while not caught(pid):
-        assert time.monotonic() < late
-        time.sleep(0.001)
+def end_setup(run, number, victim):
+    """Sends a signal to a rank, or to mpiexec (None)."""
+    os.kill(run.process.pid if victim is None else run.processes()[victim], number)
+    return run.finish()
 
 
-def end_setup(where, number, ranks, victim):
-    """Sends a signal to a rank amid the set-up, or to mpiexec (None)."""
-    with cores(ranks):
-        process = begin(where, ranks, case=SETUP)
-        while ranks > 1 and len(children(process.pid)) < ranks:
-            assert process.poll() is None
-            time.sleep(0.01)
-        processes = children(process.pid) if ranks > 1 else [process.pid]
-        for pid in processes:
-            await_setup(pid)
-        os.kill(process.pid if victim is None else processes[victim], number)
-        stderr = process.communicate(timeout=30)[1]
-    return process.returncode, stderr
-
-
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, pytest.param(signal.SIGHUP, marks=pytest.mark.long)])
-def test_end_of_setup(folder, number):
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT, *long(signal.SIGHUP)])
+def test_end_of_setup(in_setup, number):
     """Before the first step: one line, and no file is left."""
-    where = folder("run")
+    where, begin = in_setup
     there = set(where.iterdir())
-    code, stderr = end_setup(where, number, 1, 0)
+    with begin(where, 1) as run:
+        code, stderr = end_setup(run, number, 0)
     assert code == 75, stderr
     assert stderr == f"impakt: ended by {number.name} during the set-up, before the first step: there is nothing to continue, the same command begins anew\n"
     assert set(where.iterdir()) == there
 
 
 @pytest.mark.long
-@pytest.mark.parametrize(("ranks", "victim"), [(2, 0), (2, 1), (3, 2), (2, None), (3, None)])
-def test_end_of_setup_on_ranks(folder, ranks, victim):
+@pytest.mark.parametrize("victim", [0, 1, None])
+def test_end_of_setup_on_ranks(in_setup, victim):
     """The first rank says so, also where another one has ended and mpiexec ends it; where mpiexec itself is told, it may hand that on or not."""
-    where = folder("run")
+    where, begin = in_setup
     there = set(where.iterdir())
-    code, stderr = end_setup(where, signal.SIGTERM, ranks, victim)
+    with begin(where, 2) as run:
+        run.processes()
+        code, stderr = end_setup(run, signal.SIGTERM, victim)
     assert code != 0 if victim is None else code == 75, stderr
     told = stderr.count("impakt: ended by SIGTERM during the set-up, before the first step: there is nothing to continue, the same command begins anew")
     assert told <= 1 if victim is None else told == 1, stderr
     assert set(where.iterdir()) == there
 
 
-def test_checkpoint_asked_in_setup(folder):
+def test_checkpoint_asked_in_setup(in_setup, tmp_path):
     """SIGUSR1 in the set-up does not end the run: the checkpoint is written as soon as there is a step."""
-    where = folder("run")
-    with cores(1):
-        process = begin(where, 1, "-checkpoint_interval", 100000, "-time_end", "2e-5")
-        await_setup(process.pid)
-        os.kill(process.pid, signal.SIGUSR1)
-        stderr = process.communicate(timeout=60)[1]
-    assert process.returncode == 0, stderr
+    where, begin = in_setup
+    with begin(where, 1, "-time_end", "2e-5") as run:
+        os.kill(*run.processes(), signal.SIGUSR1)
+        (tmp_path / "mesh").read_text()  # the run goes on
+        code, stderr = run.finish()
+    assert code == 0, stderr
     with h5py.File(where / "c.prev.h5") as asked:
         assert asked.attrs["step"] == 0

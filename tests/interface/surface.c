@@ -1,5 +1,7 @@
-/* Surfaces: which faces a name means, their areas and normals. */
+/* ranks: 1 3 */
+/* Surfaces: which faces a name means, their areas and normals, also of nodes in planes of symmetry. */
 #include "simulation.h"
+#include "interfaces.h"
 
 /* [0,1] x [0,2] x [0,3] as far as it has dimensions */
 static DM CreateBox(PetscInt dim, const char faces[], PetscBool simplex)
@@ -54,29 +56,6 @@ static void line_ends_by_name(void **state)
     for (PetscInt node = 0; node < data->n_nodes; node++) CheckEnd(data, node, positions[i], normals[i]);
     ok(SurfaceDestroy(&surface));
     assert_null(surface);
-  }
-  ok(DMDestroy(&dm));
-}
-
-static void whole_boundary_of_a_line(void **state)
-{
-  const char *const  names[] = {NULL, "all", "marker"}; /* PETSc labels the whole boundary of its boxes "marker" */
-  const SurfaceData *data;
-  Surface            surface;
-  DM                 dm = CreateBox(1, "5", PETSC_TRUE);
-
-  (void)state;
-  for (PetscInt i = 0; i < 3; i++) {
-    ok(SurfaceCreate(dm, names[i], &surface));
-    ok(SurfaceGetData(surface, &data));
-    assert_int_equal(Total(data->n_owned), 2);
-    assert_int_equal(Total(data->n_faces), 2);
-    for (PetscInt node = 0; node < data->n_nodes; node++) {
-      const PetscBool left = (PetscBool)(data->positions[3 * node] < 0.5);
-
-      CheckEnd(data, node, left ? 0 : 1, left ? -1 : 1);
-    }
-    ok(SurfaceDestroy(&surface));
   }
   ok(DMDestroy(&dm));
 }
@@ -186,31 +165,6 @@ static void sides_of_a_hexahedral_box(void **state)
   ok(DMDestroy(&dm));
 }
 
-/* A node's vertex is on the ranks that have it, and on one at least */
-static void vertices_of_nodes(void **state)
-{
-  PetscInt        n;
-  const PetscInt *vertices;
-  Surface         surface;
-  int             found = 0;
-  DM              dm    = CreateBox(1, "5", PETSC_TRUE);
-
-  (void)state;
-  ok(SurfaceCreate(dm, NULL, &surface));
-  ok(SurfaceGetVertices(surface, &n, &vertices));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscInt supports;
-
-    ok(DMPlexGetSupportSize(dm, vertices[i], &supports));
-    assert_int_equal(supports, 1); /* an end of the line */
-  }
-  found = (int)n;
-  MPI_Allreduce(MPI_IN_PLACE, &found, 1, MPI_INT, MPI_SUM, PETSC_COMM_WORLD);
-  assert_int_equal(found, 2); /* with one element to each rank at least, no rank but its own has an end */
-  ok(SurfaceDestroy(&surface));
-  ok(DMDestroy(&dm));
-}
-
 static void unknown_names_are_refused(void **state)
 {
   const char *const names[] = {"nose", "zmin", "99", "1x"}; /* no label, beyond the dimension, no such set, no number */
@@ -266,12 +220,68 @@ static void ends_that_face_each_other(void **state)
   }
 }
 
+static const PetscReal nowhere[3] = {0, 0, 0};
+
+/* All normals are tilted along x by atan(0.1) */
+static void map_slope_2d(const PetscReal X[3], PetscReal x[3])
+{
+  map_nothing(X, x);
+  x[1] += 0.1 * X[0];
+}
+
+static void map_slope(const PetscReal X[3], PetscReal x[3])
+{
+  map_nothing(X, x);
+  x[2] += 0.1 * X[0];
+}
+
+/* Nodes at x = 0 are held along x, as those beside them; those at x = 1 along all axes. The normals of the first stay in the plane x = 0,
+   where the surface ends: the second lie inside of it, and the third are clamped. Without held displacements all are as before. */
+static void normals_stay_in_planes_of_symmetry(void **state)
+{
+  const char *const faces[2][2] = {{"4,1", "2,1"}, {"4,4,1", "2,2,1"}};
+  const PetscBool   quads[2]    = {PETSC_FALSE, PETSC_FALSE};
+
+  (void)state;
+  for (PetscInt dim = 2; dim <= 3; dim++) {
+    const SurfaceData *data;
+    PetscInt          *dofs, n = 0, first, in_planes = 0;
+    Interface          interface;
+
+    interface_create(&interface, dim, faces[dim - 2], quads, PETSC_FALSE);
+    ok(SurfaceGetData(interface.surface[0], &data));
+    ok(VecGetOwnershipRange(interface.u[0], &first, NULL));
+    ok(PetscMalloc1(dim * data->n_owned, &dofs));
+    for (PetscInt i = 0; i < data->n_owned; i++)
+      for (PetscInt d = 0; d < dim; d++)
+        if ((d == 0 && data->reference[3 * i] < 0.3) || data->reference[3 * i] > 0.9) dofs[n++] = data->dofs[i] + d - first;
+    ok(PetscSortInt(n, dofs));
+    move_mesh(interface.dm[0], dim == 2 ? map_slope_2d : map_slope, nowhere, interface.u[0]);
+    for (PetscInt held = 1; held >= 0; held--) {
+      ok(SurfaceSetMirrors(interface.surface[0], held ? n : 0, dofs, first));
+      ok(SurfaceUpdate(interface.surface[0], interface.u[0]));
+      for (PetscInt i = 0; i < data->n_nodes; i++) {
+        const PetscBool in_plane = (PetscBool)(held && data->reference[3 * i] < 1e-9);
+
+        near(data->normals[3 * i], in_plane ? 0 : -0.1 / PetscSqrtReal(1.01), 1e-14);
+        near(data->normals[3 * i + dim - 1], in_plane ? 1 : 1 / PetscSqrtReal(1.01), 1e-14);
+        if (in_plane && i < data->n_owned) in_planes++;
+      }
+    }
+    assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &in_planes, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
+    assert_int_equal(in_planes, dim == 2 ? 1 : 5);
+    ok(PetscFree(dofs));
+    interface_destroy(&interface);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(line_ends_by_name),         simulation_test(whole_boundary_of_a_line),  simulation_test(faces_of_a_label),
-      simulation_test(sides_of_a_rectangle),      simulation_test(sides_of_a_hexahedral_box), simulation_test(vertices_of_nodes),
-      simulation_test(ends_that_face_each_other), simulation_test(unknown_names_are_refused), simulation_test(empty_surfaces_are_refused),
+      simulation_test(line_ends_by_name),          simulation_test(faces_of_a_label),
+      simulation_test(sides_of_a_rectangle),       simulation_test(sides_of_a_hexahedral_box),
+      simulation_test(ends_that_face_each_other),  simulation_test(unknown_names_are_refused),
+      simulation_test(empty_surfaces_are_refused), simulation_test(normals_stay_in_planes_of_symmetry),
   };
 
   return impakt_main(argc, argv, tests);

@@ -1,7 +1,7 @@
-"""Rows of nodes at an edge, whose partner's nodes lie on its edge alone."""
+"""Rows of nodes at an edge, whose partner's nodes lie on its edge alone, and of nodes at a corner, which look at what lies far beside them."""
 
 import pytest
-from cases import joined
+from cases import joined, long
 from setups import box, material
 
 LOWER, UPPER = (f"-{body}_ts_type centraldifference" for body in ("lower", "upper"))
@@ -23,7 +23,7 @@ def plates(more):
     )
 
 
-@pytest.mark.parametrize("integrators", [UPPER, f"{LOWER} {UPPER}"], ids=["IE", "EE"])
+@pytest.mark.parametrize("integrators", [UPPER, *long(f"{LOWER} {UPPER}")])
 def test_plates_slide_without_loss(integrators, shared_run):
     """The edges bulge by 1.5 % of an element while the partner's edge stays straight to 10^-5 of its length. Weights of up to 1000 that made up for that cost 2.4 %
     (IE) and 1.0 % (EE) of the energy; 0.03 % and 0.07 % are left, of nodes that come to lie beside the partner."""
@@ -31,3 +31,17 @@ def test_plates_slide_without_loss(integrators, shared_run):
     assert -1.5e-3 < run.summary["system"]["energy_error_min"]
     assert run.summary["system"]["energy_error_max"] < 2e-4
     assert run.summary["schwarz"]["max"] <= 6
+
+
+SQUARE = "-a_dm_plex_dim 2 -a_dm_plex_box_faces 3,3 -a_dm_plex_box_lower -0.07,-0.07 -a_dm_plex_box_upper 0.07,0.07 -a_rotate 64.04"
+DISC = "-b_dm_plex_dim 2 -b_dm_plex_shape ball -b_ball_radius 0.1 -b_ball_divisions 4 -b_ball_keep_volume false -b_ball_centre 0.6728,-0.356"
+
+
+def test_square_and_disc(impakt):
+    """Far from each other, they do not move and do not touch. The normal of a node at a corner is half way between those of its two faces: what lies before one of them far
+    away lies far beside that normal, and weights that continue the partner as a line to where the normal meets it have been 50, with a gap of -0.3 m at a distance of 0.55 m."""
+    bodies = " ".join(f"{material(name, e=1e8, rho=1000)} -{name}_ts_type centraldifference" for name in "ab")
+    run = impakt(f"-bodies a,b -contact_pairs a:b -contact_facing false {SQUARE} {DISC} {bodies} -time_step 2e-4 -time_end 2e-3")
+    assert not run.history["contact/a:b/active"][()].any()
+    assert run.history["contact/a:b/gap"][()].min() > 0.3  # of planes through faces that look at each other; the nearest nodes are 0.58 m apart
+    assert all(not run.history[f"body/{name}/kinetic"][()].any() for name in "ab")

@@ -11,6 +11,7 @@ import sys
 import numpy as np
 import overlap
 import pytest
+from cases import long
 from conftest import ROOT
 
 FIELDS = "-output_fields fields.h5 -output_fields_precision double"
@@ -57,6 +58,7 @@ def test_stack_of_matching_meshes(shared_run):
     assert min(x[:, 1].min() for x in stack.frames) >= -1e-6 * stack.size()
 
 
+@pytest.mark.long
 def test_stack_converges(shared_run):
     """Half the element: the root of the mean square is 15 rather than 30 micrometres, of all overlaps in the first 0.15 s. The blocks' courses differ
     in the end, so that there is no exact order. With the moments of inertia kept, the masses of both meshes differ by more, and so do the courses."""
@@ -68,15 +70,9 @@ def test_stack_converges(shared_run):
 
 
 def box(name, lower, upper, faces, top, displacement):
-    words = f"ts_type static,dm_plex_dim 2,dm_plex_box_lower {lower},dm_plex_box_upper {upper},dm_plex_box_faces {faces},density 1000,youngs_modulus 1e9,poissons_ratio 0.25"
-    words += f",boundary_displacement {top},boundary_displacement_{top} {displacement}"
-    numbers = []
-    for word in words.split(","):  # commas between numbers are no ends of options
-        if word[0].isalpha():
-            numbers.append(word)
-        else:
-            numbers[-1] += f",{word}"
-    return " ".join(f"-{name}_{each}" for each in numbers)
+    options = {"ts_type": "static", "dm_plex_dim": 2, "dm_plex_box_lower": lower, "dm_plex_box_upper": upper, "dm_plex_box_faces": faces}
+    options |= {"density": 1000, "youngs_modulus": 1e9, "poissons_ratio": 0.25, "boundary_displacement": top, f"boundary_displacement_{top}": displacement}
+    return " ".join(f"-{name}_{option} {value}" for option, value in options.items())
 
 
 def pressed(shared_run, order, half, n):
@@ -88,7 +84,7 @@ def pressed(shared_run, order, half, n):
     return abs(contact["force_vector"][-1][1]), overlap.largest(run.folder / "fields.h5")
 
 
-@pytest.mark.parametrize("half", [0.31, 0.33, 0.345])
+@pytest.mark.parametrize("half", [0.345, *long(0.31, 0.33)])
 def test_end_on_a_face(half, shared_run):
     """The block's ends lie 10 to 90 % along faces of the base. Whether they are nodes that take displacements or lie between nodes of the base that
     do: the force is the same to 0.7 % and 0.3 % (coarse, fine), and the overlap no more than twice that of the first (measured 1.7 at most).
@@ -113,16 +109,12 @@ def test_side_by_side(left, right, shared_run):
     assert overlap.largest(run.folder / "fields.h5") <= 0.15e-3
 
 
+@pytest.mark.long
 def test_figure(shared_run, launch, tmp_path):
     figure = tmp_path / "figure.png"
-    fields = shared_run(f"{STACK} -time_end 0.3").folder / "fields.h5"
-    command = [sys.executable, ROOT / "plots/overlap.py"]
-    run = launch([*command, fields, figure], env={**os.environ, "MPLBACKEND": "Agg"})
-    assert run.returncode == 0, run.stderr
-    assert not run.stderr
+    run = shared_run(f"{STACK} -time_end 0.3")
+    drawn, failed = (launch([sys.executable, ROOT / "plots/overlap.py", run.folder / name, figure], env={**os.environ, "MPLBACKEND": "Agg"}) for name in ("fields.h5", "history.h5"))
+    assert drawn.returncode == 0 and not drawn.stderr, drawn.stderr
     assert figure.read_bytes()[:8] == b"\x89PNG\r\n\x1a\n"
-    for path, complaint in ((tmp_path / "nowhere.h5", "nowhere.h5"), (fields.parent / "history.h5", "no fields of an Impakt run")):
-        run = launch([*command, path, figure])
-        assert run.returncode > 0
-        assert complaint in run.stderr
-        assert "Traceback" not in run.stderr
+    assert failed.returncode > 0
+    assert "no fields of an Impakt run" in failed.stderr and "Traceback" not in failed.stderr

@@ -8,6 +8,7 @@ import meshio
 import numpy as np
 import pytest
 import pyvista
+from cases import long
 
 TIMES = "-time_start -2e-4 -time_end 2e-4 -time_step 2e-6"
 ACROSS = 0.01 * 0.02
@@ -32,13 +33,31 @@ def centre(shape):
     return CENTRE * {"bar2": (0, 0, 0), "quad4": (0, 1, 0), "hex8": (0, 1, 1)}[shape]
 
 
-@pytest.mark.parametrize("ranks", [1, 2, 3])
-@pytest.mark.parametrize("shape", list(SHAPES))
-def test_history(shape, ranks, shared_run):
+@pytest.fixture
+def force(shared_run):
+    """In one dimension."""
+    return shared_run(options("bar2")).history["contact"][PAIR]["force"][()]
+
+
+@pytest.mark.parametrize(("shape", "ranks"), [("bar2", 1), ("quad4", 3), ("hex8", 2), *long(("bar2", 2), ("hex8", 3))])
+def test_contact_output(shape, ranks, force, impakt):
+    run = impakt(f"{options(shape)} -output_fields fields.h5 -output_fields_precision double -output_fields_interval 40", ranks=ranks)
+    check_history(run, shape, force)
+    reader = pyvista.get_reader(run.folder / "fields.xdmf")
+    with meshio.xdmf.TimeSeriesReader(run.folder / "fields.xdmf") as other:
+        other.read_points_cells()
+        for frame, time in enumerate(reader.time_values):
+            reader.set_active_time_value(time)
+            grid = reader.read()
+            for name, values in other.read_data(frame)[1].items():
+                np.testing.assert_array_equal(grid[name], values)  # not-a-numbers too
+            check(grid, run.history["contact"][PAIR], 40 * frame, NODES[shape])
+    assert frame == 5
+
+
+def check_history(run, shape, force):
     """The force is one in one dimension, to what the outer iteration leaves: it stops at 1e-12 m of displacements of 1e-2 m."""
-    run, bars = shared_run(options(shape), ranks), shared_run(options("bar2"))
-    pair, force = run.history["contact"][PAIR], bars.history["contact"][PAIR]["force"][()]
-    touching = force > 0
+    pair, touching = run.history["contact"][PAIR], force > 0
     assert touching.sum() > 90  # from 0 s on
     np.testing.assert_array_equal(pair["active"][()], np.where(touching, NODES[shape], 0))
     np.testing.assert_allclose(pair["area"][()], np.where(touching, ACROSS, 0), rtol=1e-12)
@@ -57,24 +76,8 @@ def test_history(shape, ranks, shared_run):
     assert summary["active_max"] == NODES[shape]
 
 
-@pytest.mark.parametrize("ranks", [1, 2, 3])
-@pytest.mark.parametrize("shape", list(SHAPES))
-def test_fields(shape, ranks, impakt):
-    """On both faces the pressure is F / A at every node, the nodal forces sum up to F, and elsewhere there is nothing."""
-    run = impakt(f"{options(shape)} -output_fields fields.h5 -output_fields_precision double -output_fields_interval 40", ranks=ranks)
-    reader = pyvista.get_reader(run.folder / "fields.xdmf")
-    with meshio.xdmf.TimeSeriesReader(run.folder / "fields.xdmf") as other:
-        other.read_points_cells()
-        for frame, time in enumerate(reader.time_values):
-            reader.set_active_time_value(time)
-            grid = reader.read()
-            for name, values in other.read_data(frame)[1].items():
-                np.testing.assert_array_equal(grid[name], values)  # not-a-numbers too
-            check(grid, run.history["contact"][PAIR], 40 * frame, NODES[shape])
-    assert frame == 5
-
-
 def check(grid, pair, step, n):
+    """On both faces the pressure is F / A at every node, the nodal forces sum up to F, and elsewhere there is nothing."""
     force, touching = pair["force"][step], pair["active"][step] > 0
     assert touching == (step > 100)
     faces = {body: np.abs(grid.points[:, 0] - x) < 1e-9 for body, x in (("l", -0.02), ("r", 0.02))}

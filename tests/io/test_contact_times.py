@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from cases import DEFAULTS, PAIRINGS, long
+from cases import DEFAULTS, PAIRINGS, long, validate
 
 ELEMENT = 1.25e-6  # s, the way of a wave through one element: by so much is the end of contact late on this mesh, whatever the step
 RELEASE = 5e-4  # s after impact: the way of a wave there and back
@@ -20,7 +20,7 @@ def times(run):
     return contact["onset_time"], contact["separation_time"], contact
 
 
-@pytest.mark.parametrize("step", [*long(1e-8), 1e-7, 1e-6, 1e-5])
+@pytest.mark.parametrize("step", [*validate(1e-8), *long(1e-7), 1e-6, 1e-5])
 @pytest.mark.parametrize("more", ["", INSIDE], ids=["at its end", "inside a step"])
 def test_steps(step, more, shared_run):
     """First contact to round-off: bars that fly freely close the gap at a constant rate. Release within an element's transit and 1.5 steps, as the front of the
@@ -53,7 +53,7 @@ def test_methods(method, shared_run):
     assert 0 < separation - IMPACT - RELEASE <= (0.05 * RELEASE if "penalty 7" in method else ELEMENT + 1.5e-6)
 
 
-@pytest.mark.parametrize("part", [0, 0.3, 0.9])
+@pytest.mark.parametrize("part", [0, 0.9])
 def test_first_step(part, shared_run):
     """No step tells the rate of the gap then, but the velocities at the start do."""
     start = -part * 1e-6
@@ -95,8 +95,7 @@ FALL = """-bodies a -a_dm_plex_dim 2 -a_dm_plex_box_faces 4,4 -a_dm_plex_box_low
     -a_gravity 0,-9.81 -obstacles floor -floor_obstacle_type plane -floor_point 0,0 -floor_normal 0,1 -contact_pairs a.ymin:floor -time_end 0.09"""
 
 
-@pytest.mark.parametrize("more", ["", "-a_ts_type centraldifference -a_ts_time_step auto"], ids=["implicit", "explicit"])
-@pytest.mark.parametrize("step", [1e-4, 1e-3, 1e-2])
+@pytest.mark.parametrize(("step", "more"), [(1e-4, ""), (1e-2, ""), (1e-3, "-a_ts_type centraldifference -a_ts_time_step auto"), (1e-2, "-a_ts_type centraldifference -a_ts_time_step auto")])
 def test_fall(step, more, shared_run):
     """A gap that closes ever faster: extrapolated from the step before, it closes late by less than g step^2 / v, v being
     0.63 m/s: measured 0.31 to 0.81 of that. In the longest steps, which are cut, contact of 4 ms begins and ends inside one."""

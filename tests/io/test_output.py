@@ -1,19 +1,14 @@
 """Summary, history, monitors: what scripts and people rely on."""
 
-import contextlib
-import os
-import pty
 import re
-import select
-import signal
-import subprocess
-import time
 
 import h5py
 import numpy as np
 import pytest
 from cases import DEFAULTS
 from conftest import IMPAKT, ROOT
+from held import held
+from pace import STEPS, paced
 
 THREE_BARS = "-options_file options/three-bars.opts"
 
@@ -239,9 +234,8 @@ def test_history_and_summary_agree(shared_run):
 
 
 def words(folder, *more):
-    """A run that would take a minute."""
     (folder / "options").symlink_to(ROOT / "options")
-    return [str(word) for word in (IMPAKT, "-options_file", "options/impact-high-speed.opts", "-time_step", "1e-9", *more)]
+    return [str(word) for word in (IMPAKT, "-options_file", "options/impact-high-speed.opts", *more)]
 
 
 def check_whole(path):
@@ -252,28 +246,24 @@ def check_whole(path):
         lengths = {len(data) for data in found.values()}
         assert len(lengths) == 1
         length = lengths.pop()
-        np.testing.assert_allclose(file["time"][()], -2e-4 + 1e-9 * np.arange(length), rtol=0, atol=1e-15)
+        np.testing.assert_allclose(file["time"][()], -2e-4 + 1e-7 / STEPS * np.arange(length), rtol=0, atol=1e-15)
         assert np.isfinite(file["body/left/kinetic"][()]).all()
         return length
 
 
 def test_kill(tmp_path):
-    """Readable whenever one looks, and after SIGKILL; it has what was there at the last flush, which are 2 s apart."""
+    """Readable whenever one looks, and after SIGKILL; it has what was there at the last flush: here at every third step, when a checkpoint is written. That
+    it is flushed every two seconds as well is tested in history_flush.c."""
     path = tmp_path / "history.h5"
-    command = words(tmp_path, "-output_history", path, "-output_summary", tmp_path / "summary.json")
-    process = subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-    try:
-        lengths, begin = [], time.monotonic()
-        while time.monotonic() - begin < 60 and (len(set(lengths)) < 2 or time.monotonic() - begin < 2.5):
-            if path.exists():
-                lengths.append(check_whole(path))
-            assert process.poll() is None
-            time.sleep(0.02)
-    finally:
-        process.send_signal(signal.SIGKILL)
-        process.wait()
+    flushes = ["-checkpoint", tmp_path / "c.h5", "-checkpoint_interval", "3"]
+    with held(words(tmp_path, *paced(1e-7).split(), "-output_history", path, "-output_summary", tmp_path / "summary.json", *flushes), tmp_path) as run:
+        run.until(1)  # what the line before tells of has been written
+        lengths = []
+        while len(set(lengths)) < 5:  # it has been flushed on the way
+            run.print_lines(run.lines + 1)
+            lengths.append(check_whole(path))
+        run.kill()
     assert lengths == sorted(lengths)
-    assert len(set(lengths)) >= 2  # it has been flushed on the way
     assert check_whole(path) >= lengths[-1]
     assert not (tmp_path / "summary.json").exists()
 
@@ -295,63 +285,3 @@ def test_no_monitor_lines_unasked(launch, tmp_path):
     run = launch(words(tmp_path, "-time_step", "1e-7", "-time_end", "-1.9e-4"), cwd=tmp_path)
     assert run.returncode == 0
     assert not re.search(r"^step ", run.stdout, re.MULTILINE)
-
-
-@contextlib.contextmanager
-def on_terminal(command, folder):
-    """Starts a program with its standard error on a terminal; yields the process and this end of the terminal."""
-    leader, follower = pty.openpty()
-    process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=follower)
-    os.close(follower)
-    try:
-        yield process, leader
-    finally:
-        if process.poll() is None:
-            process.kill()
-        process.wait()
-        os.close(leader)
-
-
-def read_until(leader, wanted, seconds):
-    """Text from the terminal until it has what is wanted, nobody writes there any more, or the time is over."""
-    text, end = b"", time.monotonic() + seconds
-    while wanted not in text and time.monotonic() < end:
-        if not select.select([leader], [], [], 0.1)[0]:
-            continue
-        try:
-            more = os.read(leader, 4096)
-        except OSError:  # what Linux tells of a terminal that nobody has open any more
-            break
-        if not more:
-            break
-        text += more
-    return text.decode()
-
-
-def test_progress_bar(tmp_path):
-    begin = time.monotonic()
-    with on_terminal(words(tmp_path), tmp_path) as (_, leader):
-        text = read_until(leader, b"to go", 60)
-    assert re.search(r"\[[#.]{40}\] +\d+ % +\d+ (s|min) to go", text), text
-    assert time.monotonic() - begin > 1  # runs shorter than that have none
-
-
-def test_no_progress_bar_for_short_runs(tmp_path):
-    with on_terminal(words(tmp_path, "-time_step", "1e-7", "-time_end", "-1.99e-4"), tmp_path) as (process, leader):
-        text = read_until(leader, b"to go", 60)
-        assert process.wait() == 0
-    assert text == ""
-
-
-def test_no_progress_bar_without_terminal(tmp_path):
-    """A run of over a second; -progress asks for the bar all the same."""
-    command = words(tmp_path)
-    process = subprocess.Popen(command, cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
-    time.sleep(1.8)
-    assert process.poll() is None
-    process.kill()
-    assert process.communicate()[1] == b""
-    with subprocess.Popen([*command, "-progress"], cwd=tmp_path, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE) as process:
-        text = read_until(process.stderr.fileno(), b"to go", 60)
-        process.kill()
-    assert "to go" in text

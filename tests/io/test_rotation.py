@@ -1,6 +1,7 @@
 """Bodies whose linear material turns far: a warning, once for each body, and the angle in the summary."""
 
 import pytest
+from cases import long
 
 # Boxes of 1 x 0.5 (x 0.5) m off the origin, which spin about their centres by 2 rad/s about an axis
 COMMON = "-bodies b -b_density 1000 -b_youngs_modulus 1e7 -b_poissons_ratio 0.3 -time_step 1e-3"
@@ -15,8 +16,7 @@ def warnings(run):
     return [line for line in run.stderr.splitlines() if "warning" in line]
 
 
-@pytest.mark.parametrize("ranks", [1, pytest.param(2, marks=pytest.mark.long)])
-@pytest.mark.parametrize("body", [PLANE, SPACE], ids=["plane", "space"])
+@pytest.mark.parametrize(("body", "ranks"), [(PLANE, 1), (SPACE, 1), *long((SPACE, 2))])
 def test_far(impakt, body, ranks):
     """After 0.04 s a linear body has turned by 0.08 rad. The linear body stretches as it turns, and follows a rotation by a growing error: measured
     0.08 to 5e-3 of it."""
@@ -29,8 +29,7 @@ def test_far(impakt, body, ranks):
     assert run.summary["bodies"]["b"]["rotation_max"] == pytest.approx(0.08, rel=0.02)
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_many(impakt, ranks):
+def test_many(impakt):
     """Of six bodies three are named, as they turn and at the end, and the others are counted: sentences on many bodies once took the room of all that
     follow them."""
     names = [f"b{i}" for i in range(6)]
@@ -39,7 +38,7 @@ def test_many(impakt, ranks):
         f" -{name}_initial_velocity -2*(y-4.25),2*(x-{3.5 + 3 * i})"
         for i, name in enumerate(names)
     )
-    run = impakt(f"-bodies {','.join(names)} -contact_pairs none {bodies} -time_step 1e-3 -time_end 0.04", ranks)
+    run = impakt(f"-bodies {','.join(names)} -contact_pairs none {bodies} -time_step 1e-3 -time_end 0.04", 2)
     told = [line for line in warnings(run) if "counts rotations as strains" in line]
     assert len(told) == 3
     assert sum("number is told at the end" in line for line in warnings(run)) == 1

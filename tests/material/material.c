@@ -34,21 +34,6 @@ static void is_made_from_options(void **state)
   options_end(options);
 }
 
-/* Linear elasticity is what one gets without asking, and Poisson's ratio is 0 */
-static void needs_density_and_modulus_only(void **state)
-{
-  PetscOptions options  = options_begin("-bar_density 2 -bar_youngs_modulus 3");
-  Material     material = create();
-  PetscBool    same;
-
-  (void)state;
-  ok(MaterialSetFromOptions(material));
-  ok(PetscObjectTypeCompare((PetscObject)material, MATERIAL_LINEAR_ELASTIC, &same));
-  assert_true(same);
-  ok(MaterialDestroy(&material));
-  options_end(options);
-}
-
 /* sigma = E epsilon, whatever Poisson's ratio; products with powers of two are exact */
 static void gives_uniaxial_stress_of_a_batch(void **state)
 {
@@ -221,34 +206,6 @@ static void bars_are_not_defined_where_they_are_inverted(void **state)
   }
 }
 
-static void is_shown(void **state)
-{
-  const char *const types[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
-
-  (void)state;
-  for (int i = 0; i < 3; i++)
-    for (int plane = 0; plane < 2; plane++) {
-      char              text[1024] = "";
-      const char *const words[]    = {types[i], "density 1. kg/m^3", "Young's modulus 2.1e+11 Pa", "Poisson's ratio 0.3", "plane stress"};
-      FILE             *file       = tmpfile();
-      Material          material   = create_with(types[i], 2.1e11, 0.3);
-      PetscViewer       viewer;
-      size_t            length;
-
-      ok(MaterialSetPlaneStress(material, plane));
-      ok(PetscViewerASCIIOpenWithFILE(PETSC_COMM_WORLD, file, &viewer));
-      ok(MaterialView(material, viewer));
-      ok(PetscViewerDestroy(&viewer));
-      rewind(file);
-      length = fread(text, 1, sizeof(text) - 1, file);
-      fclose(file);
-      assert_true((length > 0) == (PetscGlobalRank == 0)); /* which writes */
-      for (int k = 0; k < 5 && length; k++)
-        if (!!strstr(text, words[k]) != (k < 4 || plane)) fail_msg("'%s' in: %s", words[k], text);
-      ok(MaterialDestroy(&material));
-    }
-}
-
 /* Another model, by the registry: stress is a cube of the strain */
 static PetscErrorCode CubicStress(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
 {
@@ -287,27 +244,6 @@ static void takes_new_models(void **state)
   refused(PETSC_ERR_SUP, "uniaxialenergy|cubic", MaterialComputeUniaxialEnergy(material, 1, &strain, &stress));
   ok(MaterialDestroy(&material));
   options_end(options);
-}
-
-/* A model given up for another one leaves nothing of itself behind */
-static void changes_its_type(void **state)
-{
-  Material  material = create();
-  PetscBool same, linear;
-
-  (void)state;
-  ok(MaterialRegister("cubic", CreateCubic));
-  ok(MaterialSetType(material, MATERIAL_LINEAR_ELASTIC));
-  ok(MaterialSetType(material, MATERIAL_LINEAR_ELASTIC)); /* nothing to do */
-  ok(MaterialSetType(material, "cubic"));
-  ok(PetscObjectTypeCompare((PetscObject)material, "cubic", &same));
-  assert_true(same);
-  assert_null(material->ops->uniaxialmodulus);
-  assert_null(material->ops->destroy);
-  assert_null(material->data);
-  ok(MaterialIsLinear(material, &linear));
-  assert_false(linear);
-  ok(MaterialDestroy(&material));
 }
 
 static void refuses_bad_input(void **state)
@@ -355,16 +291,13 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(is_made_from_options),
-      cmocka_unit_test(needs_density_and_modulus_only),
       cmocka_unit_test(gives_uniaxial_stress_of_a_batch),
       cmocka_unit_test(nonlinear_models_share_the_constants),
       cmocka_unit_test(bars_of_nonlinear_models_have_known_stresses),
       cmocka_unit_test(bars_have_consistent_stress_tangent_and_energy),
       cmocka_unit_test(bars_keep_the_digits_of_small_strains),
       cmocka_unit_test(bars_are_not_defined_where_they_are_inverted),
-      cmocka_unit_test(is_shown),
       cmocka_unit_test(takes_new_models),
-      cmocka_unit_test(changes_its_type),
       cmocka_unit_test(refuses_bad_input),
       cmocka_unit_test(names_an_unknown_type),
   };

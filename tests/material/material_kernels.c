@@ -1,5 +1,5 @@
-/* Stress, energy and tangent of the constitutive models at points, in three dimensions and in plane stress. */
-/* ranks: 1 */
+/* Stress, energy and tangent of the constitutive models at points, in three dimensions and in plane stress, beside the solid that it comes
+   from and the bar that it contains. */
 #include "material_points.h"
 
 /* Central differences of order 8: with STEP, their truncation and the round-off of what they divide by it are of order 1e-13, as the
@@ -68,69 +68,6 @@ static void tangent_is_the_derivative_of_the_stress(void **state)
           near(A[9 * i + k], A[9 * k + i], 1e-13 * MODULUS); /* there is an energy: round-off, condensed as well */
         }
       }
-    }
-  }
-}
-
-/* R = rotation by an angle about an axis (Rodrigues); about z in the plane */
-static void rotation(uint32_t *seed, PetscBool plane, PetscReal R[9])
-{
-  PetscReal n[3], angle = 3 * pseudo_random(seed), length = 0;
-
-  for (int i = 0; i < 3; i++) {
-    n[i] = i < 2 && plane ? 0 : pseudo_random(seed);
-    length += n[i] * n[i];
-  }
-  for (int i = 0; i < 3; i++) n[i] /= PetscSqrtReal(length);
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) R[3 * i + j] = (i == j ? PetscCosReal(angle) : 0) + (1 - PetscCosReal(angle)) * n[i] * n[j];
-  for (int i = 0; i < 3; i++) {
-    const int j = (i + 1) % 3, k = (i + 2) % 3;
-
-    R[3 * i + j] -= PetscSinReal(angle) * n[k];
-    R[3 * j + i] += PetscSinReal(angle) * n[k];
-  }
-}
-
-static void multiply(const PetscReal A[9], const PetscReal B[9], PetscReal C[9])
-{
-  for (int i = 0; i < 3; i++)
-    for (int j = 0; j < 3; j++) C[3 * i + j] = A[3 * i] * B[j] + A[3 * i + 1] * B[3 + j] + A[3 * i + 2] * B[6 + j];
-}
-
-/* P(R F) = R P(F) and W(R F) = W(F), to round-off; isotropy: P(F R) = P(F) R. Linear elasticity knows nothing of rotations. */
-static void rotations_do_no_more_than_rotate(void **state)
-{
-  MaterialKernels kernels;
-  Material        material;
-  uint32_t        seed = 3;
-
-  (void)state;
-  for_all_models(material, kernels, type, nu, plane)
-  {
-    for (int point = 0; point < 10; point++) {
-      PetscReal H[9], P[9], R[9], rotated[9], expected[9], zero[9] = {0};
-
-      draw(&seed, 0.4, plane, H);
-      rotation(&seed, plane, R);
-      stress_at(&kernels, H, P);
-      for (int left = 0; left < 2 && type != LINEAR; left++) {
-        PetscReal F[9];
-
-        for (int i = 0; i < 9; i++) F[i] = H[i] + (i % 4 == 0);
-        if (left) multiply(R, F, rotated);
-        else multiply(F, R, rotated);
-        for (int i = 0; i < 9; i++) rotated[i] -= i % 4 == 0;
-        if (left) multiply(R, P, expected);
-        else multiply(P, R, expected);
-        stress_at(&kernels, rotated, F);
-        near_all(F, expected, 9, 2e-14 * MODULUS); /* observed: 5e-15 */
-        near(energy_at(&kernels, rotated), energy_at(&kernels, H), 2e-14 * MODULUS);
-      }
-      for (int i = 0; i < 9; i++) rotated[i] = R[i] - (i % 4 == 0);
-      stress_at(&kernels, rotated, expected);
-      if (type != LINEAR) near_all(expected, zero, 9, 1e-14 * MODULUS);
-      else assert_true(largest(expected, 9) > 1e-3 * MODULUS);
     }
   }
 }
@@ -257,38 +194,6 @@ static void energy_is_exact_where_its_logarithm_changes_form(void **state)
   }
 }
 
-/* Each of the 8 points of a batch has what it has alone, to the bit, whatever the others are */
-static void points_of_a_batch_do_not_touch_each_other(void **state)
-{
-  const PetscReal inverted[9] = {-2};
-  MaterialKernels kernels;
-  Material        material;
-  uint32_t        seed = 6;
-
-  (void)state;
-  for_all_models(material, kernels, type, nu, plane)
-  {
-    for (int bad = -1; bad < 8; bad++) {
-      PetscReal in[9][8], out[9][8], W[8], H[8][9];
-
-      for (int p = 0; p < 8; p++) {
-        draw(&seed, 0.4, plane, H[p]);
-        put(p == bad ? inverted : H[p], p, in);
-      }
-      kernels.stress(kernels.data, in, out);
-      kernels.energy(kernels.data, in, W);
-      for (int p = 0; p < 8; p++) {
-        PetscReal P[9];
-
-        if (p == bad) continue;
-        stress_at(&kernels, H[p], P);
-        for (int i = 0; i < 9; i++) assert_true(out[i][p] == P[i]);
-        assert_true(W[p] == energy_at(&kernels, H[p]));
-      }
-    }
-  }
-}
-
 /* det F negative, zero and just above; two axes turned round are a rotation, and no inversion */
 static void inverted_points_are_not_defined(void **state)
 {
@@ -334,65 +239,6 @@ static void inverted_points_are_not_defined(void **state)
   }
 }
 
-/* By hand, from the energies; the tolerance is round-off of some tens of operations */
-static void known_states_have_known_stresses(void **state)
-{
-  const PetscReal stretches[] = {0.4, 0.9, 1.001, 1.5, 3}, tolerance = 1e-14;
-
-  (void)state;
-  for (size_t n = 0; n < PETSC_STATIC_ARRAY_LENGTH(ratios); n++) {
-    const PetscReal nu = ratios[n], lambda = lambda_of(nu), mu = mu_of(nu), gamma = 0.7;
-    const PetscReal shear[9] = {0, gamma};
-    MaterialKernels svk, neo;
-    Material        first  = create(MATERIAL_SAINT_VENANT_KIRCHHOFF, nu, PETSC_FALSE, &svk),
-                    second = create(MATERIAL_NEO_HOOKEAN, nu, PETSC_FALSE, &neo);
-    PetscReal       P[9];
-
-    /* simple shear: E_xy = gamma / 2, E_yy = gamma^2 / 2; the neo-Hookean one has no volume change and F - F^-T = gamma (xy and yx) */
-    {
-      const PetscReal Sxx = lambda * gamma * gamma / 2, Syy = (lambda + 2 * mu) * gamma * gamma / 2, Sxy = mu * gamma;
-      const PetscReal of_svk[9] = {Sxx + gamma * Sxy, Sxy + gamma * Syy, 0, Sxy, Syy, 0, 0, 0, Sxx},
-                      of_neo[9] = {0, mu * gamma, 0, mu * gamma};
-
-      stress_at(&svk, shear, P);
-      near_all(P, of_svk, 9, tolerance * MODULUS);
-      stress_at(&neo, shear, P);
-      near_all(P, of_neo, 9, tolerance * MODULUS);
-      near(energy_at(&neo, shear), mu * gamma * gamma / 2, tolerance * MODULUS);
-    }
-    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(stretches); k++) {
-      const PetscReal s = stretches[k], E = (s * s - 1) / 2;
-      const PetscReal along[9] = {s - 1}, all[9] = {s - 1, 0, 0, 0, s - 1, 0, 0, 0, s - 1};
-
-      /* uniaxial strain */
-      {
-        const PetscReal of_svk[9] = {s * (lambda + 2 * mu) * E, 0, 0, 0, lambda * E, 0, 0, 0, lambda * E};
-        const PetscReal of_neo[9] = {mu * (s - 1 / s) + lambda * E / s, 0, 0, 0, lambda * E, 0, 0, 0, lambda * E};
-
-        stress_at(&svk, along, P);
-        near_all(P, of_svk, 9, tolerance * (MODULUS + largest(of_svk, 9)));
-        stress_at(&neo, along, P);
-        near_all(P, of_neo, 9, tolerance * (MODULUS + largest(of_neo, 9)));
-        near(energy_at(&svk, along), (lambda + 2 * mu) * E * E / 2, tolerance * (MODULUS + PetscAbsReal(P[0])));
-        near(energy_at(&neo, along), mu * (E - PetscLogReal(s)) + lambda / 2 * (E - PetscLogReal(s)),
-             tolerance * (MODULUS + PetscAbsReal(P[0])));
-      }
-      /* the same stretch along every axis */
-      {
-        const PetscReal in_svk = s * (3 * lambda + 2 * mu) * E, in_neo = mu * (s - 1 / s) + lambda / 2 * (PetscPowRealInt(s, 6) - 1) / s;
-        const PetscReal of_svk[9] = {in_svk, 0, 0, 0, in_svk, 0, 0, 0, in_svk}, of_neo[9] = {in_neo, 0, 0, 0, in_neo, 0, 0, 0, in_neo};
-
-        stress_at(&svk, all, P);
-        near_all(P, of_svk, 9, tolerance * (MODULUS + largest(of_svk, 9)));
-        stress_at(&neo, all, P);
-        near_all(P, of_neo, 9, tolerance * (MODULUS + largest(of_neo, 9)));
-      }
-    }
-    ok(MaterialDestroy(&first));
-    ok(MaterialDestroy(&second));
-  }
-}
-
 /* Where waves of small strain are concerned, the tangent's first entry is the wave modulus */
 static void wave_modulus_is_that_of_the_tangent(void **state)
 {
@@ -412,19 +258,101 @@ static void wave_modulus_is_that_of_the_tangent(void **state)
   }
 }
 
+/* The stretch across the plane at which the solid's own stress there vanishes, by bisection: that stress grows with it */
+static PetscReal thickness_of(const MaterialKernels *solid, const PetscReal H[9])
+{
+  PetscReal low = -0.99, high = 5, full[9], P[9];
+
+  for (int i = 0; i < 9; i++) full[i] = H[i];
+  for (int i = 0; i < 60; i++) {
+    full[8] = 0.5 * (low + high);
+    stress_at(solid, full, P);
+    if (P[8] < 0) low = full[8];
+    else high = full[8];
+  }
+  return full[8];
+}
+
+static void plane_stress_is_that_of_a_solid_free_to_thin(void **state)
+{
+  MaterialKernels solid, plane;
+  uint32_t        seed = 7;
+
+  (void)state;
+  for (int type = 0; type < N_TYPES; type++)
+    for (size_t nu = 0; nu < PETSC_STATIC_ARRAY_LENGTH(ratios); nu++) {
+      Material a = create(types[type], ratios[nu], PETSC_FALSE, &solid), b = create(types[type], ratios[nu], PETSC_TRUE, &plane);
+
+      for (int point = 0; point < 10; point++) {
+        PetscReal H[9], P[9], expected[9], W;
+
+        draw(&seed, 0.4, PETSC_TRUE, H);
+        H[8] = thickness_of(&solid, H);
+        stress_at(&solid, H, expected);
+        W           = energy_at(&solid, H);
+        expected[8] = 0; /* the test's own H_zz is exact to 1e-16: P_zz is 1e-16 of the modulus */
+        /* what is not read */
+        for (int i = 2; i < 9; i++)
+          if (i != 3 && i != 4) H[i] = NAN;
+        stress_at(&plane, H, P);
+        near_all(P, expected, 9, 1e-14 * MODULUS);
+        near(energy_at(&plane, H), W, 1e-14 * MODULUS);
+      }
+      ok(MaterialDestroy(&a));
+      ok(MaterialDestroy(&b));
+    }
+}
+
+/* A plate pulled along x, its width free (Newton's method with the condensed tangent, so that this is checked as well), is a bar */
+static void a_free_plate_is_a_bar(void **state)
+{
+  const PetscReal strains[] = {-0.5, -0.1, 1e-6, 0.15, 0.5};
+
+  (void)state;
+  for (int type = 0; type < N_TYPES; type++)
+    for (size_t nu = 0; nu < PETSC_STATIC_ARRAY_LENGTH(ratios); nu++)
+      for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(strains); k++) {
+        const PetscReal e = strains[k];
+        MaterialKernels kernels;
+        Material        material = create(types[type], ratios[nu], PETSC_TRUE, &kernels);
+        PetscReal       H[9]     = {e, 0, 0, 0, -ratios[nu] * e}, P[9], A[81], stress, tangent, energy;
+
+        ok(MaterialComputeUniaxial(material, 1, &e, &stress));
+        ok(MaterialComputeUniaxialTangent(material, 1, &e, &tangent));
+        ok(MaterialComputeUniaxialEnergy(material, 1, &e, &energy));
+        /* by hand: above a strain of 0.203, a neo-Hookean bar with nu = -0.4 has sides without equilibrium */
+        if (e > 0.203 && ratios[nu] < 0 && !strcmp(types[type], MATERIAL_NEO_HOOKEAN)) {
+          assert_true(PetscIsNanReal(stress) && PetscIsNanReal(tangent) && PetscIsNanReal(energy));
+          ok(MaterialDestroy(&material));
+          continue;
+        }
+        for (int i = 0; i < 8; i++) {
+          stress_at(&kernels, H, P);
+          kernels.tangent(kernels.data, H, A);
+          H[4] -= P[4] / A[9 * 4 + 4];
+        }
+        stress_at(&kernels, H, P);
+        kernels.tangent(kernels.data, H, A);
+        near(P[4], 0, 1e-14 * MODULUS);
+        near(P[0], stress, 1e-14 * (MODULUS + PetscAbsReal(stress))); /* round-off; observed: 7.6e-14 of a stress of 3.8, Mooney-Rivlin */
+        near(A[0] - A[4] * A[36] / A[40], tangent, 1e-13 * MODULUS);
+        near(energy_at(&kernels, H), energy, 1e-14 * MODULUS);
+        ok(MaterialDestroy(&material));
+      }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(stress_is_the_derivative_of_the_energy),
       cmocka_unit_test(tangent_is_the_derivative_of_the_stress),
-      cmocka_unit_test(rotations_do_no_more_than_rotate),
       cmocka_unit_test(small_strains_are_linear_and_keep_their_digits),
       cmocka_unit_test(stress_and_energy_are_those_of_the_textbooks),
       cmocka_unit_test(energy_is_exact_where_its_logarithm_changes_form),
-      cmocka_unit_test(points_of_a_batch_do_not_touch_each_other),
       cmocka_unit_test(inverted_points_are_not_defined),
-      cmocka_unit_test(known_states_have_known_stresses),
       cmocka_unit_test(wave_modulus_is_that_of_the_tangent),
+      cmocka_unit_test(plane_stress_is_that_of_a_solid_free_to_thin),
+      cmocka_unit_test(a_free_plate_is_a_bar),
   };
 
   return impakt_main(argc, argv, tests);

@@ -1,5 +1,4 @@
 /* Mooney-Rivlin against the closed forms of incompressible rubber (Holzapfel, Nonlinear Solid Mechanics, 2000, section 6.5). */
-/* ranks: 1 */
 #include "material_points.h"
 
 /* Deformations without change of volume: Cauchy stresses differ from -p I + 2 c10 B - 2 c01 B^-1 by a pressure only, whatever nu is */

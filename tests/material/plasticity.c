@@ -1,5 +1,4 @@
 /* The plastic models at points: return map, tangents, history, what they refuse. */
-/* ranks: 1 */
 #include "support.h"
 #include <impakt/private/plastic.h>
 

@@ -75,7 +75,7 @@ def test_as_at_a_wall(impakt, pair, alone, along, mesh, step, end):
     assert work == pytest.approx(2 * [one.summary["bodies"]["rod"]["plastic_work"]], rel=1e-9)
 
 
-@pytest.mark.longest
+@pytest.mark.validate
 def test_radius(impakt):
     """To 0.5 and 0.3 % of 7.226 and 21.43 mm, as rings of 16 x 160 elements have them at the wall. Measured: 7.195 and 21.428 mm, -0.43 and -0.01 %, energy to 1.2e-6; 6, 8, 12, 16 elements to the radius converge from -1.3 % on."""
     run = impakt(f"{RINGS} {FIELDS}", timeout=900)
@@ -85,7 +85,7 @@ def test_radius(impakt):
     assert largest_energy_error(run) <= 1e-3
 
 
-@pytest.mark.longest
+@pytest.mark.validate
 def test_radius_of_hexahedra(impakt):
     """The same of one rod in three dimensions, 12 elements to the radius, by the largest and by the mean distance of the rim of its foot from the axis. Measured: 7.207 and 7.194 mm, -0.26 and
     -0.44 %, where 6 elements have 7.155 mm; 21.432 mm; energy to 6e-5; 8 minutes of processor time on a busy machine. Two rods that hit each other are as this one (test_as_at_a_wall)."""
@@ -98,7 +98,7 @@ def test_radius_of_hexahedra(impakt):
     assert largest_energy_error(run) <= 1e-3
 
 
-@pytest.mark.longest
+@pytest.mark.validate
 def test_feet_that_push(impakt):
     """Feet that come off at the rim: after 4 us no longer by the same amount, since nothing holds the plane between them. The mean of both radii is that of the rod at a wall that only pushes, 7.241 mm
     on this mesh, 7.287 mm with 8 elements to the radius (test_axisymmetric_contact.py). Measured: 7.225 and 7.258 mm, with 8 elements 7.265 and 7.310 mm. Contact nodes keep their mass, and what they had

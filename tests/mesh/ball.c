@@ -1,70 +1,7 @@
+/* ranks: 1 3 */
 /* long: 3 */
 /* Discs and balls from options: their volume, surfaces, grading and parts. */
 #include "meshes.h"
-
-/* What the corners of the elements are like: Jacobian by the lengths of the edges there, 1 in a rectangle or box */
-typedef struct {
-  PetscReal least;             /* scaled Jacobian, of all corners of all ranks */
-  PetscReal smallest, largest; /* edge */
-} Quality;
-
-static void closure_of(DM dm, PetscInt cell, PetscInt n, PetscReal x[][3])
-{
-  PetscInt *closure = NULL, n_points, start, end, found = 0;
-
-  ok(DMPlexGetDepthStratum(dm, 0, &start, &end));
-  ok(DMPlexGetTransitiveClosure(dm, cell, PETSC_TRUE, &n_points, &closure));
-  for (PetscInt p = 0; p < n_points; p++)
-    if (closure[2 * p] >= start && closure[2 * p] < end) {
-      assert_true(found < n);
-      position_of(dm, closure[2 * p], x[found++]);
-    }
-  assert_int_equal(found, n);
-  ok(DMPlexRestoreTransitiveClosure(dm, cell, PETSC_TRUE, &n_points, &closure));
-}
-
-/* Of quadrilaterals, or of hexahedra with the corners in DMPLEX's order, which looks at the lower four from outside */
-static Quality quality_of(DM dm)
-{
-  static const int next[2][8][3] = {{{1, 3}, {2, 0}, {3, 1}, {0, 2}},
-                                    {{3, 1, 4}, {0, 2, 7}, {1, 3, 6}, {2, 0, 5}, {7, 5, 0}, {4, 6, 3}, {5, 7, 2}, {6, 4, 1}}};
-  Quality          quality       = {1, PETSC_MAX_REAL, 0};
-  PetscInt         start, end, dim;
-  PetscReal        reduced[3];
-
-  ok(DMGetDimension(dm, &dim));
-  ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
-  for (PetscInt c = start; c < end; c++) {
-    PetscReal x[8][3];
-
-    closure_of(dm, c, 1 << dim, x);
-    for (PetscInt k = 0; k < 1 << dim; k++) {
-      PetscReal e[3][3] = {{0, 0, 0}, {0, 0, 0}, {0, 0, 1}}, product = 1;
-
-      for (PetscInt i = 0; i < dim; i++) {
-        PetscReal length = 0;
-
-        for (PetscInt d = 0; d < 3; d++) {
-          e[i][d] = x[next[dim - 2][k][i]][d] - x[k][d];
-          length += PetscSqr(e[i][d]);
-        }
-        length           = PetscSqrtReal(length);
-        quality.smallest = PetscMin(quality.smallest, length);
-        quality.largest  = PetscMax(quality.largest, length);
-        product *= length;
-      }
-      quality.least = PetscMin(quality.least,
-                               (e[0][0] * (e[1][1] * e[2][2] - e[1][2] * e[2][1]) - e[0][1] * (e[1][0] * e[2][2] - e[1][2] * e[2][0]) +
-                                e[0][2] * (e[1][0] * e[2][1] - e[1][1] * e[2][0])) /
-                                   product);
-    }
-  }
-  reduced[0] = quality.least;
-  reduced[1] = quality.smallest;
-  reduced[2] = -quality.largest;
-  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, reduced, 3, MPIU_REAL, MPI_MIN, PETSC_COMM_WORLD), 0);
-  return (Quality){reduced[0], reduced[1], -reduced[2]};
-}
 
 /* The nearest and farthest vertex of the surface from a point, and how far the surface reaches from there in a direction of length 1 */
 typedef struct {
@@ -211,36 +148,6 @@ static void cells_and_faces(void **state)
       near(integrated_volume(dm, (PetscBool)simplex), exact_volume(dim) * pow(0.7, (double)dim), 1e-12);
       ok(DMDestroy(&dm));
     }
-}
-
-/* Conformal maps keep the shapes of small elements; those opposite to the pole are coarse here and lose some, and some more as their outer
-   nodes move outward. Measured: 0.851, 0.779, 0.690, 0.306 for discs, 0.733, 0.626, 0.478, 0.093 for balls; the last ones of both are too
-   coarse to move */
-static void elements_well_shaped(void **state)
-{
-  const PetscReal least[2][4] = {{0.84, 0.77, 0.68, 0.30}, {0.72, 0.62, 0.47, 0.09}};
-
-  (void)state;
-  for (PetscInt dim = 2; dim <= 3; dim++)
-    for (PetscInt power = 0; power <= 3; power++) {
-      DM dm = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -ball_divisions 8 -ball_grading %g", (int)dim, pow(10, (double)power));
-
-      between(quality_of(dm).least, least[dim - 2][power], 1);
-      ok(DMDestroy(&dm));
-    }
-}
-
-/* By default there are as many layers as make elements alike: measured 2.1 in discs, 2.5 in balls with 8 divisions */
-static void sizes_match(void **state)
-{
-  (void)state;
-  for (PetscInt dim = 2; dim <= 3; dim++) {
-    DM      dm      = create_mesh("-dm_plex_shape ball -dm_plex_dim %d -ball_divisions 8", (int)dim);
-    Quality quality = quality_of(dm);
-
-    between(quality.largest / quality.smallest, 1, 2.6);
-    ok(DMDestroy(&dm));
-  }
 }
 
 /* From the origin, the surface's edges that leave its vertex in the direction of `pole` are seen under this angle */
@@ -400,10 +307,9 @@ static void refused_options(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(volume_kept),          cmocka_unit_test(nodes_near_sphere), cmocka_unit_test(cells_and_faces),
-      cmocka_unit_test(elements_well_shaped), cmocka_unit_test(sizes_match),       cmocka_unit_test(sizes_at_poles),
-      cmocka_unit_test(symmetric_parts),      cmocka_unit_test(back_of_ball),      cmocka_unit_test(placed),
-      cmocka_unit_test(refused_options),
+      cmocka_unit_test(volume_kept),    cmocka_unit_test(nodes_near_sphere), cmocka_unit_test(cells_and_faces),
+      cmocka_unit_test(sizes_at_poles), cmocka_unit_test(symmetric_parts),   cmocka_unit_test(back_of_ball),
+      cmocka_unit_test(placed),         cmocka_unit_test(refused_options),
   };
 
   return impakt_main(argc, argv, tests);

@@ -1,3 +1,4 @@
+/* ranks: 1 2 */
 /* Meshes of composite elements: cells divided into 4 and 8, that follow each other on one rank; surfaces and node sets; nodes in the middle
  * of edges from a file. */
 #include "meshes.h"
@@ -152,62 +153,6 @@ static void curved_bodies(void **state)
   }
 }
 
-/* Nodes of a surface, of all ranks: the sums of their positions, and of the squares of these. Ranks are weighed alike: on one alone. */
-static PetscInt sum_positions(DM dm, const char name[], PetscReal sums[2][3])
-{
-  PetscInt n, *vertices;
-
-  ok(PetscArrayzero(&sums[0][0], 6));
-  ok(MeshGetNodeSet(dm, name, &n, &vertices));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscReal x[3];
-
-    position_of(dm, vertices[i], x);
-    for (PetscInt d = 0; d < 3; d++) {
-      sums[0][d] += x[d];
-      sums[1][d] += PetscSqr(x[d]);
-    }
-  }
-  ok(PetscFree(vertices));
-  return n;
-}
-
-/* The surface and its parts have the nodes of the mesh of first order that is twice as fine, and as many faces: in the plane the same ones;
-   in space its faces are cut along other diagonals, as those that a cell becomes lean one way. What a cut plane has is flat, whatever its
-   cuts. */
-static void curved_surfaces(void **state)
-{
-  const char *const surfaces[] = {"surface", "cut_x", "back"};
-  const char        ball[]  = "-dm_plex_shape ball -dm_plex_dim %d -dm_plex_simplex 1 -ball_part half -ball_grading 3 -ball_divisions %d%s";
-  const char        moved[] = " -element_formulation composite", kept[] = " -ball_keep_volume false",
-                    both[] = " -element_formulation composite -ball_keep_volume false";
-
-  (void)state;
-  for (PetscInt dim = 2; dim <= 3; dim++) {
-    DM curved = create_mesh(ball, (int)dim, 4, both), fine = create_mesh(ball, (int)dim, 8, kept),
-       whole = create_mesh(ball, (int)dim, 4, moved);
-
-    assert_int_equal(count_cells(curved) / (dim == 2 ? 4 : 8), count_cells(fine) / (dim == 2 ? 4 : 8));
-    for (PetscInt k = 0; k < 2; k++) {
-      const SurfaceFacts of = surface_facts(curved, surfaces[k]), as = surface_facts(fine, surfaces[k]);
-      PetscReal          sums[2][2][3];
-
-      assert_int_equal(of.n, as.n);
-      if (dim == 2 || k == 1) near(of.area, as.area, 1e-12);
-      if (dim == 2)
-        for (PetscInt d = 0; d < dim; d++) near(of.centre[d], as.centre[d], 1e-12);
-      if (size_of_world() > 1) continue;
-      assert_int_equal(sum_positions(curved, surfaces[k], sums[0]), sum_positions(fine, surfaces[k], sums[1]));
-      for (PetscInt i = 0; i < 6; i++) near(sums[0][i / 3][i % 3], sums[1][i / 3][i % 3], 1e-12);
-    }
-    between((PetscReal)surface_facts(curved, surfaces[2]).n, 1, (PetscReal)surface_facts(fine, surfaces[2]).n);
-    near(volume_of(whole), (dim == 2 ? PETSC_PI : 4 * PETSC_PI / 3) / 2, 1e-12);
-    ok(DMDestroy(&curved));
-    ok(DMDestroy(&fine));
-    ok(DMDestroy(&whole));
-  }
-}
-
 static void wrong_middles_are_refused(void **state)
 {
   (void)state;
@@ -227,7 +172,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(other_cells_are_refused),
       cmocka_unit_test(middles_of_edges_are_those_of_the_file),
       cmocka_unit_test(curved_bodies),
-      cmocka_unit_test(curved_surfaces),
       cmocka_unit_test(wrong_middles_are_refused),
   };
 

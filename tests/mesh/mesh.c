@@ -1,3 +1,4 @@
+/* ranks: 1 3 */
 /* Meshes of boxes from options, their place in space, their surfaces and node sets; Gmsh and Exodus files: mesh_files.c. */
 #include "meshes.h"
 
@@ -58,18 +59,6 @@ static void boxes_of_all_shapes(void **state)
       CheckBoundary(dm, dim, simplex ? 2 : 1);
       ok(DMDestroy(&dm));
     }
-}
-
-/* Twice or six times as many would be simplices */
-static void boxes_by_default(void **state)
-{
-  DM plane = create_mesh("-dm_plex_dim 2 -dm_plex_box_faces 3,3"), space = create_mesh("-dm_plex_dim 3 -dm_plex_box_faces 3,2,2");
-
-  (void)state;
-  assert_int_equal(count_cells(plane), 9);
-  assert_int_equal(count_cells(space), 12);
-  ok(DMDestroy(&plane));
-  ok(DMDestroy(&space));
 }
 
 /* DMPLEX's numbers: 4, 2, 1, 3 in two dimensions, 6, 5, 3, 4, 1, 2 in three for xmin, xmax, ymin ..., also for simplices */
@@ -159,18 +148,6 @@ static void place_in_plane(void **state)
   near(side.centre[0], 1 + PetscSqrtReal(3.0) / 4, 1e-14);
   near(side.centre[1], 0.25, 1e-14);
   near(side.area, 1, 1e-14);
-  ok(DMDestroy(&dm));
-}
-
-static void place_on_line(void **state)
-{
-  DM        dm = CreateBox(1, PETSC_TRUE, "-scale 0.001 -translate 2");
-  PetscReal lower[3], upper[3];
-
-  (void)state;
-  ok(DMGetBoundingBox(dm, lower, upper));
-  near(lower[0], 2, 1e-15);
-  near(upper[0], 2.001, 1e-15);
   ok(DMDestroy(&dm));
 }
 
@@ -285,11 +262,10 @@ static void small_and_large(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(boxes_of_all_shapes), cmocka_unit_test(boxes_by_default), cmocka_unit_test(numbers_of_sides),
-      cmocka_unit_test(parts_of_ranks),      cmocka_unit_test(place_in_space),   cmocka_unit_test(turn_about_diagonal),
-      cmocka_unit_test(place_in_plane),      cmocka_unit_test(place_on_line),    cmocka_unit_test(nodes_of_sides),
-      cmocka_unit_test(unknown_names),       cmocka_unit_test(bad_boxes),        cmocka_unit_test(bad_places),
-      cmocka_unit_test(bad_sizes),           cmocka_unit_test(small_and_large),
+      cmocka_unit_test(boxes_of_all_shapes), cmocka_unit_test(numbers_of_sides),    cmocka_unit_test(parts_of_ranks),
+      cmocka_unit_test(place_in_space),      cmocka_unit_test(turn_about_diagonal), cmocka_unit_test(place_in_plane),
+      cmocka_unit_test(nodes_of_sides),      cmocka_unit_test(unknown_names),       cmocka_unit_test(bad_boxes),
+      cmocka_unit_test(bad_places),          cmocka_unit_test(bad_sizes),           cmocka_unit_test(small_and_large),
   };
 
   return impakt_main(argc, argv, tests);

@@ -1,3 +1,4 @@
+/* ranks: 1 3 */
 /* Gmsh and Exodus II files, read and refused. Other containers and binary files: test_mesh_files.py. */
 #include "meshes.h"
 
@@ -200,41 +201,6 @@ static void gmsh_files(void **state)
         ok(DMDestroy(&dm));
         MPI_Barrier(PETSC_COMM_WORLD);
       }
-}
-
-/* PETSc's own reader makes the same mesh of a sound file */
-static void gmsh_as_petsc_reads_it(void **state)
-{
-  (void)state;
-  for (PetscInt simplex = 0; simplex < 2; simplex++)
-    for (PetscInt version = 0; version < 2; version++) {
-      const Row row = row_of(3, N_CUBES, (PetscBool)simplex);
-      DM        ours, theirs;
-      PetscInt  start[2], end[2];
-
-      if (version) WriteGmsh41("row.msh", &row);
-      else WriteGmsh22("row.msh", &row);
-      ours = create_mesh("-dm_plex_filename row.msh -dm_distribute 0");
-      ok(DMPlexCreateGmshFromFile(PETSC_COMM_WORLD, "row.msh", PETSC_TRUE, &theirs));
-      ok(DMPlexGetHeightStratum(ours, 0, &start[0], &end[0]));
-      ok(DMPlexGetHeightStratum(theirs, 0, &start[1], &end[1]));
-      assert_int_equal(end[0] - start[0], end[1] - start[1]);
-      for (PetscInt c = start[0]; c < end[0]; c++) {
-        PetscScalar *x[2] = {NULL, NULL};
-        PetscInt     n[2];
-
-        ok(DMPlexGetCellCoordinates(ours, c, &(PetscBool){0}, &n[0], &(const PetscScalar *){0}, &x[0]));
-        ok(DMPlexGetCellCoordinates(theirs, c, &(PetscBool){0}, &n[1], &(const PetscScalar *){0}, &x[1]));
-        assert_int_equal(n[0], 3 * row.corners);
-        assert_int_equal(n[1], n[0]);
-        for (PetscInt i = 0; i < n[0]; i++) near(x[0][i], x[1][i], 0);
-        ok(DMPlexRestoreCellCoordinates(ours, c, &(PetscBool){0}, &n[0], &(const PetscScalar *){0}, &x[0]));
-        ok(DMPlexRestoreCellCoordinates(theirs, c, &(PetscBool){0}, &n[1], &(const PetscScalar *){0}, &x[1]));
-      }
-      ok(DMDestroy(&ours));
-      ok(DMDestroy(&theirs));
-      MPI_Barrier(PETSC_COMM_WORLD);
-    }
 }
 
 /* One half of the elements: the common face of the halves is now one of the boundary, and the other half's end is left out */
@@ -638,11 +604,9 @@ static void truncated_exodus_files(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(gmsh_files),       cmocka_unit_test(gmsh_as_petsc_reads_it),
-      cmocka_unit_test(blocks_of_a_file), cmocka_unit_test(truncated_gmsh_files),
-      cmocka_unit_test(bad_gmsh_files),   cmocka_unit_test(bad_files),
-      cmocka_unit_test(bars_of_a_file),   cmocka_unit_test(exodus_files),
-      cmocka_unit_test(bad_exodus_files), cmocka_unit_test(truncated_exodus_files),
+      cmocka_unit_test(gmsh_files),     cmocka_unit_test(blocks_of_a_file), cmocka_unit_test(truncated_gmsh_files),
+      cmocka_unit_test(bad_gmsh_files), cmocka_unit_test(bad_files),        cmocka_unit_test(bars_of_a_file),
+      cmocka_unit_test(exodus_files),   cmocka_unit_test(bad_exodus_files), cmocka_unit_test(truncated_exodus_files),
   };
 
   return impakt_main(argc, argv, tests);

@@ -1,3 +1,4 @@
+/* ranks: 1 3 */
 /* Discs, balls and rods of simplices, whose cells are mirror images of their neighbours: faces fit together, and meshes are their own
  * image. */
 #include "meshes.h"
@@ -187,45 +188,12 @@ static void neighbours_are_images(void **state)
       }
 }
 
-/* Cells of a half or a quarter are cells of the whole */
-static void parts_are_those_of_the_whole(void **state)
-{
-  const char *const bodies[] = {"-dm_plex_shape ball -dm_plex_dim 2 -ball_divisions %d -ball_part %s",
-                                "-dm_plex_shape ball -dm_plex_dim 3 -ball_divisions %d -ball_part %s",
-                                "-dm_plex_shape rod -dm_plex_dim 3 -rod_elements 3 -rod_divisions %d -rod_part %s"};
-  const char *const parts[]  = {"full", "half", "quarter"};
-
-  (void)state;
-  skip_beyond_ranks(1);
-  for (PetscInt body = 0; body < 3; body++)
-    for (PetscInt divisions = 2; divisions <= 4; divisions += 2)
-      for (PetscInt part = 1; part < (body ? 3 : 2); part++) {
-        PetscReal *of[2];
-        PetscInt   n[2];
-
-        for (PetscInt k = 0; k < 2; k++) {
-          char text[256];
-          DM   dm;
-
-          (void)snprintf(text, sizeof(text), bodies[body], (int)divisions, parts[k ? part : 0]);
-          dm   = create_mesh("-dm_plex_simplex 1 %s", text);
-          n[k] = get_centroids(dm, &of[k]);
-          ok(DMDestroy(&dm));
-        }
-        assert_int_equal(n[0], n[1] << part);
-        for (PetscInt c = 0; c < n[1]; c++) assert_true(has_cell_at(n[0], of[0], of[1] + 3 * c));
-        ok(PetscFree(of[0]));
-        ok(PetscFree(of[1]));
-      }
-}
-
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(faces_fit_together),
       cmocka_unit_test(meshes_are_their_own_image),
       cmocka_unit_test(neighbours_are_images),
-      cmocka_unit_test(parts_are_those_of_the_whole),
   };
 
   return impakt_main(argc, argv, tests);

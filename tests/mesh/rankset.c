@@ -1,5 +1,7 @@
-/* Meshes that some ranks have among them, and others nothing of. */
+/* ranks: 1 3 */
+/* Meshes that some ranks have among them, and others nothing of: -<body>_ranks, and what a program sets. */
 #include "meshes.h"
+#include <sys/petsccompat.h>
 
 typedef struct {
   PetscMPIInt n, list[3];
@@ -114,73 +116,6 @@ static void sets_have_all(void **state)
   }
 }
 
-/* The set of all ranks is the division that there is without one, cell by cell, and what is divided among two ranks is the same parts
-   whichever two these are */
-static void parts_hang_on_their_number(void **state)
-{
-  (void)state;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(sources); i++) {
-    const Set everyone = {size_of_world(), {0, 1, 2}}, pairs[2] = {{2, {0, 2}}, {2, {1, 2}}};
-    DM        all = CreateOn(NULL, sources[i][0]), dm = CreateOn(&everyone, sources[i][0]);
-    PetscReal of[2][3] = {{0}};
-
-    assert_int_equal(CellsHere(dm), CellsHere(all));
-    assert_true(MomentHere(dm) == MomentHere(all));
-    ok(DMDestroy(&all));
-    ok(DMDestroy(&dm));
-    for (PetscInt p = 0; p < 2 && size_of_world() == 3; p++) {
-      dm                     = CreateOn(&pairs[p], sources[i][0]);
-      of[p][rank_of_world()] = MomentHere(dm);
-      ok(DMDestroy(&dm));
-      assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, of[p], 3, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD), 0);
-    }
-    assert_true(of[0][0] == of[1][1] && of[0][2] == of[1][2]);
-  }
-}
-
-/* Faces that may touch another body are spread over the ranks of the set: half of 36, and of 72 to the three that the bisection may miss */
-static void contact_faces_are_spread(void **state)
-{
-  const char *const bars[] = {
-      "-dm_plex_dim 3 -dm_plex_box_faces 6,6,18 -mesh_contact_surfaces zmax",
-      "-dm_plex_dim 3 -dm_plex_box_faces 6,6,18 -dm_plex_simplex 1 -dm_plex_box_upper 1,1,3 -mesh_contact_surfaces zmax"};
-  const Set set = {2, {0, 2}};
-
-  (void)state;
-  if (size_of_world() < 3) return;
-  for (PetscInt i = 0; i < 2; i++) {
-    DM        dm = CreateOn(&set, bars[i]);
-    PetscInt  n, *faces;
-    PetscReal most;
-
-    ok(MeshGetSurface(dm, "zmax", &n, &faces));
-    ok(PetscFree(faces));
-    most = n;
-    assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &most, 1, MPIU_REAL, MPI_MAX, PETSC_COMM_WORLD), 0);
-    assert_true(i ? most <= 39 : most == 18);
-    ok(DMDestroy(&dm));
-  }
-}
-
-/* Bricks of a given number along each axis go to the ranks of the set in their order */
-static void given_bricks(void **state)
-{
-  const PetscMPIInt last = size_of_world() - 1;
-  const Set         set  = last == 2 ? (Set){2, {0, 2}} : (Set){1, {last}};
-  DM                dm   = CreateOn(&set, last == 2 ? "-dm_plex_dim 2 -dm_plex_box_faces 3,8 -mesh_bricks 1,2"
-                                                    : "-dm_plex_dim 2 -dm_plex_box_faces 3,8 -mesh_bricks 1,1");
-  PetscReal         lower[3], upper[3];
-
-  (void)state;
-  assert_int_equal(CellsHere(dm), Has(&set, rank_of_world()) ? 24 / set.n : 0);
-  if (set.n == 2 && CellsHere(dm)) {
-    ok(DMGetLocalBoundingBox(dm, lower, upper));
-    near(lower[1], rank_of_world() ? 0.5 : 0, 1e-15);
-    near(upper[1], rank_of_world() ? 1 : 0.5, 1e-15);
-  }
-  ok(DMDestroy(&dm));
-}
-
 /* Fewer cells than ranks of the set: a rank of it has none either */
 static void fewer_cells_than_ranks(void **state)
 {
@@ -231,11 +166,177 @@ static void bad_sets(void **state)
   Refused(&two, PETSC_ERR_USER_INPUT, "-a_mesh_contact_surfaces|no surface 'nowhere'", "-dm_plex_dim 2 -mesh_contact_surfaces nowhere");
 }
 
+/* A bar of 12 elements from these options, after what a program has set */
+static PetscOptions Open(Body *body, const char text[])
+{
+  PetscOptions options = options_begin(
+      "-prefix_push bar_ -dm_plex_dim 1 -dm_plex_box_faces 12 -density 4 -youngs_modulus 16 %s -prefix_pop", text);
+
+  ok(BodyCreate(PETSC_COMM_WORLD, "bar", body));
+  return options;
+}
+
+static PetscInt BodyCellsHere(Body body)
+{
+  PetscInt start, end;
+  DM       dm;
+
+  ok(BodyGetDM(body, &dm));
+  ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
+  return end - start;
+}
+
+/* The body's ranks must be those whose bits are set in `mask`, each with as many cells as another; others have none */
+static void ExpectRanks(Body body, unsigned mask)
+{
+  const PetscMPIInt *ranks;
+  PetscMPIInt        whole;
+  PetscInt           n;
+  unsigned           found = 0;
+
+  ok(BodyGetRanks(body, &n, &ranks));
+  for (PetscInt i = 0; i < n; i++) {
+    assert_true(!i || ranks[i] > ranks[i - 1]);
+    found |= 1u << ranks[i];
+  }
+  assert_int_equal(found, mask);
+  assert_int_equal(BodyCellsHere(body), mask >> rank_of_world() & 1 ? 12 / n : 0);
+  ok(BodyGetMeshRank(body, &whole));
+  if (n == 1 || size_of_world() == 1) assert_int_equal(whole, ranks[0]);
+  else assert_int_equal(whole, PETSC_DECIDE);
+}
+
+static void lists(void **state)
+{
+  static const struct {
+    const char *list;
+    unsigned    mask;
+    PetscMPIInt size; /* ranks that it needs */
+  } cases[] = {
+      {"0", 1, 1}, {"0-0", 1, 1}, {"00", 1, 1},  {"1", 2, 2},     {"0-1", 3, 2}, {"0,1", 3, 2}, {"1,0", 3, 2},
+      {"2", 4, 3}, {"0-2", 7, 3}, {"0,2", 5, 3}, {"2,0-1", 7, 3}, {"1-2", 6, 3}, {"2,0", 5, 3}, {"0-1,2", 7, 3},
+  };
+
+  (void)state;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(cases); i++) {
+    PetscOptions options;
+    Body         body;
+    char         text[64];
+
+    if (cases[i].size > size_of_world()) continue;
+    ok(PetscSNPrintf(text, sizeof(text), "-ranks %s", cases[i].list));
+    options = Open(&body, text);
+    ok(BodySetFromOptions(body));
+    ExpectRanks(body, cases[i].mask);
+    bar_destroy(&body, options);
+  }
+}
+
+static void bad_lists(void **state)
+{
+  const char *const cases[][2] = {
+      {",", "'' is neither"},
+      {"0,", "'' is neither"},
+      {",0", "'' is neither"},
+      {"0,,1", "'' is neither"},
+      {"a", "'a' is neither"},
+      {"0-", "'0-' is neither"},
+      {"-1", "'-1' is neither"},
+      {"0-a", "'0-a' is neither"},
+      {"0x1", "'0x1' is neither"},
+      {"0.5", "'0.5' is neither"},
+      {"0-0-0", "'0-0-0' is neither"},
+      {"+0", "'+0' is neither"},
+      {"1-0", "1-0 ends before it begins"},
+      {"0,0", "names rank 0 twice"},
+      {"0-0,0", "names rank 0 twice"},
+      {"3", "-bar_ranks 3: this run has"},
+      {"0-7", "-bar_ranks 0-7: this run has"},
+      {"99999999999999999999", "this run has"},
+      {"0,0-99999999999999999999", "this run has"},
+  };
+
+  (void)state;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(cases); i++) {
+    PetscOptions options;
+    Body         body;
+    char         text[64], words[128];
+
+    ok(PetscSNPrintf(text, sizeof(text), "-ranks %s", cases[i][0]));
+    ok(PetscSNPrintf(words, sizeof(words), "-bar_ranks|%s", cases[i][1]));
+    options = Open(&body, text);
+    refused(PETSC_ERR_USER_INPUT, words, BodySetFromOptions(body));
+    ok(BodyDestroy(&body));
+    options_drop(options);
+  }
+}
+
+/* What a program sets holds as long as no option says otherwise */
+static void setters(void **state)
+{
+  const PetscMPIInt last = size_of_world() - 1, ranks[] = {0, last};
+  const PetscInt    n = last ? 2 : 1;
+  PetscOptions      options;
+  Body              body;
+
+  (void)state;
+  options = Open(&body, "");
+  ok(BodySetRanks(body, n, ranks));
+  ok(BodySetFromOptions(body));
+  ExpectRanks(body, 1u | 1u << last);
+  refused(PETSC_ERR_ARG_WRONGSTATE, "'bar' has a mesh|BodySetRanks()", BodySetRanks(body, n, ranks));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "'bar' has a mesh", BodySetMeshRank(body, 0));
+  bar_destroy(&body, options);
+  options = Open(&body, "-ranks 0");
+  ok(BodySetRanks(body, n, ranks));
+  ok(BodySetFromOptions(body));
+  ExpectRanks(body, 1u);
+  bar_destroy(&body, options);
+  options = Open(&body, "");
+  ok(BodySetMeshRank(body, last));
+  ok(BodySetFromOptions(body));
+  ExpectRanks(body, 1u << last);
+  bar_destroy(&body, options);
+  options = Open(&body, "");
+  ok(BodySetRanks(body, n, ranks));
+  ok(BodySetMeshRank(body, PETSC_DECIDE)); /* takes it back */
+  ok(BodySetFromOptions(body));
+  assert_int_equal(BodyCellsHere(body), 12 / size_of_world());
+  bar_destroy(&body, options);
+}
+
+static void bad_setters(void **state)
+{
+  const PetscMPIInt none[] = {size_of_world()}, twice[] = {0, 0}, many[] = {0, 1, 2, 3}, negative[] = {-2};
+  PetscOptions      options;
+  Body              body;
+  DM                dm;
+
+  (void)state;
+  options = Open(&body, "");
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|rank", BodySetRanks(body, 1, none));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|rank", BodySetRanks(body, 1, negative));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|rank", BodySetRanks(body, 2, twice));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|4 ranks", BodySetRanks(body, 4, many));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|rank", BodySetMeshRank(body, none[0]));
+  ok(BodyDestroy(&body));
+  options_drop(options);
+  options = Open(&body, "-ranks 0");
+  ok(DMPlexCreateBoxMesh(PETSC_COMM_WORLD, 1, PETSC_FALSE, (PetscInt[]){3}, NULL, NULL, NULL, PETSC_TRUE, BOX_NOT_PERIODIC & dm));
+  ok(BodySetDM(body, dm));
+  ok(DMDestroy(&dm));
+  refused(PETSC_ERR_USER_INPUT, "-bar_ranks|the program has set the mesh", BodySetFromOptions(body));
+  ok(BodyDestroy(&body));
+  options_drop(options);
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(sets_have_all), cmocka_unit_test(parts_hang_on_their_number), cmocka_unit_test(contact_faces_are_spread),
-      cmocka_unit_test(given_bricks),  cmocka_unit_test(fewer_cells_than_ranks),     cmocka_unit_test(bad_sets),
+      cmocka_unit_test(sets_have_all), cmocka_unit_test(fewer_cells_than_ranks),
+      cmocka_unit_test(bad_sets),      cmocka_unit_test(lists),
+      cmocka_unit_test(bad_lists),     cmocka_unit_test(setters),
+      cmocka_unit_test(bad_setters),
   };
 
   return impakt_main(argc, argv, tests);

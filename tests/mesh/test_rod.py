@@ -22,10 +22,9 @@ CURVED = "-a_dm_plex_simplex true -a_element_formulation composite"
         ("-a_rod_part quarter -a_boundary_displacement cut_x,cut_y -a_boundary_displacement_cut_x 0,free,free -a_boundary_displacement_cut_y free,0,free", 0.25),
     ],
 )
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_mass(more, part, ranks, impakt):
+def test_mass(more, part, impakt):
     """To round-off, by the integration of the elements themselves. Measured: 3e-15."""
-    run = impakt(ROD + more, ranks=ranks)
+    run = impakt(ROD + more, ranks=2 if part == 0.25 else 1)
     assert run.history["body"]["a"]["momentum"][0, 2] == pytest.approx(1000 * np.pi * 0.2**2 * 1.5 * part, rel=1e-12)
 
 

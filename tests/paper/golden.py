@@ -1,5 +1,5 @@
-"""All golden figures of the report's tables, on what `make paper` has run. `make test` does not collect this file: tests/plots/test_golden.py
-runs the cheap ones again."""
+"""All golden figures of the report's tables, on what `make paper` has run. Only `make paper` and `make validate` name this file, which pytest does not
+find by itself; tests/plots/test_golden.py runs a few again."""
 
 import os
 from pathlib import Path
@@ -9,6 +9,8 @@ from goldenfigures import GOLDEN, differences
 from paper.experiments import ROOT, find
 from paper.results import Results
 from paper.running import Runner
+
+pytestmark = pytest.mark.validate
 
 
 @pytest.fixture(scope="module")

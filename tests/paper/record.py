@@ -152,16 +152,12 @@ def main():
     old = GOLDEN["figures"]
     base, others = measure(chosen.program, chosen.out / "runs", chosen.out / "shifted", chosen.changed)
     figures = {name: entries for name, entries in old.items() if chosen.changed and name not in base.experiments}
-    cheap = [name for name in GOLDEN["cheap"] if name in figures]
     for name in base.experiments:
         try:
             again = [other[name] for other in others if name in other.experiments and not other[name].error]
             figures[name] = entry(base[name], again)
         except NoResult as error:
             print(f"left out: {error}")
-            continue
-        if base[name].figure("timing.cpu") + base[name].figure("timing.wall_setup") < 1:
-            cheap.append(name)
     for name in sorted({*old, *figures}):
         for quantity in QUANTITIES:
             before, after = (book.get(name, {}).get(quantity, [None])[0] for book in (old, figures))
@@ -174,7 +170,7 @@ def main():
         for name, entries in sorted(figures.items())
     )
     FILE.write_text(
-        f'{{\n  "reasons": {json.dumps(REASONS, indent=4)},\n  "cheap": {json.dumps(sorted(cheap))},\n  "figures": {{\n{lines}\n  }}\n}}\n',
+        f'{{\n  "reasons": {json.dumps(REASONS, indent=4)},\n  "figures": {{\n{lines}\n  }}\n}}\n',
         encoding="utf-8",
     )
 

@@ -60,19 +60,16 @@ def test_experiments(root):
     assert "options_file" not in one.options
 
 
-@pytest.mark.parametrize(
-    ("content", "message"),
-    [
+def test_bad_options(tmp_path):
+    for content, message in (
         ("# a\n-options_file options/nowhere.opts\n", "options/nowhere.opts"),
         ("# a\n-options_file options/paper/bad.opts\n", "includes itself"),
         ("# a\n-options_file\n", "without a file"),
         ("-time_step 1\n", "first line"),
-    ],
-)
-def test_bad_options(content, message, tmp_path):
-    put(tmp_path, "bad", content)
-    with pytest.raises(experiments.BadOptions, match=message):
-        experiments.find(tmp_path)
+    ):
+        put(tmp_path, "bad", content)
+        with pytest.raises(experiments.BadOptions, match=message):
+            experiments.find(tmp_path)
 
 
 def test_every_options_file_of_the_paper():
@@ -90,16 +87,12 @@ def test_one_fails_and_the_others_run(made):
     assert list(errors) == ["variants/paper/broken-ii"]
     assert "schwarz_snes_tpye" in errors["variants/paper/broken-ii"]  # the program's message, not only that it failed
     assert "FAILED variants/paper/broken-ii" in said
+    lines = said.splitlines()
+    assert lines[0] == "4 runs to make on 2 cores, 0 made before"
+    assert lines[-1].startswith("4 of 4 runs, 0:0") and lines[-1].endswith("about 0:00 left")
     for name, experiment in found.items():
         assert runner.is_done(experiment) == (name not in errors)
         assert runner.path(experiment, ".h5").exists() == (name not in errors)
-
-
-def test_progress(made):
-    said = made[3].splitlines()
-    assert said[0] == "4 runs to make on 2 cores, 0 made before"
-    assert said[-1].startswith("4 of 4 runs, 0:0")
-    assert said[-1].endswith("about 0:00 left")
 
 
 def test_done_is_not_run_again(made):
@@ -179,30 +172,15 @@ def test_command_fails_when_a_run_does(root, tmp_path, monkeypatch, capsys):
     monkeypatch.setattr(program, "Runner", lambda path, runs: running.Runner(path, runs, root))
     assert program.main(["--program", str(IMPAKT), "--out", str(tmp_path), "--jobs", "1"]) == 1
     assert "FAILED variants/paper/broken-ii" in capsys.readouterr().err
+    assert program.main(["--program", str(tmp_path / "nowhere"), "--out", str(tmp_path)]) == 1
+    assert "nowhere" in capsys.readouterr().err
     monkeypatch.setattr(program, "find", dict)
     assert program.main(["--program", str(IMPAKT), "--out", str(tmp_path)]) == 0
 
 
-def test_missing_program(tmp_path, capsys):
-    assert program.main(["--program", str(tmp_path / "nowhere"), "--out", str(tmp_path)]) == 1
-    assert "nowhere" in capsys.readouterr().err
-
-
-@pytest.mark.parametrize(
-    ("value", "digits", "wanted"),
-    [
-        (0.005229, 3, "0.00523"),
-        (1.2345e-6, 2, "1.2e-6"),
-        (5, 3, "5"),
-        (0, 3, "0"),
-        (0.0, 3, "0"),
-        (None, 3, "–"),
-        (-2765.9, 2, "-2766"),
-        (99.9996, 3, "100"),
-    ],
-)
-def test_number(value, digits, wanted):
-    assert tables.number(value, digits) == wanted
+def test_number():
+    values = {(0.005229, 3): "0.00523", (1.2345e-6, 2): "1.2e-6", (5, 3): "5", (0, 3): "0", (None, 3): "–", (-2765.9, 2): "-2766", (99.9996, 3): "100"}
+    assert {given: tables.number(*given) for given in values} == values
 
 
 def test_convergence_rate():

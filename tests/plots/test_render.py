@@ -6,6 +6,7 @@ import sys
 import h5py
 import numpy as np
 import pytest
+from cases import long
 from conftest import IMPAKT, ROOT
 from PIL import Image
 
@@ -47,19 +48,22 @@ def drawn(pixels):
     return rows[0] / height, rows[-1] / height, columns[0] / width, columns[-1] / width
 
 
+def greens(fields, tmp_path, *words):
+    return draw(fields, "plane", tmp_path, "--size", "700x500", *words)[200:330, 30:560, 1]
+
+
 def test_peak_of_one_element(fields, tmp_path):
     """Colours are spread over the other elements, where they all were dark with the peak as the end of the scale. Viridis begins at (68, 1, 84)
     and ends at (253, 231, 37)."""
-
-    def greens(*words):
-        return draw(fields, "plane", tmp_path, "--size", "700x500", *words)[200:330, 30:560, 1]
-
-    assert np.ptp(np.percentile(greens(), (10, 90))) > 100
-    assert np.percentile(greens("--percentile", "100"), 90) < 60
+    assert np.ptp(np.percentile(greens(fields, tmp_path), (10, 90))) > 100
 
 
-@pytest.mark.parametrize("size", ["700x500", pytest.param("500x700", marks=pytest.mark.long)])
-@pytest.mark.parametrize("name", ["solid", pytest.param("plane", marks=pytest.mark.long), pytest.param("tall", marks=pytest.mark.long)])
+@pytest.mark.long
+def test_percentile(fields, tmp_path):
+    assert np.percentile(greens(fields, tmp_path, "--percentile", "100"), 90) < 60
+
+
+@pytest.mark.parametrize(("name", "size"), [("solid", "700x500"), *long(("plane", "500x700"), ("tall", "700x500"))])
 def test_bodies_fill_the_picture(name, size, fields, tmp_path):
     """They reach from one end of their part of the picture to the other, across or upward; nothing lies under the scale."""
     top, bottom, left, right = drawn(draw(fields, name, tmp_path, "--size", size))
@@ -69,8 +73,8 @@ def test_bodies_fill_the_picture(name, size, fields, tmp_path):
     assert bottom < 0.99
 
 
-def test_bad_percentile(fields, tmp_path):
-    for percentile in ("0", "101", "x"):
-        run = subprocess.run([*RENDER, fields / "plane.xdmf", tmp_path / "p.png", "--percentile", percentile], check=False, capture_output=True, text=True, timeout=60)
-        assert run.returncode > 0
-        assert "Traceback" not in run.stderr
+@pytest.mark.parametrize("percentile", ["101", *long("0", "x")])
+def test_bad_percentile(percentile, fields, tmp_path):
+    run = subprocess.run([*RENDER, fields / "plane.xdmf", tmp_path / "p.png", "--percentile", percentile], check=False, capture_output=True, text=True, timeout=60)
+    assert run.returncode > 0
+    assert "Traceback" not in run.stderr

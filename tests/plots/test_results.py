@@ -1,10 +1,11 @@
 """plots/impakt_results.py reads runs; plots/compare.py and plots/convergence.py draw several of them."""
 
 import math
-import os
 import re
 import sys
 
+import compare
+import convergence
 import h5py
 import impakt_results
 import numpy as np
@@ -12,15 +13,22 @@ import pytest
 from cases import DEFAULTS
 from conftest import ROOT
 
-ENVIRONMENT = {**os.environ, "MPLBACKEND": "Agg"}
-COMPARE = [sys.executable, ROOT / "plots/compare.py"]
-CONVERGENCE = [sys.executable, ROOT / "plots/convergence.py"]
 PNG = b"\x89PNG\r\n\x1a\n"
 SPRING = "-bodies b -b_dm_plex_dim 1 -b_dm_plex_box_faces 1 -b_density 1 -b_youngs_modulus 1 -b_initial_displacement 0.01*(x-0.5) -b_mass_type consistent -time_end 1"
 
 
 def files(run):
     return run.folder / "history.h5", run.folder / "summary.json"
+
+
+@pytest.fixture
+def call(capsys):
+    """call(program, *words) -> exit code, stdout, stderr of a program of plots/"""
+
+    def run(program, *words):
+        return program.main([str(word) for word in words]), *capsys.readouterr()
+
+    return run
 
 
 @pytest.fixture
@@ -46,8 +54,7 @@ def test_read(bars):
 @pytest.mark.parametrize(
     "options",
     [
-        "-options_file options/slope.opts",  # what friction takes
-        "-options_file options/capstan.opts",  # the work of a drum that turns
+        "-options_file options/capstan.opts",  # the work of a drum that turns, what friction takes
         "-options_file options/taylor-bar-axisymmetric.opts -time_end 1e-6",  # what plastic flow takes
         "-options_file options/settling.opts",  # loads, damping
     ],
@@ -102,33 +109,33 @@ def test_what_cannot_be_read(bars, tmp_path):
         bars.series("body/left/heat")
 
 
-def test_compare_with_itself(bars, launch, tmp_path):
-    run = launch([*COMPARE, bars.path, bars.path, tmp_path / "new/figure.png"], env=ENVIRONMENT)
-    assert run.returncode == 0, run.stderr
+def test_compare_with_itself(bars, call, tmp_path):
+    code, printed, told = call(compare, bars.path, bars.path, tmp_path / "new/figure.png")
+    assert code == 0, told
     assert (tmp_path / "new/figure.png").read_bytes()[:8] == PNG
-    differences = [float(line.split()[-3]) for line in run.stdout.splitlines() if line.startswith(("body/", "contact/", "system/"))]
+    differences = [float(line.split()[-3]) for line in printed.splitlines() if line.startswith(("body/", "contact/", "system/"))]
     assert len(differences) > 15
     assert not any(differences)
-    assert "options that differ" not in run.stdout
+    assert "options that differ" not in printed
 
 
-def test_compare(impakt, launch, tmp_path):
+def test_compare(impakt, call):
     """A body with half the density has half the kinetic energy and momentum; steps differ, and times are found all the same."""
     base = "-bodies b -b_dm_plex_dim 1 -b_dm_plex_box_faces 2 -b_youngs_modulus 1 -b_initial_velocity 2 -time_end 1"
     one = impakt(f"{base} -b_density 1 -time_step 0.1")
     other = impakt(f"{base} -b_density 0.5 -time_step 0.025")
-    run = launch([*COMPARE, *(each.folder / "history.h5" for each in (one, other))], env=ENVIRONMENT)
-    assert run.returncode == 0, run.stderr
-    rows = {line.split()[0]: line.split()[1:] for line in run.stdout.splitlines() if line.startswith("body/")}
+    code, printed, told = call(compare, *(each.folder / "history.h5" for each in (one, other)))
+    assert code == 0, told
+    rows = {line.split()[0]: line.split()[1:] for line in printed.splitlines() if line.startswith("body/")}
     assert rows["body/b/kinetic"][:4] == ["J", "2", "1.000e+00", "5.0e-01"]
     assert rows["body/b/momentum"][-1] == "1.000e+00"
     assert rows["body/b/momentum"][-3] == "5.0e-01"
     assert float(rows["body/b/mean_velocity"][-1]) < 1e-12
-    assert "-b_density: 1 | 0.5" in run.stdout
-    assert "-time_step: 0.1 | 0.025" in run.stdout
+    assert "-b_density: 1 | 0.5" in printed
+    assert "-time_step: 0.1 | 0.025" in printed
 
 
-def test_convergence(impakt, launch, tmp_path):
+def test_convergence(impakt, call, tmp_path):
     """A spring between two masses swings: the trapezoidal rule's error in its displacement falls by 4 where the step is halved."""
     omega = math.sqrt(12)  # of a bar element of length, stiffness and mass 1 with its consistent mass matrix
     exact = f"-b_exact_displacement 0.01*(x-0.5)*cos({omega!r}*t)"
@@ -138,51 +145,48 @@ def test_convergence(impakt, launch, tmp_path):
         history, summary = files(run)
         histories.append(history.rename(tmp_path / f"{i}.h5"))
         summary.rename(tmp_path / f"{i}.json")
-    drawn = launch([*CONVERGENCE, *histories, tmp_path / "new/figure.png"], env=ENVIRONMENT)
-    assert drawn.returncode == 0, drawn.stderr
+    code, printed, told = call(convergence, *histories, tmp_path / "new/figure.png")
+    assert code == 0, told
     assert (tmp_path / "new/figure.png").read_bytes()[:8] == PNG
-    head, row = drawn.stdout.splitlines()[:2]
+    head, row = printed.splitlines()[:2]
     assert head.split() == ["-time_step", "0.025", "0.05", "0.1", "slope"]
     assert row.startswith("bodies/b/displacement_error")
     assert float(row.split()[-1]) == pytest.approx(2, abs=0.1)  # terms of fourth order change it by some hundredths
-    other = launch([*CONVERGENCE, *histories, tmp_path / "other.png", "--figure", "bodies/b/potential"], env=ENVIRONMENT)
-    assert other.returncode == 0, other.stderr
-    assert re.search(r"bodies/b/potential +- ", other.stdout)  # the run that others are compared with
+    code, printed, told = call(convergence, *histories, tmp_path / "other.png", "--figure", "bodies/b/potential")
+    assert code == 0, told
+    assert re.search(r"bodies/b/potential +- ", printed)  # the run that others are compared with
 
 
-@pytest.mark.parametrize(
-    ("words", "message"),
-    [
-        (["--figure", "contact/heat"], "no contact/heat"),
-        (["--against", "contact_penalty"], "was not given -contact_penalty"),
-        ([], "is the same in all runs"),
-    ],
-)
-def test_convergence_of_what_is_not_there(words, message, bars, launch, tmp_path):
-    (tmp_path / "a.h5").write_bytes(bars.path.read_bytes())
-    (tmp_path / "b.h5").write_bytes(bars.path.read_bytes())
-    with h5py.File(tmp_path / "b.h5", "r+") as file:
-        if "--figure" in words:
-            file.attrs["-time_step"] = "1e-9"
+def test_convergence_of_what_is_not_there(bars, call, tmp_path):
     for name in "ab":
+        (tmp_path / f"{name}.h5").write_bytes(bars.path.read_bytes())
         (tmp_path / f"{name}.json").write_text(bars.summary_path.read_text())
-    run = launch([*CONVERGENCE, tmp_path / "a.h5", tmp_path / "b.h5", tmp_path / "figure.png", *words], env=ENVIRONMENT)
-    assert run.returncode == 1
-    assert message in run.stderr
-    assert "Traceback" not in run.stderr
+    words = [tmp_path / "a.h5", tmp_path / "b.h5", tmp_path / "figure.png"]
+    with h5py.File(tmp_path / "b.h5", "r+") as file:
+        for more, message in (
+            ([], "is the same in all runs"),
+            (["--against", "contact_penalty"], "was not given -contact_penalty"),
+            (["--figure", "contact/heat"], "no contact/heat"),
+        ):
+            if "--figure" in more:
+                file.attrs["-time_step"] = "1e-9"
+                file.flush()
+            code, _, told = call(convergence, *words, *more)
+            assert code == 1 and message in told
 
 
-@pytest.mark.parametrize("command", [COMPARE, CONVERGENCE], ids=["compare", "convergence"])
-def test_bad_files(command, launch, tmp_path):
+@pytest.mark.parametrize("program", [compare, convergence])
+def test_bad_files(program, call, tmp_path):
     (tmp_path / "text.h5").write_text("not HDF5\n")
     for name in ("text.h5", "nowhere.h5"):
-        run = launch([*command, tmp_path / name, tmp_path / name, tmp_path / "figure.png"], env=ENVIRONMENT)
-        assert run.returncode == 1
-        assert name in run.stderr
-        assert "Traceback" not in run.stderr
-    assert launch(command, env=ENVIRONMENT).returncode > 0
+        code, _, told = call(program, tmp_path / name, tmp_path / name, tmp_path / "figure.png")
+        assert code == 1 and name in told
 
 
-def test_convergence_without_a_figure(launch):
-    run = launch([*CONVERGENCE, "a.h5", "b.h5"], env=ENVIRONMENT)
-    assert run.returncode == 2 and "the last word is the figure" in run.stderr and "b.h5" in run.stderr
+def test_usage(call, capsys):
+    code, _, told = call(compare)
+    assert code == 1 and "usage" in told
+    for words, message in (((), "HISTORY.h5"), (("a.h5", "b.h5"), "the last word is the figure")):
+        with pytest.raises(SystemExit, match="2"):
+            call(convergence, *words)
+        assert message in capsys.readouterr().err

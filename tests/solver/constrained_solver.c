@@ -1,3 +1,4 @@
+/* ranks: 1 3 */
 /* A x = b with some rows of B x held at zero, against a dense solution of [A B^T; B 0]. */
 #include "support.h"
 #include <solver/constrainedsolver.h>
@@ -175,143 +176,6 @@ static void solves_with_any_set_of_rows_held(void **state)
   }
 }
 
-/* Rows on springs, alone, beside held ones, and (the first and its copy) two on one node; and back to held ones */
-static void solves_with_rows_on_springs(void **state)
-{
-  const PetscBool all[ROWS]           = {PETSC_TRUE, PETSC_TRUE, PETSC_TRUE, PETSC_TRUE};
-  const PetscReal flexibility[][ROWS] = {{0.5, 0, 0, 2}, {0.1, 3, 0, 0.2}, {4, 1, 10, 0.3}};
-  PetscMPIInt     size;
-
-  (void)state;
-  assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
-  for (PetscMPIInt owner = -1; owner < size; owner++) {
-    System s;
-
-    create_system(&s, owner);
-    for (PetscInt k = 0; k < 3; k++) {
-      ok(ConstrainedSolverSetConstraints(s.solver, all + s.begin, flexibility[k] + s.begin));
-      check_flexible_solution(&s, all, flexibility[k], k);
-      hold(&s, sets[2]);
-      check_solution(&s, sets[2], k);
-    }
-    destroy_system(&s);
-  }
-}
-
-/* Constraint forces by conjugate gradients, to 1e-13 of some tenths, held rows and springs alike */
-static void conjugate_gradients_give_the_same(void **state)
-{
-  const PetscReal flexibility[ROWS] = {0.5, 0, 3, 0};
-  System          s;
-
-  (void)state;
-  create_system(&s, -1);
-  ok(ConstrainedSolverSetDenseLimit(s.solver, 0));
-  for (size_t k = 0; k < sizeof(sets) / sizeof(sets[0]); k++) {
-    PetscBool springs[ROWS];
-
-    hold(&s, sets[k]);
-    check_solution(&s, sets[k], (PetscInt)k);
-    for (PetscInt r = 0; r < ROWS; r++) springs[r] = sets[k][r];
-    ok(ConstrainedSolverSetConstraints(s.solver, springs + s.begin, flexibility + s.begin));
-    {
-      PetscReal soft[ROWS];
-
-      for (PetscInt r = 0; r < ROWS; r++) soft[r] = springs[r] ? flexibility[r] : 0;
-      check_flexible_solution(&s, springs, soft, (PetscInt)k + 20);
-    }
-  }
-  destroy_system(&s);
-}
-
-/* Bit for bit, by conjugate gradients as by dense factors: what has been solved in between leaves no trace */
-static void repeats_bit_for_bit(void **state)
-{
-  (void)state;
-  for (PetscInt limit = 0; limit <= ROWS; limit += ROWS) {
-    System    s;
-    Vec       first;
-    PetscBool equal;
-
-    create_system(&s, -1);
-    ok(ConstrainedSolverSetDenseLimit(s.solver, limit));
-    hold(&s, sets[2]);
-    check_solution(&s, sets[2], 1);
-    ok(VecDuplicate(s.x, &first));
-    ok(VecCopy(s.x, first));
-    check_solution(&s, sets[2], 2);
-    check_solution(&s, sets[2], 1);
-    ok(VecEqual(s.x, first, &equal));
-    assert_true(equal);
-    ok(VecDestroy(&first));
-    destroy_system(&s);
-  }
-}
-
-/* Rows 1 and 2 change places, the others stay: the columns of what stays know what they do to the new rows */
-static void rows_may_change(void **state)
-{
-  const PetscInt place[ROWS] = {0, 2, 1, 3};
-
-  (void)state;
-  for (PetscInt limit = 0; limit < 2; limit++)
-    for (PetscInt all = 0; all < 2; all++) {
-      PetscInt    begin, end;
-      PetscMPIInt changed[ROWS] = {all, 1, 1, all};
-      System      s;
-      Mat         B;
-
-      create_system(&s, -1);
-      if (!limit) ok(ConstrainedSolverSetDenseLimit(s.solver, 0));
-      hold(&s, sets[2]); /* columns of rows 0, 1, 2 are there */
-      check_solution(&s, sets[2], 1);
-      ok(VecGetOwnershipRange(s.b, &begin, &end));
-      ok(MatCreateAIJ(PETSC_COMM_WORLD, s.end - s.begin, end - begin, ROWS, SIZE, 2, NULL, 2, NULL, &B));
-      for (PetscInt i = s.begin; i < s.end; i++)
-        for (PetscInt j = 0; j < SIZE; j++)
-          if (b_entry(place[i], j) != 0) ok(MatSetValue(B, i, j, b_entry(place[i], j), INSERT_VALUES));
-      ok(MatAssemblyBegin(B, MAT_FINAL_ASSEMBLY));
-      ok(MatAssemblyEnd(B, MAT_FINAL_ASSEMBLY));
-      ok(ConstrainedSolverSetRows(s.solver, B, changed));
-      ok(MatDestroy(&B));
-      for (size_t k = 0; k < sizeof(sets) / sizeof(sets[0]); k++) {
-        PetscBool moved[ROWS];
-
-        for (PetscInt r = 0; r < ROWS; r++) moved[r] = sets[k][place[r]];
-        hold(&s, moved);
-        check_solution(&s, sets[k], (PetscInt)k);
-      }
-      destroy_system(&s);
-    }
-}
-
-/* The matrix is factored once, whatever is held */
-static void never_factors_again(void **state)
-{
-  PetscObjectState before, after;
-  System           s;
-  KSP              ksp;
-  PC               pc;
-  Mat              factors;
-  PetscMPIInt      size;
-
-  (void)state;
-  assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
-  if (size > 1) skip(); /* the factors are inside a PCREDUNDANT there */
-  create_system(&s, -1);
-  ok(ConstrainedSolverGetKSP(s.solver, &ksp));
-  ok(KSPGetPC(ksp, &pc));
-  ok(PCFactorGetMatrix(pc, &factors));
-  ok(PetscObjectStateGet((PetscObject)factors, &before));
-  for (size_t k = 0; k < sizeof(sets) / sizeof(sets[0]); k++) {
-    hold(&s, sets[k]);
-    check_solution(&s, sets[k], 1);
-  }
-  ok(PetscObjectStateGet((PetscObject)factors, &after));
-  assert_true(before == after);
-  destroy_system(&s);
-}
-
 /* The last row is a copy of the first: held together they determine no force. The solver can be used on afterwards. */
 static void refuses_rows_that_are_not_independent(void **state)
 {
@@ -330,11 +194,6 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(solves_with_any_set_of_rows_held),
-      cmocka_unit_test(solves_with_rows_on_springs),
-      cmocka_unit_test(conjugate_gradients_give_the_same),
-      cmocka_unit_test(repeats_bit_for_bit),
-      cmocka_unit_test(rows_may_change),
-      cmocka_unit_test(never_factors_again),
       cmocka_unit_test(refuses_rows_that_are_not_independent),
   };
 

@@ -32,13 +32,13 @@ def marked(mark, cases):
 
 
 def long(*cases):
-    """Values of a test's parameters that `make test` leaves to `make test-long`."""
+    """Values of a test's parameters that `make test` leaves to `make test-all`."""
     return marked(pytest.mark.long, cases)
 
 
-def longest(*cases):
-    """Those that it leaves to `make test-longest`."""
-    return marked(pytest.mark.longest, cases)
+def validate(*cases):
+    """Those that both leave to `make validate`."""
+    return marked(pytest.mark.validate, cases)
 
 
 def joined(*parts):

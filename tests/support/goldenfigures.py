@@ -11,7 +11,7 @@ from pathlib import Path
 from paper.results import figure
 
 FILE = Path(__file__).resolve().parents[1] / "paper/golden.json"
-GOLDEN = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {"figures": {}, "cheap": [], "reasons": {}}
+GOLDEN = json.loads(FILE.read_text(encoding="utf-8")) if FILE.exists() else {"figures": {}, "reasons": {}}
 
 
 def differences(name, summary):

@@ -36,42 +36,6 @@ static inline PetscOptions solid_body_create(Body *body, const char format[], ..
   return solid_body_create_on(PETSC_COMM_WORLD, body, text);
 }
 
-/* The position of a vertex of the mesh */
-static inline void vertex_position(DM dm, PetscInt vertex, PetscReal x[3])
-{
-  PetscSection       section;
-  Vec                coordinates;
-  const PetscScalar *values;
-  PetscInt           offset, dim;
-
-  ok(DMGetCoordinateDim(dm, &dim));
-  ok(DMGetCoordinateSection(dm, &section));
-  ok(DMGetCoordinatesLocal(dm, &coordinates));
-  ok(PetscSectionGetOffset(section, vertex, &offset));
-  ok(VecGetArrayRead(coordinates, &values));
-  for (PetscInt d = 0; d < 3; d++) x[d] = d < dim ? values[offset + d] : 0;
-  ok(VecRestoreArrayRead(coordinates, &values));
-}
-
-/* The nodes of a plane become contact nodes, as do those of earlier calls */
-static inline void touch_plane(Body body, PetscInt axis, PetscReal place)
-{
-  PetscInt *vertices, start, end, n = 0;
-  DM        dm;
-
-  ok(BodyGetDM(body, &dm));
-  ok(DMPlexGetDepthStratum(dm, 0, &start, &end));
-  ok(PetscMalloc1(end - start, &vertices));
-  for (PetscInt v = start; v < end; v++) {
-    PetscReal x[3];
-
-    vertex_position(dm, v, x);
-    if (PetscAbsReal(x[axis] - place) < 1e-9) vertices[n++] = v;
-  }
-  ok(BodySetContactNodes(body, n, vertices));
-  ok(PetscFree(vertices));
-}
-
 /* The nodes of a side of a box, by its name */
 static inline void touch_side(Body body, const char side[])
 {

@@ -208,3 +208,80 @@ static inline void check_tangent(const Solid *solid, const Mesh *mesh, PetscReal
     }
   }
 }
+
+/* Every number of elements from 1 to 17, which fills no, one and two batches and leaves any rest: the same as one element after the other;
+   none at all, as on a rank without elements */
+static inline void check_batches(const Solid *solid, const Mesh *mesh, const PetscReal u[], PetscReal bound)
+{
+  PetscReal f[MAX_DOFS], expected[MAX_DOFS], stress[6 * MAX_CELLS + 6], expected_stress[6], energy;
+
+  for (PetscInt count = 1; count <= 17; count++) {
+    for (PetscInt i = 0; i < mesh->dim * mesh->n_nodes; i++) expected[i] = 0;
+    for (PetscInt k = 0; k < 6; k++) stress[6 * count + k] = -7;
+    solid->element->count = count;
+    ok((*solid->element->ops->stress)(solid->element, u, stress));
+    get_force(solid, mesh, u, f);
+    energy                = get_energy(solid, u);
+    solid->element->count = 1;
+    for (PetscInt e = 0; e < count; e++) {
+      solid->element->connectivity = mesh->connectivity + e * mesh->nodes;
+      ok((*solid->element->ops->internalforce)(solid->element, u, expected));
+      ok((*solid->element->ops->stress)(solid->element, u, expected_stress));
+      for (PetscInt k = 0; k < 6; k++) assert_true(stress[6 * e + k] == expected_stress[k]);
+      energy -= get_energy(solid, u);
+    }
+    solid->element->connectivity = mesh->connectivity;
+    for (PetscInt i = 0; i < mesh->dim * mesh->n_nodes; i++) assert_true(f[i] == expected[i]);
+    near(energy, 0, bound); /* other order of the sum */
+    for (PetscInt k = 0; k < 6; k++) assert_true(stress[6 * count + k] == -7);
+  }
+  solid->element->count = 0;
+  get_force(solid, mesh, u, f);
+  assert_true(largest_of(mesh->dim * mesh->n_nodes, f) == 0 && get_energy(solid, u) == 0);
+  assert_int_equal(solid->element->inverted, -1);
+}
+
+/* Displacements of 1e-12 times those of a linear body: nonlinear terms are 1e-12 of linear ones, and so is the error, but for round-off.
+   With F in place of H, of strains of 1e-13 no more than three digits would be left. */
+static inline void check_small_strains(const Mesh *mesh, const char options[])
+{
+  static const char *const materials[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};
+  PetscReal                u[MAX_DOFS], f[MAX_DOFS], linear[MAX_DOFS];
+
+  set_scattered(mesh, 1e-13, u);
+  for (PetscInt m = 0; m < 3; m++) {
+    Solid solid;
+
+    solid_create(&solid, mesh, materials[m], options);
+    get_force(&solid, mesh, u, m ? f : linear);
+    for (PetscInt i = 0; i < mesh->dim * mesh->n_nodes && m; i++)
+      near(f[i], linear[i], 2e-12 * largest_of(mesh->dim * mesh->n_nodes, linear));
+    solid_destroy(&solid);
+  }
+}
+
+/* Dashpots of the first element, the only one at its nodes: the force is the matrix times the velocity, to round-off, and takes energy */
+static inline void check_viscosity(const Solid *solid, const Mesh *mesh, const PetscReal u[], PetscReal bound)
+{
+  const PetscInt n = mesh->dim * mesh->nodes;
+  PetscReal      v[MAX_DOFS], f[MAX_DOFS], C[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], power = 0;
+
+  for (PetscInt i = 0; i < mesh->dim * mesh->n_nodes; i++) {
+    v[i] = scatter(77 + i);
+    f[i] = 0;
+  }
+  ok((*solid->element->ops->viscousforce)(solid->element, u, v, f));
+  ok((*solid->element->ops->viscosity)(solid->element, 0, u, C));
+  for (PetscInt a = 0; a < n; a++) {
+    const PetscInt at  = mesh->dim * mesh->connectivity[a / mesh->dim] + a % mesh->dim;
+    PetscReal      sum = 0;
+
+    for (PetscInt b = 0; b < n; b++) {
+      sum += C[a * n + b] * v[mesh->dim * mesh->connectivity[b / mesh->dim] + b % mesh->dim];
+      near(C[a * n + b], C[b * n + a], 1e-13 * largest_of(n * n, C));
+    }
+    near(sum, f[at], bound);
+    power += f[at] * v[at];
+  }
+  assert_true(power > 1);
+}

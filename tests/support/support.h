@@ -192,15 +192,6 @@ static inline void set_rows(Body body, PetscInt n, const PetscReal x[], Rows *ro
   ok(MatDestroy(&B));
 }
 
-/* The springs of Robin rows, in the order in which the nodes were asked for */
-static inline void set_robin(Body body, const Rows *rows, const PetscReal stiffness[])
-{
-  PetscReal mine[4];
-
-  for (PetscInt i = 0; i < rows->local; i++) mine[i] = stiffness[rows->which[i]];
-  ok(BodySetRobin(body, mine));
-}
-
 /* What each node's row means, in the order in which the nodes were asked for */
 static inline void set_conditions(Body body, const Rows *rows, const BodyCondition conditions[])
 {
@@ -217,19 +208,6 @@ static inline void set_level(const Rows *rows, Trace trace, PetscInt level, Pets
   ok(TraceGetLevel(trace, level, &values));
   for (PetscInt i = 0; i < rows->local; i++)
     if (rows->which[i] == which) values[i] = value;
-}
-
-/* The value on every rank */
-static inline PetscReal get_level(const Rows *rows, Trace trace, PetscInt level, PetscInt which)
-{
-  PetscScalar *values;
-  PetscReal    value = 0;
-
-  ok(TraceGetLevel(trace, level, &values));
-  for (PetscInt i = 0; i < rows->local; i++)
-    if (rows->which[i] == which) value = values[i];
-  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPIU_REAL, MPI_SUM, PETSC_COMM_WORLD), 0);
-  return value;
 }
 
 /* A body named bar, its options read (printf-like, without the prefix), not set up */

@@ -1,3 +1,5 @@
+/* ranks: 1 2 */
+/* long: 2 */
 /* Start and end of the library: on its own, inside a program that has started PETSc itself, again and again. MPI runs all the time. */
 #include "support.h"
 #include <petsc/private/petscimpl.h>

@@ -1,5 +1,7 @@
-/* Option hygiene: an option that nobody has read is refused, with the nearest known one. */
+/* Option hygiene: an option that nobody has read is refused, with the nearest known one. Lists of names, of any length. Every class prints
+   itself where an option asks for it. */
 #include "simulation.h"
+#include <sys/names.h>
 
 static const char *const names[] = {"left", "right"};
 
@@ -75,6 +77,132 @@ static void options_of_other_bodies_are_refused(void **state)
   refused(PETSC_ERR_USER_INPUT, "-middle_density", ImpaktCheckOptions(2, names));
 }
 
+#define MANY 1000
+
+static void none_and_many(void **state)
+{
+  char    **names, *list;
+  PetscInt  n;
+  PetscBool set;
+
+  (void)state;
+  ok(NamesRead("x_", "-names", &n, &names, &set));
+  assert_int_equal(n, 0);
+  assert_false(set);
+  assert_null(names);
+
+  ok(PetscMalloc1(8 * MANY, &list));
+  list[0] = 0;
+  for (PetscInt i = 0; i < MANY; i++) {
+    char name[8];
+
+    ok(PetscSNPrintf(name, sizeof(name), "%sn%d", i ? "," : "", (int)i));
+    ok(PetscStrlcat(list, name, 8 * MANY));
+  }
+  ok(PetscOptionsSetValue(NULL, "-x_names", list));
+  ok(NamesRead("x_", "-names", &n, &names, &set));
+  assert_int_equal(n, MANY);
+  assert_true(set);
+  assert_string_equal(names[0], "n0");
+  assert_string_equal(names[MANY - 1], "n999");
+  ok(NamesDestroy(n, &names));
+  assert_null(names);
+  ok(PetscOptionsClearValue(NULL, "-x_names"));
+  ok(PetscFree(list));
+}
+
+/* The file that an option has made; removed */
+static void expect_file(const char name[], const char words[])
+{
+  char        text[4096] = "", **word;
+  int         n;
+  PetscMPIInt rank;
+  FILE       *file;
+
+  assert_int_equal(MPI_Barrier(PETSC_COMM_WORLD), 0);
+  assert_int_equal(MPI_Comm_rank(PETSC_COMM_WORLD, &rank), 0);
+  if (rank) return;
+  file = fopen(name, "r");
+  if (!file) print_error("%s has not been made\n", name);
+  assert_non_null(file);
+  text[fread(text, 1, sizeof(text) - 1, file)] = 0;
+  assert_int_equal(fclose(file), 0);
+  assert_int_equal(remove(name), 0);
+  ok(PetscStrToArray(words, '|', &n, &word));
+  for (int i = 0; i < n; i++) {
+    if (!strstr(text, word[i])) print_error("'%s' is not in %s: %s\n", word[i], name, text);
+    assert_non_null(strstr(text, word[i]));
+  }
+  ok(PetscStrToArrayDestroy(n, word));
+}
+
+static void solids(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddOptions("-bodies top,base -obstacles floor -contact_pairs top:base,base:floor -time_end 1 -time_step 0.1 -contact_law tied "
+             "-top_dm_plex_dim 2 -top_dm_plex_box_faces 4,3 -top_dm_plex_box_lower 0,1 -top_dm_plex_box_upper 1,2 -top_density 2 "
+             "-top_youngs_modulus 10 -top_thickness 0.5 -top_plane_stress "
+             "-base_dm_plex_dim 2 -base_dm_plex_box_faces 6,3 -base_density 3 -base_youngs_modulus 20 -base_poissons_ratio 0.25 "
+             "-floor_obstacle_type plane -floor_point 0,0 -floor_normal 0,1");
+  AddOptions("-top_body_view ascii:body.txt -top_material_view ascii:material.txt -base_element_view ascii:element.txt "
+             "-top_element_view ascii:plate.txt -floor_obstacle_view ascii:obstacle.txt -contact_view ascii:contact.txt "
+             "-contact_surface_view ascii:surface.txt -contact_transfer_view ascii:transfer.txt -controller_view ascii:controller.txt");
+  ok(SimulationCreate(simulation));
+  expect_file("body.txt", "body top|40 degrees of freedom|12 cells of shape quad");
+  expect_file("material.txt", "top_|linear_elastic|density 2. kg/m^3, plane stress|Young's modulus 10.");
+  expect_file("element.txt", "base_|quad|thickness 1. m, plane strain");
+  expect_file("plate.txt", "top_|thickness 0.5 m, plane stress");
+  expect_file("obstacle.txt", "obstacle floor: plane at (0., 0., 0.) m, normal (0., 1., 0.)");
+  expect_file("contact.txt", "contact schwarz: top:base base:floor|law tied");
+  /* the last one of those that went to the file: the lower side of the base, 6 faces and 7 nodes of 1 m in all */
+  expect_file("surface.txt", "surface base.all: 6 faces, 7 nodes, area 1. m^1");
+  expect_file("transfer.txt", "transfer base.all:floor: 7 of 7 nodes|built 1 times");
+  expect_file("controller.txt", "time 0. to 1. s, 10 controller steps|body top|body base|contact schwarz");
+  assert_int_equal(simulation->n_bodies, 2);
+}
+
+static void bars_and_output(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+  Output      output;
+  Exact       exact;
+  ExactType   type;
+
+  AddCollision(4, 4, 0);
+  AddOptions("-exact impact -exact_view ascii:exact.txt -output_history views-history.h5 -output_view ascii:output.txt "
+             "-left_element_view ascii:bar.txt");
+  ok(SimulationCreate(simulation));
+  expect_file("bar.txt", "left_|segment|cross-section 1. m^2");
+  ok(OutputCreate(simulation->controller, &output));
+  ok(OutputGetExact(output, &exact));
+  assert_null(exact);
+  ok(OutputSetFromOptions(output));
+  ok(OutputGetExact(output, &exact));
+  ok(ExactGetType(exact, &type));
+  assert_string_equal(type, EXACT_IMPACT);
+  expect_file("exact.txt", "exact solution (impact): contact of left and right from 0.01 to");
+  expect_file("output.txt", "files|history|views-history.h5");
+  ok(OutputDestroy(&output));
+}
+
+static void expressions(void **state)
+{
+  Expression  expression;
+  PetscViewer viewer;
+  const char *text;
+
+  (void)state;
+  ok(ExpressionCreate(PETSC_COMM_WORLD, "speed", "2*x+t", &expression));
+  ok(ExpressionGetText(expression, &text));
+  assert_string_equal(text, "2*x+t");
+  ok(PetscViewerASCIIOpen(PETSC_COMM_WORLD, "expression.txt", &viewer));
+  ok(ExpressionView(expression, viewer));
+  ok(PetscViewerDestroy(&viewer));
+  expect_file("expression.txt", "speed: 2*x+t");
+  ok(ExpressionDestroy(&expression));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -84,6 +212,10 @@ int main(int argc, char **argv)
       simulation_test(all_unread_options_are_named),
       simulation_test(options_without_effect_are_refused),
       simulation_test(options_of_other_bodies_are_refused),
+      cmocka_unit_test(none_and_many),
+      simulation_test(solids),
+      simulation_test(bars_and_output),
+      simulation_test(expressions),
   };
 
   return impakt_main(argc, argv, tests);

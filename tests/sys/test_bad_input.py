@@ -3,10 +3,9 @@
 import math
 import os
 import re
-import time
 
 import pytest
-from cases import PAIRINGS
+from cases import PAIRINGS, long
 from conftest import IMPAKT, ROOT
 from messages import check_message
 
@@ -27,12 +26,8 @@ CASES = {
     "misspelt-body": (f"{BASE} -lfet_density 3", ["-lfet_density", "-left_density"]),
     "unknown-option": (f"{BASE} -frobnicate", ["-frobnicate", "nearest"]),
     "not-for-this-method": (f"{BASE} -contact_penalty 7.5e4", ["-contact_penalty", "without effect"]),
-    "ts-type": (f"{BASE} -left_ts_type euler", ["-left_ts_type", "euler", "alpha2", "centraldifference"]),
-    "material-type": (f"{BASE} -right_material_type rubber", ["-right_material_type", "rubber", "linear_elastic"]),
-    "mass-type": (f"{BASE} -left_mass_type heavy", ["-left_mass_type", "heavy", "lumped", "consistent", "averaged"]),
     "contact-type": (f"{BASE} -contact_type glue", ["-contact_type", "glue", "schwarz", "penalty", "lagrange", "augmented_lagrangian"]),
     "snes-type": (f"{BASE} -schwarz_snes_type guess", ["-schwarz_snes_type", "guess", "newtonls", "anderson"]),
-    "exact": (f"{BASE} -exact bounce", ["-exact", "bounce", "impact"]),
     "missing-body": (f"{BASE} -bodies left,right,middle -contact_pairs left:right", ["middle", "-bodies", "-middle_dm_plex_"]),
     "body-twice": (f"{BASE} -bodies left,left", ["-bodies", "left", "twice"]),
     "indivisible": (f"{BASE} -left_ts_time_step 3e-8", ["-left_ts_time_step", "3e-08", "-time_step", "1e-07"]),
@@ -59,7 +54,6 @@ CASES = {
         ["augmented_lagrangian", "left", "right", "-left_mass_redistribute true", "-left_ts_type alpha2"],
     ),
     "augmented-rate": (f"{BASE} -contact_type augmented_lagrangian -contact_constraint gap_rate", ["-contact_constraint gap_rate", "augmented_lagrangian"]),
-    "constraint": (f"{BASE} -contact_constraint speed", ["-contact_constraint", "speed"]),
     "static-unheld": ("-options_file options/blocks.opts -left_ts_type static -contact_pairs none", ["'left'", "static", "-left_boundary_displacement", "contact", "move along x, y and turn about z"]),
     "obstacle-body": (f"{BASE} -obstacles left", ["-obstacles", "'left'", "body"]),
     "both-massless": (f"{BASE} -contact_type lagrange -contact_constraint both", ["-contact_constraint both", "left", "right", "-left_mass_redistribute false"]),
@@ -73,7 +67,7 @@ CASES = {
     "time-end": (f"{BASE} -time_end -1", ["-time_end", "-time_start"]),
     "components": (f"{BASE} -left_initial_velocity 1,2", ["-left_initial_velocity", "2", "left"]),
 }
-ON_TWO_RANKS = ["nothing", "options-file", "misspelt-of-body", "contact-type", "lagrange-substeps", "stabilized-schwarz", "missing-body", "indivisible", "unstable", "negative-density", "overlapping", "pair-surface", "static-unheld"]
+ON_TWO_RANKS = ["misspelt-of-body", "unstable", "overlapping", "static-unheld"]  # options, a body, a pair, what bodies and contact are together
 
 
 def check_no_files(run):
@@ -81,18 +75,10 @@ def check_no_files(run):
     assert not left
 
 
-@pytest.mark.parametrize("case", list(CASES))
-def test_bad_input(case, impakt):
+@pytest.mark.parametrize(("case", "ranks"), [*((case, 1) for case in CASES), *((case, 2) for case in ON_TWO_RANKS)])
+def test_bad_input(case, ranks, impakt):
     options, words = CASES[case]
-    run = impakt(options, expect_failure=True, timeout=60)
-    check_message(run, words)
-    check_no_files(run)
-
-
-@pytest.mark.parametrize("case", ON_TWO_RANKS)
-def test_bad_input_on_two_ranks(case, impakt):
-    options, words = CASES[case]
-    run = impakt(options, ranks=2, expect_failure=True, timeout=60)
+    run = impakt(options, ranks, expect_failure=True, timeout=60)
     check_message(run, words)
     check_no_files(run)
 
@@ -119,21 +105,20 @@ def test_automatic_step(impakt):
     assert {name: body["substeps"] for name, body in run.summary["bodies"].items()} == {"left": 20, "right": 120}
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("ranks", [1, *long(2)])
 @pytest.mark.parametrize("option", ["-output_history", "-output_summary"])
 @pytest.mark.parametrize("where", ["folder", "below-a-file", "proc", *(["locked"] if os.geteuid() else [])])  # nothing is locked to root
 def test_output_that_cannot_be_written(where, option, ranks, launch, tmp_path):
-    """Found out before anything is computed: this run would take a minute."""
+    """Found out before there is a first step."""
     (tmp_path / "options").symlink_to(ROOT / "options")
     (tmp_path / "file").write_text("mine\n")
     (tmp_path / "locked").mkdir(mode=0o500)
     paths = {"folder": tmp_path, "below-a-file": tmp_path / "file/out", "proc": "/proc/no-such-place/out", "locked": tmp_path / "locked/out"}
     other = {"-output_history": "-output_summary", "-output_summary": "-output_history"}[option]
-    words = ["-options_file", "options/impact-high-speed.opts", "-time_step", "1e-9", option, paths[where], other, tmp_path / "other"]
-    begin = time.monotonic()
+    words = ["-options_file", "options/impact-high-speed.opts", "-monitor_interval", "1", option, paths[where], other, tmp_path / "other"]
     run = launch([IMPAKT, *words], ranks, timeout=60, cwd=tmp_path)
-    assert time.monotonic() - begin < 20
     assert run.returncode > 0
+    assert not re.search("^step ", run.stdout, re.MULTILINE)
     check_message(run, [option, str(paths[where]), "cannot be written"])
     assert sorted(path.name for path in tmp_path.iterdir()) == ["file", "locked", "options"]
     assert (tmp_path / "file").read_text() == "mine\n"
@@ -149,20 +134,14 @@ def test_older_files_stay(launch, tmp_path):
     assert [(tmp_path / name).read_text() for name in ("old.h5", "old.json")] == ["mine\n", "mine\n"]
 
 
-@pytest.mark.parametrize(
-    ("integrators", "ranks"),
-    [("II", 1), ("II", 2), ("IE", 1), ("EE", 1), ("EE", 2), ("penalty", 1), ("penalty-explicit", 1), ("lagrange", 1), ("lagrange-implicit", 1), ("augmented", 1)],
-)
+@pytest.mark.parametrize(("integrators", "ranks"), [("II", 2), ("EE", 1), ("penalty", 1), ("lagrange", 1), ("augmented", 1)])
 def test_not_a_number(integrators, ranks, impakt):
     """Names the body, the time and the step: tractions near the largest double, by which the first step goes beyond it."""
     options = {
         "II": BASE,
-        "IE": f"{BASE} {PAIRINGS['IE']}",
         "EE": f"{BASE} {EXPLICIT}",
         "penalty": PENALTY,
-        "penalty-explicit": f"{PENALTY} {EXPLICIT}",
         "lagrange": "-options_file options/impact-lagrange.opts",
-        "lagrange-implicit": f"{BASE} -contact_type lagrange",
         "augmented": f"{BASE} -contact_type augmented_lagrangian -contact_penalty 1e8",
     }[integrators]
     late = "1e308*min(1,1e9*max(0,t+1.9999e-4))"  # from the end of the first step on

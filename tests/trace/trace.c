@@ -142,47 +142,6 @@ static void coarsens(void **state)
   ok(TraceDestroy(&fine));
 }
 
-/* There and back between numbers of levels of which one divides the other changes nothing */
-static void refines_and_coarsens_to_the_same(void **state)
-{
-  const PetscReal values[] = {0.1, -0.7, 1. / 3, 1e-7};
-  Trace           trace    = make_trace(3, values), fine, back;
-  PetscScalar    *level;
-
-  (void)state;
-  ok(TraceCreate(2, 21, &fine));
-  ok(TraceCreate(2, 3, &back));
-  ok(TraceResample(trace, 0, 2, 1, fine, 0));
-  ok(TraceResample(fine, 0, 2, 1, back, 0));
-  for (PetscInt k = 0; k <= 3; k++) {
-    ok(TraceGetLevel(back, k, &level));
-    near(level[0], values[k], 1e-15); /* 1/3 is not a binary number, so the times are off by units in the last place */
-  }
-  ok(TraceDestroy(&trace));
-  ok(TraceDestroy(&fine));
-  ok(TraceDestroy(&back));
-}
-
-/* Rows have other numbers in the one trace than in the other: 0, 4, 2 of its second row become the first of three */
-static void numbers_rows_anew(void **state)
-{
-  const PetscReal values[] = {0, 4, 2};
-  Trace           trace    = make_trace(2, values), other;
-  PetscScalar    *level;
-
-  (void)state;
-  ok(TraceCreate(3, 1, &other));
-  ok(TraceResample(trace, 1, 1, 1, other, 0));
-  ok(TraceResampleConstant(trace, 0, 2, 1, other, 1));
-  for (PetscInt k = 0; k <= 1; k++) {
-    ok(TraceGetLevel(other, k, &level));
-    assert_true(level[0] == values[2 * k] + 10);
-    assert_true(level[1] == values[2 * k] && level[2] == values[2 * k] + 10);
-  }
-  ok(TraceDestroy(&trace));
-  ok(TraceDestroy(&other));
-}
-
 /* A value holds over the interval that it ends: 0, 3, 5 on five intervals is 0, 3, 3, 5, 5, 5, since the third one ends after the
    middle */
 static void holds_values(void **state)
@@ -237,8 +196,6 @@ int main(int argc, char **argv)
       cmocka_unit_test(is_linear_between_levels),
       cmocka_unit_test(refines),
       cmocka_unit_test(coarsens),
-      cmocka_unit_test(refines_and_coarsens_to_the_same),
-      cmocka_unit_test(numbers_rows_anew),
       cmocka_unit_test(holds_values),
       cmocka_unit_test(refuses_what_makes_no_sense),
   };

@@ -95,33 +95,6 @@ static PetscReal energy(Springs *s, PetscReal dt)
   return sum + u[0] * u[0] - u[0] * u[1] + u[1] * u[1];
 }
 
-/* u1 = (cos sqrt(2) t + cos sqrt(6) t) / 2, u2 = (cos sqrt(2) t - cos sqrt(6) t) / 2. Halving dt divides the error by 4 */
-static void is_of_second_order(void **state)
-{
-  const PetscReal end = 2.3;
-  PetscReal       errors[4];
-
-  (void)state;
-  for (PetscInt k = 0; k < 4; k++) {
-    const PetscInt steps = 40 << k;
-    PetscReal      u[2], v[2];
-    Springs        s;
-
-    create_springs(&s, end / steps);
-    step(&s, steps);
-    get(s.u, u);
-    get(s.v, v);
-    errors[k] = PetscSqrtReal(PetscSqr(u[0] - 0.5 * (PetscCosReal(PetscSqrtReal(2) * end) + PetscCosReal(PetscSqrtReal(6) * end))) +
-                              PetscSqr(u[1] - 0.5 * (PetscCosReal(PetscSqrtReal(2) * end) - PetscCosReal(PetscSqrtReal(6) * end))) +
-                              PetscSqr(v[0] + 0.5 * (PetscSqrtReal(2) * PetscSinReal(PetscSqrtReal(2) * end) +
-                                                     PetscSqrtReal(6) * PetscSinReal(PetscSqrtReal(6) * end))));
-    assert_int_equal(s.evaluations, steps); /* one a step */
-    destroy_springs(&s);
-  }
-  /* error terms of order dt^4 change the ratio by about (omega dt)^2 = 0.02 at the first step */
-  for (PetscInt k = 1; k < 4; k++) near(errors[k - 1] / errors[k], 4, 0.2);
-}
-
 /* Mode (1, 1) alone follows u_n = cos(n phi), sin(phi / 2) = omega dt / 2: central differences' own frequency */
 static void has_the_frequency_of_central_differences(void **state)
 {
@@ -204,49 +177,6 @@ static void refuses_to_roll_back(void **state)
   destroy_springs(&s);
 }
 
-static PetscErrorCode LeaveEverySecond(TS ts, PetscReal t, Vec U, Vec V, Vec A, void *ctx)
-{
-  PetscInt *calls = (PetscInt *)ctx;
-
-  PetscFunctionBegin;
-  if (*calls % 2 == 0) PetscCall(TSCentralDifferenceLeaveVelocity(ts));
-  else PetscCall(Accelerate(ts, t, U, V, A, NULL));
-  ++*calls;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A step whose acceleration has been left to the caller ends with the velocity at mid-step; with the rest it is the same as any other, and
-   the next step leaves nothing unless asked again */
-static void may_leave_the_velocity(void **state)
-{
-  const PetscReal dt = 0.1;
-  Springs         whole, left;
-  PetscReal       a[2], b[2];
-
-  (void)state;
-  create_springs(&whole, dt);
-  create_springs(&left, dt);
-  ok(TSCentralDifferenceSetAcceleration(left.ts, LeaveEverySecond, &left.evaluations));
-  for (PetscInt k = 0; k < 4; k++) {
-    step(&whole, 1);
-    step(&left, 1);
-    if (k % 2 == 0) {
-      ok(Accelerate(left.ts, 0, left.u, left.v, left.a, NULL));
-      get(whole.v, a);
-      get(left.v, b);
-      assert_true(a[0] != b[0]);
-      ok(VecAXPY(left.v, 0.5 * dt, left.a));
-    }
-    for (PetscInt i = 0; i < 3; i++) {
-      get(i == 0 ? whole.u : i == 1 ? whole.v : whole.a, a);
-      get(i == 0 ? left.u : i == 1 ? left.v : left.a, b);
-      for (PetscInt d = 0; d < 2; d++) near(a[d], b[d], 1e-15);
-    }
-  }
-  destroy_springs(&left);
-  destroy_springs(&whole);
-}
-
 static void refuses_to_set_up_without_its_parts(void **state)
 {
   Vec u, v, a;
@@ -281,11 +211,9 @@ static void refuses_to_set_up_without_its_parts(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(is_of_second_order),
       cmocka_unit_test(has_the_frequency_of_central_differences),
       cmocka_unit_test(conserves_staggered_energy),
       cmocka_unit_test(can_be_put_at_another_time),
-      cmocka_unit_test(may_leave_the_velocity),
       cmocka_unit_test(refuses_to_roll_back),
       cmocka_unit_test(refuses_to_set_up_without_its_parts),
   };

@@ -1,5 +1,5 @@
-/* ranks: 1 */
-/* Rotations as vectors and as matrices, and a rigid body as a program makes it. */
+/* Rotations as vectors and as matrices, a rigid body as a program makes it, and steps of TSRIGID: a function makes them, and the clock goes
+ * on. */
 #include "support.h"
 #include <body/integrator/rigidmotion.h>
 #include <impakt/private/bodyrows.h>
@@ -34,21 +34,6 @@ static void vectors_and_matrices_agree(void **state)
     }
 }
 
-/* x1 - x0 = v x (x0 + x1) / 2, on which work and kinetic energy rest */
-static void cayley_turns_about_the_middle(void **state)
-{
-  const PetscReal v[3] = {0.3, -1.2, 0.7}, x0[3] = {1, 2, -0.5};
-  PetscReal       Q[9], x1[3], middle[3], change[3];
-
-  (void)state;
-  RigidCayley(v, Q);
-  is_a_rotation(Q);
-  RigidMultiply(Q, x0, x1);
-  for (PetscInt d = 0; d < 3; d++) middle[d] = 0.5 * (x0[d] + x1[d]);
-  RigidCross(v, middle, change);
-  for (PetscInt d = 0; d < 3; d++) near(x1[d] - x0[d], change[d], 1e-15);
-}
-
 /* Against differences of the matrix: R' = w x R */
 static void spin_is_the_rate(void **state)
 {
@@ -74,43 +59,6 @@ static void spin_is_the_rate(void **state)
       for (PetscInt i = 0; i < 3; i++) near((after[3 * i + j] - before[3 * i + j]) / (2 * h), moved[i], 1e-9);
     }
   }
-}
-
-static void finds_the_nearest_rotation(void **state)
-{
-  const PetscReal v[3] = {0.4, -0.9, 1.3}, mirror[9] = {1, 0, 0, 0, 1, 0, 0, 0, -1}, flat[9] = {1, 0, 0, 0, 1, 0, 0, 0, 0};
-  PetscReal       R[9], stretched[9], stretch[9] = {1.01, 0.002, 0, 0.002, 0.99, 0.001, 0, 0.001, 1.005}, A[9];
-
-  (void)state;
-  RigidExponential(v, R);
-  RigidProduct(R, stretch, stretched); /* R U, with a symmetric U */
-  assert_true(RigidFindRotation(stretched));
-  for (PetscInt k = 0; k < 9; k++) near(stretched[k], R[k], 1e-14);
-  PetscArraycpy(A, mirror, 9);
-  assert_false(RigidFindRotation(A));
-  PetscArraycpy(A, flat, 9);
-  assert_false(RigidFindRotation(A));
-}
-
-static void torque_is_that_of_the_forces(void **state)
-{
-  const PetscReal Y[2][3] = {{1, 2, 3}, {-1, 0.5, 0}}, f[2][3] = {{0.3, 0, -2}, {1, 1, 1}}, v[3] = {0.4, -0.9, 1.3};
-  PetscReal       dyad[9] = {0}, R[9], torque[3], sum[3] = {0};
-
-  (void)state;
-  RigidExponential(v, R);
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscReal r[3], moment[3];
-
-    RigidMultiply(R, Y[k], r);
-    RigidCross(r, f[k], moment);
-    for (PetscInt i = 0; i < 3; i++) {
-      sum[i] += moment[i];
-      for (PetscInt j = 0; j < 3; j++) dyad[3 * i + j] += f[k][i] * Y[k][j];
-    }
-  }
-  RigidTorque(R, dyad, torque);
-  for (PetscInt i = 0; i < 3; i++) near(torque[i], sum[i], 1e-14);
 }
 
 #define BOX "-b_dm_plex_dim 2 -b_dm_plex_box_upper 2,1 -b_dm_plex_box_faces 4,2 -b_density 3 "
@@ -193,12 +141,55 @@ static void can_be_made_to_deform_again(void **state)
   ok(BodyDestroy(&body));
 }
 
+/* Both go up by what time passes */
+static PetscErrorCode Advance(TS ts, PetscReal t, PetscReal dt, Vec U, Vec V, void *ctx)
+{
+  PetscFunctionBegin;
+  (void)ts;
+  *(PetscReal *)ctx = t;
+  PetscCall(VecShift(U, dt));
+  PetscCall(VecShift(V, 2 * dt));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void lets_a_function_make_steps(void **state)
+{
+  PetscReal t = -1, time, largest;
+  TS        ts;
+  Vec       u, v;
+
+  (void)state;
+  ok(VecCreateMPI(PETSC_COMM_WORLD, 2, PETSC_DETERMINE, &u));
+  ok(VecDuplicate(u, &v));
+  ok(TSCreate(PETSC_COMM_WORLD, &ts));
+  ok(TSSetType(ts, TSRIGID));
+  ok(TSSetSolution(ts, u)); /* displacements alone */
+  refused(PETSC_ERR_ARG_WRONGSTATE, "TS2SetSolution()", TSSetUp(ts));
+  ok(TS2SetSolution(ts, u, v));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "TSRigidSetAdvance()", TSSetUp(ts));
+  ok(TSRigidSetAdvance(ts, Advance, &t));
+  ok(TSSetMaxTime(ts, 1e300));
+  ok(TSSetExactFinalTime(ts, TS_EXACTFINALTIME_STEPOVER));
+  ok(TSSetUp(ts));
+  ok(TSSecondOrderSetState(ts, 1, 0.25, 0));
+  for (PetscInt k = 0; k < 3; k++) ok(TSStep(ts));
+  near(t, 1.5, 0);
+  ok(TSGetTime(ts, &time));
+  near(time, 1.75, 0);
+  ok(VecMax(u, NULL, &largest));
+  near(largest, 0.75, 0);
+  ok(VecMax(v, NULL, &largest));
+  near(largest, 1.5, 0);
+  ok(TSDestroy(&ts));
+  ok(VecDestroy(&u));
+  ok(VecDestroy(&v));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(vectors_and_matrices_agree),  cmocka_unit_test(cayley_turns_about_the_middle), cmocka_unit_test(spin_is_the_rate),
-      cmocka_unit_test(finds_the_nearest_rotation),  cmocka_unit_test(torque_is_that_of_the_forces),  cmocka_unit_test(a_program_makes_one),
-      cmocka_unit_test(can_be_made_to_deform_again),
+      cmocka_unit_test(vectors_and_matrices_agree),  cmocka_unit_test(spin_is_the_rate),           cmocka_unit_test(a_program_makes_one),
+      cmocka_unit_test(can_be_made_to_deform_again), cmocka_unit_test(lets_a_function_make_steps),
   };
 
   return impakt_main(argc, argv, tests);

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from cases import long
+from cases import long, validate
 from solidmeshes import LINEAR, SHAPES, dim_of, made_by_options, sides
 
 E, NU, RHO = 8.0, 0.3, 2.0
@@ -54,10 +54,9 @@ ORDERS = {"tet4": (1.75, 1.9), "tri6": (1.85, 1.9), "tet10": (1.65, 1.8)}
 @pytest.mark.parametrize(
     ("shape", "ts"),
     [
-        *((shape, "alpha2 averaged") for shape in SHAPES if shape != "tet10"),
-        *long(("tet10", "alpha2 averaged")),
-        ("quad4", "centraldifference lumped"),
-        *long(*((shape, "centraldifference lumped") for shape in ("tri3", "tet4", "hex8", "tri6"))),
+        *((shape, "alpha2 averaged") for shape in ("quad4", "tet4", "tri6")),
+        *long(("tri3", "alpha2 averaged"), ("hex8", "alpha2 averaged"), ("tet10", "alpha2 averaged"), ("quad4", "centraldifference lumped")),
+        *validate(*((shape, "centraldifference lumped") for shape in ("tri3", "tet4", "hex8", "tri6"))),
     ],
 )
 def test_space(impakt, shape, ts):
@@ -103,8 +102,6 @@ def homogeneous(dim, material):
 
 
 STEPS = [0.04, 0.02, 0.01]
-
-
 INTEGRATORS = [
     ("alpha2", "linear_elastic"),
     ("midpoint", "neo_hookean"),
@@ -115,8 +112,12 @@ INTEGRATORS = [
 ]
 
 
-@pytest.mark.parametrize(("ts", "material"), INTEGRATORS)
-@pytest.mark.parametrize("shape", list(SHAPES))
+def turn(k):
+    """Each integrator once, on the shape that is its own in this turn."""
+    return [(shape, *INTEGRATORS[(i + k) % 6]) for i, shape in enumerate(SHAPES)]
+
+
+@pytest.mark.parametrize(("shape", "ts", "material"), [*turn(0), *long(*turn(1), *turn(3)), *validate(*turn(2), *turn(4), *turn(5))])
 def test_time(impakt, shape, ts, material):
     """Body force and inertia of a linear displacement balance for consistent mass on any mesh; for lumped mass, at inner nodes of uniform
     meshes, the others being held. The finest step also as four substeps of a controller step: the same error."""

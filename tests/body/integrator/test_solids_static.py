@@ -70,8 +70,7 @@ def stretched(kind, stretch):
     return np.sqrt(s), stress, energy
 
 
-@pytest.mark.parametrize("stretch", [1.4, 0.75])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(("kind", "stretch"), [("quad4 strain", 1.4), ("tri3 stress", 0.75), ("tet4", 1.4), ("hex8", 0.75), ("tri6 stress", 1.4), ("tet10", 0.75)])
 def test_neo_hookean(impakt, kind, stretch):
     """To its closed form in 5 load steps, and in 10: the work comes to be the energy with the square of the load step."""
     across, stress, energy = stretched(kind, stretch)
@@ -94,8 +93,7 @@ LOOSE = {
 }
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize("supports", LOOSE)
+@pytest.mark.parametrize(("supports", "ranks"), [("free", 1), ("turning", 1), ("sliding", 2)])
 def test_loose(impakt, supports, ranks):
     """A body without supports, or with too few of them: its stiffness is singular, which the factors need not show."""
     run = impakt(f"{bar('hex8')} {pull('hex8', '20*t')} {LOOSE[supports]} -time_step 0.5 -time_end 1", ranks, expect_failure=True, timeout=60)
@@ -113,9 +111,8 @@ ON_ANOTHER = (
 )
 
 
-@pytest.mark.parametrize("ranks", [1, 2])
-@pytest.mark.parametrize(("case", "time"), [(f"{HELD} -block_ts_type static", "0.0001"), (HELD, "0.0001"), (ON_ANOTHER, "0.0001")])
-def test_linear_solver_that_fails(case, time, ranks, impakt):
+@pytest.mark.parametrize(("case", "ranks"), [(f"{HELD} -block_ts_type static", 1), (HELD, 2), (ON_ANOTHER, 1)])
+def test_linear_solver_that_fails(case, ranks, impakt):
     """Multigrid with too few iterations, with contact and without: the error names body, time, and why the solver has stopped; not that there is a
     displacement which is not a number."""
     run = impakt(
@@ -125,6 +122,6 @@ def test_linear_solver_that_fails(case, time, ranks, impakt):
         expect_failure=True,
     )
     error = " ".join(run.stderr.split())
-    assert f"The linear solver of body 'block' did not converge at time {time} s (its step 1): DIVERGED_ITS" in error
+    assert "The linear solver of body 'block' did not converge at time 0.0001 s (its step 1): DIVERGED_ITS" in error
     assert "-block_ksp_max_it" in error and "-block_pc_type cholesky" in error
     assert "not a number" not in error

@@ -1,5 +1,6 @@
+/* ranks: 1 3 */
 /* long: 3 */
-/* Forces from outside: tractions, body forces and gravity. */
+/* Forces from outside: tractions, body forces and gravity. Prescribed displacements: which dofs are held, where and how fast they go. */
 #include "loads.h"
 
 /* Totals are sums of some hundred terms of size up to 100: round-off below 1e-12 */
@@ -105,36 +106,6 @@ static void pressure_pushes_inwards(void **state)
       }
 }
 
-/* A pressure that grows as 3 z + 5 all around: buoyancy, the volume times the slope, through the centre of the volume (divergence
-   theorem); the same while it grows in time */
-static void pressure_of_a_fluid_is_buoyancy(void **state)
-{
-  const char *const formulas[] = {"-(3*z+5)", "-(3*z+5)*t/4"};
-
-  (void)state;
-  for (PetscInt box = 3; box < N_BOXES; box++)
-    for (int formula = 0; formula < 2; formula++) {
-      const PetscReal lift       = -3 * volume(3);
-      char            text[1024] = "-boundary_traction xmin,xmax,ymin,ymax,zmin,zmax", one[128];
-      PetscOptions    options;
-      Total           total;
-      Body            body;
-
-      for (int side = 0; side < 6; side++) {
-        ok(PetscSNPrintf(one, sizeof(one), " -boundary_traction_%s %s*nx,%s*ny,%s*nz", sides[side], formulas[formula], formulas[formula],
-                         formulas[formula]));
-        ok(PetscStrlcat(text, one, sizeof(text)));
-      }
-      options = box_create(&body, box, text);
-      total   = force_at(body, 4);
-      for (int j = 0; j < 3; j++) {
-        near(total.force[j], j == 2 ? lift : 0, 10 * ROUND_OFF);
-        if (j < 2) near(total.moment[j][2] - total.moment[2][j], (box_lower[j] + box_size[j] / 2) * lift, 10 * ROUND_OFF);
-      }
-      bar_destroy(&body, options);
-    }
-}
-
 /* tx = 1 + 2 y + 4 z on x = 2.5: int y tx, int z tx. With Y = int y = (b^2 - a^2) / 2 and Y2 = int y^2 = (b^3 - a^3) / 3 over the edge
    from a to b, Z and Z2 likewise: int y tx = Y H + 2 Y2 H + 4 Y Z, where the edges are B = 3 and H = 4 long. */
 static void linear_traction_has_its_moment(void **state)
@@ -190,39 +161,6 @@ static void body_force_is_density_times_volume(void **state)
     if (dim > 2) near(force_at(body, 0).force[2], 0, 0);
     bar_destroy(&body, options);
   }
-}
-
-/* Weight is M g: m g in all, and free fall has the acceleration g at every node, whatever the mass matrix */
-static void gravity_is_free_fall(void **state)
-{
-  const char *const g[] = {"-9.81", "1.5,-9.81", "1.5,2.5,-9.81"}, *const masses[] = {"lumped", "consistent", "averaged"};
-  const PetscReal values[3][3] = {{-9.81}, {1.5, -9.81}, {1.5, 2.5, -9.81}};
-
-  (void)state;
-  for (PetscInt box = 0; box < N_BOXES; box++)
-    for (int mass = 0; mass < 3; mass++) {
-      const PetscInt     dim = box_dim[box];
-      const PetscScalar *accelerations;
-      PetscOptions       options;
-      char               text[256];
-      Total              total;
-      PetscInt           n;
-      Body               body;
-      Vec                a;
-
-      ok(PetscSNPrintf(text, sizeof(text), "-gravity %s -mass_type %s", g[dim - 1], masses[mass]));
-      options = box_create(&body, box, text);
-      total   = force_at(body, 0);
-      for (PetscInt d = 0; d < dim; d++)
-        near(total.force[d], 3 * volume(dim) * values[dim - 1][d], 700 * ROUND_OFF); /* 3 * 24 * 9.81 = 706 */
-      ok(BodyGetSolution(body, NULL, NULL, &a));
-      ok(VecGetLocalSize(a, &n));
-      ok(VecGetArrayRead(a, &accelerations));
-      for (PetscInt i = 0; i < n; i++)
-        near(accelerations[i], values[dim - 1][i % dim], 1e-10); /* a solve with the mass matrix, whose condition number is below 100 */
-      ok(VecRestoreArrayRead(a, &accelerations));
-      bar_destroy(&body, options);
-    }
 }
 
 /* Sum of the forces with weights that tell all nodes apart: the same body may be divided among the ranks in another way */
@@ -358,19 +296,228 @@ static void refuses_bad_forces(void **state)
   }
 }
 
+/* The value of component d at the node at x, on every rank; 1e30 if there is no such node */
+static PetscReal component_at(Body body, Vec vec, const PetscReal x[], PetscInt component)
+{
+  const PetscScalar *values;
+  PetscReal          value = 1e30;
+
+  ok(VecGetArrayRead(vec, &values));
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
+    PetscReal distance = 0;
+
+    for (PetscInt d = 0; d < body->mesh.dim; d++) distance += PetscAbsReal(body->mesh.coordinates[node * body->mesh.dim + d] - x[d]);
+    if (distance < 1e-9) value = values[node * body->mesh.dim + component];
+  }
+  ok(VecRestoreArrayRead(vec, &values));
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &value, 1, MPIU_REAL, MPI_MIN, PETSC_COMM_WORLD), 0);
+  return value;
+}
+
+static PetscInt count_held(Body body)
+{
+  const PetscInt *dofs;
+  PetscInt        n;
+
+  ok(BodyLoadsGetHeld(body, &n, &dofs));
+  for (PetscInt i = 0; i < n; i++) {
+    assert_true(dofs[i] >= 0 && dofs[i] < body->mesh.owned_nodes * body->mesh.dim);
+    if (i) assert_true(dofs[i] > dofs[i - 1]);
+  }
+  assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
+  return n;
+}
+
+/* Boxes have 5, 3 x 2 and 3 x 2 x 3 cells along the axes: xmin has 1, 3 and 12 nodes, ymin 4 and 16, zmin 12 */
+static void held_dofs_are_those_of_the_surfaces(void **state)
+{
+  const struct {
+    PetscInt    box, n;
+    const char *options;
+  } cases[] = {
+      {0, 1, "-boundary_displacement xmin -boundary_displacement_xmin 0"},
+      {0, 2, "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0 -boundary_displacement_xmax t"},
+      {1, 6, "-boundary_displacement xmin -boundary_displacement_xmin 0,0"},
+      {2, 3, "-boundary_displacement xmin -boundary_displacement_xmin free,0"},
+      {2, 0, "-boundary_displacement xmin -boundary_displacement_xmin free,free"},
+      {1, 6 + 3,
+       "-boundary_displacement xmin,ymin -boundary_displacement_xmin 0,0 -boundary_displacement_ymin x,free"}, /* they share a node */
+      {3, 36, "-boundary_displacement xmin -boundary_displacement_xmin 0,1,t"},
+      {4, 12 + 16 + 12,
+       "-boundary_displacement xmin,ymin,zmin -boundary_displacement_xmin 0,free,free -boundary_displacement_ymin free,0,free "
+       "-boundary_displacement_zmin free,free,0"},
+      {4, 12 + 16 - 4 + 12,
+       "-boundary_displacement xmin,ymin,zmin -boundary_displacement_xmin 0,free,free -boundary_displacement_ymin 0,free,free "
+       "-boundary_displacement_zmin free,free,0"}, /* four nodes on the edge of both */
+  };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+    PetscOptions options;
+    PetscBool    force;
+    Body         body;
+
+    options = box_create(&body, cases[i].box, cases[i].options);
+    assert_int_equal(count_held(body), cases[i].n);
+    ok(BodyLoadsHaveForce(body, &force));
+    assert_false(force);
+    bar_destroy(&body, options);
+  }
+}
+
+/* u = (0.1 sin(20 t) y, free) on xmax, steady values on xmin: displacement, velocity 2 cos(20 t) y, acceleration -40 sin(20 t) y.
+   20 rad/s times the step of 0.01 s is 0.2 rad, within what ExpressionEvaluateRates() states: 1e-6 of the velocity, 1e-4 of the
+   acceleration. What is not held is not touched. */
+static void held_dofs_go_as_prescribed(void **state)
+{
+  const PetscReal top[] = {2.5, 2}, bottom[] = {0.5, -1}, inside[] = {0.5 + 2. / 3, 0.5}, times[] = {0, 0.001, 0.01, 0.37, 5};
+
+  (void)state;
+  for (PetscInt box = 1; box < 3; box++) {
+    PetscOptions options;
+    Vec          vecs[3];
+    Body         body;
+
+    options = box_create(
+        &body, box,
+        "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0.5,x-y -boundary_displacement_xmax 0.1*sin(20*t)*y,free");
+    for (int k = 0; k < 3; k++) ok(BodyCreateVec(body, &vecs[k]));
+    for (size_t i = 0; i < sizeof(times) / sizeof(times[0]); i++) {
+      const PetscReal t = times[i], expected[] = {0.2 * PetscSinReal(20 * t), 4 * PetscCosReal(20 * t), -80 * PetscSinReal(20 * t)},
+                      tolerance[] = {1e-15, 4e-6, 80e-4};
+
+      for (int k = 0; k < 3; k++) ok(VecSet(vecs[k], 77));
+      ok(BodyLoadsPrescribe(body, t, vecs[0], vecs[1], vecs[2]));
+      for (int k = 0; k < 3; k++) {
+        near(component_at(body, vecs[k], top, 0), expected[k], tolerance[k]);
+        near(component_at(body, vecs[k], top, 1), 77, 0);
+        near(component_at(body, vecs[k], bottom, 0), k ? 0 : 0.5, 0);
+        near(component_at(body, vecs[k], bottom, 1), k ? 0 : 1.5, 0);
+        near(component_at(body, vecs[k], inside, 0), 77, 0);
+      }
+      /* each alone */
+      for (int k = 0; k < 3; k++) {
+        const PetscReal with_others = component_at(body, vecs[k], top, 0);
+
+        ok(VecSet(vecs[k], 77));
+        ok(BodyLoadsPrescribe(body, t, k == 0 ? vecs[0] : NULL, k == 1 ? vecs[1] : NULL, k == 2 ? vecs[2] : NULL));
+        near(component_at(body, vecs[k], top, 0), with_others, 0);
+      }
+    }
+    for (int k = 0; k < 3; k++) ok(VecDestroy(&vecs[k]));
+    bar_destroy(&body, options);
+  }
+}
+
+/* At the start, 1 s, nothing before it is asked for: sqrt(t - 1) is not defined there */
+static void rates_begin_at_the_start(void **state)
+{
+  const PetscReal end = 2.5;
+  PetscOptions    options;
+  Vec             u, v;
+  Body            body;
+
+  (void)state;
+  options = box_options(
+      0, "-boundary_displacement xmin,xmax -boundary_displacement_xmin 0 -boundary_displacement_xmax t<1?sqrt(t-1):3*(t-1)+(t-1)^2");
+  ok(BodyCreate(PETSC_COMM_WORLD, "bar", &body));
+  ok(BodySetFromOptions(body));
+  ok(BodySetControllerStep(body, 1, 0.01));
+  ok(BodySetUp(body));
+  ok(BodyCreateVec(body, &u));
+  ok(BodyCreateVec(body, &v));
+  ok(BodyLoadsPrescribe(body, 1, NULL, u, v));
+  near(value_at(body, u, end), 3, 1e-9); /* round-off of t - 1, epsilon / h with h = 0.0025, times the sum of the weights, 31: 3e-12 */
+  near(value_at(body, v, end), 2, 1e-8); /* 3 epsilon / h^2 times 102: 1e-8 at the worst */
+  ok(VecDestroy(&u));
+  ok(VecDestroy(&v));
+  bar_destroy(&body, options);
+}
+
+/* On the corner (0.5, -1), which belongs to xmin and ymin */
+static void the_last_in_the_list_wins(void **state)
+{
+  const PetscReal corner[] = {0.5, -1};
+  const struct {
+    const char *options;
+    PetscReal   x, y;
+  } cases[] = {
+      {"-boundary_displacement xmin,ymin -boundary_displacement_xmin 1,2 -boundary_displacement_ymin 3,4", 3, 4},
+      {"-boundary_displacement ymin,xmin -boundary_displacement_xmin 1,2 -boundary_displacement_ymin 3,4", 1, 2},
+      {"-boundary_displacement xmin,ymin -boundary_displacement_xmin 1,2*t -boundary_displacement_ymin 3*t,free", 1.5, 1},
+      {"-boundary_displacement ymin,xmin -boundary_displacement_xmin 1,2*t -boundary_displacement_ymin 3*t,free", 1, 1},
+      {"-boundary_displacement xmin,ymin -boundary_displacement_xmin 1,7 -boundary_displacement_ymin free,7", 1, 7},
+  };
+
+  (void)state;
+  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+    PetscOptions options;
+    Body         body;
+    Vec          u;
+
+    options = box_create(&body, 1, cases[i].options);
+    ok(BodyCreateVec(body, &u));
+    ok(VecSet(u, 0));
+    ok(BodyLoadsPrescribe(body, 0.5, u, NULL, NULL));
+    near(component_at(body, u, corner, 0), cases[i].x, 0);
+    near(component_at(body, u, corner, 1), cases[i].y, 0);
+    ok(VecDestroy(&u));
+    bar_destroy(&body, options);
+  }
+}
+
+static void refuses_bad_displacements(void **state)
+{
+  const struct {
+    const char *options, *words;
+  } cases[] = {
+      {"-boundary_displacement xmax", "-bar_boundary_displacement|'xmax'|-bar_boundary_displacement_xmax"},
+      {"-boundary_displacement top -boundary_displacement_top 1,2", "bar|'top'|xmin"},
+      {"-boundary_displacement xmin,top -boundary_displacement_xmin 1,2 -boundary_displacement_top 1,2", "bar|'top'|xmin"},
+      {"-boundary_displacement xmax,xmax -boundary_displacement_xmax 1,2", "-bar_boundary_displacement|twice"},
+      {"-boundary_displacement xmax, -boundary_displacement_xmax 1,2", "-bar_boundary_displacement|empty name"},
+      {"-boundary_displacement xmax -boundary_displacement_xmax 1",
+       "-bar_boundary_displacement_xmax|1 component;|'bar'|2-dimensional|free"},
+      {"-boundary_displacement xmax -boundary_displacement_xmax 1,free,free", "-bar_boundary_displacement_xmax|3 components|2-dimensional"},
+      {"-boundary_displacement xmax -boundary_displacement_xmax 1,Free", "-bar_boundary_displacement_xmax|'Free'"},
+      {"-boundary_displacement xmax -boundary_displacement_xmax nx,0", "-bar_boundary_displacement_xmax|nx|tractions"},
+      {"-boundary_displacement xmax -boundary_displacement_xmax 1/0,0", "-bar_boundary_displacement_xmax|finite"},
+      {"-dm_plex_box_faces 1,1 -boundary_displacement xmin,xmax -boundary_displacement_xmin 0,0 -boundary_displacement_xmax t,0",
+       "-bar_boundary_displacement|all components of all nodes|'bar'"},
+  };
+  PetscMPIInt size;
+
+  (void)state;
+  assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
+  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+    PetscOptions options;
+    Body         body;
+
+    if (size > 1 && !strncmp(cases[i].options, "-dm_plex", 8)) continue; /* one cell is too little for several ranks */
+    options = box_options(1, cases[i].options);
+    ok(BodyCreate(PETSC_COMM_WORLD, "bar", &body));
+    refused(PETSC_ERR_USER_INPUT, cases[i].words, BodySetFromOptions(body));
+    ok(BodyDestroy(&body));
+    options_drop(options);
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(traction_is_area_times_traction),
       cmocka_unit_test(traction_knows_cross_section_and_thickness),
       cmocka_unit_test(pressure_pushes_inwards),
-      cmocka_unit_test(pressure_of_a_fluid_is_buoyancy),
       cmocka_unit_test(linear_traction_has_its_moment),
       cmocka_unit_test(body_force_is_density_times_volume),
-      cmocka_unit_test(gravity_is_free_fall),
       cmocka_unit_test(steady_and_varying_are_the_same_force),
       cmocka_unit_test(bodies_without_loads_have_none),
       cmocka_unit_test(refuses_bad_forces),
+      cmocka_unit_test(held_dofs_are_those_of_the_surfaces),
+      cmocka_unit_test(held_dofs_go_as_prescribed),
+      cmocka_unit_test(rates_begin_at_the_start),
+      cmocka_unit_test(the_last_in_the_list_wins),
+      cmocka_unit_test(refuses_bad_displacements),
   };
 
   return impakt_main(argc, argv, tests);

@@ -1,5 +1,4 @@
 /* The stable step of distorted solids, which comes from their elements, against the largest eigenvalue of the whole body. */
-/* ranks: 1 */
 #include "solid_mesh.h"
 #include <petscblaslapack.h>
 #include <body/layout/bodyimpl.h>

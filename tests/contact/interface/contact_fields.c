@@ -1,4 +1,5 @@
-/* What contact does to bodies: resultants of pairs, and forces, pressures, gaps of nodes. */
+/* ranks: 1 3 */
+/* What contact does to bodies: resultants of pairs, and forces, pressures, gaps of nodes; tied surfaces that start in balance. */
 #include "simulation.h"
 #include <math.h>
 
@@ -6,7 +7,6 @@
 
 /* Three plates in a row, the first of which flies at the others: 0.9 m long, from 0.2 to 0.6 m across (so that forces have moments
    about the origin) and 0.5 m thick; waves run at 1 m/s. The second gap closes later than the first. */
-#define STEP      0.02
 #define STEPS     70
 #define AREA      (0.4 * 0.5)
 #define CENTRE    0.4
@@ -160,12 +160,69 @@ static void misuse_is_refused(void **state)
   ok(ContactFieldsDestroy(&fields));
 }
 
+#define STRETCHED                                                                                                                          \
+  "-dm_plex_dim 2 -density 1 -youngs_modulus 3 -poissons_ratio 0.3 -mass_redistribute true -initial_displacement 0.01*x*x,0.02*x*y "
+
+/* The program's own choice; the force of the first state is that which the first step goes on from, or there is none */
+static void start_in_balance(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddOptions("-prefix_push a_ " STRETCHED "-dm_plex_box_faces 4,4 -dm_plex_box_lower 0,0 -dm_plex_box_upper 1,1 -prefix_pop "
+             "-prefix_push b_ " STRETCHED "-dm_plex_box_faces 5,5 -dm_plex_box_lower 1,0 -dm_plex_box_upper 2,1 -prefix_pop "
+             "-bodies a,b -contact_pairs b:a -contact_law tied -time_step 1e-3 -time_end 1e-2 -petscpartitioner_type simple");
+  for (PetscInt balanced = 0; balanced < 2; balanced++) {
+    ContactPairState start, end;
+    PetscReal        before = 0, after = 0;
+    PetscBool        is;
+    PetscInt         n;
+    const Body      *bodies;
+
+    ok(ControllerDestroy(&simulation->controller));
+    ok(ControllerCreate(PETSC_COMM_WORLD, &simulation->controller));
+    ok(ControllerSetFromOptions(simulation->controller));
+    ok(ControllerGetContact(simulation->controller, &simulation->contact));
+    ok(ContactGetBalancedStart(simulation->contact, &is));
+    assert_true(is);
+    if (!balanced) ok(ContactSetBalancedStart(simulation->contact, PETSC_FALSE));
+    ok(ControllerSetUp(simulation->controller));
+    ok(ContactGetBalancedStart(simulation->contact, &is));
+    assert_int_equal(is, balanced);
+    refused(PETSC_ERR_ARG_WRONGSTATE, "before ContactSetUp()", ContactSetBalancedStart(simulation->contact, PETSC_TRUE));
+    ok(ContactGetPairState(simulation->contact, 0, &start));
+    ok(ControllerGetBodies(simulation->controller, &n, &bodies));
+    for (PetscInt b = 0; b < n; b++) {
+      PetscReal energy;
+
+      ok(BodyComputeEnergy(bodies[b], &energy));
+      before += energy;
+    }
+    ok(ContactStep(simulation->contact));
+    ok(ContactGetPairState(simulation->contact, 0, &end));
+    for (PetscInt b = 0; b < n; b++) {
+      PetscReal energy;
+
+      ok(BodyComputeEnergy(bodies[b], &energy));
+      after += energy;
+    }
+    if (balanced) {
+      near(start.force_vector[0], end.force_vector[0], 1e-3 * PetscAbsReal(end.force_vector[0])); /* a step of 1/140 of a transit */
+      near(after, before, 1e-12 * before);
+      assert_int_equal(start.active, end.active);
+    } else {
+      near(start.force_vector[0], 0, 0);
+      assert_true(after < before * (1 - 1e-4));
+    }
+  }
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       simulation_test(forces_gaps_and_pressures),
       simulation_test(impulses_are_changes_of_momentum),
       simulation_test(misuse_is_refused),
+      simulation_test(start_in_balance),
   };
 
   return impakt_main(argc, argv, tests);

@@ -7,6 +7,7 @@ from cases import (
     PAIRINGS,
     force_scatter,
     joined,
+    long,
     never_tensile,
     worst_energy_error,
 )
@@ -20,7 +21,7 @@ SPEED = 100.0  # [m/s]
 DURATION = 5e-4  # of contact [s]
 
 
-@pytest.mark.parametrize("integrators", ["", PAIRINGS["EE"]], ids=["II", "EE"])
+@pytest.mark.parametrize("integrators", ["", *long(PAIRINGS["EE"])], ids=["II", "EE"])
 def test_dampers_alone(integrators, shared_run):
     """c = 100 impedances. The nodes that meet go on at v = V Z / (Z + 2 c), and nothing stops them: penetration grows at 2 v. The force
     is Z (V - v), and the dampers take 2 v F all the time: of 2.5 J, 0.0198."""
@@ -36,7 +37,7 @@ def test_dampers_alone(integrators, shared_run):
     assert never_tensile(run)
 
 
-@pytest.mark.parametrize("integrators", ["", PAIRINGS["EE"], MASSIVE, joined(PAIRINGS["EE"], MASSIVE)], ids=["II", "EE", "II-massive", "EE-massive"])
+@pytest.mark.parametrize("integrators", ["", *long(joined(PAIRINGS["EE"], MASSIVE))], ids=["II", "EE-massive"])
 def test_springs_and_dampers(integrators, shared_run):
     """The paper's spring with a damper of one impedance. In the end all of the spring's energy that a rise of its force by 1 - exp(-t/T)
     lets through the damper is lost: 0.039 to 0.042 of the energy, none is gained."""
@@ -50,17 +51,14 @@ def test_springs_and_dampers(integrators, shared_run):
     assert never_tensile(run)
 
 
-@pytest.mark.parametrize("frame", ["as-is", "moving-inside"])
-@pytest.mark.parametrize("integrators", ["", "-right_ts_type centraldifference"], ids=["II", "IE"])
-@pytest.mark.parametrize("method", [LAGRANGE, DEFAULTS, f"{DEFAULTS} -schwarz_transmission robin"], ids=["lagrange", "schwarz", "robin"])
-def test_rate_of_massless_nodes(method, integrators, frame, shared_run):
+@pytest.mark.parametrize("method", [LAGRANGE, f"{DEFAULTS} -right_ts_type centraldifference", *long(f"{DEFAULTS} -schwarz_transmission robin")], ids=["lagrange", "schwarz-IE", "robin"])
+def test_rate_of_massless_nodes(method, shared_run):
     """The gap that is open at the start of the step of impact stays: as much as was left of it, 3.7e-6 m where the bars meet inside
     the step, but for what 1e-12 m a step may add. Energy as with the gap."""
-    run = shared_run(joined(method, "-contact_constraint gap_rate", integrators, FRAMES[frame]))
+    run = shared_run(joined(method, "-contact_constraint gap_rate", FRAMES["moving-inside"]))
     active = run.history["contact/left:right/active"][()] > 0
     gaps = run.history["contact/left:right/gap"][()][active]
-    kept = 3.7e-6 if frame == "moving-inside" else 0  # what the first bar was moved by
-    assert abs(gaps - kept).max() <= 5e-11  # measured: 7.9e-12
+    assert abs(gaps - 3.7e-6).max() <= 5e-11  # measured: 7.9e-12
     assert force_scatter(run.summary) <= 1.8e-5  # measured: 1.34e-5, half the factor on the masses left
     assert worst_energy_error(run.summary) <= 4e-6
     assert run.summary["contact"]["onsets"] == 1
@@ -93,13 +91,3 @@ def test_both_by_forward_increment(shared_run):
     assert run.summary["errors"]["contact_velocity"] < 0.9 * gap.summary["errors"]["contact_velocity"]
     assert run.summary["contact"]["onsets"] == 1
     assert run.summary["system"]["momentum_error_max"] <= 1e-10
-
-
-def test_both_with_mass(shared_run):
-    """The velocity update takes most of the growth of energy away that the trapezoidal rule makes of the gap alone (more than 1 of the
-    energy), but not the chatter: its accelerations still swing."""
-    run = shared_run(joined(LAGRANGE, MASSIVE, "-contact_constraint both"))
-    assert worst_energy_error(run.summary) <= 0.01
-    assert run.summary["contact"]["onsets"] > 1
-    assert run.summary["contact"]["max_penetration"] <= 1e-12
-    assert never_tensile(run)

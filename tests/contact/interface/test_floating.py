@@ -5,6 +5,7 @@ import hertz
 import numpy as np
 import pytest
 from cases import joined
+from pairs import pairwise
 from setups import FIELDS, box, material, plane
 
 STACK = "-options_file options/stack-static.opts"
@@ -44,9 +45,7 @@ def last_fields(run):
     return found
 
 
-@pytest.mark.parametrize("law", ["tied", "pressed"])
-@pytest.mark.parametrize("pair", ["a:b", "b:a"])
-@pytest.mark.parametrize("dim", [1, 2, 3])
+@pytest.mark.parametrize(("dim", "pair", "law"), pairwise([1, 2, 3], ["a:b", "b:a"], ["tied", "pressed"]))
 def test_uniaxial(dim, pair, law, shared_run):
     """A cube on one that is held, with other meshes, a traction on it: stress and strain are the same everywhere. Measured: displacements 6e-12 of the
     largest, forces 2e-12."""
@@ -60,7 +59,7 @@ def test_uniaxial(dim, pair, law, shared_run):
     assert "floating, held by contact or ties alone: artificial springs of" in run.stdout
 
 
-@pytest.mark.parametrize(("pairs", "ranks"), [(FREE_FIRST, 1), (FREE_FIRST, 2), (FREE_FIRST, 3), (CLAMPED_FIRST, 1)])
+@pytest.mark.parametrize(("pairs", "ranks"), [(FREE_FIRST, 2), (CLAMPED_FIRST, 1)])
 def test_tied_half_is_as_if_uncut(pairs, ranks, shared_run):
     """A cantilever, cut in two and tied, pulled, bent in both directions and twisted: measured 2e-11 of the largest displacement, half of it the error
     of the uncut body's solution in the condition of a slender beam."""
@@ -79,9 +78,8 @@ def test_tied_half_is_as_if_uncut(pairs, ranks, shared_run):
 
 METHODS = {
     "schwarz": "",
-    "whole": "-schwarz_condense 0",
+    "stiff springs": " ".join(f"-{name}_artificial_stiffness 0.1" for name in SINK),
     "anderson": "-schwarz_snes_type anderson",
-    "aitken": "-schwarz_snes_type nrichardson -schwarz_relaxation aitken",
     "lagrange": "-contact_type lagrange",
     "augmented": "-contact_type augmented_lagrangian -contact_penalty 1e12",
     "neo-hookean": "-lower_material_type neo_hookean -middle_material_type neo_hookean -upper_material_type neo_hookean",
@@ -103,16 +101,11 @@ def check_stack(run, rtol):
         assert np.abs(u[nodes, 0]).max() <= 1e-4 * rtol
 
 
-@pytest.mark.parametrize("method", METHODS)
-def test_stack(method, shared_run):
+@pytest.mark.parametrize(("method", "ranks"), [*((method, 1) for method in METHODS), ("schwarz", 3)])
+def test_stack(method, ranks, shared_run):
     """Every force, pressure and displacement as in theory: of linear bodies to 1e-11 of them (measured 1e-12), where iterations end earlier to 1e-6;
     of nonlinear ones to the strain, of 1e-4."""
-    check_stack(shared_run(f"{STACK} {FIELDS} {METHODS[method]}"), {"neo-hookean": 2e-4, "aitken": 1e-6, "anderson": 1e-6, "whole": 1e-6, "lagrange": 1e-7}.get(method, 1e-10))
-
-
-@pytest.mark.parametrize("ranks", [2, 3])
-def test_stack_on_ranks(ranks, shared_run):
-    check_stack(shared_run(f"{STACK} {FIELDS}", ranks=ranks), 1e-10)
+    check_stack(shared_run(f"{STACK} {FIELDS} {METHODS[method]}", ranks), {"neo-hookean": 2e-4, "stiff springs": 1e-9, "anderson": 1e-6, "lagrange": 1e-7}.get(method, 1e-10))
 
 
 def test_stack_by_penalty(shared_run):
@@ -123,11 +116,6 @@ def test_stack_by_penalty(shared_run):
         assert run.history[f"contact/{pair}/gap"][-1] == pytest.approx(-weight / 1e12, rel=1e-6)
 
 
-@pytest.mark.parametrize("part", ["1e-3", "0.1"])
-def test_springs_do_not_matter(part, shared_run):
-    check_stack(shared_run(f"{STACK} {FIELDS} " + " ".join(f"-{name}_artificial_stiffness {part}" for name in SINK)), 1e-9)
-
-
 def test_falls_until_it_lies(shared_run):
     """The upper block begins 0.1 m above the middle one, and to its side: it comes to lie in the first step, and weighs on as before."""
     run = shared_run(f"{STACK} -upper_translate 0.2,0.1")
@@ -135,8 +123,7 @@ def test_falls_until_it_lies(shared_run):
         assert run.history[f"contact/{pair}/force"][-1] == pytest.approx(weight, rel=1e-9)
 
 
-@pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("law", ["", "-contact_law tied"], ids=["pressed", "tied"])
+@pytest.mark.parametrize(("law", "dim"), [("", 2), ("-contact_law tied", 3)], ids=["pressed", "tied"])
 def test_chain(law, dim, shared_run):
     """Of three cubes the middle one floats between one that is held and one that is pushed by 1 mm, twice as stiff as the others: 0.4, 0.2 and 0.4 mm."""
     options = joined(unit("a", dim, 0, 3, held("a", "xmin", *zeros(dim))), unit("b", dim, 1, 2, e=2 * E),
@@ -185,7 +172,6 @@ UNHELD = {
     "sideways": ("-upper_body_force 1e-3*t,-1e4*t", "'upper'", "move along x", "-upper_boundary_displacement"),
     "up": ("-upper_body_force 0,1e4*t", "'upper'", "move along y"),
     "no-floor": ("-contact_pairs middle.ymin:lower.ymax,upper.ymin:middle.ymax", "move along y"),
-    "past-it": ("-upper_translate 1.5,0", "'upper'", "move along y"),
     "neo-hookean": ("-upper_material_type neo_hookean -upper_body_force 1e2*t,-1e4*t", "'upper'", "move along x"),
 }
 
@@ -212,7 +198,6 @@ def test_substeps_are_refused(impakt):
         assert word in run.stderr
 
 
-@pytest.mark.parametrize("part", ["0", "-1"])
-def test_bad_stiffness(part, impakt):
-    run = impakt(f"{STACK} -lower_artificial_stiffness {part}", expect_failure=True)
+def test_bad_stiffness(impakt):
+    run = impakt(f"{STACK} -lower_artificial_stiffness 0", expect_failure=True)
     assert "-lower_artificial_stiffness" in run.stderr and "positive" in run.stderr

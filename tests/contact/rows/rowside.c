@@ -1,4 +1,5 @@
-/* long: 1 */
+/* ranks: 1 3 */
+/* long: 3 */
 /* Which body of a pair has the contact rows, and that nobody who reads names, forces and normals need know. */
 #include "simulation.h"
 
@@ -101,10 +102,8 @@ static void names_hold_whoever_has_the_rows(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
 
-  check_sides(simulation, 2, "-contact_type schwarz");
   check_sides(simulation, 2, "-b_ts_type centraldifference -b_ts_time_step 0.0125");
   check_sides(simulation, 2, "-contact_type penalty");
-  check_sides(simulation, 2, "-contact_type lagrange");
   check_sides(simulation, 3, "-a_ts_type centraldifference -b_ts_type centraldifference");
 }
 

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from cases import SAME, joined, last, same, worst_energy_error
+from cases import SAME, joined, last, long, same, worst_energy_error
 from setups import FIELDS, box, linear, material, words
 
 JOINT = 0.0
@@ -34,8 +34,7 @@ def both(run, name):
     return run.history[f"contact/a:b/{name}"][()] + run.history[f"contact/a:c/{name}"][()]
 
 
-@pytest.mark.parametrize("dim", [2, 3])
-@pytest.mark.parametrize("pairing", UNDER)
+@pytest.mark.parametrize(("pairing", "dim"), [("II", 3), ("IE", 2), ("EI", 3), ("EE", 2)])
 def test_astride_two_blocks(pairing, dim, shared_run):
     """Without lateral strain the joint makes no difference. The meshes do not match, but the joint lies under a node."""
     halves, whole = shared_run(stack(True, pairing, dim=dim)), shared_run(stack(False, pairing, dim=dim))
@@ -54,8 +53,7 @@ def test_astride_two_blocks(pairing, dim, shared_run):
 UNLIKE = "-b_poissons_ratio 0.3 -c_poissons_ratio 0.2 -c_youngs_modulus 0.5"
 
 
-@pytest.mark.parametrize("law", ["frictionless", "tied"])
-@pytest.mark.parametrize("pairing", ["II", "IE", "EE"])
+@pytest.mark.parametrize(("pairing", "law"), [("II", "frictionless"), ("IE", "tied"), *long(("EE", "frictionless"))])
 def test_astride_unlike_blocks(pairing, law, shared_run):
     """Each presses back as it can: what both take is what Lagrange multipliers, and Robin conditions, say, which know nothing of which row is prescribed."""
     tied = "-contact_tie_distance 0.1" if law == "tied" else ""  # the gap is 0.02 m, 0.04 of a face
@@ -64,16 +62,13 @@ def test_astride_unlike_blocks(pairing, law, shared_run):
     run = shared_run(options)
     assert worst_energy_error(run.summary) <= (1e-10 if law == "tied" and pairing == "II" else 7e-5)  # measured: 5.4e-5
     assert run.summary["system"]["momentum_error_max"] <= 1e-12
-    for more in ("-schwarz_condense 0", "-schwarz_dense_limit 0"):
-        same(run, shared_run(f"{options} {more}"), 1e-8 if "limit" in more else SAME, "abc", pairs)
     same(run, shared_run(options, 2), SAME, "abc", pairs)
-    same(run, shared_run(f"{options} -schwarz_snes_type anderson"), 1e-7, "abc", pairs)
     same(run, shared_run(f"{options} -schwarz_transmission robin"), 1e-7, "abc", pairs)
     if pairing == "II" and law == "frictionless":
         same(run, shared_run(f"{options} -contact_type lagrange"), 1e-7, "abc", pairs)
 
 
-@pytest.mark.parametrize("more", [explicit("b c") + " -b_ts_time_step 0.01 -c_ts_time_step 0.005", explicit("a b c") + " -a_ts_time_step 0.01 -b_ts_time_step 0.005 -c_ts_time_step 0.01", explicit("c")])
+@pytest.mark.parametrize("more", [explicit("b c") + " -b_ts_time_step 0.01 -c_ts_time_step 0.005", explicit("a b c") + " -a_ts_time_step 0.01 -b_ts_time_step 0.005 -c_ts_time_step 0.01"])
 def test_astride_with_substeps(more, shared_run):
     options = stack(True, more=f"{UNLIKE} {more}", nu=0.25)
     run = shared_run(options)
@@ -82,19 +77,17 @@ def test_astride_with_substeps(more, shared_run):
     same(run, shared_run(f"{options} -schwarz_condense 0"), SAME, "abc", ("a:b", "a:c"))
 
 
-@pytest.mark.parametrize("mass", [" ".join(f"-{b}_mass_redistribute 0" for b in "abc")])
-@pytest.mark.parametrize("pairing", ["II", "EE"])
-def test_astride_with_mass(pairing, mass, shared_run):
+def test_astride_with_mass(shared_run):
     """Rows are shared by area: again the joint makes no difference."""
-    halves = shared_run(stack(True, pairing, mass))
-    whole = shared_run(stack(False, pairing, mass.replace("-c_mass_redistribute 0", "")))
+    mass = " ".join(f"-{b}_mass_redistribute 0" for b in "abc")
+    halves = shared_run(stack(True, "EE", mass))
+    whole = shared_run(stack(False, "EE", mass.replace("-c_mass_redistribute 0", "")))
     force = whole.history["contact/a:b/force"][()]
     np.testing.assert_allclose(both(halves, "force"), force, rtol=0, atol=1e-8 * force.max())
     assert halves.summary["contact"]["max_penetration"] <= 1e-11
 
 
-@pytest.mark.parametrize("law", ["frictionless", "tied"])
-@pytest.mark.parametrize("shape", ["quad4", "hex8"])
+@pytest.mark.parametrize(("shape", "law"), [("quad4", "tied"), ("hex8", "frictionless")])
 def test_patch_astride(shape, law, shared_run):
     """Pressed on two blocks of unlike widths and meshes, the pressure is uniform, and each takes as much as its width."""
     dim = 2 if shape == "quad4" else 3
@@ -121,29 +114,28 @@ def test_patch_astride(shape, law, shared_run):
         np.testing.assert_allclose(fields["contact_pressure"][frame][()][active], pressure, rtol=1e-8)
 
 
-def quarters(whole, nu):
+def quarters(whole):
     """A block on a larger one, or on its quarters, whose moments of inertia are others: with the centres of mass alone kept, they have the
     masses of the whole."""
-    parts = [box("a", (4, 4, 3), (-1, -1, 0.02), (1, 1, 1.02), "-a_dm_plex_simplex 0 -a_initial_velocity 0,0,-0.1"), material("a", nu=nu)]
+    parts = [box("a", (4, 4, 3), (-1, -1, 0.02), (1, 1, 1.02), "-a_dm_plex_simplex 0 -a_initial_velocity 0,0,-0.1"), material("a", nu=0)]
     under = {"b": (-1, -1)} if whole else {"b": (-1, -1), "c": (0, -1), "d": (-1, 0), "e": (0, 0)}
     for name, (x, y) in under.items():
         wide = 2 if whole else 1
         parts.append(box(name, (3 * wide, 3 * wide, 3), (x, y, -1), (x + wide, y + wide, 0), f"-{name}_dm_plex_simplex 0"))
-        parts.append(material(name, nu=nu))
+        parts.append(material(name, nu=0))
     parts += [f"-{name}_mass_moments centre" for name in ("a", *under)]
     return joined(*parts, f"-bodies a,{','.join(under)} -contact_pairs {','.join(f'a:{name}' for name in under)} -time_step 0.04 -time_end 2.4")
 
 
 def test_on_four_blocks(shared_run):
     """The node over the edge that all four share has four rows of one direction."""
-    whole, four = shared_run(quarters(True, 0)), shared_run(quarters(False, 0))
+    whole, four = shared_run(quarters(True)), shared_run(quarters(False))
     force = whole.history["contact/a:b/force"][()]
     assert force.max() > 0
     for pair in ("a:b", "a:c", "a:d", "a:e"):
         np.testing.assert_allclose(4 * four.history[f"contact/{pair}/force"][()], force, rtol=0, atol=1e-8 * force.max())
     assert four.summary["system"]["momentum_error_max"] <= 1e-12
-    same(four, shared_run(quarters(False, 0), 2), SAME, "abcde", ("a:b", "a:c", "a:d", "a:e"))
-    same(*(shared_run(f"{quarters(False, 0.25)} -schwarz_condense {way}") for way in (0, 1)), SAME, "abcde", ("a:b", "a:c", "a:d", "a:e"))
+    same(four, shared_run(quarters(False), 2), SAME, "abcde", ("a:b", "a:c", "a:d", "a:e"))
 
 
 def over_a_joint(more=""):
@@ -169,10 +161,9 @@ def test_slides_over_a_joint(shared_run):
     assert np.abs(normal / normal.mean() - 1).max() <= 0.027  # measured: 0.0204
     assert run.summary["contact"]["max_penetration"] <= 1e-12
     np.testing.assert_allclose(force, both_vectors(shared_run(over_a_joint("-contact_type lagrange"))), rtol=0, atol=1e-7 * np.abs(normal).max())
-    np.testing.assert_allclose(force, both_vectors(shared_run(over_a_joint("-schwarz_condense 0"))), rtol=0, atol=SAME * np.abs(normal).max())
 
 
-@pytest.mark.parametrize("more", ["", "-schwarz_condense 0", "-a_ts_type centraldifference", "-b_ts_type centraldifference"])
+@pytest.mark.parametrize("more", ["", "-b_ts_type centraldifference"])
 def test_bar_on_two_bars(more, shared_run):
     """The bars take from the first the velocity v0 Z_a / (Z_a + Z_b + Z_c), and push back by it times their impedance Z = sqrt(E rho) A, which is
     the same along a bar where masses but those next to contact stay as they are; what keeps the centre of mass grades it, by 5e-4 of the force."""

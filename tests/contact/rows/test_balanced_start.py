@@ -27,8 +27,9 @@ def worst(run):
     return np.abs(energy / energy[0] - 1).max()
 
 
-@pytest.mark.parametrize("method", ["schwarz", "lagrange", "augmented_lagrangian"])
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize(
+    ("kind", "method"), [("II", "schwarz"), ("EE", "schwarz"), ("IE", "schwarz"), ("EI", "lagrange"), ("II", "lagrange"), ("IE", "augmented_lagrangian")]
+)
 def test_pressed_bars_start_with_their_force(kind, method, shared_run):
     """E strain A, from the first record on until waves from the free ends arrive after 125 steps. Measured: 1e-13 of the force,
     4e-16 of energy; the augmented Lagrangian leaves gaps of 1e-10 m, which are
@@ -49,7 +50,7 @@ def test_springs_are_in_balance_too(shared_run):
     assert run.summary["system"]["penalty_energy_max"] >= 0.5 * force**2 / k * (1 - 1e-9)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["II", "EE"])
 def test_stretched_bars_let_go(kind, shared_run):
     """No row may pull: the surfaces relax, and the energy is that of the state from then on."""
     run = shared_run(bars(kind, start=f"-{{b}}_initial_displacement {STRAIN}*x -{{b}}_initial_velocity 0"))
@@ -58,13 +59,13 @@ def test_stretched_bars_let_go(kind, shared_run):
     assert worst(run) <= 1e-12
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", ["IE", "EI"])
 def test_load_on_the_contact_surface(kind, shared_run):
     """A traction that is there from the start: its nodes have given way, so that it does no work in the first step but on what moves."""
     run = shared_run(bars(kind, "-left_dm_plex_box_upper -0.001 -left_dm_plex_box_lower -0.051 -left_boundary_traction xmax -left_boundary_traction_xmax 1e5", start=""))
     energy = energies(run)
     stored = 0.5 * (1e5 * AREA) ** 2 / (MODULUS * AREA / 0.002)  # of the last element under the load, whose other node has not moved
-    assert energy[0] == pytest.approx(stored, rel=1e-9 if kind in ("II", "IE") else 0.5)
+    assert energy[0] == pytest.approx(stored, rel=1e-9 if kind == "IE" else 0.5)
     assert np.abs(energy - energy[0]).max() <= 1e-12 * energy[0] + 1e-12 * run.history["body/left/external_work"][-1]
 
 
@@ -75,8 +76,7 @@ BLOCKS = """-bodies low,high -contact_pairs high.ymin:low.ymax -time_step 1e-6 -
     -low_boundary_displacement ymin -low_boundary_displacement_ymin 0,0"""
 
 
-@pytest.mark.parametrize("law", ["frictionless", "tied"])
-@pytest.mark.parametrize("ranks", [1, 2, 3])
+@pytest.mark.parametrize(("law", "ranks"), [("frictionless", 3), ("tied", 1)])
 def test_surfaces_that_do_not_match(law, ranks, shared_run):
     """Part of the rows is closed at the start, or all are tied. What contact takes in the first step is what it takes in the second."""
     run = shared_run(f"{BLOCKS} -contact_law {law} -high_mass_redistribute true -low_mass_redistribute true", ranks)
@@ -99,7 +99,7 @@ def test_what_it_saves(shared_run):
     assert shared_run(options).history["contact/high.ymin:low.ymax/force"][0] == 0
 
 
-@pytest.mark.parametrize("kind", ["", "-low_ts_type centraldifference", "-low_ts_type centraldifference -high_ts_type centraldifference"])
+@pytest.mark.parametrize("kind", ["", "-low_ts_type centraldifference -high_ts_type centraldifference"])
 def test_nonlinear_bodies(kind, shared_run):
     """Newton's method finds the balance: the force of the first record is what the steps after it go on from."""
     run = shared_run(f"{BLOCKS} -contact_law tied -time_step 2e-7 -time_end 4e-6 -low_material_type neo_hookean -high_material_type neo_hookean -high_mass_redistribute true -low_mass_redistribute true {kind}")

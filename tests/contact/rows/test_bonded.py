@@ -4,25 +4,25 @@ import h5py
 import numpy as np
 import pytest
 from cases import SAME, worst_energy_error
+from setups import box, material, words
 
 INTEGRATORS = {"II": "", "IE": "-b_ts_type centraldifference", "EE": "-a_ts_type centraldifference -b_ts_type centraldifference"}
 
 
-def box(name, dim, low, faces, velocity, more=""):
-    lower, upper = [low] + [0] * (dim - 1), [low + 1] + [1] * (dim - 1)
-    return (f"-{name}_dm_plex_dim {dim} -{name}_dm_plex_simplex 0 -{name}_dm_plex_box_faces {','.join([str(faces)] * dim)} "
-            f"-{name}_dm_plex_box_lower {','.join(map(str, lower))} -{name}_dm_plex_box_upper {','.join(map(str, upper))} -{name}_density 1000 "
-            f"-{name}_youngs_modulus 1e9 -{name}_poissons_ratio 0.3 -{name}_initial_velocity {','.join(map(str, velocity[:dim]))} {more}")  # fmt: skip
+def cube(name, dim, low, faces, velocity):
+    upper = (low + 1, *(1,) * (dim - 1))
+    return box(name, (faces,) * dim, (low, *(0,) * (dim - 1)), upper, f"{material(name, 1e9, 0.3, 1000)} -{name}_initial_velocity {words(velocity[:dim])}")
 
 
 def thrown(dim, faces, pairing, law="bonded"):
     return (f"-bodies a,b -contact_pairs a:b -contact_law {law} -time_step 1e-5 -time_end 6e-3 {INTEGRATORS[pairing]} "
-            f"{box('a', dim, 0, 4, (10, 3, 1))} {box('b', dim, 1.002, faces, (-10, -3, 2))}")  # fmt: skip
+            f"{cube('a', dim, 0, 4, (10, 3, 1))} {cube('b', dim, 1.002, faces, (-10, -3, 2))}")  # fmt: skip
 
 
-@pytest.mark.parametrize("pairing", INTEGRATORS)
-@pytest.mark.parametrize("faces", [4, 3])
-@pytest.mark.parametrize("dim", [1, 2, 3])
+CASES = [(1, 4, "IE"), (2, 3, "EE"), (2, 4, "II"), (3, 3, "II"), (3, 3, "IE")]  # dimension, faces of b to an edge, where a has 4, integrators
+
+
+@pytest.mark.parametrize(("dim", "faces", "pairing"), CASES)
 def test_they_stick(dim, faces, pairing, shared_run):
     """They slide past each other until they meet after 1e-4 s, and pull at each other when they would bounce off. Nothing is lost. Measured: 2e-13."""
     run = shared_run(thrown(dim, faces, pairing))
@@ -41,15 +41,8 @@ def test_they_stick(dim, faces, pairing, shared_run):
         assert across[first] <= 1e-9 * force.max() and across.max() > 1e5
 
 
-@pytest.mark.parametrize("more", ["-schwarz_condense 0", "-schwarz_dense_limit 0"])
-def test_ways(more, shared_run):
-    one, other = (shared_run(f"{thrown(2, 3, 'II')} {words}").history["contact/a:b/force_vector"][()] for words in ("", more))
-    np.testing.assert_allclose(one, other, rtol=0, atol=1e-7 * np.abs(one).max())
-
-
-@pytest.mark.parametrize("pairing", ["II", "EE"])
-def test_ranks(pairing, shared_run):
-    one, two = (shared_run(thrown(2, 3, pairing), ranks).history["contact/a:b/force_vector"][()] for ranks in (1, 2))
+def test_ranks(shared_run):
+    one, two = (shared_run(thrown(2, 3, "EE"), ranks).history["contact/a:b/force_vector"][()] for ranks in (1, 2))
     np.testing.assert_allclose(one, two, rtol=0, atol=SAME * np.abs(one).max())
 
 
@@ -67,11 +60,10 @@ def test_relative_positions_stay(shared_run):
     assert slip[-1, :, 1] == pytest.approx(-6 * 1e-4, abs=1.1e-4)  # 6 m/s for 1e-4 s, a step more or less
 
 
-@pytest.mark.parametrize("integrator", ["", "-b_ts_type centraldifference"])
-def test_on_an_obstacle(integrator, shared_run):
+def test_on_an_obstacle(shared_run):
     """A block thrown at a wall sticks to it: its face stays where it hit, while the rest goes on and comes back."""
     floor = "-obstacles wall -wall_obstacle_type plane -wall_point 1,0 -wall_normal -1,0 -contact_pairs b:wall"
-    run = shared_run(f"-bodies b -contact_law bonded {floor} -time_step 1e-5 -time_end 6e-3 {box('b', 2, -0.001, 4, (10, 3))} {integrator}")
+    run = shared_run(f"-bodies b -contact_law bonded {floor} -time_step 1e-5 -time_end 6e-3 {cube('b', 2, -0.001, 4, (10, 3))}")
     pair = run.history["contact/b:wall"]
     first = np.flatnonzero(pair["active"])[0]
     assert (pair["active"][first:] == 5).all() and pair["force"][()].min() < -1e6
@@ -80,7 +72,7 @@ def test_on_an_obstacle(integrator, shared_run):
     assert worst_energy_error(run.summary) <= 1e-9
 
 
-@pytest.mark.parametrize("method", ["penalty", "lagrange", "augmented_lagrangian"])
+@pytest.mark.parametrize("method", ["penalty", "lagrange"])
 def test_other_methods_are_refused(method, impakt):
     run = impakt(f"{thrown(2, 4, 'II')} -contact_type {method}", expect_failure=True)
     for word in ("-contact_law bonded", "-contact_type schwarz", method):

@@ -36,6 +36,7 @@ def test_flat(name, shared_run):
     assert contact["gap"][()][moving].min() >= -1e-12
 
 
+@pytest.mark.long
 def test_flat_is_as_flat_as_it_is_pressed(shared_run):
     """Ten times the pressing gives ten times the tangential share: it is the tilt of the surface, no friction of the method's. The tilt adds to
     positions in the formulas of the rows, so that the two differ in higher order, the strain: 1e-4."""
@@ -59,7 +60,7 @@ def radial(run):
     return force[:, 0] * np.sin(angle) + force[:, 1] * np.cos(angle), force[:, 0] * np.cos(angle) - force[:, 1] * np.sin(angle)
 
 
-@pytest.mark.parametrize("end", [0.4, *long(1.1)])
+@pytest.mark.parametrize("end", [0.25, *long(1.1)])
 def test_curved(end, shared_run):
     """Rows are built where a controller step begins, and are half a step old on the way: the step turns the normal by 3.9e-3, and the share of the
     force along the path is twice that. Half the step halves it."""

@@ -3,6 +3,7 @@ normals of both sides. Without it |omega| R / v is 0.017 to 0.043 for discs of 6
 
 import numpy as np
 import pytest
+from cases import long, validate
 
 RADIUS, SPEED, ANGLE = 0.01, 2.0, 20.94  # of the line of centres at first contact [degrees]
 
@@ -60,40 +61,21 @@ def check_conserved(run, energy):
 
 # measured: 4.2e-4, 4.2e-4, 2.8e-4, 1.02e-3, where the coarser disc has the rows; energy -6e-6, -6e-6, -1.0e-5, -7e-6, as without
 @pytest.mark.parametrize(
-    ("divisions", "pair", "most"), [((16, 16), "a:b", 6e-4), ((16, 16), "b:a", 6e-4), ((16, 12), "a:b", 6e-4), ((16, 12), "b:a", 1.1e-3)]
+    ("divisions", "pair", "most"),
+    [*long(((16, 12), "a:b", 6e-4), ((16, 12), "b:a", 1.1e-3)), *validate(((16, 16), "a:b", 6e-4), ((16, 16), "b:a", 6e-4))],
 )
-@pytest.mark.long
 def test_balance(divisions, pair, most, shared_run):
     run = shared_run(discs(divisions, pair))
     assert max(spins(run)) <= most
     check_conserved(run, 2e-5)
 
 
-@pytest.mark.parametrize(("divisions", "angle"), [((12, 12), 30), ((12, 16), 30), ((12, 12), 12)])
-def test_one_node(divisions, angle, shared_run):
-    """Where a node of 48 edges lies nearly in the middle of the contact it bears the most, and its neighbours on both sides take turns: 5.2e-4, 1.2e-4,
-    4.7e-4 at twice the step of the other tests, and energy -1.7e-5, -2.7e-5, -1.9e-5."""
-    run = shared_run(discs(divisions, angle=angle, step=5e-7))
-    assert max(spins(run, angle)) <= 1e-3
+def test_one_node(shared_run):
+    """Where a node of 48 edges lies nearly in the middle of the contact it bears the most, and its neighbours on both sides take turns: 1.2e-4 at twice
+    the step of the other tests, and energy -2.7e-5."""
+    run = shared_run(discs((12, 16), angle=30, step=5e-7))
+    assert max(spins(run, 30)) <= 1e-3
     check_conserved(run, 5e-5)
-
-
-@pytest.mark.long
-def test_refined(shared_run):
-    """With 128 edges: 2.1e-4 at most, half of what it is with 64, and energy -7e-7."""
-    run = shared_run(discs((32, 32), step=1.25e-7))
-    assert max(spins(run)) <= 3e-4
-    check_conserved(run, 3e-6)
-
-
-@pytest.mark.long
-def test_sides(shared_run):
-    """Discs of 128 and 96 edges, either first: peak force, impulse and time in contact agree to 0.14, 0.03 and 0.8 %."""
-    first, second = (shared_run(discs((32, 24), pair, step=2.5e-7)).summary["contact"] for pair in ("a:b", "b:a"))
-    assert second["force_peak"] == pytest.approx(first["force_peak"], rel=1e-2)
-    assert second["impulse"] == pytest.approx(first["impulse"], rel=2e-3)
-    duration = [side["separation_time"] - side["onset_time"] for side in (first, second)]
-    assert duration[1] == pytest.approx(duration[0], rel=1e-2)
 
 
 @pytest.mark.long
@@ -108,8 +90,7 @@ def test_finer_side(shared_run):
     assert np.array_equal(one, -other) and np.abs(one).max() > 1e3
 
 
-@pytest.mark.parametrize(("pair", "turn", "most"), [("a:b", 0, 4e-3), ("b:a", 33, 4e-3)])
-@pytest.mark.long
+@pytest.mark.parametrize(("pair", "turn", "most"), [*validate(("a:b", 0, 4e-3)), *long(("b:a", 33, 4e-3))])
 def test_balls(pair, turn, most, shared_run):
     """Balls of 40 edges round, the second time with the mesh askew: 3.0e-3 and 2.3e-3, where without it is 0.05 to 0.27, and energy -5e-6. With 64 edges it is
     7e-4 and 2.0e-3."""
@@ -118,14 +99,7 @@ def test_balls(pair, turn, most, shared_run):
     check_conserved(run, 2e-5)
 
 
-@pytest.mark.long
-def test_ranks(shared_run):
-    """Turns are the same on several ranks, but for round-off of sums: the spin to 1e-5."""
-    one, two = (shared_run(discs((16, 12)), n) for n in (1, 2))
-    assert spins(two) == pytest.approx(spins(one), abs=1e-5)
-
-
-ROUND = discs((12, 12), angle=30, step=5e-7).replace(" -contact_balance", "") + " -time_end 1.5e-4"
+ROUND = discs((12, 12), angle=30, step=5e-7).replace(" -contact_balance", "") + " -time_end 1e-4"
 BALANCED = "forces balanced along the normals of both sides"
 
 
@@ -141,19 +115,12 @@ def test_automatic(shared_run):
 @pytest.mark.parametrize(
     ("more", "has"),
     [
-        ("-contact_balance auto", True),
-        ("-a_ts_type alpha2", True),
         ("-contact_balance false", False),
         ("-b_ball_divisions 6", False),
         ("-a_material_type linear_elastic -b_material_type linear_elastic", False),
-        ("-contact_law tied -contact_tie_distance 100 -time_end 1e-6", False),
         ("-contact_law coulomb -contact_friction 0.1", False),
-        ("-schwarz_snes_type anderson", False),
-        ("-schwarz_transmission robin", False),
         ("-a_mass_redistribute false", False),
         ("-contact_type penalty", False),
-        ("-a_ts_time_step 2.5e-7 -b_ts_time_step 2.5e-7", True),
-        ("-a_ts_time_step 2.5e-7", True),
         ("-a_ts_type alpha2 -b_ts_time_step 1e-7", True),
         ("-a_ts_time_step 2.5e-7 -contact_shared_times false", False),
     ],
@@ -184,11 +151,9 @@ def test_value(impakt):
         ("-b_ball_divisions 6", "bend by up to"),
         ("-a_material_type linear_elastic -b_material_type linear_elastic", "both linear elastic"),
         ("-contact_law tied", "not a frictionless one"),
-        ("-schwarz_snes_type anderson", "newtonls"),
-        ("-schwarz_transmission robin", "dirichlet_neumann"),
         ("-a_mass_redistribute false", "massless"),
         ("-contact_type penalty", "schwarz"),
     ],
 )
 def test_refused(more, words, impakt):
-    assert words in impakt(f"{discs((16, 12))} {more}", expect_failure=True).stderr
+    assert words in impakt(f"{discs((12, 12))} {more}", expect_failure=True).stderr

@@ -1,4 +1,4 @@
-/* Forward-increment Lagrange multipliers. */
+/* Lagrange multipliers: forward increments of explicit bodies with mass, and at the end of the step between massless contact nodes. */
 #include "simulation.h"
 
 static void AddExplicitCollision(PetscReal frame)
@@ -44,21 +44,6 @@ static void contact_without_gap(void **state)
   }
 }
 
-/* The same forces whether the bars move along or not */
-static void moving_frame(void **state)
-{
-  Simulation *simulation = (Simulation *)*state;
-  PetscReal   forces[3];
-
-  AddExplicitCollision(0);
-  ok(SimulationCreate(simulation));
-  for (PetscInt step = 0; step < 3; step++) forces[step] = Step(simulation).force;
-  AddExplicitCollision(5);
-  SimulationRepeat(simulation, "");
-  for (PetscInt step = 0; step < 3; step++)
-    near(Step(simulation).force, forces[step], 1e-10); /* round-off of 1e-15 m over dt^2/m, 6e-3 m/N */
-}
-
 /* No force pulls: bars of 0.1 m come apart after 0.2 s */
 static void forces_never_pull(void **state)
 {
@@ -92,11 +77,86 @@ static void other_bodies_are_refused(void **state)
           SimulationCreate(simulation));
 }
 
+static const char *const pairings[] = {
+    "-left_ts_type alpha2 -right_ts_type alpha2",
+    "-left_ts_type centraldifference -right_ts_type centraldifference",
+    "-left_ts_type alpha2 -right_ts_type centraldifference",
+    "-left_ts_type centraldifference -right_ts_type alpha2",
+};
+
+/* The gap is closed while there is a force, and both bodies feel that force: the integrators change momentum by dt/2 (F_0 + F_1) */
+static void gap_is_closed(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type lagrange");
+  for (PetscInt i = 0; i < 4; i++) {
+    PetscReal last = 0;
+
+    SimulationRepeat(simulation, pairings[i]);
+    for (PetscInt step = 0; step < 5; step++) {
+      const PetscReal  before[] = {Momentum(simulation, 0), Momentum(simulation, 1)};
+      ContactPairState pair     = Step(simulation);
+
+      assert_int_equal(pair.active, 1);
+      assert_true(pair.force > 0);
+      near(pair.gap, 0, 1e-12); /* -lagrange_snes_atol */
+      near(Momentum(simulation, 1) - before[1], 0.5 * COLLISION_STEP * (last + pair.force), 1e-14);
+      near(Momentum(simulation, 0) - before[0], -0.5 * COLLISION_STEP * (last + pair.force), 1e-14);
+      last = pair.force;
+    }
+  }
+}
+
+/* Mass on one side is enough; on the implicit one, or on the explicit one */
+static void mass_on_one_side(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type lagrange -right_mass_redistribute 0 -right_mass_type lumped");
+  for (PetscInt i = 0; i < 4; i++) {
+    SimulationRepeat(simulation, pairings[i]);
+    for (PetscInt step = 0; step < 5; step++) {
+      const ContactPairState pair = Step(simulation);
+
+      assert_true(pair.force >= 0);
+      assert_true(pair.gap > -1e-12);
+    }
+  }
+}
+
+static void wrong_options_are_refused(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type lagrange -lagrange_snes_type newtonls");
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "-lagrange_snes_type 'newtonls'|vinewtonrsls, vinewtonssls", SimulationCreate(simulation));
+}
+
+static void unconverged_steps_are_refused(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(8, 10, 0);
+  AddOptions("-contact_type lagrange -lagrange_snes_max_it 0 -time_start 1 -time_end 1.2");
+  ok(SimulationCreate(simulation));
+  refused(PETSC_ERR_NOT_CONVERGED, "time 1.02 s|after 1 evaluations|-lagrange_snes_max_it", ContactStep(simulation->contact));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(first_step),        simulation_test(contact_without_gap),      simulation_test(moving_frame),
-      simulation_test(forces_never_pull), simulation_test(other_bodies_are_refused),
+      simulation_test(first_step),
+      simulation_test(contact_without_gap),
+      simulation_test(forces_never_pull),
+      simulation_test(other_bodies_are_refused),
+      simulation_test(gap_is_closed),
+      simulation_test(mass_on_one_side),
+      simulation_test(wrong_options_are_refused),
+      simulation_test(unconverged_steps_are_refused),
   };
 
   return impakt_main(argc, argv, tests);

@@ -6,7 +6,6 @@ from cases import (
     DEFAULTS,
     FRAMES,
     PAIRINGS,
-    UNLIKE,
     force_scatter,
     joined,
     long,
@@ -21,33 +20,19 @@ EQUAL_STEPS = {"II": "", "EE": PAIRINGS["EE"], "IE": "-right_ts_type centraldiff
 SERIES = ["contact/left:right/force", "body/left/contact_position", "body/right/contact_position", "body/left/kinetic", "body/right/potential"]
 
 
-@pytest.mark.parametrize("frame", ["as-is", "moving-inside"])
-@pytest.mark.parametrize("pairing", list(EQUAL_STEPS))
-def test_agrees_with_schwarz(pairing, frame, shared_run):
+@pytest.mark.parametrize("pairing", ["II", "IE", *long("EE")])
+def test_agrees_with_schwarz(pairing, shared_run):
     """To 1e-9 of the largest value, the tolerances being 1e-15 m: over a compliance of 2.5e-6 m/N that is 4e-12 of the force of
     100 N in each step, and 5000 steps add to it. Seen: 5e-11."""
-    options = joined(EQUAL_STEPS[pairing], FRAMES[frame])
+    options = joined(EQUAL_STEPS[pairing], FRAMES["moving-inside"])
     schwarz = shared_run(f"{DEFAULTS} {options} -schwarz_snes_atol 1e-15")
     lagrange = shared_run(f"{LAGRANGE} {options} -lagrange_snes_atol 1e-15")
     assert np.array_equal(schwarz.history["contact/left:right/active"][()], lagrange.history["contact/left:right/active"][()])
     for name in SERIES:
         a, b = schwarz.history[name][()], lagrange.history[name][()]
         assert abs(a - b).max() <= 1e-9 * abs(a).max(), name
-
-
-@pytest.mark.parametrize("pairing", list(EQUAL_STEPS))
-def test_defaults(pairing, shared_run):
-    """As good as Schwarz in all that the table of tests/README.md tells of it; two sweeps, since the first guess of the force, the last one, is
-    not known to 1e-12 m."""
-    run = shared_run(joined(LAGRANGE, EQUAL_STEPS[pairing]))
-    assert run.summary["schwarz"]["max"] == 2
-    assert run.summary["contact"]["onsets"] == 1
-    assert run.summary["contact"]["max_penetration"] <= 1e-12
-    assert force_scatter(run.summary) <= 1.8e-5  # measured: 1.34e-5, half the factor on the masses left
-    assert worst_energy_error(run.summary) <= 4e-6  # measured: 2.7e-6
-    assert run.summary["errors"]["kinetic"] <= 1.3e-3
-    assert run.summary["system"]["momentum_error_max"] <= 1e-10
-    assert never_tensile(run)
+    assert lagrange.summary["contact"]["max_penetration"] <= 1e-12
+    assert never_tensile(lagrange)
 
 
 def test_substeps(shared_run):
@@ -68,6 +53,7 @@ def test_semismooth(shared_run):
     assert never_tensile(b)
 
 
+@pytest.mark.long
 def test_trapezoidal_rule_chatters(shared_run):
     """With mass on the contact nodes each change of the force by the constraint is undone by the trapezoidal rule in the next step:
     well known, and the reason for redistribution, stabilisation, and the other constraints. The energy comes to be six times what it was."""
@@ -78,22 +64,12 @@ def test_trapezoidal_rule_chatters(shared_run):
     assert never_tensile(run)
 
 
-@pytest.mark.parametrize("ranks", [1, *long(2)])
-def test_three_bars(ranks, shared_run):
-    """Two pairs with one body in common: the impulses of Schwarz."""
+def test_three_bars(shared_run):
+    """Two pairs with one body in common, on two ranks: the impulses of Schwarz."""
     bars = "-options_file options/three-bars.opts"
-    schwarz, lagrange = shared_run(bars).summary, shared_run(f"{bars} -contact_type lagrange", ranks=ranks).summary
+    schwarz, lagrange = shared_run(bars).summary, shared_run(f"{bars} -contact_type lagrange", ranks=2).summary
     for pair in ("a:b", "b:c"):
         assert lagrange["pairs"][pair]["onsets"] == 1
         assert lagrange["pairs"][pair]["impulse"] == pytest.approx(schwarz["pairs"][pair]["impulse"], rel=1e-11)  # measured: 4e-13
     assert lagrange["schwarz"]["max"] == 2
     assert abs(lagrange["system"]["energy_error_final"]) <= 4e-6
-
-
-@pytest.mark.parametrize("ranks", [2, 3])
-def test_ranks(ranks, shared_run):
-    """The same on any number of ranks, but for round-off."""
-    options = f"{LAGRANGE} {UNLIKE} -time_end 1e-4 -time_step 1e-6"
-    forces = [shared_run(options, n).history["contact/left:right/force"][()] for n in (1, ranks)]
-    assert forces[0].max() > 100
-    np.testing.assert_allclose(*forces, rtol=0, atol=1e-8)  # of 190 N

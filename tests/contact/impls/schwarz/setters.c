@@ -1,4 +1,3 @@
-/* ranks: 1 2 */
 /* What a program sets is what the options set; what comes too late, to another method, or makes no sense is refused. */
 #include "simulation.h"
 
@@ -91,21 +90,6 @@ static void alternation(void **state)
       SetAlternation);
 }
 
-static PetscErrorCode SetSweep(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(ContactSchwarzSetSweepType(contact, SCHWARZ_SWEEP_ADDITIVE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static void additive(void **state)
-{
-  Simulation *simulation = (Simulation *)*state;
-
-  AddCollision(7, 11, 0.3);
-  compare(simulation, "-schwarz_sweep additive", SetSweep);
-}
-
 static PetscErrorCode SetPenalty(Contact contact)
 {
   PetscFunctionBegin;
@@ -181,8 +165,8 @@ static void refusals(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      simulation_test(schwarz), simulation_test(alternation),          simulation_test(additive),
-      simulation_test(penalty), simulation_test(augmented_lagrangian), simulation_test(refusals),
+      simulation_test(schwarz),  simulation_test(alternation), simulation_test(penalty), simulation_test(augmented_lagrangian),
+      simulation_test(refusals),
   };
 
   return impakt_main(argc, argv, tests);

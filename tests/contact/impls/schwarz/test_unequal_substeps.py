@@ -6,11 +6,10 @@ BLOCKS = "-options_file options/blocks.opts -contact_pairs left:right -controlle
 WITH_MASS = "-left_mass_type lumped -right_mass_type lumped -left_mass_redistribute false -right_mass_redistribute false -schwarz_traction reaction"
 
 
-@pytest.mark.parametrize("transmission", ["robin", "impedance"])
-def test_robin_conditions_are_refused(transmission, impakt):
+def test_robin_conditions_are_refused(impakt):
     """Under a mixture that is linear over the substeps the forces of both sides bring other impulses: 19 % of the momentum at a step of 1e-4 s (robin). Bodies tied to
     each other, and bars, are refused too. With equal substeps nothing is lost."""
-    options = f"{BLOCKS} -time_step 1e-4 -time_end 1e-3 -schwarz_transmission {transmission} -contact_view"
+    options = f"{BLOCKS} -time_step 1e-4 -time_end 1e-3 -schwarz_transmission robin -contact_view"
     run = impakt(f"{options} -left_ts_time_step 5e-5", expect_failure=True)
     assert "robin and impedance keep neither momentum nor energy where two bodies make unequal substeps" in run.stderr
     assert "-contact_allow_unstable true" in run.stderr
@@ -48,15 +47,10 @@ def test_what_is_not_limited_says_so(choice, word, impakt):
 
 
 def test_reactions_over_substeps_are_refused(impakt):
-    """In two dimensions; bars with 3, 10 and 50 substeps keep their energy to 1.5e-6, and where their stiffness or density is 100 to 1 to 1.1e-2."""
+    """In two dimensions, where they lose 12 % of the momentum or bring energy; bars with 3, 10 and 50 substeps keep their energy to 1.5e-6, and where their stiffness or density is 100 to 1 to 1.1e-2."""
     options = f"{BLOCKS} {WITH_MASS} -left_ts_time_step 5e-7 -left_youngs_modulus 1e11 -time_end 1e-4"
     run = impakt(options, expect_failure=True)
     assert "-schwarz_traction reaction" in run.stderr and "-contact_allow_unstable true" in run.stderr
-    # What is wrong grows from round-off: on one processor the energy has grown 1e10 times by 6e-4 s, in steps that did not converge; on another
-    # all converged, and 12 % of the momentum are lost.
-    run = impakt(f"{options} -time_end 6e-4 -contact_allow_unstable true -schwarz_unconverged accept -energy_guard 0")
-    assert run.summary["system"]["momentum_error_max"] > 0.05
-    assert any("momentum error" in text for text in run.summary["warnings"])
     bars = "-options_file options/bars-high-speed.opts -time_step 1e-6 -time_end 1e-4"
     run = impakt(f"{bars} {WITH_MASS} -left_ts_time_step 1e-7")
     assert abs(run.summary["system"]["energy_error_final"]) <= 1e-3

@@ -12,8 +12,7 @@ def momentum(run):
     return sum(MASS * body["mean_velocity"][()] for body in run.history["body"].values())
 
 
-@pytest.mark.parametrize("waveform", ["linear", "constant"])
-@pytest.mark.parametrize("integrator", ["alpha2", "centraldifference"])
+@pytest.mark.parametrize(("waveform", "integrator"), [("linear", "centraldifference"), ("constant", "alpha2")])
 def test_impulse(waveform, integrator, shared_run):
     """The side of long steps takes the trapezium of a force that goes from F to F' in a step, and so does its partner if it is linear over the n
     substeps. Held at F', all substeps but half of the first one have F': the partner is ahead by (1 - 1/n) (F' - F) dt / 2, in all steps
