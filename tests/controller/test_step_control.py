@@ -28,6 +28,9 @@ def test_beam_hit(shared_run):
         control = run.summary["step_control"]
         errors.append(abs(run.summary["system"]["energy_error_final"]))
         assert len(run.history["time"]) == 101
+        (pair,) = run.history["contact"]
+        momentum = run.history["body/block/momentum"][:, 1]
+        assert abs(run.history[f"contact/{pair}/impulse"][-1][1]) == pytest.approx(abs(momentum[-1] - momentum[0]), rel=1e-9)  # of parts of steps too
         assert (control["step_cuts"] > 0) == (cuts > 0)
         assert 2e-4 / 2**cuts * (1 - 1e-12) <= control["smallest_step"] <= 2e-4
         assert "64 times the 3.12e-06 s that resolve contact" in warnings(run)[0]

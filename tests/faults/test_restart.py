@@ -396,11 +396,15 @@ def test_state_with_other_sides(run_in, folder):
     where = folder("run")
     case = "-options_file options/blocks.opts -time_end 3e-4"
     run_in(case, where, 1, "-checkpoint", "c.h5", "-output_fields", "f.h5", fields=False)
+    with h5py.File(where / "h.h5") as history:
+        velocities = {b: history[f"body/{b}/mean_velocity"][-1] for b in ("left", "right")}
     impulses = []
     for pairs in ("left:right", "right:left"):
         run_in(case, where, 1, "-restart_state", "c.h5", "-contact_pairs", pairs, "-output_fields", "f.h5", fields=False)
         found = summary(where)
         assert max(abs(found["system"][f"energy_error_{end}"]) for end in ("min", "max")) < 1e-5
+        with h5py.File(where / "h.h5") as history:
+            assert all(history[f"body/{b}/mean_velocity"][0] == pytest.approx(velocities[b], abs=1e-12 * 100) for b in velocities)
         impulses.append(found["contact"]["impulse"])
     assert impulses[1] == pytest.approx(impulses[0], rel=5e-5)
 

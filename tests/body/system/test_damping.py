@@ -159,7 +159,7 @@ def test_stable_step(alpha, beta, impakt):
 LEFT, RIGHT, FINER = "-left_ts_type centraldifference", "-right_ts_type centraldifference", "-right_ts_time_step 5e-7"
 
 
-@pytest.mark.parametrize("sides", [f"{LEFT} {RIGHT}", *long(RIGHT, FINER, f"{LEFT} {RIGHT} {FINER}")])
+@pytest.mark.parametrize("sides", [f"{LEFT} {RIGHT}", FINER, *long(RIGHT, f"{LEFT} {RIGHT} {FINER}")])
 def test_contact_of_damped_bodies(sides, impakt):
     """options/blocks.opts with stiffness damping, which keeps momentum: it is kept as without, and so is energy but for what the dashpots take, some percent
     of it. Their massless layers stay massless."""
@@ -173,6 +173,7 @@ def test_contact_of_damped_bodies(sides, impakt):
     for key in ("energy_error_min", "energy_error_max"):
         assert abs(system[key]) <= max(2 * max(abs(plain.summary["system"][f"energy_error_{end}"]) for end in ("min", "max")), 5e-6)  # 2.5e-6 of IE, falling with the step
     assert system["momentum_error_max"] <= max(2 * plain.summary["system"]["momentum_error_max"], 1e-12)
+    assert run.summary["contact"]["max_penetration"] <= 1e-12  # the compliance of rows has the drag in it; without, gaps of substeps are off by 4e-10 m
     assert run.summary["contact"]["impulse"] == pytest.approx(plain.summary["contact"]["impulse"], rel=0.05)
 
 
