@@ -439,6 +439,7 @@ def test_groups_that_have_converged_rest(words, sweeps, close, pairs, ranks, imp
             assert together.summary["bodies"][body]["substeps"] <= sweeps * alone.summary["bodies"][body]["substeps"], body
 
 
+@pytest.mark.long
 def test_loads_of_bodies_that_are_far_apart(impakt):
     """Fifteen explicit bodies under a body force, none near another: massless nodes are brought into balance at the start although there is no pair yet. Else
     what acts on them, five ninths, goes over to the body half a substep late, and that momentum never comes back: 0.072 N s for 0.1 in the first step."""

@@ -44,6 +44,7 @@ def check_syntax(words, text, installed, tmp_path):  # noqa: F811
     run([*words, "-Wall", "-Wextra", "-Werror", "-fsyntax-only", *flags, str(source)])
 
 
+@pytest.mark.long
 def test_each_header_stands_alone(installed, tmp_path):  # noqa: F811
     """Public and private ones, with installed headers alone"""
     for header in headers(installed.prefix):

@@ -64,6 +64,7 @@ def test_trapezoidal_rule_chatters(shared_run):
     assert never_tensile(run)
 
 
+@pytest.mark.long
 def test_three_bars(shared_run):
     """Two pairs with one body in common, on two ranks: the impulses of Schwarz."""
     bars = "-options_file options/three-bars.opts"
