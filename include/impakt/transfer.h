@@ -70,6 +70,7 @@ PETSC_EXTERN PetscErrorCode TransferInitializePackage(void);
 PETSC_EXTERN PetscErrorCode TransferFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
+PETSC_EXTERN PetscErrorCode TransferLayAgain(Transfer);
 PETSC_EXTERN PetscErrorCode TransferSetMoved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetOwner(Transfer, PetscMPIInt);
 PETSC_EXTERN PetscErrorCode TransferGetOwner(Transfer, PetscMPIInt *);

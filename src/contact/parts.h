@@ -131,6 +131,8 @@ PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
 PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
 PETSC_INTERN PetscErrorCode ContactMoveSurfaces(Contact);
+PETSC_INTERN void           ContactForgetAhead(Contact);
+PETSC_INTERN PetscErrorCode ContactLayAhead(Contact, PetscInt, PetscReal *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactFindFarPairs(Contact, PetscReal);
 PETSC_INTERN PetscErrorCode ContactCreateSurfaces(Contact, ContactPair *, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactChooseRowSide(Contact, ContactPair *);

@@ -269,7 +269,7 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
   PetscValidLogicalCollectiveReal(transfer, reach, 3);
   PetscAssertPointer(any, 4);
   PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (!transfer->rows.opposite[row]) continue;
     balance->gap[row] = TransferPresentGap(transfer, row);

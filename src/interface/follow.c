@@ -164,7 +164,7 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   PetscFunctionBegin;
   if (!transfer->columns_present) {
     PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
   }
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscInt n = set->offsets[row + 1] - set->offsets[row];

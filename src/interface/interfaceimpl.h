@@ -7,6 +7,8 @@
 /* Two faces count as facing each other if the cosine of the angle between their outward normals is below this, which means an angle of more
    than 96 degrees: faces at right angles cannot push each other */
 #define OPPOSED (-0.1)
+/* Cosine of half the angle, 35 degrees, by which the normals of two neighbouring faces differ at least if their edge is sharp */
+#define SHARP_COSINE 0.9537
 
 struct _p_Surface {
   PETSCHEADER(int);
@@ -19,6 +21,8 @@ struct _p_Surface {
   PetscBool    divided;      /* some rank has nodes of the mesh that another one owns */
   PetscBool    axisymmetric; /* areas are those of rings, see SurfaceSetAxisymmetric() */
   PetscReal    on_axis;      /* nodes with a smaller first coordinate lie on the axis [m] */
+  PetscBool   *sharp;        /* per node: it lies on a sharp edge of the mesh */
+  PetscReal   *smooth;       /* per node: its normal, 0 on a sharp edge */
   PetscInt    *mirrors;      /* per owned node: a bit for each axis across its planes of symmetry, see SurfaceSetMirrors(); or NULL */
   PetscBool    round;        /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
   PetscSF      sf;           /* from owned nodes to ghosts, one number for each node */
@@ -52,8 +56,9 @@ typedef struct {
 typedef struct {
   PetscInt    row, dof, owner_index;
   PetscMPIInt owner_rank;
-  PetscReal   value; /* its weight */
-  PetscReal   goal;  /* what the weight is to become as a row that follows the surfaces slips on; of other rows the weight itself */
+  PetscReal   value;    /* its weight */
+  PetscReal   goal;     /* what the weight is to become as a row that follows the surfaces slips on; of other rows the weight itself */
+  PetscReal   slope[3]; /* mean gradient of its shape function over what a node on a sharp edge sees, 0 in other rows [1/m] */
 } Share;
 
 /* Partners of a row that follows the surfaces, at most: on a surface with this many faces to one of the other side it hardly slips by a
@@ -67,6 +72,8 @@ enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
 typedef struct {
   PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
+  PetscReal *partner;              /* of a node on a sharp edge: mean outward normal of what it sees of the partner at the build, if that
+                                      has no sharp edge there, else 0; 3 each */
   PetscReal *bow;                  /* depth that the bend of the partner's faces makes of surfaces that only touch [m] */
   PetscReal *dip;                  /* how far the partner's closest point near the node was below the row's gap at the build, 0 where
                                       none was, or none is known, as between points [m] */
@@ -135,6 +142,7 @@ struct _p_Transfer {
   PetscBool      moved;  /* the caller has the surfaces moved, see TransferSetMoved() */
   RowSet         rows;
   PetscBool      built;
+  PetscBool      anew;          /* the next update builds all rows, see TransferLayAgain() */
   PetscBool      due, looks;    /* in the present update rows are built whatever the motion; the motion says whether they are */
   PetscBool      sleeps;        /* no row has a partner until the next update, see TransferSleep() */
   PetscReal      built_near;    /* partners at most that far away are known since the last build [m] */
@@ -178,6 +186,7 @@ static inline PetscReal Normalize(PetscReal a[])
 /* Geometry of faces with 1 to 4 nodes. In one dimension a face is a point, whose area and size are 1. */
 PETSC_INTERN void      FaceNormal(PetscInt, const PetscReal[][3], PetscReal[], PetscReal *);
 PETSC_INTERN PetscReal FaceNodeAreas(PetscInt, const PetscReal[][3], const PetscReal[], PetscReal[]);
+PETSC_INTERN void      FaceGradients(PetscInt, const PetscReal[][3], PetscReal[][3]);
 PETSC_INTERN PetscReal FaceSize(PetscInt, PetscReal);
 PETSC_INTERN void      FrameOfFace(PetscInt, const PetscReal[][3], const PetscReal[], Frame *);
 PETSC_INTERN void      FrameProject(const Frame *, const PetscReal[], PetscReal[]);
@@ -195,19 +204,23 @@ PETSC_INTERN PetscErrorCode CreateVectorForest(MPI_Comm, PetscInt, PetscInt, con
 PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm, size_t, PetscInt, const PetscMPIInt[], const void *, PetscInt *, void **);
 PETSC_INTERN PetscErrorCode ExchangeFaces(MPI_Comm, Surface, Surface, PetscReal, PetscReal, PetscInt *, Face *[]);
 PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);
+PETSC_INTERN PetscErrorCode SurfaceMarkVertices(DM, PetscInt, const PetscInt[], PetscSF, PetscInt[]);
+PETSC_INTERN PetscErrorCode SurfaceFindEdges(Surface, PetscSF);
+PETSC_INTERN void           SurfaceMirrorNormal(Surface, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceKeepFaces(Surface, const PetscBool[]);
 PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(MPI_Comm, Surface, Vec, Surface, Vec, PetscReal *);
 
 PETSC_INTERN void           SurfaceMirrorNormals(Surface);
-PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscReal[], PetscInt *,
-                                              Share *[]);
+PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscReal[],
+                                              PetscReal[], PetscInt *, Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
 PETSC_INTERN PetscErrorCode TransferFindTurn(Transfer, PetscReal[]);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
+PETSC_INTERN PetscBool      RowPartnerNormal(Surface, const RowSet *, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);

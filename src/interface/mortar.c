@@ -130,33 +130,46 @@ static void SetUpPatch(Surface surface, PetscInt f, const PetscInt marks[], Patc
   CombineFunctions(n, nodes, marks, patch->combine);
 }
 
-/* Appends the integrals of the nodes of face f with one partner to `shares`, and the ranks that own these nodes to `owners` */
-static void AddShares(Surface surface, PetscInt f, PetscInt n_partner, const Face *partner, PetscReal values[4][4], PetscInt *n_shares,
-                      Share shares[], PetscMPIInt owners[])
+/* Appends the integrals of the nodes of face f with one partner to `shares`, and the ranks that own these nodes to `owners`. `weights`: the
+   integrals of the functions of the nodes; `edges`: nodes on sharp edges get slopes */
+static void AddShares(Surface surface, PetscBool edges, PetscInt f, PetscInt n_partner, const Face *partner, PetscReal values[4][4],
+                      const PetscReal weights[], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
 {
-  const PetscInt n = surface->data.face_nodes;
+  const PetscInt n            = surface->data.face_nodes;
+  PetscReal      slopes[4][3] = {{0}};
 
+  if (edges && n > 1) FaceGradients(n_partner, partner->x, slopes);
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt node = surface->data.faces[f * n + k];
 
     for (PetscInt j = 0; j < n_partner; j++) {
-      if (values[k][j] == 0) continue;
+      const PetscReal weight = edges && surface->sharp[node] ? weights[k] : 0;
+
+      if (values[k][j] == 0 && weight == 0) continue;
       owners[*n_shares]     = surface->owner_rank[node];
       shares[(*n_shares)++] = (Share){.row         = surface->owner_index[node],
                                       .dof         = partner->dofs[j],
                                       .owner_index = partner->owner_index[j],
                                       .owner_rank  = partner->owner_rank[j],
-                                      .value       = values[k][j]};
+                                      .value       = values[k][j],
+                                      .slope       = {weight * slopes[j][0], weight * slopes[j][1], weight * slopes[j][2]}};
     }
   }
 }
 
-/* The gap at the point s of the face's plane, along the normal of one of its nodes [m] */
-static PetscReal GapAt(const SurfaceData *data, PetscInt node, const PetscInt nodes[], const Patch *patch, const Segment *segment,
-                       PetscInt n_partner, const Face *partner, const PetscReal s[])
+/* The normal along which the gap of a node counts before a face of the partner: its own, on a sharp edge against that of the face */
+static void GapNormal(Surface surface, const Segments *segments, PetscInt node, const Face *partner, PetscReal normal[])
 {
-  const PetscReal *normal = data->normals + 3 * node;
-  PetscReal        shapes[4], gap = 0;
+  const PetscBool edge = (PetscBool)(segments->guards && surface->sharp[node]);
+
+  for (PetscInt d = 0; d < 3; d++) normal[d] = edge ? -partner->normal[d] : surface->data.normals[3 * node + d];
+}
+
+/* The gap at the point s of the face's plane, along a normal [m] */
+static PetscReal GapAt(const SurfaceData *data, const PetscReal normal[], const PetscInt nodes[], const Patch *patch,
+                       const Segment *segment, PetscInt n_partner, const Face *partner, const PetscReal s[])
+{
+  PetscReal shapes[4], gap = 0;
 
   FaceShapes(n_partner, (const PetscReal(*)[2])segment->partner_corners, s, shapes);
   for (PetscInt j = 0; j < n_partner; j++) gap += shapes[j] * Dot(normal, partner->x[j]);
@@ -167,23 +180,24 @@ static PetscReal GapAt(const SurfaceData *data, PetscInt node, const PetscInt no
 
 /* The gap where the partner ends before node k of the face [m]: of the corners of the covered part at which the node's shape function is
    largest, the one with the smallest gap counts */
-static PetscReal GapAtEnd(const SurfaceData *data, PetscInt k, const PetscInt nodes[], const Patch *patch, const Segments *segments,
-                          PetscInt begin, PetscInt end, const Face faces[])
+static PetscReal GapAtEnd(Surface surface, PetscInt k, const PetscInt nodes[], const Patch *patch, const Segments *segments, PetscInt begin,
+                          PetscInt end, const Face faces[])
 {
-  PetscReal largest = 0, smallest = PETSC_MAX_REAL;
+  PetscReal largest = 0, smallest = PETSC_MAX_REAL, normal[3];
 
   for (PetscInt pass = 0; pass < 2; pass++)
     for (PetscInt i = begin; i < end; i++) {
       const Segment *segment = &segments->list[i];
 
+      GapNormal(surface, segments, nodes[k], &faces[segment->partner], normal);
       for (PetscInt v = 0; v < segment->n; v++) {
         PetscReal shapes[4];
 
         FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, segment->polygon[v], shapes);
         if (!pass) largest = PetscMax(largest, shapes[k]);
         else if (shapes[k] >= largest - SAME_POINT)
-          smallest = PetscMin(
-              smallest, GapAt(data, nodes[k], nodes, patch, segment, segments->face_nodes, &faces[segment->partner], segment->polygon[v]));
+          smallest = PetscMin(smallest, GapAt(&surface->data, normal, nodes, patch, segment, segments->face_nodes, &faces[segment->partner],
+                                              segment->polygon[v]));
       }
     }
   return smallest;
@@ -191,14 +205,16 @@ static PetscReal GapAtEnd(const SurfaceData *data, PetscInt k, const PetscInt no
 
 /* The closest points of the partner near the nodes of a face, along the normals of these. Of plane faces they are among the corners of the
    covered parts. */
-static void FindLowest(const SurfaceData *data, const PetscInt nodes[], const Patch *patch, const Segments *segments, PetscInt begin,
-                       PetscInt end, const Face faces[], PetscReal lowest[])
+static void FindLowest(Surface surface, const PetscInt nodes[], const Patch *patch, const Segments *segments, PetscInt begin, PetscInt end,
+                       const Face faces[], PetscReal lowest[])
 {
+  const SurfaceData *data = &surface->data;
+
   for (PetscInt i = begin; i < end; i++) {
     const Segment *segment = &segments->list[i];
 
     for (PetscInt v = 0; v < segment->n; v++) {
-      PetscReal own[4], partner[4], apart[3] = {0};
+      PetscReal own[4], partner[4], apart[3] = {0}, normal[3];
 
       FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, segment->polygon[v], own);
       FaceShapes(segments->face_nodes, (const PetscReal(*)[2])segment->partner_corners, segment->polygon[v], partner);
@@ -206,16 +222,19 @@ static void FindLowest(const SurfaceData *data, const PetscInt nodes[], const Pa
         for (PetscInt j = 0; j < segments->face_nodes; j++) apart[d] += partner[j] * faces[segment->partner].x[j][d];
         for (PetscInt k = 0; k < patch->n; k++) apart[d] -= own[k] * data->positions[3 * nodes[k] + d];
       }
-      for (PetscInt k = 0; k < patch->n; k++)
-        if (own[k] > NEAR_NODE) lowest[nodes[k]] = PetscMin(lowest[nodes[k]], Dot(data->normals + 3 * nodes[k], apart));
+      for (PetscInt k = 0; k < patch->n; k++) {
+        if (own[k] <= NEAR_NODE) continue;
+        GapNormal(surface, segments, nodes[k], &faces[segment->partner], normal);
+        lowest[nodes[k]] = PetscMin(lowest[nodes[k]], Dot(normal, apart));
+      }
     }
   }
 }
 
 /* Integrates over the segments `begin` to `end` - 1, which all belong to one Dirichlet face */
 static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[],
-                                    const PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscReal lowest[], PetscInt *n_shares,
-                                    Share shares[], PetscMPIInt owners[])
+                                    const PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscReal lowest[], PetscReal seen[],
+                                    PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
 {
   const PetscInt n = surface->data.face_nodes, f = segments->list[begin].face, n_partner = segments->face_nodes,
                  *nodes = surface->data.faces + f * n;
@@ -231,19 +250,24 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
     SetUpPatch(surface, f, marks, &patch);
     for (PetscInt i = begin; i < end; i++) IntegrateSegment(&patch, &segments->list[i], n_partner, cross[i - begin]);
     ComputeDual(&patch, dual);
-    FindLowest(&surface->data, nodes, &patch, segments, begin, end, faces, lowest);
+    FindLowest(surface, nodes, &patch, segments, begin, end, faces, lowest);
     for (PetscInt k = 0; k < n; k++)
       if (marks[nodes[k]] == MARK_BEYOND)
-        ends[nodes[k]] = PetscMin(ends[nodes[k]], GapAtEnd(&surface->data, k, nodes, &patch, segments, begin, end, faces));
+        ends[nodes[k]] = PetscMin(ends[nodes[k]], GapAtEnd(surface, k, nodes, &patch, segments, begin, end, faces));
   }
   for (PetscInt k = 0; k < n; k++) lumped[nodes[k]] += patch.lumped[k];
   for (PetscInt i = begin; i < end; i++) {
-    PetscReal values[4][4] = {{0}};
+    const Face *partner      = &faces[segments->list[i].partner];
+    PetscReal   values[4][4] = {{0}}, weights[4] = {0};
 
     for (PetscInt k = 0; k < n; k++)
       for (PetscInt l = 0; l < n; l++)
         for (PetscInt j = 0; j < n_partner; j++) values[k][j] += dual[k][l] * cross[i - begin][l][j];
-    AddShares(surface, f, n_partner, &faces[segments->list[i].partner], values, n_shares, shares, owners);
+    for (PetscInt k = 0; k < n; k++) {
+      for (PetscInt j = 0; j < n_partner; j++) weights[k] += cross[i - begin][k][j];
+      for (PetscInt d = 0; d < 3; d++) seen[3 * nodes[k] + d] += weights[k] * partner->normal[d];
+    }
+    AddShares(surface, segments->guards, f, n_partner, partner, values, weights, n_shares, shares, owners);
   }
   PetscCall(PetscFree(cross));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -251,10 +275,11 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
 
 /* Integrates over all that lies opposite, at most `ahead` before and `behind` behind the Dirichlet side [m]. For each node that this rank
    has: `marks`, what lies opposite; `lumped`, its D_i, summed over all ranks if this rank owns the node; `ends`, the gap where the partner
-   ends, if this rank owns the node and it lies beyond that end; `lowest`, the gap of the partner's closest point near the node. `shares`
+   ends, if this rank owns the node and it lies beyond that end; `lowest`, the gap of the partner's closest point near the node; `seen`, the
+   integral of its function times the normal of the partner, if this rank owns the node. `shares`
    are the M_ij of the rows of this rank, in pieces; free with PetscFree(). */
 PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal behind, PetscInt marks[], PetscReal lumped[],
-                                 PetscReal ends[], PetscReal lowest[], PetscInt *n_shares, Share *shares[])
+                                 PetscReal ends[], PetscReal lowest[], PetscReal seen[], PetscInt *n_shares, Share *shares[])
 {
   Surface      dirichlet = transfer->dirichlet;
   Segments     segments  = {.ahead = ahead, .behind = behind, .guards = transfer->guards, .face_nodes = transfer->neumann->data.face_nodes};
@@ -277,12 +302,15 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   PetscCall(PetscSFBcastEnd(dirichlet->sf, MPIU_INT, marks, marks, MPI_REPLACE));
   PetscCall(PetscMalloc2(segments.n * 16, &mine, segments.n * 16, &owners));
   PetscCall(PetscArrayzero(lumped, dirichlet->data.n_nodes));
+  PetscCall(PetscArrayzero(seen, 3 * dirichlet->data.n_nodes));
   for (PetscInt begin = 0, end; begin < segments.n; begin = end) {
     for (end = begin + 1; end < segments.n && segments.list[end].face == segments.list[begin].face;) end++;
-    PetscCall(IntegrateFace(dirichlet, &segments, begin, end, faces, marks, lumped, ends, lowest, &n_mine, mine, owners));
+    PetscCall(IntegrateFace(dirichlet, &segments, begin, end, faces, marks, lumped, ends, lowest, seen, &n_mine, mine, owners));
   }
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
+  PetscCall(PetscSFReduceBegin(dirichlet->vectors, MPIU_REAL, seen, seen, MPIU_SUM));
+  PetscCall(PetscSFReduceEnd(dirichlet->vectors, MPIU_REAL, seen, seen, MPIU_SUM));
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, lowest, lowest, MPIU_MIN));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));

@@ -118,6 +118,12 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
   }
 }
 
+/* A node of the partner on a sharp edge has no normal here: its faces count as flat */
+static PetscBool IsOnEdge(const PetscReal normal[])
+{
+  return (PetscBool)(normal[0] == 0 && normal[1] == 0 && normal[2] == 0);
+}
+
 /* How far a bend counts, from 1 to 0, by the cosine of the angle of the normals */
 PetscReal RowBendCounts(PetscReal cosine)
 {
@@ -155,6 +161,7 @@ PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscRea
   for (PetscInt j = 0; j < n; j++) {
     PetscReal along = 0, plane = 0, cosine = 0;
 
+    if (IsOnEdge(normals[j])) continue;
     for (PetscInt d = 0; d < dim; d++) {
       along += normal[d] * (partners[j][d] - x[d]);
       plane += normals[j][d] * (partners[j][d] - x[d]);

@@ -20,7 +20,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
   PetscCall(PetscMemzero(set, sizeof(*set)));
   PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1,
                          &set->offsets));
-  PetscCall(PetscCalloc3(n, &set->rest, n, &set->bow, n, &set->dip));
+  PetscCall(PetscCalloc4(n, &set->rest, n, &set->bow, n, &set->dip, 3 * n, &set->partner));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -29,7 +29,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree7(set->opposite, set->beyond, set->changed, set->gap, set->area, set->normals, set->offsets));
-  PetscCall(PetscFree3(set->rest, set->bow, set->dip));
+  PetscCall(PetscFree4(set->rest, set->bow, set->dip, set->partner));
   PetscCall(PetscFree2(set->shares, set->columns));
   PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -50,7 +50,10 @@ static int CompareShares(const void *a, const void *b, void *context)
   (void)context;
   if (left->row != right->row) return left->row < right->row ? -1 : 1;
   if (left->dof != right->dof) return left->dof < right->dof ? -1 : 1;
-  return left->value < right->value ? -1 : left->value > right->value;
+  if (left->value != right->value) return left->value < right->value ? -1 : 1;
+  for (PetscInt d = 0; d < 3; d++)
+    if (left->slope[d] != right->slope[d]) return left->slope[d] < right->slope[d] ? -1 : 1;
+  return 0;
 }
 
 /* Sums the pieces of each weight and divides by D_i. The row of a node of which too little is covered has no weights. */
@@ -68,14 +71,22 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
     while (share < n_shares && shares[share].row == row) {
       Share sum = shares[share];
 
+      PetscReal slope = 0;
+
       sum.value = sum.goal = 0;
+      for (PetscInt d = 0; d < 3; d++) sum.slope[d] = 0;
       for (; share < n_shares && shares[share].row == row && shares[share].dof == sum.dof; share++) {
         sum.value += shares[share].value;
         sum.goal += shares[share].goal;
+        for (PetscInt d = 0; d < 3; d++) sum.slope[d] += shares[share].slope[d];
       }
       sum.value /= lumped[row];
       sum.goal /= lumped[row];
-      if (covered && (PetscAbsReal(sum.value) > PRUNE || PetscAbsReal(sum.goal) > PRUNE)) set->shares[count++] = sum;
+      for (PetscInt d = 0; d < 3; d++) {
+        sum.slope[d] /= lumped[row];
+        slope += PetscAbsReal(sum.slope[d]);
+      }
+      if (covered && (PetscAbsReal(sum.value) > PRUNE || PetscAbsReal(sum.goal) > PRUNE || slope > 0)) set->shares[count++] = sum;
     }
     set->opposite[row] = (PetscBool)(count > set->offsets[row]);
   }
@@ -135,30 +146,47 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a node lies on a sharp edge, and what it sees of the partner is smooth: then its row is along the mean normal of that. Else it
+   keeps the mean normal of its own faces, as where a corner meets a corner. Rows of ties, which have no guards, keep it too. */
+static PetscBool SeesSmooth(Transfer transfer, PetscInt node, const PetscReal seen[], PetscReal area, PetscReal normal[])
+{
+  PetscReal       mean[3] = {seen[0], seen[1], seen[2]};
+  const PetscBool smooth  = (PetscBool)(transfer->guards && transfer->dirichlet->sharp[node] && Normalize(mean) > SHARP_COSINE * area);
+
+  for (PetscInt d = 0; d < 3; d++) normal[d] = smooth ? mean[d] : 0;
+  if (smooth) SurfaceMirrorNormal(transfer->dirichlet, node, normal);
+  return smooth;
+}
+
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes
    that touch, and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
-   touches when the end of the partner does, not before or after. `lowest`: the gap of the partner's closest point near the node [m]. */
+   touches when the end of the partner does, not before or after. `lowest`: the gap of the partner's closest point near the node [m].
+   `columns`: normals of the partner's nodes, and the same without those on sharp edges. */
 static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[],
-                                const PetscReal column_normals[], PetscReal end, PetscReal lowest, PetscReal ahead, PetscReal behind,
-                                RowSet *set)
+                                const PetscReal *columns[2], PetscReal end, PetscReal lowest, const PetscReal seen[], PetscReal ahead,
+                                PetscReal behind, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal  **normals, **partners;
+  const PetscReal  **normals, **smooth, **partners;
   PetscReal *weights, gap, present, bulge, normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   set->gap[row] = PETSC_MAX_REAL;
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc3(n, &weights, n, &partners, n, &normals));
+  PetscCall(PetscMalloc4(n, &weights, n, &partners, n, &normals, n, &smooth));
   for (PetscInt j = 0; j < n; j++) {
     weights[j]  = set->shares[first + j].goal;
     partners[j] = x + 3 * set->columns[first + j];
-    normals[j]  = column_normals + 3 * set->columns[first + j];
+    normals[j]  = columns[0] + 3 * set->columns[first + j];
+    smooth[j]   = columns[1] + 3 * set->columns[first + j];
   }
-  if (transfer->curved) RowNormal(dim, n, transfer->share, data->normals + 3 * row, normals, weights, normal);
+  if (SeesSmooth(transfer, row, seen, set->area[row], set->partner + 3 * row)) {
+    (void)RowPartnerNormal(transfer->dirichlet, set, row, x, normal); /* as it is found again later, from slopes */
+    for (PetscInt d = 0; d < 3; d++) normal[d] = -normal[d];
+  } else if (transfer->curved) RowNormal(dim, n, transfer->share, data->normals + 3 * row, smooth, weights, normal);
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   for (PetscInt pass = 0; pass < 2; pass++)
     RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
@@ -174,7 +202,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     present += normal[d] * (now - data->positions[3 * row + d]);
   }
   set->bow[row] = RowBow(dim, n, partners, normals, weights);
-  bulge         = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, normals, weights) : 0;
+  bulge         = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, smooth, weights) : 0;
   if (!set->beyond[row]) {
     gap -= bulge;
     present -= bulge;
@@ -183,7 +211,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     set->shares[first + j].goal = weights[j];
     if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
   }
-  PetscCall(PetscFree3(weights, partners, normals));
+  PetscCall(PetscFree4(weights, partners, normals, smooth));
   if (transfer->goes_on[row]) PetscCall(GoOn(transfer, row, x, reference, end, &gap, &present, set));
   else if (set->beyond[row]) {
     gap += end - present;
@@ -222,6 +250,7 @@ static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt
       all[count] = old->shares[i];
       all[count].value *= lumped[row];
       all[count].goal = transfer->keep[row] ? all[count].goal * lumped[row] : 0;
+      for (PetscInt d = 0; d < 3; d++) all[count].slope[d] *= transfer->keep[row] ? lumped[row] : 0;
       count++;
     }
   }
@@ -240,6 +269,7 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
   set->bow[row]      = transfer->rows.bow[row];
   set->dip[row]      = transfer->rows.dip[row];
   for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
+  for (PetscInt d = 0; d < 3; d++) set->partner[3 * row + d] = transfer->rows.partner[3 * row + d];
 }
 
 /* Whether a row is the same in both sets, but for round-off */
@@ -292,32 +322,38 @@ static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
-  PetscReal         *lumped, *ends, *lowest, *x, *reference, *normals, behind;
+  PetscReal         *lumped, *ends, *lowest, *seen, *x, *reference, *normals, *smooth, behind;
   PetscInt           n_shares, *marks;
   Share             *shares;
   RowSet             set;
 
   PetscFunctionBegin;
   PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, &behind));
-  PetscCall(PetscMalloc4(dirichlet->n_nodes, &marks, dirichlet->n_nodes, &lumped, dirichlet->n_nodes, &ends, dirichlet->n_nodes, &lowest));
-  PetscCall(TransferIntegrate(transfer, near, behind, marks, lumped, ends, lowest, &n_shares, &shares));
+  PetscCall(PetscMalloc5(dirichlet->n_nodes, &marks, dirichlet->n_nodes, &lumped, dirichlet->n_nodes, &ends, dirichlet->n_nodes, &lowest,
+                         3 * dirichlet->n_nodes, &seen));
+  PetscCall(TransferIntegrate(transfer, near, behind, marks, lumped, ends, lowest, seen, &n_shares, &shares));
   PetscCall(KeepShares(transfer, lumped, &n_shares, &shares));
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &set));
   PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
   PetscCall(PetscFree(shares));
   PetscCall(RowSetConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
-  PetscCall(PetscMalloc3(3 * set.n_columns, &x, 3 * set.n_columns, &reference, 3 * set.n_columns, &normals));
+  PetscCall(PetscMalloc4(3 * set.n_columns, &x, 3 * set.n_columns, &reference, 3 * set.n_columns, &normals, 3 * set.n_columns, &smooth));
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, transfer->neumann->smooth, smooth, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, transfer->neumann->smooth, smooth, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
   PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
   PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
   for (PetscInt row = 0; row < transfer->n; row++) {
     set.beyond[row] = (PetscBool)(transfer->keep[row] ? transfer->rows.beyond[row] : marks[row] == MARK_BEYOND);
+    set.area[row]   = lumped[row];
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
-    else PetscCall(FinishRow(transfer, row, x, reference, normals, ends[row], lowest[row], near, behind, &set));
-    set.area[row] = set.opposite[row] ? lumped[row] : 0;
+    else
+      PetscCall(FinishRow(transfer, row, x, reference, (const PetscReal *[2]){normals, smooth}, ends[row], lowest[row], seen + 3 * row,
+                          near, behind, &set));
+    if (!set.opposite[row]) set.area[row] = 0;
   }
   RowSetFindMostDip(transfer->n, &set);
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
@@ -325,8 +361,8 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   transfer->rows = set;
   PetscCall(TransferAllocateColumns(transfer));
   PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
-  PetscCall(PetscFree3(x, reference, normals));
-  PetscCall(PetscFree4(marks, lumped, ends, lowest));
+  PetscCall(PetscFree4(x, reference, normals, smooth));
+  PetscCall(PetscFree5(marks, lumped, ends, lowest, seen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,7 +21,7 @@ static PetscErrorCode GetVertices(DM dm, PetscInt point, PetscInt *n, PetscInt v
 }
 
 /* Marks the vertices of some faces with 1, on all ranks that have these vertices. `marks` has an entry for each point of the mesh. */
-static PetscErrorCode MarkVertices(DM dm, PetscInt n_faces, const PetscInt points[], PetscSF sf, PetscInt marks[])
+PetscErrorCode SurfaceMarkVertices(DM dm, PetscInt n_faces, const PetscInt points[], PetscSF sf, PetscInt marks[])
 {
   PetscInt start;
 
@@ -222,11 +222,13 @@ PetscErrorCode SurfaceSetUpNodes(Surface surface)
   PetscCall(DMPlexGetChart(surface->dm, &start, &end));
   PetscCheck(!start, PETSC_COMM_SELF, PETSC_ERR_PLIB, "The points of a mesh begin at 0");
   PetscCall(PetscCalloc1(end, &numbers));
-  PetscCall(MarkVertices(surface->dm, surface->data.n_faces, surface->points, points, numbers));
+  PetscCall(SurfaceMarkVertices(surface->dm, surface->data.n_faces, surface->points, points, numbers));
   PetscCall(NumberNodes(surface, numbers));
   PetscCall(ConnectNodes(surface, points, numbers));
   PetscCall(SetUpFaces(surface, numbers));
   PetscCall(PetscFree(numbers));
+  PetscCall(PetscCalloc2(surface->data.n_nodes, &surface->sharp, 3 * surface->data.n_nodes, &surface->smooth));
+  PetscCall(SurfaceFindEdges(surface, points));
   PetscCall(SurfaceUpdate(surface, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -241,6 +243,7 @@ PetscErrorCode SurfaceClearNodes(Surface surface)
   PetscCall(PetscSFDestroy(&surface->vectors));
   PetscCall(PetscFree4(data->vertices, data->dofs, surface->owner_index, surface->owner_rank));
   PetscCall(PetscFree4(data->faces, surface->signs, data->face_normals, data->face_areas));
+  PetscCall(PetscFree2(surface->sharp, surface->smooth));
   PetscCall(PetscFree5(data->reference, data->positions, data->normals, data->areas, data->sizes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

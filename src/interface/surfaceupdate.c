@@ -67,6 +67,22 @@ static void AddFaces(Surface surface)
   }
 }
 
+/* Normals, areas and sizes from the ranks that own the nodes */
+static PetscErrorCode ShareNodes(Surface surface)
+{
+  SurfaceData *data = &surface->data;
+  PetscSF      sf = surface->sf, vectors = surface->vectors;
+
+  PetscFunctionBegin;
+  PetscCall(PetscSFBcastBegin(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SurfaceSetRound - normals of nodes are those of the round surface through them
 
@@ -136,12 +152,8 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
     if (data->reference[3 * i] <= surface->on_axis) data->normals[3 * i] = 0;
   SurfaceMirrorNormals(surface);
   for (PetscInt i = 0; i < data->n_owned; i++) (void)Normalize(data->normals + 3 * i);
-  if (!surface->divided) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSFBcastBegin(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));
-  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
-  PetscCall(PetscSFBcastBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(vectors, MPIU_REAL, data->normals, data->normals, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->areas, data->areas, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPI_REPLACE));
+  if (surface->divided) PetscCall(ShareNodes(surface));
+  for (PetscInt i = 0; i < data->n_nodes; i++)
+    for (PetscInt d = 0; d < 3; d++) surface->smooth[3 * i + d] = surface->sharp[i] ? 0 : data->normals[3 * i + d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

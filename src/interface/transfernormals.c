@@ -66,8 +66,12 @@ void TransferPresentNormal(Transfer transfer, PetscInt row, PetscReal normal[])
   const RowSet    *set   = &transfer->rows;
   const PetscInt   first = set->offsets[row], n = set->offsets[row + 1] - first;
   const PetscReal *normals[FOLLOW_MAX];
-  PetscReal        weights[FOLLOW_MAX];
+  PetscReal        weights[FOLLOW_MAX], partner[3];
 
+  if (transfer->neumann && RowPartnerNormal(transfer->dirichlet, set, row, transfer->column_x, partner)) {
+    for (PetscInt d = 0; d < transfer->dim; d++) normal[d] = -partner[d];
+    return;
+  }
   if (!transfer->curved) {
     for (PetscInt d = 0; d < transfer->dim; d++) normal[d] = transfer->dirichlet->data.normals[3 * row + d];
     return;
@@ -108,7 +112,10 @@ PetscErrorCode TransferGetTilts(Transfer transfer, PetscReal tilts[])
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   PetscCall(PetscArrayzero(tilts, transfer->n));
   if (transfer->idle || dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  if (transfer->neumann) PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+  if (transfer->neumann) {
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
+  }
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscReal *normal = transfer->rows.normals + dim * row;
     PetscReal        present[3], distance, chord = 0;

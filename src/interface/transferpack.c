@@ -5,8 +5,8 @@
 #include "interfaceimpl.h"
 #include "transfervisit.h"
 
-#define N_ROW     40 /* numbers of a node of the first side: key, 37 more */
-#define N_SHARE   8  /* key of its row, position of the partner's node, weight and goal */
+#define N_ROW     43 /* numbers of a node of the first side: key, 40 more */
+#define N_SHARE   11 /* key of its row, position of the partner's node, weight, goal and slope */
 #define N_PARTNER 12 /* key, place at the last build, place and motion at the last update */
 
 /* One node of the first side; `packed` behind its key */
@@ -24,6 +24,7 @@ static void CopyRow(Transfer transfer, PetscInt i, PetscBool back, PetscReal *pa
   TablesCopyReals(back, 1, &rows->rest[i], &packed);
   TablesCopyReals(back, dim, rows->normals + dim * i, &packed);
   packed += 3 - dim;
+  TablesCopyReals(back, 3, rows->partner + 3 * i, &packed);
   TablesCopyReals(back, 3, transfer->built_x[0] + 3 * i, &packed);
   TablesCopyReals(back, 3, transfer->built_slip + 3 * i, &packed);
   TablesCopyReals(back, 1, &transfer->slip[i], &packed);
@@ -73,6 +74,7 @@ static PetscErrorCode PackShares(Transfer transfer, const char pair[], Tables ta
       PetscCall(PetscArraycpy(packed + N_SHARE * j + 3, transfer->column_reference + 3 * rows->columns[j], 3));
       packed[N_SHARE * j + 6] = rows->shares[j].value;
       packed[N_SHARE * j + 7] = rows->shares[j].goal;
+      PetscCall(PetscArraycpy(packed + N_SHARE * j + 8, rows->shares[j].slope, 3));
     }
   PetscCall(Name(pair, "shares", name, sizeof(name)));
   PetscCall(TablesAdd(tables, name, n, N_SHARE, packed));
@@ -184,12 +186,14 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
     PetscCall(TablesFind(owners, "owners", packed + N_SHARE * j + 3, &node));
     PetscCall(TablesGet(owners, "owners", 6, &n_owners, &owner));
     owner += 6 * node;
-    shares[count++] = (Share){.row         = row,
-                              .owner_rank  = (PetscMPIInt)owner[3],
-                              .owner_index = (PetscInt)owner[4],
-                              .dof         = (PetscInt)owner[5],
-                              .value       = packed[N_SHARE * j + 6],
-                              .goal        = packed[N_SHARE * j + 7]};
+    shares[count] = (Share){.row         = row,
+                            .owner_rank  = (PetscMPIInt)owner[3],
+                            .owner_index = (PetscInt)owner[4],
+                            .dof         = (PetscInt)owner[5],
+                            .value       = packed[N_SHARE * j + 6],
+                            .goal        = packed[N_SHARE * j + 7]};
+    PetscCall(PetscArraycpy(shares[count].slope, packed + N_SHARE * j + 8, 3));
+    count++;
   }
   if (count > 1) PetscCall(PetscTimSort(count, shares, sizeof(Share), CompareShares, NULL));
   PetscCall(RowSetDestroy(&transfer->rows));

@@ -11,6 +11,7 @@ static PetscErrorCode CopyNumbers(PetscInt dim, PetscInt n, const RowSet *from, 
   PetscCall(PetscArraycpy(to->gap, from->gap, n));
   PetscCall(PetscArraycpy(to->area, from->area, n));
   PetscCall(PetscArraycpy(to->normals, from->normals, dim * n));
+  PetscCall(PetscArraycpy(to->partner, from->partner, 3 * n));
   PetscCall(PetscArraycpy(to->rest, from->rest, n));
   PetscCall(PetscArraycpy(to->bow, from->bow, n));
   PetscCall(PetscArraycpy(to->dip, from->dip, n));

@@ -82,7 +82,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
   *slipped = PETSC_FALSE;
   if (transfer->neumann) {
     PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.normals, transfer->column_normals));
+    PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
     transfer->columns_present = PETSC_TRUE;
   }
   for (PetscInt row = 0; row < transfer->n; row++) {
@@ -203,6 +203,26 @@ PetscErrorCode TransferSleep(Transfer transfer)
 }
 
 /*@
+  TransferLayAgain - has the next `TransferUpdate()` build all rows, however little the surfaces have moved
+
+  Logically Collective
+
+  Input Parameter:
+. transfer - the `Transfer`
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferUpdate()`
+@*/
+PetscErrorCode TransferLayAgain(Transfer transfer)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  transfer->anew = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferBeginUpdate - the part of `TransferUpdate()` before ranks add up motions, which callers do for many transfers at once
 
   Not Collective
@@ -240,9 +260,9 @@ PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neu
   transfer->columns_present = PETSC_FALSE;
   transfer->looks           = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
-  transfer->due    = (PetscBool)(!transfer->built || transfer->sleeps || near > transfer->built_near);
+  transfer->due    = (PetscBool)(!transfer->built || transfer->sleeps || transfer->anew || near > transfer->built_near);
   transfer->looks  = (PetscBool)(!transfer->due && transfer->dim > 1);
-  transfer->sleeps = PETSC_FALSE;
+  transfer->sleeps = transfer->anew = PETSC_FALSE;
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
   if (!transfer->looks || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);

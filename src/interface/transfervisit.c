@@ -23,6 +23,7 @@ static PetscErrorCode VisitRows(Transfer transfer, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "gap", n, rows->gap));
   PetscCall(CheckpointVisitReals(checkpoint, "area", n, rows->area));
   PetscCall(CheckpointVisitReals(checkpoint, "normals", dim * n, rows->normals));
+  PetscCall(CheckpointVisitReals(checkpoint, "partner", 3 * n, rows->partner));
   PetscCall(CheckpointVisitReals(checkpoint, "bow", n, rows->bow));
   PetscCall(CheckpointVisitReals(checkpoint, "dip", n, rows->dip));
   RowSetFindMostDip(n, rows);

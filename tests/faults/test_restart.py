@@ -68,6 +68,10 @@ VARIANTS |= {
     "gap rate, dissipation, mass not diagonal": BLOCKS + "-contact_constraint gap_rate -left_ts_alpha_radius 0.8 -left_mass_type consistent -right_mass_type averaged",
     "sparse factors": BLOCKS + EXPLICIT + NONLINEAR + "-schwarz_dense_limit 0",
     "conjugate gradients, sliding": BLOCKS + "-schwarz_dense_limit 0 -left_initial_velocity 20,20",  # what preconditions is made again as rows follow
+    "edge, turned": BLOCKS + NONLINEAR + "-contact_facing false -left_rotate 12 -right_translate 0.98,0.1",
+    "curved obstacle": "-bodies left -obstacles drum -drum_obstacle_type cylinder -drum_point 1.5,0.4 -drum_radius 0.45 -contact_pairs left:drum "
+    "-contact_law coulomb -contact_friction 0.3 -left_dm_plex_box_faces 8,8 -left_density 1000 -left_youngs_modulus 1e9 -left_poissons_ratio 0.25 "
+    "-left_initial_velocity 60,20 -time_step 2e-5 -time_end 2.4e-3",
     "sweeps on bodies": BLOCKS + "-schwarz_condense 0 -schwarz_snes_type anderson -schwarz_transmission robin",
     "plastic": BLOCKS + "-left_material_type j2 -left_yield_stress 5e6 -left_hardening_modulus 1e8 -time_end 8e-4",
     "plastic, explicit": TAYLOR + "-rod_mass_redistribute true",
@@ -290,13 +294,14 @@ def test_other_ranks_amid_contact(run_in, folder, case):
 # What nonlinear bodies remember of earlier steps goes along: factors, compliance, secants; blocks that meet off-centre
 RANKS_NONLINEAR = {
     "substeps": (BLOCKS + NONLINEAR + SUBSTEPS, 1, 2, 0.55),
+    "edge, turned": (VARIANTS["edge, turned"], 1, 3, 0.55),
     "implicit": (BLOCKS + NONLINEAR, 2, 3, 0.75),
     "explicit": (BLOCKS + NONLINEAR + EXPLICIT, 3, 1, 0.55),
     "multipliers, cut steps": (BLOCKS + NONLINEAR + "-contact_type lagrange -time_step 4e-5", 1, 2, 0.55),
 }
 
 
-@pytest.mark.parametrize("case", ["substeps", *long("explicit", "multipliers, cut steps"), *validate("implicit")])
+@pytest.mark.parametrize("case", ["substeps", *long("edge, turned", "explicit", "multipliers, cut steps"), *validate("implicit")])
 def test_other_ranks_nonlinear(run_in, folder, case):
     """At most 8e-13 was seen. A compliance and secants that are found anew made it 4.6e-10 (cut steps) to 4.5e-9 (implicit) on one rank and two."""
     goes_on(run_in, folder, *RANKS_NONLINEAR[case], 1e-11)

@@ -61,6 +61,7 @@ typedef struct {
   PetscBool      keeps_mass;   /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool      by_force;     /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
   PetscBool      rests;        /* one of its bodies has no inertia */
+  PetscBool      ahead;        /* its rows are laid where the last attempt at the step has ended, see src/contact/rows/layahead.c */
   PetscInt       intervals;    /* of the controller step, between whose ends its force is linear */
   PetscBool      own_friction; /* it has a coefficient of friction of its own */
   PetscReal      friction;     /* that */
@@ -431,6 +432,7 @@ typedef struct {
   PetscReal     *rest;         /* to a body */
   int           *updated;      /* per pair: what has become of its rows, see pairsupdate.c */
   PetscReal     *motion;       /* per pair: how far its surfaces have moved, see pairsupdate.c */
+  PetscReal     *off;          /* per pair: how far planes of nodes in contact are off its obstacle, see layahead.c */
   BodyCondition *conditions;   /* to a body */
 } ContactWork;
 
@@ -458,6 +460,7 @@ struct _p_Contact {
   ContactBodyRows  *body_rows;  /* per body */
   Mat              *interfaces; /* per body: its rows */
   Mat              *spares;     /* the same of other steps, to be filled next */
+  Vec              *ends;       /* per body: where the last attempt at the step has ended, if rows are laid there */
   ContactNodes      nodes;
   ContactRows       rows;
   ContactTurns      turns;

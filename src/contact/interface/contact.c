@@ -157,6 +157,41 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* One attempt at a step. `pass`: how often it has been made with rows laid where it ended; `off`, `again`: see ContactLayAhead() */
+static PetscErrorCode MakeOnce(Contact contact, PetscInt pass, PetscReal *off, PetscBool *again)
+{
+  PetscBool logged;
+
+  PetscFunctionBegin;
+  *again = PETSC_FALSE;
+  StepFailureClear(&contact->attempt.failure);
+  PetscCall(ContactBeginEnergy(contact));
+  PetscCall(ContactNoteLevel(contact));
+  PetscCall(StageBegin(STAGE_ROWS, &logged));
+  PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
+  PetscCall(ContactBond(contact));
+  PetscCall(ContactUpdateRows(contact));
+  ContactHoldTogether(contact);
+  PetscCall(ContactDriveFriction(contact));
+  if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
+  PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
+  PetscCall(StageEnd(logged));
+  PetscCall(StageBegin(STAGE_SWEEPS, &logged));
+  PetscCall(ContactTurn(contact, NULL));
+  if (contact->rows.n_all) {
+    PetscCall(ContactMakeStep(contact));
+    if (!ContactFailed(contact)) PetscCall(ContactLayAhead(contact, pass, off, again));
+    if (!ContactFailed(contact) && !*again) PetscCall(ContactLimitEnergy(contact));
+  } else { /* nothing can touch */
+    PetscBool penetrating;
+
+    PetscCall(ContactIntegrateFree(contact, &penetrating));
+    PetscCall(ContactCompleteBodies(contact));
+  }
+  PetscCall(StageEnd(logged));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactStep - advances all bodies from their saved states through one controller step, or one part of it, under contact
 
@@ -174,37 +209,25 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
 @*/
 PetscErrorCode ContactStep(Contact contact)
 {
-  PetscBool logged;
+  PetscReal off = 0;
+  PetscBool again;
+  PetscInt  pass = 0;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
-  StepFailureClear(&contact->attempt.failure);
   contact->counts.sweeps = 0;
-  PetscCall(ContactBeginEnergy(contact));
-  PetscCall(ContactNoteLevel(contact));
-  PetscCall(StageBegin(STAGE_ROWS, &logged));
-  PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
-  PetscCall(ContactBond(contact));
-  PetscCall(ContactUpdateRows(contact));
-  ContactHoldTogether(contact);
-  PetscCall(ContactDriveFriction(contact));
-  if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
-  PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
-  PetscCall(StageEnd(logged));
-  PetscCall(StageBegin(STAGE_SWEEPS, &logged));
-  PetscCall(ContactTurn(contact, NULL));
-  if (contact->rows.n_all) {
-    PetscCall(ContactMakeStep(contact));
-    if (!ContactFailed(contact)) PetscCall(ContactLimitEnergy(contact));
-  } else { /* nothing can touch */
-    PetscBool penetrating;
-
-    PetscCall(ContactIntegrateFree(contact, &penetrating));
-    PetscCall(ContactCompleteBodies(contact));
+  ContactForgetAhead(contact);
+  PetscCall(MakeOnce(contact, pass++, &off, &again));
+  while (again) {
+    PetscCall(ContactStepBack(contact));
+    PetscCall(MakeOnce(contact, pass++, &off, &again));
+    if (!ContactFailed(contact)) continue;
+    PetscCall(ContactStepBack(contact)); /* with the rows of its start it went through */
+    ContactForgetAhead(contact);
+    PetscCall(MakeOnce(contact, PETSC_INT_MAX, &off, &again));
   }
   contact->counts.total_sweeps += contact->counts.sweeps;
-  PetscCall(StageEnd(logged));
   PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
   if (!contact->attempt.returns) PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -369,6 +392,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
     PetscCall(BodyDestroy(&c->bodies[b]));
     if (c->interfaces) PetscCall(MatDestroy(&c->interfaces[b]));
     if (c->spares) PetscCall(MatDestroy(&c->spares[b]));
+    if (c->ends) PetscCall(VecDestroy(&c->ends[b]));
     if (c->nodes.dofs) PetscCall(PetscFree(c->nodes.dofs[b]));
   }
   PetscCall(ContactDestroyRows(c));
@@ -377,6 +401,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
   PetscCall(PetscFree6(c->spares, c->work.hands_over, c->work.traces, c->work.counts, c->work.words, c->work.left_out));
+  PetscCall(PetscFree(c->ends));
   PetscCall(PetscFree(c->work.told));
   PetscCall(PetscFree(c->work.boxes));
   PetscCall(ContactDestroyResultants(c));

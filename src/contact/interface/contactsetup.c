@@ -10,6 +10,7 @@ static PetscErrorCode AllocateBodies(Contact contact)
   const PetscInt n = contact->n_bodies;
 
   PetscFunctionBegin;
+  PetscCall(PetscCalloc1(n, &contact->ends));
   PetscCall(PetscCalloc6(n, &contact->spares, n, &contact->work.hands_over, 6 * n, &contact->work.traces, BODY_CONDITION_COUNTS * n,
                          &contact->work.counts, n, &contact->work.words, n, &contact->work.left_out));
   PetscCall(PetscCalloc7(2 * n, &contact->work.speeds, n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n,

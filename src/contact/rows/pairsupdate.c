@@ -114,7 +114,9 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscReal near, Pe
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(GetDisplacements(contact, pair, u));
+  if (pair->ahead) PetscCall(SurfaceUpdate(pair->surfaces[0], contact->ends[pair->body[0]]));
   PetscCall(TransferEndUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, largest, rebuilt));
+  if (pair->ahead) PetscCall(SurfaceUpdate(pair->surfaces[0], u[0])); /* which other pairs may have too */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

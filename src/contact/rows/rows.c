@@ -47,8 +47,8 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->held.heir, n, &contact->held.merged_gap, n, &contact->work.tilts));
   PetscCall(PetscCalloc7(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
                          &contact->rows.followed, n, &contact->work.moved, n, &contact->work.flags, n, &contact->work.rest));
-  PetscCall(PetscCalloc2(contact->n_pairs, &contact->work.updated, (2 * TRANSFER_SUMS + TRANSFER_LARGEST) * contact->n_pairs,
-                         &contact->work.motion));
+  PetscCall(PetscCalloc3(contact->n_pairs, &contact->work.updated, (2 * TRANSFER_SUMS + TRANSFER_LARGEST) * contact->n_pairs,
+                         &contact->work.motion, contact->n_pairs, &contact->work.off));
   PetscCall(ContactSetUpSavedRows(contact));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
@@ -261,7 +261,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->held.merged_gap, contact->work.tilts));
   PetscCall(PetscFree7(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed,
                        contact->work.moved, contact->work.flags, contact->work.rest));
-  PetscCall(PetscFree2(contact->work.updated, contact->work.motion));
+  PetscCall(PetscFree3(contact->work.updated, contact->work.motion, contact->work.off));
   PetscCall(ContactDestroyBodyRows(contact));
   PetscCall(PetscFree(contact->ranks.visits));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));

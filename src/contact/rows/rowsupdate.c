@@ -156,6 +156,22 @@ static PetscReal RemainingShift(PetscReal shift, PetscReal size, PetscReal slip)
   return shift - PetscMin(shift + APART * size, 0) * PetscMin(1, TAKEN_BACK * slip);
 }
 
+/* Whether gaps of a pair are those of the surfaces wherever its rows are built: on obstacles, which have no facets, and without inertia, be
+   the partner static or rigid */
+static PetscErrorCode StartsAnew(Contact contact, const ContactPair *pair, PetscBool *anew)
+{
+  PetscFunctionBegin;
+  *anew = (PetscBool)(pair->obstacle || pair->rests);
+  for (PetscInt side = 0; side < 2 && *anew && !pair->obstacle; side++) {
+    PetscBool is_static, is_rigid;
+
+    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
+    PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &is_rigid));
+    *anew = (PetscBool)(is_static || is_rigid);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A row that is built again compares the faceted surfaces at other points, and its gap jumps. To close this jump within one step would be a
    blow out of nothing. So its gap is shifted: that of a row in contact such that it goes on from where it was, that of any other row that
    would begin inside the partner such that it begins at zero. The shift stays until the row is open. Between bodies without inertia there
@@ -164,13 +180,14 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair              = &contact->pairs[p];
-    PetscBool          without_inertia[] = {PETSC_TRUE, PETSC_TRUE};
+    const ContactPair *pair = &contact->pairs[p];
+    PetscBool          anew;
     TransferRows       rows;
 
-    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-      PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &without_inertia[side]));
-    if (without_inertia[0] && without_inertia[1]) continue;
+    PetscCall(StartsAnew(contact, pair, &anew));
+    for (PetscInt i = pair->begin; i < pair->end && anew; i++)
+      if (contact->rows.changed[i]) contact->rows.gap_shift[i] = 0;
+    if (anew) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscBool pushes = (PetscBool)(contact->start.active[i] && (contact->start.force[i] > 0 || !contact->options.separation));
