@@ -90,15 +90,6 @@ void FaceGradients(PetscInt n, const PetscReal x[][3], PetscReal gradients[][3])
   }
 }
 
-/* A normal of a node in planes of symmetry lies in them */
-void SurfaceMirrorNormal(Surface surface, PetscInt node, PetscReal normal[])
-{
-  if (!surface->mirrors || !surface->mirrors[node]) return;
-  for (PetscInt d = 0; d < 3; d++)
-    if (surface->mirrors[node] & (1 << d)) normal[d] = 0;
-  (void)Normalize(normal);
-}
-
 /* The outward normal of the part of the partner that a node on an edge saw when its row was built, with the partner's nodes at `x`;
    PETSC_FALSE: the row has no such part. The slopes map directions along that part to what they become. */
 PetscBool RowPartnerNormal(Surface surface, const RowSet *set, PetscInt row, const PetscReal x[], PetscReal normal[])
@@ -123,7 +114,7 @@ PetscBool RowPartnerNormal(Surface surface, const RowSet *set, PetscInt row, con
     for (PetscInt a = 0; a < dim - 1; a++)
       for (PetscInt d = 0; d < 3; d++) now[a][d] += Dot(set->shares[j].slope, frame[a]) * x[3 * set->columns[j] + d];
   Cross(now[0], now[1], normal);
-  (void)Normalize(normal);
   SurfaceMirrorNormal(surface, row, normal);
+  (void)Normalize(normal);
   return PETSC_TRUE;
 }

@@ -92,10 +92,9 @@ PetscErrorCode SurfaceSetMirrors(Surface surface, PetscInt n, const PetscInt dof
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the normals of owned nodes into their planes of symmetry; they need not have unit length */
-void SurfaceMirrorNormals(Surface surface)
+/* Puts the normal of an owned node into its planes of symmetry; it need not have unit length */
+void SurfaceMirrorNormal(Surface surface, PetscInt node, PetscReal normal[])
 {
-  for (PetscInt i = 0; i < surface->data.n_owned && surface->mirrors; i++)
-    for (PetscInt d = 0; d < surface->data.dim; d++)
-      if (surface->mirrors[i] & (1 << d)) surface->data.normals[3 * i + d] = 0;
+  for (PetscInt d = 0; d < surface->data.dim && surface->mirrors; d++)
+    if (surface->mirrors[node] & (1 << d)) normal[d] = 0;
 }

@@ -154,8 +154,10 @@ static PetscBool SeesSmooth(Transfer transfer, PetscInt node, const PetscReal se
   const PetscBool smooth  = (PetscBool)(transfer->guards && transfer->dirichlet->sharp[node] && Normalize(mean) > SHARP_COSINE * area);
 
   for (PetscInt d = 0; d < 3; d++) normal[d] = smooth ? mean[d] : 0;
-  if (smooth) SurfaceMirrorNormal(transfer->dirichlet, node, normal);
-  return smooth;
+  if (!smooth) return PETSC_FALSE;
+  SurfaceMirrorNormal(transfer->dirichlet, node, normal);
+  (void)Normalize(normal);
+  return PETSC_TRUE;
 }
 
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes

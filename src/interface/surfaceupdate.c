@@ -150,8 +150,10 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
   }
   for (PetscInt i = 0; i < data->n_owned && surface->axisymmetric; i++)
     if (data->reference[3 * i] <= surface->on_axis) data->normals[3 * i] = 0;
-  SurfaceMirrorNormals(surface);
-  for (PetscInt i = 0; i < data->n_owned; i++) (void)Normalize(data->normals + 3 * i);
+  for (PetscInt i = 0; i < data->n_owned; i++) {
+    SurfaceMirrorNormal(surface, i, data->normals + 3 * i);
+    (void)Normalize(data->normals + 3 * i);
+  }
   if (surface->divided) PetscCall(ShareNodes(surface));
   for (PetscInt i = 0; i < data->n_nodes; i++)
     for (PetscInt d = 0; d < 3; d++) surface->smooth[3 * i + d] = surface->sharp[i] ? 0 : data->normals[3 * i + d];
