@@ -142,7 +142,6 @@ struct _p_Transfer {
   PetscBool      moved;  /* the caller has the surfaces moved, see TransferSetMoved() */
   RowSet         rows;
   PetscBool      built;
-  PetscBool      anew;          /* the next update builds all rows, see TransferLayAgain() */
   PetscBool      due, looks;    /* in the present update rows are built whatever the motion; the motion says whether they are */
   PetscBool      sleeps;        /* no row has a partner until the next update, see TransferSleep() */
   PetscReal      built_near;    /* partners at most that far away are known since the last build [m] */

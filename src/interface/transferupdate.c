@@ -218,7 +218,7 @@ PetscErrorCode TransferLayAgain(Transfer transfer)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  transfer->anew = PETSC_TRUE;
+  transfer->built_near = -1; /* as if no partner were known */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -260,9 +260,9 @@ PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neu
   transfer->columns_present = PETSC_FALSE;
   transfer->looks           = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
-  transfer->due    = (PetscBool)(!transfer->built || transfer->sleeps || transfer->anew || near > transfer->built_near);
+  transfer->due    = (PetscBool)(!transfer->built || transfer->sleeps || near > transfer->built_near);
   transfer->looks  = (PetscBool)(!transfer->due && transfer->dim > 1);
-  transfer->sleeps = transfer->anew = PETSC_FALSE;
+  transfer->sleeps = PETSC_FALSE;
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
   if (!transfer->looks || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);

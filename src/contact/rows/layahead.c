@@ -48,35 +48,20 @@ static PetscErrorCode MeasureOff(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest number of all ranks for each pair */
-static PetscErrorCode ReduceOff(Contact contact, PetscReal off[])
-{
-  PetscFunctionBegin;
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, off, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* For each pair, how far its planes are off in parts of what is allowed; 0: none of its nodes is in contact */
 static PetscErrorCode MeasurePairs(Contact contact, PetscReal off[])
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscBool          ahead;
+    PetscBool ahead;
 
     off[p] = 0;
-    PetscCall(LaysAhead(pair, &ahead));
-    for (PetscInt i = pair->begin; ahead && i < pair->end && off[p] == 0; i += pair->components) off[p] = contact->end.active[i] ? 1 : 0;
+    PetscCall(LaysAhead(&contact->pairs[p], &ahead));
+    if (ahead) PetscCall(MeasureOff(contact, &contact->pairs[p], &off[p]));
   }
-  PetscCall(ReduceOff(contact, off)); /* surfaces are moved by all ranks that have them */
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    if (off[p] == 0) continue;
-    off[p] = 0;
-    PetscCall(MeasureOff(contact, &contact->pairs[p], &off[p]));
-  }
-  PetscCall(ReduceOff(contact, off));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, off, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,7 +97,6 @@ PetscErrorCode ContactLayAhead(Contact contact, PetscInt pass, PetscReal *last, 
     PetscCall(BodyGetSolution(contact->bodies[pair->body[0]], &u, NULL, NULL));
     if (!*end) PetscCall(VecDuplicate(u, end));
     PetscCall(VecCopy(u, *end));
-    PetscCall(TransferLayAgain(pair->transfer));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -90,6 +90,7 @@ static PetscErrorCode CompareMotion(Contact contact, PetscReal near)
 
     if (!MayChange(pair)) continue;
     PetscCall(GetDisplacements(contact, pair, u));
+    if (pair->ahead) PetscCall(TransferLayAgain(pair->transfer));
     PetscCall(TransferBeginUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, sums + TRANSFER_SUMS * p));
   }
   PetscCall(ReduceMotion(contact, TRANSFER_SUMS, MPIU_SUM, sums));
