@@ -63,6 +63,18 @@ static inline PetscReal scattered(const PetscReal x[], PetscInt dim, PetscInt wh
   return PetscSinReal(phase);
 }
 
+/* A state with strains of some hundredths in bodies of some metres */
+static inline PetscErrorCode ScatteredState(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *ctx)
+{
+  PetscFunctionBegin;
+  (void)ctx;
+  for (PetscInt d = 0; d < dim; d++) {
+    u[d] = 0.01 * scattered(x, dim, d);
+    v[d] = 0.02 * scattered(x, dim, 3 + d);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Rows at single nodes, each along a direction */
 #define MAX_NODE_ROWS 16
 typedef struct {

@@ -32,17 +32,6 @@ typedef struct {
   PetscInt     n, substeps;
 } RowBody;
 
-static PetscErrorCode Moving(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *ctx)
-{
-  PetscFunctionBegin;
-  (void)ctx;
-  for (PetscInt d = 0; d < dim; d++) {
-    u[d] = 0.01 * scattered(x, dim, d);
-    v[d] = 0.02 * scattered(x, dim, 3 + d);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A body at rest */
 static void row_body_create(RowBody *b, PetscInt shape, Method method, PetscInt substeps, const PetscReal directions[], const char more[])
 {
@@ -60,7 +49,7 @@ static void row_body_create(RowBody *b, PetscInt shape, Method method, PetscInt 
 /* Under way: one controller step after a start without any pattern */
 static void row_body_start(RowBody *b)
 {
-  if (b->body->integrator->has_inertia) ok(BodySetInitialState(b->body, Moving, NULL));
+  if (b->body->integrator->has_inertia) ok(BodySetInitialState(b->body, ScatteredState, NULL));
   ok(BodyIntegrate(b->body));
   ok(BodySave(b->body));
 }

@@ -14,18 +14,6 @@ static const char *const boxes[] = {"-dm_plex_box_faces 4,3 -dm_plex_box_upper 2
                                     "-dm_plex_box_faces 3,2,3 -dm_plex_box_upper 1.5,1,1.5"};
 static const char *const sides[] = {"ymax", "zmax"};
 
-/* Strains of some hundredths */
-static PetscErrorCode Scattered(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *ctx)
-{
-  PetscFunctionBegin;
-  (void)ctx;
-  for (PetscInt d = 0; d < dim; d++) {
-    u[d] = 0.01 * scattered(x, dim, d);
-    v[d] = 0.02 * scattered(x, dim, 3 + d);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static void advance(Body body)
 {
   ok(BodyIntegrate(body));
@@ -76,7 +64,7 @@ static void check_balance(PetscInt kind, PetscInt material, const char loads[])
   PetscOptions options = create(&body, kind, material, loads);
 
   ok(BodySetUp(body));
-  ok(BodySetInitialState(body, Scattered, NULL));
+  ok(BodySetInitialState(body, ScatteredState, NULL));
   get_imbalance(body, &left, &largest);
   assert_true(left > 1e-2 * largest); /* the initial state is none of balance */
   for (PetscInt k = 0; k < 30; k++) {
