@@ -9,7 +9,8 @@
 #   TESTS="tests/contact -k x"  what `make test` hands to pytest  V=1      show whole commands
 #   PREFIX=/usr/local       where `make install` puts program, library and headers; DESTDIR=stage puts them under a stage
 
-cores := $(shell nproc)
+# nproc alone would tell the threads of OpenMP where OMP_NUM_THREADS is set, as it often is beside MPI
+cores := $(shell env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
 
 ifneq ($(origin PETSC_ROOT),command line)
 
