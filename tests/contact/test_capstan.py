@@ -55,18 +55,24 @@ def test_methods_and_inertia(options, impakt):
 
 @pytest.mark.long
 def test_band_that_stretches(impakt):
-    """By 0.5 to 1.3 percent, of a linear band that 81 nodes string together. By 2 to 4 percent, along a drum: rows that lie as they did at the start are off
-    by as much beside the friction, and the run says so."""
-    run, too_far = (impakt(f"{CAPSTAN} -band_youngs_modulus {modulus} -time_end 0.35") for modulus in (1e8, 3e7))
-    assert run.history[f"{PAIR}/sliding"][-1] == 81
-    assert ratio(run) == pytest.approx(np.exp(0.3 * np.pi), rel=1e-2)
+    """By 0.5 to 1.3 percent, along a drum on which 81 nodes lie where they are now."""
+    run = impakt(f"{CAPSTAN} -band_youngs_modulus 1e8 -band_material_type neo_hookean -band_ts_type alpha2 -band_density 1e4 -band_damping_mass 50 "
+                 "-time_step 5e-4 -time_end 1")
+    assert ratio(run) == pytest.approx(np.exp(0.3 * np.pi), rel=5e-3)  # measured: 2.7e-3
     assert run.summary["contact"]["friction_residual"] <= 1e-9
-    assert worst_energy_error(run.summary) <= 1e-9
-    assert run.summary["contact"]["friction_tilt"] <= 0.05  # measured: 0.046
-    assert "have turned since" not in run.stderr
-    assert too_far.summary["contact"]["friction_tilt"] == pytest.approx(0.112, rel=0.02)  # measured: 0.1121
-    assert "surfaces have turned since contact rows were built" in too_far.stderr
-    assert "11.2 % of what friction can bear" in too_far.stderr
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("modulus, tilt, error", [(1e8, 0.0535, 0.0573), (3e7, 0.2168, 0.258)], ids=["by 1 %", "by 4 %"])
+def test_linear_band_that_stretches(modulus, tilt, error, impakt):
+    """It turns as it slides along the drum, and bears forces as if it had not: off by about its turn beside the coefficient, as the run says."""
+    run = impakt(f"{CAPSTAN} -band_youngs_modulus {modulus} -time_end 1")
+    assert run.history[f"{PAIR}/sliding"][-1] == 81
+    assert run.summary["contact"]["friction_residual"] <= 1e-9
+    assert worst_energy_error(run.summary) <= 1e-4  # measured: 4e-5, between the chord of a step and its arc
+    assert ratio(run) / np.exp(0.3 * np.pi) - 1 == pytest.approx(error, rel=0.02)
+    assert run.summary["contact"]["friction_tilt"] == pytest.approx(tilt, rel=0.02)
+    assert f"{100 * run.summary['contact']['friction_tilt']:.3g} % of what friction can bear; take materials that are not linear" in run.stderr
 
 
 FREE = (

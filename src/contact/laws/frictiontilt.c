@@ -4,12 +4,29 @@
    A normal force along a row that is turned by an angle has a part along the surface of that angle times the force. Beside mu times it,
    which is all that friction has, that is no longer small where the angle is not small beside mu: what sticks, what slides and what
    friction takes are then those of other surfaces. Rows of bodies with inertia follow the surfaces in each step. Those of bodies without
-   are as they were built, until the surfaces have turned by -contact_angle_bound.
+   are as they were built, until the surfaces have turned by -contact_angle_bound. A linear body bears forces as if it had not turned: those
+   along rows that are right where the body is now are off by the angle by which it has turned.
 */
 #include "friction.h"
 
-/* The sums of the tilt times the normal force, and of what friction can bear, of the rows of a pair on this rank [N] */
-static void AddTilts(Contact contact, const ContactPair *pair, const PetscReal tilts[], PetscReal sums[2])
+/* The most by which a linear body of a pair has turned [rad] */
+static PetscErrorCode GetLinearTurn(Contact contact, const ContactPair *pair, PetscReal *turn)
+{
+  PetscFunctionBegin;
+  *turn = 0;
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    BodyMeasures measures;
+
+    PetscCall(BodyGetMeasures(contact->bodies[pair->body[side]], &measures)); /* zero of a nonlinear one */
+    *turn = PetscMax(*turn,
+                     PetscSqrtReal(PetscSqr(measures.rotation[0]) + PetscSqr(measures.rotation[1]) + PetscSqr(measures.rotation[2])));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The sums of the tilt times the normal force, and of what friction can bear, of the rows of a pair on this rank [N]; `turn`: by which all
+   are tilted in any case [rad] */
+static void AddTilts(Contact contact, const ContactPair *pair, PetscReal turn, const PetscReal tilts[], PetscReal sums[2])
 {
   const ContactFrictionLaw *law = &contact->friction.law;
 
@@ -18,7 +35,7 @@ static void AddTilts(Contact contact, const ContactPair *pair, const PetscReal t
 
     if (!(contact->end.force[first] > 0) || !contact->rows.opposite[first]) continue;
     (*law->getlimit)(contact, law->data, first, 0, &cohesion, &coefficient);
-    sums[0] += tilts[k] * contact->end.force[first];
+    sums[0] += (turn + tilts[k]) * contact->end.force[first];
     sums[1] += cohesion + coefficient * contact->end.force[first];
   }
 }
@@ -34,12 +51,13 @@ PetscErrorCode ContactNoteTilt(Contact contact)
   if (!any || contact->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactMoveSurfaces(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair    = &contact->pairs[p];
-    PetscReal          sums[2] = {0, 0};
+    const ContactPair *pair = &contact->pairs[p];
+    PetscReal          turn, sums[2] = {0, 0};
 
     if (!pair->rests || pair->far) continue;
     PetscCall(TransferGetTilts(pair->transfer, contact->work.tilts));
-    AddTilts(contact, pair, contact->work.tilts, sums);
+    PetscCall(GetLinearTurn(contact, pair, &turn));
+    AddTilts(contact, pair, turn, contact->work.tilts, sums);
     if (contact->ranks.size > 1)
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
     if (sums[1] > 0) contact->counts.friction_tilt = PetscMax(contact->counts.friction_tilt, sums[0] / sums[1]);
