@@ -31,7 +31,6 @@ PETSC_EXTERN PetscErrorCode ExpressionIsUniform(Expression, PetscBool *);
 PETSC_EXTERN PetscErrorCode ExpressionUsesNormal(Expression, PetscBool *);
 PETSC_EXTERN PetscErrorCode ExpressionGetText(Expression, const char *[]);
 PETSC_EXTERN PetscErrorCode ExpressionView(Expression, PetscViewer);
-PETSC_EXTERN PetscErrorCode ExpressionViewFromOptions(Expression, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ExpressionDestroy(Expression *);
 PETSC_EXTERN PetscErrorCode ExpressionListCreate(MPI_Comm, const char[], const char[], PetscInt, PetscBool, Expression[]);
 PETSC_EXTERN PetscErrorCode ExpressionListCount(const char[], PetscInt *);

@@ -3,7 +3,6 @@
 #include <petscdmplex.h>
 
 PETSC_EXTERN PetscErrorCode MeshCreate(MPI_Comm, const char[], const char[], DM *);
-PETSC_EXTERN PetscErrorCode MeshCreateOnRank(MPI_Comm, const char[], const char[], PetscMPIInt, DM *);
 PETSC_EXTERN PetscErrorCode MeshCreateOnRanks(MPI_Comm, const char[], const char[], PetscMPIInt, const PetscMPIInt[], DM *);
 PETSC_EXTERN PetscErrorCode MeshEstimate(const char[], PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode MeshMayBeWhole(MPI_Comm, const char[], PetscBool *, PetscBool *);

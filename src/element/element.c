@@ -96,30 +96,6 @@ PetscErrorCode ElementSetCellType(Element element, DMPolytopeType cell_type)
 }
 
 /*@
-  ElementGetCellType - the shape of the mesh cells
-
-  Not Collective
-
-  Input Parameter:
-. element - the `Element`
-
-  Output Parameter:
-. cell_type - `DM_POLYTOPE_UNKNOWN` until `ElementSetCellType()`
-
-  Level: developer
-
-.seealso: `Element`, `ElementSetCellType()`
-@*/
-PetscErrorCode ElementGetCellType(Element element, DMPolytopeType *cell_type)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
-  PetscAssertPointer(cell_type, 2);
-  *cell_type = element->cell_type;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   ElementSetMaterial - sets the material of all elements
 
   Logically Collective
@@ -141,30 +117,6 @@ PetscErrorCode ElementSetMaterial(Element element, Material material)
   PetscCall(PetscObjectReference((PetscObject)material));
   PetscCall(MaterialDestroy(&element->material));
   element->material = material;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElementGetMaterial - the material of all elements
-
-  Not Collective
-
-  Input Parameter:
-. element - the `Element`
-
-  Output Parameter:
-. material - its `Material`, owned by the element; `NULL` until there is one
-
-  Level: developer
-
-.seealso: `Element`, `ElementSetMaterial()`
-@*/
-PetscErrorCode ElementGetMaterial(Element element, Material *material)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
-  PetscAssertPointer(material, 2);
-  *material = element->material;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -287,32 +239,6 @@ PetscErrorCode ElementDuplicateOn(Element element, MPI_Comm comm, Material mater
   if (element->composite) PetscCall(ElementSetComposite(*duplicate));
   PetscCall(ElementSetFormulation(*duplicate, element->formulation));
   PetscTryTypeMethod(element, copy, *duplicate);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElementDuplicate - elements of the same shape and with the same settings, for other cells or another material; not set up
-
-  Not Collective
-
-  Input Parameters:
-+ element  - the `Element`
-- material - of the new ones; `NULL`: the same
-
-  Output Parameter:
-. duplicate - the new `Element`, on this rank alone
-
-  Level: developer
-
-.seealso: `Element`, `ElementSetUp()`
-@*/
-PetscErrorCode ElementDuplicate(Element element, Material material, Element *duplicate)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
-  PetscAssertPointer(duplicate, 3);
-  PetscCheck(material || !element->blocks, PETSC_COMM_SELF, PETSC_ERR_ARG_WRONG, "The elements have several materials: give one");
-  PetscCall(ElementDuplicateOn(element, PETSC_COMM_SELF, material ? material : element->material, duplicate));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

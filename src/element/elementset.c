@@ -26,7 +26,7 @@ static PetscErrorCode SetCrossSection(Element element, PetscInt dim, PetscReal v
 
   Level: intermediate
 
-.seealso: `Element`, `ElementSetThickness()`, `ElementGetCrossSection()`
+.seealso: `Element`, `ElementSetThickness()`
 @*/
 PetscErrorCode ElementSetCrossSection(Element element, PetscReal area)
 {
@@ -51,7 +51,7 @@ PetscErrorCode ElementSetCrossSection(Element element, PetscReal area)
 
   Level: intermediate
 
-.seealso: `Element`, `ElementSetCrossSection()`, `ElementSetPlaneStress()`, `ElementGetCrossSection()`
+.seealso: `Element`, `ElementSetCrossSection()`, `ElementSetPlaneStress()`
 @*/
 PetscErrorCode ElementSetThickness(Element element, PetscReal thickness)
 {
@@ -59,30 +59,6 @@ PetscErrorCode ElementSetThickness(Element element, PetscReal thickness)
   PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
   PetscValidLogicalCollectiveReal(element, thickness, 2);
   PetscCall(SetCrossSection(element, 2, thickness));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElementGetCrossSection - the cross-sectional area of bars, or the thickness of plane elements
-
-  Not Collective
-
-  Input Parameter:
-. element - the `Element`
-
-  Output Parameter:
-. cross_section - [m^2] of bars, [m] of plane elements, 1 of others
-
-  Level: intermediate
-
-.seealso: `Element`, `ElementSetCrossSection()`, `ElementSetThickness()`
-@*/
-PetscErrorCode ElementGetCrossSection(Element element, PetscReal *cross_section)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
-  PetscAssertPointer(cross_section, 2);
-  *cross_section = element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,30 +85,6 @@ PetscErrorCode ElementSetPlaneStress(Element element, PetscBool plane_stress)
   PetscValidLogicalCollectiveBool(element, plane_stress, 2);
   PetscCheck(!element->setup, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE, "Call before ElementSetUp()");
   element->plane_stress = plane_stress;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElementGetPlaneStress - whether plane elements are free of stress across their plane
-
-  Not Collective
-
-  Input Parameter:
-. element - the `Element`
-
-  Output Parameter:
-. plane_stress - `PETSC_TRUE` if so
-
-  Level: intermediate
-
-.seealso: `Element`, `ElementSetPlaneStress()`
-@*/
-PetscErrorCode ElementGetPlaneStress(Element element, PetscBool *plane_stress)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
-  PetscAssertPointer(plane_stress, 2);
-  *plane_stress = element->plane_stress;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -275,7 +275,7 @@ PetscErrorCode ExpressionGetText(Expression expression, const char *text[])
 
   Level: developer
 
-.seealso: `Expression`, `ExpressionViewFromOptions()`
+.seealso: `Expression`
 @*/
 PetscErrorCode ExpressionView(Expression expression, PetscViewer viewer)
 {
@@ -287,28 +287,6 @@ PetscErrorCode ExpressionView(Expression expression, PetscViewer viewer)
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (ascii) PetscCall(PetscViewerASCIIPrintf(viewer, "%s: %s\n", expression->option, expression->text));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ExpressionViewFromOptions - prints an expression where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ expression - the `Expression`
-. object     - has the prefix of the option, `NULL` for none
-- name       - the option
-
-  Level: developer
-
-.seealso: `Expression`, `ExpressionView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode ExpressionViewFromOptions(Expression expression, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)expression, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

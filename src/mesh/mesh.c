@@ -177,31 +177,6 @@ PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshCreateOnRank - the mesh of a body from options, as `MeshCreate()` makes it, all of it on one rank
-
-  Collective
-
-  Input Parameters:
-+ comm   - the communicator
-. prefix - of its options, such as "left_"
-. name   - of the body, for messages; becomes that of the mesh
-- rank   - the rank that has it, or `PETSC_DECIDE`: all ranks have a part
-
-  Output Parameter:
-. dm - a `DMPLEX` with faces and edges; after an error it is `NULL`, or to be destroyed
-
-  Level: developer
-
-.seealso: `MeshCreate()`, `MeshCreateOnRanks()`, `MeshEstimate()`, `MeshMayBeWhole()`, `BodySetMeshRank()`
-@*/
-PetscErrorCode MeshCreateOnRank(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm)
-{
-  PetscFunctionBegin;
-  PetscCall(MeshCreateOnRanks(comm, prefix, name, rank >= 0 ? 1 : 0, &rank, dm));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Opens a mesh from options, as far as it can be made before DMSetFromOptions(). rank: the one that is to have all of it, or none */
 static PetscErrorCode Begin(MPI_Comm comm, const char prefix[], const char name[], const MeshRanks *ranks, PetscMPIInt rank, DM *dm,
                             MeshMiddles *middles, MeshStage *stage, PetscBool *there)
@@ -246,7 +221,7 @@ static PetscErrorCode Begin(MPI_Comm comm, const char prefix[], const char name[
   Each of them makes its brick of a box. Other meshes are made on the first rank of the communicator, divided there into `n` parts, and
   sent; discs, balls and rods of one rank are made there.
 
-.seealso: `MeshCreate()`, `MeshCreateOnRank()`, `BodySetRanks()`
+.seealso: `MeshCreate()`, `BodySetRanks()`
 @*/
 PetscErrorCode MeshCreateOnRanks(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt n, const PetscMPIInt list[], DM *dm)
 {

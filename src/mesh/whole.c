@@ -59,7 +59,7 @@ static PetscErrorCode EstimateBox(const char prefix[], PetscInt dim, PetscInt *c
   Note:
   To choose the rank on which a mesh is to lie whole: rotations and parts of balls do not count, and nothing is an error.
 
-.seealso: `MeshCreateOnRank()`, `MeshMayBeWhole()`
+.seealso: `MeshMayBeWhole()`
 @*/
 PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal centre[3])
 {
@@ -114,7 +114,7 @@ PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal cent
 
   Level: developer
 
-.seealso: `MeshCreateOnRank()`, `MeshEstimate()`
+.seealso: `MeshEstimate()`
 @*/
 PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may, PetscBool *asks)
 {

@@ -13,9 +13,6 @@
 #include "constrainedsolverimpl.h"
 #include <math.h>
 
-/* Constraint forces up to this number by a dense matrix, whose factors take 64 MB then */
-#define MAX_DENSE_CONSTRAINTS 2000
-
 /* Whether columns are kept: on interfaces of few rows, and where to add up those of all rows is half the work of a solution by factors, or
    less; they take a quarter of the factors' memory then, or less */
 static PetscErrorCode ChooseColumns(ConstrainedSolver s)
@@ -126,7 +123,6 @@ PetscErrorCode ConstrainedSolverBegin(Mat A, Mat B, PetscInt dim, const char pre
   PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
   PetscCall(KSPSetOperators(s->ksp, A, A));
   PetscCallMPI(MPI_Comm_size(comm, &s->size));
-  s->dense_limit = MAX_DENSE_CONSTRAINTS;
   PetscCall(KSPSetErrorIfNotConverged(s->ksp, (PetscBool)(compliance != NULL)));
   PetscCall(ConstrainedSolverChoose(s->ksp, A, dim));
   PetscCall(KSPSetFromOptions(s->ksp));
@@ -211,14 +207,6 @@ PetscErrorCode ConstrainedSolverGetMatrices(ConstrainedSolver s, Mat *A, Mat *B)
 PetscLogDouble ConstrainedSolverGetFlops(ConstrainedSolver s)
 {
   return s->solve_flops;
-}
-
-/* How many constraint forces are found by a dense matrix; more come from conjugate gradients */
-PetscErrorCode ConstrainedSolverSetDenseLimit(ConstrainedSolver s, PetscInt limit)
-{
-  PetscFunctionBegin;
-  s->dense_limit = limit;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A solution that did not converge is not a number: the matrix of a nonlinear body may be indefinite where Newton's method has gone astray,

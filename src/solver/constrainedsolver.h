@@ -19,7 +19,6 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverChooseMUMPS(PC);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverAdjust(KSP);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[], const PetscReal[]);
-PETSC_INTERN PetscErrorCode     ConstrainedSolverSetDenseLimit(ConstrainedSolver, PetscInt);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetRows(ConstrainedSolver, Mat, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverReplaceRows(ConstrainedSolver, Mat, Compliance);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverForgetUnknown(ConstrainedSolver);

@@ -23,7 +23,6 @@ struct _n_ConstrainedSolver {
   PetscBool *fresh;   /* per row: its column is there, and that of W, both with A and B as they are */
   /* a dense matrix for the constraint forces */
   PetscBool    dense; /* its factors are there */
-  PetscInt     dense_limit;
   DenseFactor  factor;
   PetscInt     room;             /* of the following */
   PetscScalar *gathered, *force; /* of constrained rows, on every rank */

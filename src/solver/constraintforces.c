@@ -2,6 +2,9 @@
 #include "constrainedsolverimpl.h"
 #include <sys/petsccompat.h>
 
+/* Constraint forces up to this number by a dense matrix, whose factors take 64 MB then */
+#define MAX_DENSE_CONSTRAINTS 2000
+
 /* Columns for the dense matrix of constraint forces up to so many numbers in all, 800 MB */
 #define MAX_COLUMN_NUMBERS 1e8
 /* Up to so many constraints the dense matrix is made at once: factoring it costs less than a few solutions of a body with such a surface */
@@ -57,7 +60,7 @@ static PetscErrorCode MayBeDense(ConstrainedSolver s, PetscBool *may)
 
   PetscFunctionBegin;
   PetscCall(VecGetSize(s->rhs, &size));
-  *may = (PetscBool)(s->n <= s->dense_limit && (PetscReal)s->n * size <= MAX_COLUMN_NUMBERS);
+  *may = (PetscBool)(s->n <= MAX_DENSE_CONSTRAINTS && (PetscReal)s->n * size <= MAX_COLUMN_NUMBERS);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -204,7 +204,7 @@ static void defaults_and_errors(void **state)
     solid_create(&solid, &mesh, MATERIAL_NEO_HOOKEAN, cases[i].options);
     ok(ElementGetFormulation(solid.element, &formulation));
     assert_string_equal(formulation, cases[i].expected);
-    ok(ElementDuplicate(solid.element, NULL, &duplicate));
+    ok(ElementDuplicateOn(solid.element, PETSC_COMM_SELF, solid.element->material, &duplicate));
     ok(ElementGetFormulation(duplicate, &formulation));
     assert_string_equal(formulation, cases[i].expected);
     ok(ElementDestroy(&duplicate));

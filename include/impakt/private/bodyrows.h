@@ -69,8 +69,7 @@ PETSC_EXTERN PetscErrorCode BodyGetLed(Body, PetscBool *, PetscBool *);
 /* Rows, set up once and given new entries later */
 PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
-PETSC_EXTERN PetscErrorCode BodyUpdateInterface(Body, Mat, const PetscBool[]);
-PETSC_EXTERN PetscErrorCode BodyUpdateInterfaceFrom(Body, Mat, const PetscInt[], const int[]);
+PETSC_EXTERN PetscErrorCode BodyUpdateInterface(Body, Mat, const PetscInt[], const int[]);
 PETSC_EXTERN PetscErrorCode BodyExpectRows(Body);
 PETSC_EXTERN PetscErrorCode BodyReplaceInterface(Body, Mat, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyHandOver(Body, const PetscReal[], const PetscReal[], const PetscInt[], PetscInt);

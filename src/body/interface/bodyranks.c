@@ -97,7 +97,7 @@ PetscErrorCode BodyGetRanks(Body body, PetscInt *n, const PetscMPIInt *ranks[])
   Note:
   `ControllerSetFromOptions()` chooses it for bodies with few elements, where there are many.
 
-.seealso: `Body`, `BodyGetMeshRank()`, `BodySetRanks()`, `BodySetFromOptions()`, `MeshCreateOnRank()`
+.seealso: `Body`, `BodyGetMeshRank()`, `BodySetRanks()`, `BodySetFromOptions()`
 @*/
 PetscErrorCode BodySetMeshRank(Body body, PetscMPIInt rank)
 {

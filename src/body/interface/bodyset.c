@@ -409,7 +409,7 @@ PetscErrorCode BodyGetMassRedistributeNear(Body body, PetscBool *near)
   moves mass from the middle of a body to its ends: in bars of 25 elements whose ends are massless, waves
   have 0.4 % less force there. Choose `centre` where waves matter and nothing turns. In one dimension nothing can.
 
-.seealso: `Body`, `BodyGetMassMoments()`, `BodySetMassRedistribute()`, `BodyGetMassRedistribution()`
+.seealso: `Body`, `BodySetMassRedistribute()`, `BodyGetMassRedistribution()`
 @*/
 PetscErrorCode BodySetMassMoments(Body body, BodyMassMoments moments)
 {
@@ -420,29 +420,5 @@ PetscErrorCode BodySetMassMoments(Body body, BodyMassMoments moments)
   PetscCheck(moments == BODY_MASS_TOTAL || moments == BODY_MASS_CENTRE || moments == BODY_MASS_INERTIA, PetscObjectComm((PetscObject)body),
              PETSC_ERR_ARG_OUTOFRANGE, "Body '%s': there are no moments %d", body->hdr.name, (int)moments);
   body->mass.moments = moments;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetMassMoments - what a body with massless contact nodes keeps of its full mass, beyond the total
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. moments - see `BodySetMassMoments()`
-
-  Level: intermediate
-
-.seealso: `Body`, `BodySetMassMoments()`
-@*/
-PetscErrorCode BodyGetMassMoments(Body body, BodyMassMoments *moments)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(moments, 2);
-  *moments = body->mass.moments;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

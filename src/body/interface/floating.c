@@ -25,7 +25,7 @@
   The softer the springs, the fewer times that takes where contact is soft, and where the active set changes much. In a nonlinear body they
   have to hold against what Newton's method leaves.
 
-.seealso: `Body`, `BodyGetArtificialStiffness()`, `BodyIsFloating()`, `BodyAddDisplacement()`
+.seealso: `Body`, `BodyIsFloating()`, `BodyAddDisplacement()`
 @*/
 PetscErrorCode BodySetArtificialStiffness(Body body, PetscReal part)
 {
@@ -36,30 +36,6 @@ PetscErrorCode BodySetArtificialStiffness(Body body, PetscReal part)
   PetscCheck(part > 0 && part < PETSC_INFINITY, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "-%sartificial_stiffness %g must be positive", ((PetscObject)body)->prefix, (double)part);
   body->springs.part = part;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetArtificialStiffness - how stiff the artificial springs are of a static body that contact or ties alone hold
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. part - see `BodySetArtificialStiffness()`; `PETSC_DECIDE` where the default has not been chosen yet
-
-  Level: advanced
-
-.seealso: `Body`, `BodySetArtificialStiffness()`
-@*/
-PetscErrorCode BodyGetArtificialStiffness(Body body, PetscReal *part)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(part, 2);
-  *part = body->springs.part;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

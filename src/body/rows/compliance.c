@@ -222,7 +222,7 @@ PetscErrorCode BodyTakeCompliance(Body body)
 
   Level: developer
 
-.seealso: `Body`, `BodyExtendCompliance()`, `BodyUpdateInterface()`
+.seealso: `Body`, `BodyExtendCompliance()`
 @*/
 PetscErrorCode BodyForgetCompliance(Body body, const PetscMPIInt changed[])
 {

@@ -60,7 +60,7 @@ PetscErrorCode BodyHandoverEnd(Body body)
   Note:
   It lasts until `BodySave()`.
 
-.seealso: `Body`, `BodyUpdateInterface()`, `BodyIntegrate()`
+.seealso: `Body`, `BodyIntegrate()`
 @*/
 PetscErrorCode BodyHandOver(Body body, const PetscReal before[], const PetscReal now[], const PetscInt intervals[], PetscInt fewest)
 {

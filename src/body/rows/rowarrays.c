@@ -180,7 +180,7 @@ PetscErrorCode BodyExpectRows(Body body)
   Note:
   No matrix of the body is factored again. All rows are free afterwards, and the compliance knows none of them.
 
-.seealso: `Body`, `BodySetInterface()`, `BodyUpdateInterface()`, `BodyExpectRows()`
+.seealso: `Body`, `BodySetInterface()`, `BodyExpectRows()`
 @*/
 PetscErrorCode BodyReplaceInterface(Body body, Mat B, const PetscInt from[])
 {

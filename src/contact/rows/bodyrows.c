@@ -142,7 +142,7 @@ PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
     const PetscInt b = ranks->visits[k];
 
     if (contact->body_rows[b].affected)
-      PetscCall(BodyUpdateInterfaceFrom(contact->bodies[b], contact->interfaces[b], contact->body_rows[b].all, ranks->all_active));
+      PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->body_rows[b].all, ranks->all_active));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
