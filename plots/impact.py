@@ -36,6 +36,7 @@ def read(path):
         "options": run.options,
         "time": run.time,
         "sweeps": run.sweeps,
+        "energy_error": run.energy_error,
         "forces": {name: run.pairs[name]["force"] for name in pairs},
         "pair": bodies_of(pairs[0], list(run.bodies)),
         "bodies": run.bodies,
@@ -141,11 +142,9 @@ def draw_energies(axes, history, exact, time):
 
 
 def draw_energy_error(axes, history, time):
-    total = sum(body["kinetic"] + body["potential"] for body in history["bodies"].values())
-    start = total[0] if total[0] != 0 else 1.0
-    axes.plot(time, (total - total[0]) / abs(start), color=GREEN)
+    axes.plot(time, history["energy_error"], color=GREEN)
     axes.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
-    axes.set_ylabel("rel. error [1]" if total[0] != 0 else "error [J]")
+    axes.set_ylabel("rel. error [1]")
 
 
 def draw_sweeps(axes, history, time):

@@ -110,6 +110,7 @@ class Results:
             try:
                 self.time = file["time"][()]
                 self.sweeps = file["schwarz/iterations"][()]
+                self.energy_change, self.energy_scale = file["energy/change"][()], file["energy/scale"][-1]
                 self.bodies = {name: datasets(each) for name, each in file["body"].items()}
                 for name, each in file["body"].items():
                     self.reactions |= {f"{name}.{surface}": datasets(group) for surface, group in each.get("reaction", {}).items()}
@@ -167,14 +168,8 @@ class Results:
     @property
     def energy_error(self):
         """Change of the energy less the work of loads and of obstacles that move along themselves, with what damping, plastic flow and friction have taken,
-        relative to its start, or to the largest energy of what starts at rest."""
-        taken = sum(body.get(key, 0) for body in self.bodies.values() for key in ("damping_work", "plastic_work"))
-        taken = taken + sum(pair.get("friction_loss", 0) for pair in self.pairs.values())
-        driven = sum(pair.get("obstacle_work", 0) for pair in self.pairs.values())
-        total = self.energy - self.total("external_work") - driven + taken
-        largest = (self.energy + sum(np.abs(body["external_work"]) for body in self.bodies.values()) + np.abs(driven)).max()
-        start = abs(total[0]) if abs(total[0]) > 1e-9 * largest else largest
-        return (total - total[0]) / (start or 1.0)
+        relative to the largest of kinetic energy, strain energy and work in the run."""
+        return self.energy_change / (self.energy_scale or 1.0)
 
     def gap(self, pair):
         """Smallest gap [m]; not-a-number where nothing lies opposite."""

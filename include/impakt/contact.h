@@ -221,6 +221,10 @@ typedef enum { SCHWARZ_CONDENSE_NEVER, SCHWARZ_CONDENSE_ALWAYS, SCHWARZ_CONDENSE
 
 PETSC_EXTERN PetscClassId CONTACT_CLASSID;
 
+/* The gap of a row, or of a pair, that has no partner opposite: larger than any gap, in whatever unit, and still a number that
+   displacements can be added to */
+#define CONTACT_NO_GAP 1e30
+
 /*S
    ContactPairState - what a contact pair does at the end of a controller step
 
@@ -302,6 +306,7 @@ PETSC_EXTERN PetscErrorCode ContactAddObstacle(Contact, Obstacle);
 PETSC_EXTERN PetscErrorCode ContactGetNumObstacles(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetObstacle(Contact, PetscInt, Obstacle *);
 PETSC_EXTERN PetscErrorCode ContactGetPairObstacle(Contact, PetscInt, PetscInt *);
+PETSC_EXTERN PetscErrorCode ContactPairIsNamed(Contact, PetscInt, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
 PETSC_EXTERN PetscErrorCode ContactSetRowSide(Contact, ContactRowSide);
 PETSC_EXTERN PetscErrorCode ContactGetRowSide(Contact, ContactRowSide *);

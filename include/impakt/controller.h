@@ -56,19 +56,23 @@ typedef struct {
 .seealso: `ControllerMonitorSet()`
 S*/
 typedef struct {
-  PetscInt                 step;  /* 0: the initial state */
-  PetscInt                 steps; /* of the whole run */
-  PetscReal                time;  /* s */
-  PetscInt                 n_bodies, n_pairs;
-  const BodyMeasures      *bodies;             /* per body */
-  const PetscReal         *contact_positions;  /* per body: mean position of its contact nodes, 3 numbers [m] */
-  const PetscReal         *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
-  const ContactPairState  *pairs;              /* per pair */
-  PetscInt                 sweeps;             /* of this step, or of that part of it which took most */
-  PetscReal                penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
-  PetscReal                obstacle_work;      /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
-  PetscReal                friction_loss;      /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
-  PetscInt                 step_cuts;          /* how often a step had to be cut in halves in this controller step */
+  PetscInt                step;  /* 0: the initial state */
+  PetscInt                steps; /* of the whole run */
+  PetscReal               time;  /* s */
+  PetscInt                n_bodies, n_pairs;
+  const BodyMeasures     *bodies;             /* per body */
+  const PetscReal        *contact_positions;  /* per body: mean position of its contact nodes, 3 numbers [m] */
+  const PetscReal        *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
+  const ContactPairState *pairs;              /* per pair */
+  PetscInt                sweeps;             /* of this step, or of that part of it which took most */
+  PetscReal               penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
+  PetscReal               obstacle_work;      /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
+  PetscReal               friction_loss;      /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
+  PetscReal               energy_change;      /* of all bodies since the start, less work done on them, with what friction, damping and
+                                                 plastic flow have taken [J] */
+  PetscReal energy_scale;             /* what that is relative to: the largest so far of kinetic energy, without that of the common motion
+                                         of bodies that are free, strain energy, and work done or taken [J] */
+  PetscInt                 step_cuts; /* how often a step had to be cut in halves in this controller step */
   PetscInt                 n_supports;
   const ControllerSupport *supports; /* held surfaces body by body, then obstacles */
   PetscInt                 n_probes;
@@ -127,5 +131,6 @@ PETSC_EXTERN PetscErrorCode ControllerGetContact(Controller, Contact *);
 PETSC_EXTERN PetscErrorCode ControllerGetProbes(Controller, PetscInt *, const ControllerProbe *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetSupports(Controller, PetscInt *, const ControllerSupport *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetTimes(Controller, PetscReal *, PetscReal *, PetscInt *);
+PETSC_EXTERN PetscErrorCode ControllerGetResolvedStep(Controller, PetscReal *);
 PETSC_EXTERN PetscErrorCode ControllerGetTimings(Controller, PetscLogDouble *, PetscLogDouble *, PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode ControllerGetStartMemory(Controller, PetscLogDouble *);

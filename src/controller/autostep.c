@@ -73,6 +73,30 @@ PetscErrorCode ControllerChooseStep(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  ControllerGetResolvedStep - the largest step that resolves contact, which -time_step auto takes
+
+  Not Collective
+
+  Input Parameter:
+. controller - the `Controller`, set up
+
+  Output Parameter:
+. step - [s]; infinity where no bodies with inertia can come into contact
+
+  Level: intermediate
+
+.seealso: `Controller`, `ControllerGetTimes()`, `ControllerSetTimes()`
+@*/
+PetscErrorCode ControllerGetResolvedStep(Controller controller, PetscReal *step)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
+  PetscAssertPointer(step, 2);
+  *step = controller->chooses_step ? controller->time_step : controller->resolved_step;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Says what is to be expected of a controller step that is much larger than one that resolves contact */
 PetscErrorCode ControllerWarnOfStep(Controller controller)
 {

@@ -59,6 +59,7 @@ struct _p_Controller {
   struct {
     PetscReal  part;    /* of the energy, that a run may gain; 0: no guard */
     PetscReal *start;   /* energy of each body at the start [J] */
+    PetscReal  given;   /* of that, kinetic energy of rigid bodies that are led: no measure of what contact may change [J] */
     PetscReal  largest; /* energy of all bodies so far [J] */
   } guard;
   /* cost */

@@ -89,9 +89,8 @@ PetscErrorCode ControllerVisit(Controller controller, Checkpoint checkpoint)
   PetscCall(CheckpointVisitBytes(checkpoint, "cuts", sizeof(controller->cuts), &controller->cuts));
   PetscCall(CheckpointVisitReals(checkpoint, "scale start", 1, &controller->scale.start));
   PetscCall(CheckpointVisitReals(checkpoint, "scale largest", 1, &controller->scale.largest));
-  PetscCall(CheckpointVisitReals(checkpoint, "scale given", 1, &controller->scale.given));
-  PetscCall(CheckpointVisitBools(checkpoint, "from rest", 1, &controller->scale.from_rest));
   PetscCall(CheckpointVisitReals(checkpoint, "guard largest", 1, &controller->guard.largest));
+  PetscCall(CheckpointVisitReals(checkpoint, "guard given", 1, &controller->guard.given));
   PetscCall(CheckpointVisitReals(checkpoint, "guard start", controller->n_bodies, controller->guard.start));
   PetscCall(ContactVisitShared(controller->contact, checkpoint));
   if (CheckpointLoads(checkpoint)) controller->goes_on = PETSC_TRUE;

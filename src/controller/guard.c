@@ -133,8 +133,8 @@ static PetscErrorCode CheckFinite(Controller controller, const ControllerFrame *
 /* Ends the run where energies have grown beyond the guard; collective, with the same frame on every rank */
 PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFrame *frame)
 {
-  PetscReal now = frame->penalty_energy + frame->friction_loss - frame->obstacle_work, start = 0, size = 0, own, scale;
-  PetscReal work = PetscAbsReal(frame->obstacle_work), unresolved;
+  PetscReal       start = 0, size = 0, own, scale, work = PetscAbsReal(frame->obstacle_work), unresolved;
+  const PetscReal gain = frame->energy_change + frame->penalty_energy;
 
   PetscFunctionBegin;
   PetscCall(CheckFinite(controller, frame));
@@ -146,16 +146,16 @@ PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFram
     PetscCall(BodyGetLed(controller->bodies[b], NULL, &given));
     if (without_inertia) PetscFunctionReturn(PETSC_SUCCESS);
     if (frame->step == 0) controller->guard.start[b] = BodyMeasuresGetBalance(&frame->bodies[b]);
-    now += BodyMeasuresGetBalance(&frame->bodies[b]);
+    if (frame->step == 0 && given) controller->guard.given += frame->bodies[b].kinetic;
     start += controller->guard.start[b];
     work += PetscAbsReal(frame->bodies[b].external_work);
     /* what is staggered may be round-off of much more: all of it in the first step of a load that sets in at zero */
     size += (given ? 0 : frame->bodies[b].kinetic_unstaggered) + frame->bodies[b].potential;
   }
   controller->guard.largest = PetscMax(controller->guard.largest, size);
-  own                       = start - controller->scale.given;
+  own                       = start - controller->guard.given;
   scale                     = (own > NOTHING_AT_START * controller->guard.largest ? own : controller->guard.largest) + work;
   PetscCall(ContactGetUnresolvedEnergy(controller->contact, &unresolved));
-  if (now - start > controller->guard.part * scale + unresolved) PetscCall(EndRun(controller, frame, (now - start) / scale));
+  if (gain > controller->guard.part * scale + unresolved) PetscCall(EndRun(controller, frame, gain / scale));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -31,12 +31,6 @@ PetscErrorCode ControllerMonitorSet(Controller controller, ControllerMonitorFn *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the energies of the frame that observers are shown are compared with */
-EnergyScale *ControllerGetEnergyScale(Controller controller)
-{
-  return &controller->scale;
-}
-
 /* Gathers the state at the end of an accepted step, 0 for the start, and hands it to every observer */
 PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
 {

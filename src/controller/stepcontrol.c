@@ -6,8 +6,6 @@
 */
 #include "controllerimpl.h"
 
-/* An energy at the start that is smaller than this part of what the run has come to is round-off, as in the summary */
-#define NOTHING_AT_START 1e-9
 /* Part of the stable step up to which explicit steps may be mixed with halves of them */
 #define NEAR_STABLE 0.95
 
@@ -167,12 +165,11 @@ PetscErrorCode ControllerNoteEnergies(Controller controller)
 /* Energy that contact may take or bring in a step, part of what the errors of the summary are compared with [J] */
 static PetscErrorCode GetMostLoss(Controller controller, PetscReal *most)
 {
-  const PetscReal largest = controller->scale.largest, start = controller->scale.start;
-  PetscReal       tolerance;
+  PetscReal tolerance;
 
   PetscFunctionBegin;
   PetscCall(ContactGetEnergyTolerance(controller->contact, &tolerance));
-  *most = tolerance * (start > NOTHING_AT_START * largest ? start : largest);
+  *most = tolerance * controller->scale.largest;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,7 +13,7 @@ static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *fr
 {
   const PetscInt interval = *(PetscInt *)ctx;
   MPI_Comm       comm     = PetscObjectComm((PetscObject)controller);
-  PetscReal      force = 0, gap = PETSC_MAX_REAL, change, scale;
+  PetscReal      force = 0, gap = PETSC_MAX_REAL;
   PetscInt       active = 0;
 
   PetscFunctionBegin;
@@ -23,10 +23,8 @@ static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *fr
     gap = PetscMin(gap, frame->pairs[p].gap);
     active += frame->pairs[p].active;
   }
-  change = EnergyScaleChange(&controller->scale, frame);
-  scale  = EnergyScaleGet(&controller->scale);
   PetscCall(PetscPrintf(comm, "step %8" PetscInt_FMT "  time %13.6e s  energy error %10.3e", frame->step, (double)frame->time,
-                        (double)(scale > 0 ? change / scale : change)));
+                        (double)(frame->energy_scale > 0 ? frame->energy_change / frame->energy_scale : frame->energy_change)));
   if (frame->n_pairs)
     PetscCall(PetscPrintf(comm, "  gap %10.3e m  active %" PetscInt_FMT "  force %12.5e N  sweeps %" PetscInt_FMT, (double)gap, active,
                           (double)force, frame->sweeps));
@@ -81,8 +79,8 @@ static PetscErrorCode TellProgress(Controller controller, PetscBool bar)
   Level: beginner
 
   Note:
-  The energy error is that of the summary: the change of all energies less the work of loads, relative to the energy at the start or, where
-  all starts at rest without strain, to the largest so far.
+  The energy error is that of the summary: the change of all energies less the work of loads, relative to the largest so far of
+  kinetic energy, strain energy and work (`ControllerFrame`).
 
 .seealso: `Controller`, `ControllerMonitorSet()`, `ControllerSetProgress()`
 @*/

@@ -15,6 +15,7 @@ static void Initialize(ContactStatistics *contact)
   contact->force_std          = NAN;
   contact->force_min          = NAN;
   contact->gap_final          = NAN;
+  contact->gap_min            = PETSC_INFINITY;
 }
 
 /* Of what there is without contact: not-a-number */
@@ -38,16 +39,16 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   }
   /* the forces at both ends of a step do not tell what those inside have done, where it is cut or bodies have times in common there */
   contact->impulse += state->normal_impulse - memory->impulse;
-  memory->impulse          = state->normal_impulse;
-  contact->force_peak      = PetscMax(contact->force_peak, state->force);
-  contact->tension_max     = PetscMax(contact->tension_max, state->tension);
-  contact->max_penetration = PetscMax(contact->max_penetration, -state->gap);
-  contact->overlap_unfelt  = PetscMax(contact->overlap_unfelt, state->overlap_unfelt);
-  contact->area_max        = PetscMax(contact->area_max, state->area);
-  contact->active_max      = PetscMax(contact->active_max, state->active);
-  contact->sliding_max     = PetscMax(contact->sliding_max, state->sliding);
-  contact->friction_loss   = state->friction_loss;
-  contact->obstacle_work   = state->obstacle_work;
+  memory->impulse         = state->normal_impulse;
+  contact->force_peak     = PetscMax(contact->force_peak, state->force);
+  contact->tension_max    = PetscMax(contact->tension_max, state->tension);
+  contact->gap_min        = PetscMin(contact->gap_min, state->gap);
+  contact->overlap_unfelt = PetscMax(contact->overlap_unfelt, state->overlap_unfelt);
+  contact->area_max       = PetscMax(contact->area_max, state->area);
+  contact->active_max     = PetscMax(contact->active_max, state->active);
+  contact->sliding_max    = PetscMax(contact->sliding_max, state->sliding);
+  contact->friction_loss  = state->friction_loss;
+  contact->obstacle_work  = state->obstacle_work;
   for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
   contact->gap_final = state->gap;
   memory->touches    = touches;

@@ -77,9 +77,11 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ContactGetLaw(contact, &law));
   history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &history->springs));
-  PetscCall(PetscCalloc1(3 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(PetscCalloc1(5 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
+  PetscCall(AddSeries(history, "/energy", "", "change", "J", 1, PETSC_FALSE));
+  PetscCall(AddSeries(history, "/energy", "", "scale", "J", 1, PETSC_FALSE));
   if (history->springs) PetscCall(AddSeries(history, "/penalty_energy", "", "", "J", 1, PETSC_FALSE));
   for (PetscInt i = 0; i < n_pairs; i++) {
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
@@ -251,6 +253,8 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
 {
   *next++ = frame->time;
   *next++ = (PetscReal)frame->sweeps;
+  *next++ = frame->energy_change;
+  *next++ = frame->energy_scale;
   if (history->springs) *next++ = frame->penalty_energy;
   for (PetscInt i = 0; i < frame->n_pairs; i++) {
     *next++ = frame->pairs[i].force;

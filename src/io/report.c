@@ -72,7 +72,7 @@ static PetscErrorCode ViewContact(Contact contact, const Body bodies[], const St
   PetscCall(ContactGetLaw(contact, &law));
   if (law != CONTACT_LAW_FRICTIONLESS) PetscCall(PrintValue(viewer, "tension of a node, peak", c->tension_max, "N", NAN));
   if (!all_static) PetscCall(PrintValue(viewer, "impulse", c->impulse, "N s", impulse));
-  PetscCall(PrintValue(viewer, "largest penetration", c->max_penetration, "m", NAN));
+  PetscCall(PrintValue(viewer, "largest penetration", PetscMax(0, -c->gap_min), "m", NAN));
   if (law == CONTACT_LAW_FRICTION) PetscCall(PrintValue(viewer, "energy taken by friction", c->friction_loss, "J", NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

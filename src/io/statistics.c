@@ -3,14 +3,14 @@
 #include <math.h>
 #include "linearlimits.h"
 
-/* An energy or angular momentum of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not
-   compared with it */
-#define NOTHING_AT_START 1e-9
+/* An energy of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not compared with it.
+   Neither is less of the kinetic energy than this part, where all bodies move alike. */
+#define ROUND_OFF 1e-9
 /* Room for series of forces at first */
 #define SERIES_BYTES (1 << 16)
 
-/* Distance of the farthest corner of a bounding box from the origin [m] */
-static PetscErrorCode GetArm(Body body, PetscReal *arm)
+/* Radius of gyration of the box about a body's mesh, about its centre [m] */
+static PetscErrorCode GetGyration(Body body, PetscReal *radius)
 {
   PetscReal lower[3], upper[3], squares = 0;
   PetscInt  dim;
@@ -20,8 +20,8 @@ static PetscErrorCode GetArm(Body body, PetscReal *arm)
   PetscCall(BodyGetDM(body, &dm));
   PetscCall(BodyGetDimension(body, &dim));
   PetscCall(DMGetBoundingBox(dm, lower, upper));
-  for (PetscInt d = 0; d < dim; d++) squares += PetscSqr(PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
-  *arm = PetscSqrtReal(squares);
+  for (PetscInt d = 0; d < dim; d++) squares += PetscSqr(upper[d] - lower[d]);
+  *radius = PetscSqrtReal(squares / 12);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -49,7 +49,6 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
   PetscCall(ContactTimesCreate(controller, &s->times));
-  s->scale = ControllerGetEnergyScale(controller);
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
   PetscCall(ControllerGetSupports(controller, &s->results.n_supports, &supports));
   PetscCall(PetscCalloc1(s->results.n_supports, &s->results.supports));
@@ -57,16 +56,13 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
     s->results.supports[i].body = supports[i].body;
     s->results.supports[i].name = supports[i].name;
   }
-  PetscCall(PetscCalloc4(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy, 2 * s->results.n_bodies, &s->body_change,
-                         s->results.n_bodies, &s->mass));
+  PetscCall(PetscCalloc5(s->results.n_pairs, &s->pair, s->results.n_bodies, &s->initial_energy, 2 * s->results.n_bodies, &s->body_change,
+                         s->results.n_bodies, &s->mass, s->results.n_bodies, &s->gyration));
   for (PetscInt i = 0; i < s->results.n_bodies; i++) {
-    PetscReal arm = 0;
-
     s->results.bodies[i].displacement_error = NAN;
     PetscCall(BodyHasHistory(bodies[i], &s->results.bodies[i].plastic));
     PetscCall(BodyGetMass(bodies[i], &s->mass[i]));
-    PetscCall(GetArm(bodies[i], &arm));
-    s->arm = PetscMax(s->arm, arm);
+    PetscCall(GetGyration(bodies[i], &s->gyration[i]));
   }
   StatisticsInitializeContact(s);
   s->capacity = PetscMax(16, SERIES_BYTES / (PetscInt)sizeof(PetscReal) / (1 + 2 * s->results.n_pairs));
@@ -83,32 +79,78 @@ static PetscReal Norm(const PetscReal x[3])
   return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
 }
 
+/* Adds a x b times a factor to c */
+static void AddProduct(PetscReal factor, const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
+{
+  for (PetscInt d = 0; d < 3; d++) c[d] += factor * (a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]);
+}
+
+/* Momentum of all bodies, and their angular momentum about the centre of mass of all: where the origin lies, and how it moves, is nothing
+   to it. And the velocity of that centre. */
+static void FindMomenta(Statistics s, const ControllerFrame *frame, PetscReal momentum[3], PetscReal angular[3], PetscReal velocity[3])
+{
+  PetscReal centre[3] = {0}, mass = 0;
+
+  for (PetscInt d = 0; d < 3; d++) momentum[d] = angular[d] = 0;
+  for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    mass += s->mass[i];
+    for (PetscInt d = 0; d < 3; d++) {
+      centre[d] += s->mass[i] * frame->bodies[i].place[d];
+      momentum[d] += frame->bodies[i].momentum[d];
+      angular[d] += frame->bodies[i].angular_momentum[d];
+    }
+  }
+  for (PetscInt d = 0; d < 3; d++) {
+    centre[d] /= mass;
+    velocity[d] = momentum[d] / mass;
+  }
+  AddProduct(-1, centre, momentum, angular);
+}
+
+/* The largest angular momentum of any body about the centre of any, without the common motion of all bodies. It is that of the body's
+   kinetic energy if all of it were spin, at least, with which bodies that meet head-on are compared. */
+static PetscReal FindAngularScale(Statistics s, const ControllerFrame *frame, const PetscReal velocity[3])
+{
+  PetscReal largest = 0;
+
+  for (PetscInt i = 0; i < frame->n_bodies; i++) {
+    const BodyMeasures *body    = &frame->bodies[i];
+    PetscReal           kinetic = body->kinetic_unstaggered;
+
+    for (PetscInt d = 0; d < 3; d++) kinetic += velocity[d] * (0.5 * s->mass[i] * velocity[d] - body->momentum[d]);
+    kinetic = PetscMax(kinetic, ROUND_OFF * body->kinetic_unstaggered);
+    largest = PetscMax(largest, s->gyration[i] * PetscSqrtReal(2 * s->mass[i] * kinetic));
+    for (PetscInt j = 0; j < frame->n_bodies; j++) {
+      PetscReal arm[3], angular[3] = {body->angular_momentum[0], body->angular_momentum[1], body->angular_momentum[2]};
+
+      for (PetscInt d = 0; d < 3; d++) arm[d] = body->place[d] - frame->bodies[j].place[d];
+      AddProduct(-1, frame->bodies[j].place, body->momentum, angular);
+      AddProduct(-s->mass[i], arm, velocity, angular);
+      largest = PetscMax(largest, Norm(angular));
+    }
+  }
+  return largest;
+}
+
 /* Notes the initial energies and momenta, which later ones are compared with */
 static void NoteInitialState(Statistics s, const ControllerFrame *frame)
 {
+  PetscReal velocity[3];
+
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     const PetscReal momentum = Norm(frame->bodies[i].momentum), most = PetscSqrtReal(2 * s->mass[i] * frame->bodies[i].kinetic);
 
     s->initial_energy[i] = BodyMeasuresGetBalance(&frame->bodies[i]);
     s->momentum_scale += momentum > NO_MOMENTUM * most ? momentum : most;
-    s->angular_scale += Norm(frame->bodies[i].angular_momentum);
-    for (PetscInt d = 0; d < 3; d++) {
-      s->momentum[d] += frame->bodies[i].momentum[d];
-      s->angular[d] += frame->bodies[i].angular_momentum[d];
-    }
     s->loaded = (PetscBool)(s->loaded || frame->bodies[i].loaded);
   }
+  FindMomenta(s, frame, s->momentum, s->angular, velocity);
+  if (!s->loaded) s->angular_scale = FindAngularScale(s, frame, velocity);
 }
 
 static PetscReal Relative(PetscReal value, PetscReal scale)
 {
   return scale != 0 ? value / PetscAbsReal(scale) : value;
-}
-
-/* What changes of an energy or angular momentum are compared with: its value at the start, or, if that is round-off, `other` */
-static PetscReal Scale(PetscReal start, PetscReal other)
-{
-  return start > NOTHING_AT_START * other ? start : other;
 }
 
 static void NoteChange(PetscReal change[2], PetscReal energy)
@@ -119,15 +161,15 @@ static void NoteChange(PetscReal change[2], PetscReal energy)
 
 static void AddEnergies(Statistics s, const ControllerFrame *frame)
 {
-  StatisticsResults *r      = &s->results;
-  const PetscReal    change = EnergyScaleChange(s->scale, frame), scale = EnergyScaleGet(s->scale);
-  PetscReal          momentum[3] = {-s->momentum[0], -s->momentum[1], -s->momentum[2]};
-  PetscReal          angular[3]  = {-s->angular[0], -s->angular[1], -s->angular[2]};
+  StatisticsResults *r     = &s->results;
+  const PetscReal    scale = frame->energy_scale;
+  PetscReal          momentum[3], angular[3], velocity[3];
 
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
     const BodyMeasures *measures = &frame->bodies[i];
     BodyStatistics     *body     = &r->bodies[i];
-    const PetscReal     energy = BodyMeasuresGetBalance(measures), start = s->initial_energy[i];
+    const PetscReal     change   = BodyMeasuresGetBalance(measures) - s->initial_energy[i];
+    const PetscReal     own      = s->initial_energy[i] > ROUND_OFF * scale ? s->initial_energy[i] : scale;
 
     body->kinetic              = measures->kinetic;
     body->potential            = measures->potential;
@@ -137,24 +179,24 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
     body->hourglass_energy     = measures->hourglass_energy;
     body->hourglass_energy_max = PetscMax(body->hourglass_energy_max, measures->hourglass_energy);
     body->peak_potential       = PetscMax(body->peak_potential, measures->potential);
-    NoteChange(s->body_change + 2 * i, energy - start);
-    body->energy_error_min = Relative(s->body_change[2 * i], Scale(start, scale));
-    body->energy_error_max = Relative(s->body_change[2 * i + 1], Scale(start, scale));
-    for (PetscInt d = 0; d < 3; d++) {
-      momentum[d] += measures->momentum[d];
-      angular[d] += measures->angular_momentum[d];
-    }
+    NoteChange(s->body_change + 2 * i, change);
+    body->energy_error_min = Relative(s->body_change[2 * i], own);
+    body->energy_error_max = Relative(s->body_change[2 * i + 1], own);
   }
-  NoteChange(s->system_change, change);
-  r->energy_error_final = Relative(change, scale);
+  NoteChange(s->system_change, frame->energy_change);
+  r->energy_scale       = scale;
+  r->energy_error_final = Relative(frame->energy_change, scale);
   r->energy_error_min   = Relative(s->system_change[0], scale);
   r->energy_error_max   = Relative(s->system_change[1], scale);
+  FindMomenta(s, frame, momentum, angular, velocity);
+  for (PetscInt d = 0; d < 3; d++) {
+    momentum[d] -= s->momentum[d];
+    angular[d] -= s->angular[d];
+  }
   /* with loads momenta change, and there is nothing to compare them with */
   r->momentum_scale             = s->momentum_scale;
   r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(momentum), s->momentum_scale));
-  r->angular_momentum_error_max = s->loaded ? NAN
-                                            : PetscMax(r->angular_momentum_error_max,
-                                                       Relative(Norm(angular), Scale(s->angular_scale, s->arm * s->momentum_scale)));
+  r->angular_momentum_error_max = s->loaded ? NAN : PetscMax(r->angular_momentum_error_max, Relative(Norm(angular), s->angular_scale));
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
@@ -280,7 +322,7 @@ PetscErrorCode StatisticsVisit(Statistics s, Checkpoint checkpoint)
 {
   const PetscInt sizes[] = {s->results.n_pairs, s->results.n_bodies, s->results.n_supports};
   const PetscInt width   = 1 + 2 * s->results.n_pairs;
-  PetscReal     *reals[] = {&s->momentum_scale, &s->angular_scale, &s->arm};
+  PetscReal     *reals[] = {&s->momentum_scale, &s->angular_scale};
 
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, "summary"));
@@ -313,7 +355,8 @@ PetscErrorCode StatisticsDestroy(Statistics *statistics)
   PetscCall(ContactTimesDestroy(&(*statistics)->times));
   PetscCall(PetscFree((*statistics)->results.supports));
   PetscCall(PetscFree2((*statistics)->results.pairs, (*statistics)->results.bodies));
-  PetscCall(PetscFree4((*statistics)->pair, (*statistics)->initial_energy, (*statistics)->body_change, (*statistics)->mass));
+  PetscCall(PetscFree5((*statistics)->pair, (*statistics)->initial_energy, (*statistics)->body_change, (*statistics)->mass,
+                       (*statistics)->gyration));
   PetscCall(PetscFree((*statistics)->series));
   PetscCall(PetscFree(*statistics));
   PetscFunctionReturn(PETSC_SUCCESS);

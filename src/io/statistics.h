@@ -16,7 +16,7 @@ typedef struct {
   PetscReal force_mean, force_std, force_min; /* over the middle 3/5 from first contact to release; minimum: while in contact [N] */
   PetscReal force_peak, tension_max;          /* over the whole run [N] */
   PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */
-  PetscReal max_penetration;                  /* of the rows, whose gaps are means around nodes; 0 or positive [m] */
+  PetscReal gap_min;                          /* smallest gap at the end of a step; those of rows are means around nodes [m] */
   PetscReal overlap_unfelt;                   /* the largest of a point before any node of the pair has touched; 0 or positive [m] */
   ContactTimesResults times;                  /* inside controller steps, by interpolation */
   PetscReal           impulse_vector[3]; /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
@@ -61,11 +61,13 @@ typedef struct {
   PetscInt           max_sweeps;                                             /* in one step */
   PetscReal          mean_sweeps;                                            /* over all steps */
   PetscReal          mean_sweeps_contact;                                    /* over steps that end in contact */
-  PetscReal          energy_error_min, energy_error_max, energy_error_final; /* of the system, relative to its start */
+  PetscReal          energy_error_min, energy_error_max, energy_error_final; /* of the system, relative to `energy_scale` */
+  PetscReal          energy_scale;                                           /* that of `ControllerFrame` at the end [J] */
   PetscReal
       momentum_error_max; /* relative to the sum of the bodies' initial momenta; absolute if that is 0 [kg m/s]; not-a-number with loads */
   PetscReal momentum_scale;             /* that sum [kg m/s] */
-  PetscReal angular_momentum_error_max; /* about the origin, likewise [kg m^2/s] */
+  PetscReal angular_momentum_error_max; /* about the centre of mass of all bodies, relative to the largest of any body about the centre
+                                           of any at the start; likewise [kg m^2/s] */
   PetscReal penalty_energy_max;         /* [J] */
 } StatisticsResults;
 

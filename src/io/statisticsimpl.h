@@ -1,7 +1,6 @@
 /* What the sources of the statistics share. Private to src/io. */
 #pragma once
 #include "statistics.h"
-#include <controller/energyscale.h>
 
 /* What is remembered of the last step, for each pair and for all pairs together */
 typedef struct {
@@ -10,22 +9,22 @@ typedef struct {
 } ContactMemory;
 
 struct _n_Statistics {
-  StatisticsResults  results;
-  ContactMemory      any, *pair;
-  ContactTimes       times;
-  PetscInt           total_sweeps, contact_sweeps;
-  PetscReal         *initial_energy; /* of each body [J] */
-  PetscReal         *mass;           /* of each body [kg] */
-  PetscReal         *body_change;    /* least and largest change of the energy of each body since the start [J] */
-  PetscReal          system_change[2];
-  const EnergyScale *scale;                     /* of energies, the controller's */
-  PetscBool          loaded;                    /* forces from outside, or held displacements, act on some body */
-  PetscReal          momentum[3];               /* of the system at the start [kg m/s] */
-  PetscReal          momentum_scale;            /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
-  PetscReal          angular[3], angular_scale; /* the same of angular momenta about the origin [kg m^2/s] */
-  PetscReal          arm;                       /* distance of the farthest corner of a body's bounding box from the origin [m] */
-  PetscInt           n_series, capacity;
-  PetscReal         *series; /* from first contact on: time, and for each pair force and nodes in contact */
+  StatisticsResults results;
+  ContactMemory     any, *pair;
+  ContactTimes      times;
+  PetscInt          total_sweeps, contact_sweeps;
+  PetscReal        *initial_energy; /* of each body [J] */
+  PetscReal        *mass;           /* of each body [kg] */
+  PetscReal        *gyration;       /* radius of gyration of each body's box [m] */
+  PetscReal        *body_change;    /* least and largest change of the energy of each body since the start [J] */
+  PetscReal         system_change[2];
+  PetscBool         loaded;         /* forces from outside, or held displacements, act on some body */
+  PetscReal         momentum[3];    /* of the system at the start [kg m/s] */
+  PetscReal         momentum_scale; /* sum of the bodies' initial momenta, each without its sign [kg m/s] */
+  PetscReal         angular[3];     /* angular momentum of the system at the start, about its centre of mass [kg m^2/s] */
+  PetscReal         angular_scale;  /* the largest of any body about the centre of any at the start, without common motion [kg m^2/s] */
+  PetscInt          n_series, capacity;
+  PetscReal        *series; /* from first contact on: time, and for each pair force and nodes in contact */
 };
 
 PETSC_INTERN void           StatisticsInitializeContact(Statistics);

@@ -20,10 +20,11 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SummarySetReal(object, "force_peak", contact->force_peak));
   PetscCall(SummarySetReal(object, "tension_max", contact->tension_max));
   PetscCall(SummarySetReal(object, "impulse", contact->impulse));
-  PetscCall(SummarySetReal(object, "max_penetration", contact->max_penetration));
+  PetscCall(SummarySetReal(object, "max_penetration", PetscMax(0, -contact->gap_min)));
   PetscCall(SummarySetReal(object, "overlap_unfelt", contact->overlap_unfelt));
   PetscCall(SummarySetReal(object, "area_max", contact->area_max));
   PetscCall(SummarySetInteger(object, "active_max", contact->active_max));
+  PetscCall(SummarySetReal(object, "gap_min", contact->gap_min));
   PetscCall(SummarySetReal(object, "gap_final", contact->gap_final));
   if (!friction) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SummarySetReal(object, "friction_loss", contact->friction_loss));
@@ -127,6 +128,7 @@ static PetscErrorCode AddSystem(json_t *root, const StatisticsResults *results)
 
   PetscFunctionBegin;
   PetscCall(SummarySetObject(root, "system", &object));
+  PetscCall(SummarySetReal(object, "energy_scale", results->energy_scale));
   PetscCall(SummarySetReal(object, "energy_error_min", results->energy_error_min));
   PetscCall(SummarySetReal(object, "energy_error_max", results->energy_error_max));
   PetscCall(SummarySetReal(object, "energy_error_final", results->energy_error_final));

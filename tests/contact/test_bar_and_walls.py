@@ -99,7 +99,7 @@ def bounce(run, contacts=8):
 
 def test_bounce(shared_run):
     """Eight contacts and 20 s: measured, they begin up to 5.7 ms late (a wave needs 333 ms through the bar), their impulses are right to 0.07 %, forces to 0.63 N of 300 to
-    500 N, the position of the lower end to 0.06 m of 5 m, the largest where it jumps in velocity. Energy: -0.065 % to +0.018 % of its largest value."""
+    500 N, the position of the lower end to 0.06 m of 5 m, the largest where it jumps in velocity. Energy: -0.102 % to +0.036 % of the largest kinetic energy."""
     run = shared_run(BOUNCE)
     late, impulse, error, position = bounce(run)
     assert run.summary["contact"]["onsets"] == 8
@@ -109,7 +109,7 @@ def test_bounce(shared_run):
     assert error.max() <= 1
     assert position <= 0.08
     system = run.summary["system"]
-    assert -1e-3 <= system["energy_error_min"] <= system["energy_error_max"] <= 3e-4
+    assert -1.5e-3 <= system["energy_error_min"] <= system["energy_error_max"] <= 4.5e-4  # 1e-3 and 3e-4 of the energy in all
     velocity, time = run.history["body/bar/mean_velocity"][-1].item(), run.history["time"][-1]
     assert velocity == pytest.approx(10 - 10 * (time - 1 - 7 * BETWEEN - T), abs=0.06)  # measured: 0.053, and 0.031 with -bar_mass_moments total
 

@@ -54,13 +54,13 @@ def test_mass_lost_in_round_off(shared_run):
     run = shared_run("-options_file options/impact-high-speed.opts -exact none -left_youngs_modulus 1e50 -time_end 0")
     assert abs(run.summary["system"]["energy_error_final"]) < 1e-3
     assert run.summary["system"]["momentum_error_max"] > 0.5
-    assert warnings(run)[-1].startswith("impakt: warning: the momentum error is 100 %, as where round-off of a body's stiffness hides its mass")
+    assert any(line.startswith("impakt: warning: the momentum error is 100 %, as where round-off of a body's stiffness hides its mass") for line in warnings(run))
 
 
 def test_verdict(shared_run):
-    """A run that has gained more than 1 % of its energy, or lost 5 %, says so, on standard error and in the summary; a good one says nothing."""
+    """A run that has gained more than 1 % of its energy, or lost 2 %, says so, on standard error and in the summary; a good one says nothing."""
     bad = shared_run(f"{BEAM} -time_step 2e-4 -controller_step_cuts 0 {UNLIMITED}")
-    assert warnings(bad)[-1].startswith("impakt: warning: the energy error is +178 %")
+    assert warnings(bad)[-1] == "impakt: warning: the energy error is +74.8 % at its worst; -time_step auto, or another smaller one, makes it less"
     assert [f"impakt: warning: {text}" for text in bad.summary["warnings"]] == warnings(bad)[1:]
     run = shared_run(f"{BEAM} -time_step 1e-5 -controller_step_cuts 0 {UNLIMITED}")
     assert 0.01 < run.summary["system"]["energy_error_max"] < 0.05  # measured: 0.0111

@@ -255,7 +255,7 @@ RANKS_AMID = {
 MADE_OF = {
     "angular_momentum": ("momentum",), "moment": ("force_vector", "force"), "external_work": ("force_vector", "force", "kinetic", "potential"),
     "kinetic": ("kinetic", "potential"), "potential": ("kinetic", "potential"), "gap": ("contact_position",),
-    "force": ("force_vector", "force"), "force_vector": ("force_vector",),
+    "force": ("force_vector", "force"), "force_vector": ("force_vector",), "change": ("scale",),
 }  # fmt: skip
 NOTHING_OPPOSITE = 1e29
 

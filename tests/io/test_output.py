@@ -30,6 +30,7 @@ CONTACT = {
     "overlap_unfelt": float,
     "area_max": float,
     "active_max": int,
+    "gap_min": float,
     "gap_final": float,
 }
 PAIR = {**CONTACT, "impulse_vector": list}
@@ -73,7 +74,7 @@ SUMMARY = {
         for name in ("left", "right")
     },
     "obstacles": {},
-    "system": {key: float for key in ("energy_error_min", "energy_error_max", "energy_error_final", "momentum_error_max", "angular_momentum_error_max", "penalty_energy_max")},
+    "system": {key: float for key in ("energy_scale", "energy_error_min", "energy_error_max", "energy_error_final", "momentum_error_max", "angular_momentum_error_max", "penalty_energy_max")},
     "errors": {
         **{
             key: float
@@ -100,6 +101,8 @@ SUMMARY = {
 UNITS = {
     "time": "s",
     "schwarz/iterations": "1",
+    "energy/change": "J",
+    "energy/scale": "J",
     "contact/{}/force": "N",
     "contact/{}/gap": "m",
     "contact/{}/active": "1",

@@ -104,9 +104,10 @@ PETSC_EXTERN PetscErrorCode BodyGetRowForces(Body, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyIsLocal(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeEnergy(Body, PetscReal *);
 /* Numbers that measures and energies of a body are summed up from */
-#define BODY_MEASURE_SUMS 21
+#define BODY_MEASURE_SUMS 24
 PETSC_EXTERN PetscErrorCode BodyGetAllMeasures(PetscInt, const Body[], PetscReal[], BodyMeasures[]);
 PETSC_EXTERN PetscErrorCode BodyComputeEnergies(PetscInt, const Body[], PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyGetAllBoxes(PetscInt, const Body[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrateRows(Body, StepConvergedReason *);

@@ -83,10 +83,6 @@ typedef struct {
    their relative tolerance unless they vanish. */
 #define CONTACT_FORCE_TOLERANCE 1e-17
 
-/* The gap of a row that has no partner opposite: larger than any gap, in whatever unit, and still a number that displacements can be added
-   to */
-#define CONTACT_NO_GAP 1e30
-
 /* Nodes of this rank that have rows of several pairs, see src/contact/rows/sharednodes.c */
 typedef struct {
   PetscInt   n, *offsets, *rows; /* node k has the rows rows[offsets[k]] to rows[offsets[k + 1] - 1] */

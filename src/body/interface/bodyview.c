@@ -2,6 +2,19 @@
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
 
+/* Where the body is */
+static PetscErrorCode ViewBox(Body body, PetscViewer viewer)
+{
+  PetscReal box[6];
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetAllBoxes(1, &body, box));
+  for (PetscInt d = 0; d < body->mesh.dim; d++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "%s %c from %.6g to %.6g", d ? "," : " ", "xyz"[d], (double)box[d], (double)-box[3 + d]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, " m\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What there is to tell of bodies in two and three dimensions */
 static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 {
@@ -73,6 +86,7 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
           ? (body->rows.tied_mass ? ", tied nodes keep theirs" : ", contact layer massless")
           : "",
       type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step));
+  PetscCall(ViewBox(body, viewer));
   PetscCall(BodyViewRanks(body, viewer));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
   PetscCall(BodyViewBlocks(body, viewer));

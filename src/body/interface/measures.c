@@ -1,4 +1,4 @@
-/* Energies, momentum and mean rotation. */
+/* Energies, momentum, mean rotation, and boxes about bodies. */
 #include <body/layout/bodyimpl.h>
 
 /* Sums over nodes and elements that measures are made of; beyond them are the works of loads and of dashpots, in all accepted steps and in
@@ -83,11 +83,11 @@ static PetscErrorCode IsMeasured(Body body, PetscBool *measured)
 /* What measures are sums of, over this rank's part. A body without inertia has a mean velocity, weighted by its mass, all the same. */
 static PetscErrorCode SumMeasures(Body body, PetscReal sums[])
 {
-  PetscReal kinetic, moving, half_work, momentum[3], angular[3], turned[3];
+  PetscReal kinetic, moving, half_work, momentum[3], angular[3], turned[3], place[3];
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(sums, N_SUMS));
-  PetscCall(BodySumNodes(body, &kinetic, &moving, &half_work, momentum, angular, turned));
+  PetscCall(BodySumNodes(body, &kinetic, &moving, &half_work, momentum, angular, turned, place));
   if (body->integrator->deforms && body->model.linear) sums[1] = half_work;
   else if (body->integrator->deforms) PetscCall(ComputePotential(body, &sums[1]));
   PetscCall(ComputeHourglassEnergy(body, &sums[14]));
@@ -99,6 +99,7 @@ static PetscErrorCode SumMeasures(Body body, PetscReal sums[])
   }
   PetscCall(PetscArraycpy(sums + 8, momentum, 3));
   PetscCall(PetscArraycpy(sums + 11, turned, 3));
+  PetscCall(PetscArraycpy(sums + 17, place, 3));
   sums[15] = body->model.element->plastic_work; /* found with the potential energy */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -187,7 +188,8 @@ static PetscErrorCode Finish(Body body, const PetscReal sums[], BodyMeasures *me
     measures->momentum[d]         = sums[2 + d];
     measures->angular_momentum[d] = sums[5 + d];
     measures->mean_velocity[d]    = sums[8 + d] / body->mass.total;
-    measures->place[d] = measures->orientation[d] = measures->angular_velocity[d] = 0;
+    measures->place[d]            = sums[17 + d] / body->mass.total;
+    measures->orientation[d] = measures->angular_velocity[d] = 0;
   }
   if (body->integrator->ops.measure) PetscCall((*body->integrator->ops.measure)(body, measures));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -287,4 +289,51 @@ PetscErrorCode BodyComputeEnergies(PetscInt n, const Body bodies[], PetscReal su
 PetscReal BodyMeasuresGetBalance(const BodyMeasures *measures)
 {
   return measures->kinetic + measures->potential + measures->damping_work + measures->plastic_work - measures->external_work;
+}
+
+/*@
+  BodyGetAllBoxes - boxes about some bodies where they are
+
+  Collective
+
+  Input Parameters:
++ n      - number of bodies, all on one communicator
+- bodies - the bodies; those that have no displacements yet, before their set-up, are where their meshes are
+
+  Output Parameter:
+. boxes - of each, of all ranks: the lower corner, and the upper one with its sign changed; zeros beyond the space dimension [m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetAllMeasures()`
+@*/
+PetscErrorCode BodyGetAllBoxes(PetscInt n, const Body bodies[], PetscReal boxes[])
+{
+  PetscMPIInt count;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < n; b++) {
+    const PetscInt     dim = bodies[b]->mesh.dim;
+    PetscReal         *box = boxes + 6 * b;
+    const PetscScalar *x, *u = NULL;
+    PetscInt           size;
+
+    for (PetscInt k = 0; k < 6; k++) box[k] = k % 3 < dim ? PETSC_MAX_REAL : 0;
+    PetscCall(VecGetLocalSize(bodies[b]->mesh.positions, &size));
+    PetscCall(VecGetArrayRead(bodies[b]->mesh.positions, &x));
+    if (bodies[b]->state.u) PetscCall(VecGetArrayRead(bodies[b]->state.u, &u));
+    for (PetscInt i = 0; i < size; i++) {
+      const PetscReal at = PetscRealPart(x[i]) + (u ? PetscRealPart(u[i]) : 0);
+      const PetscInt  d  = i % dim;
+
+      box[d]     = PetscMin(box[d], at);
+      box[3 + d] = PetscMin(box[3 + d], -at);
+    }
+    if (u) PetscCall(VecRestoreArrayRead(bodies[b]->state.u, &u));
+    PetscCall(VecRestoreArrayRead(bodies[b]->mesh.positions, &x));
+  }
+  PetscCall(PetscMPIIntCast(6 * n, &count));
+  if (n && bodies[0]->rows.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, boxes, count, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)bodies[0])));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -334,7 +334,8 @@ PETSC_INTERN PetscErrorCode BodyStateDestroy(BodyState *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
 PETSC_INTERN PetscErrorCode BodySetUpInertia(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
-PETSC_INTERN PetscErrorCode BodySumNodes(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal[3], PetscReal[3], PetscReal[3]);
+PETSC_INTERN PetscErrorCode BodySumNodes(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal[3], PetscReal[3], PetscReal[3],
+                                         PetscReal[3]);
 PETSC_INTERN void           BodyFinishRotation(Body, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodyGetElementMassParts(Body, PetscInt, PetscBool, PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);

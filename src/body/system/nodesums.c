@@ -5,8 +5,8 @@
 #include <body/layout/bodyimpl.h>
 #include <impakt/private/simd.h>
 
-/* What is summed up: m v.v, m a.a and u.f, then vectors: m v, (X + u) x m v, m (X - C) x u */
-enum { KINETIC = 0, STAGGERED = 1, POTENTIAL = 2, MOMENTUM = 3, ANGULAR = MOMENTUM + 3, TURNED = ANGULAR + 3, QUANTITIES = TURNED + 3 };
+/* What is summed up: m v.v, m a.a and u.f, then vectors: m v, (X + u) x m v, m (X - C) x u, m (X + u) */
+enum { KINETIC, STAGGERED, POTENTIAL, MOMENTUM, ANGULAR = MOMENTUM + 3, TURNED = ANGULAR + 3, PLACE = TURNED + 3, QUANTITIES = PLACE + 3 };
 /* In one dimension sums have four parts, since each addition to a single one would wait for the one before it; elsewhere there are enough
  */
 #define PARTS 4
@@ -46,6 +46,7 @@ SIMD_INLINE void AddNode(PetscInt dim, PetscBool diagonal, PetscBool linear, Pet
     sum[KINETIC][k] += nodes->v[dof] * momentum[d];
     if (staggered) sum[STAGGERED][k] += nodes->a[dof] * (diagonal ? nodes->mass[dof] * nodes->a[dof] : nodes->ma[dof]);
     sum[MOMENTUM + d][k] += momentum[d];
+    sum[PLACE + d][k] += nodes->mass[dof] * place[d];
     if (linear) sum[POTENTIAL][k] += nodes->u[dof] * nodes->force[dof];
   }
   AddProduct(dim, k, place, momentum, sum + ANGULAR);
@@ -97,9 +98,9 @@ SIMD_CLONES static void Add(PetscInt dim, PetscBool diagonal, PetscBool linear, 
 }
 
 /* Of this rank's nodes: kinetic energy, staggered for central differences and as it is [J], half the work of the internal forces
-   of a linear body [J], momentum, angular momentum, and sum m (X - C) x u of a linear body */
+   of a linear body [J], momentum, angular momentum, sum m (X - C) x u of a linear body, and sum m (X + u) */
 PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *moving, PetscReal *half_work, PetscReal momentum[3],
-                            PetscReal angular[3], PetscReal turned[3])
+                            PetscReal angular[3], PetscReal turned[3], PetscReal place[3])
 {
   const PetscReal staggered = body->integrator->staggered * PetscSqr(body->time.step);
   const Vec       a      = staggered > 0 ? body->state.a : body->state.v; /* what is not asked for costs least where it is read already */
@@ -131,9 +132,10 @@ PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *moving, Pe
   PetscCall(PetscArraycpy(momentum, sums + MOMENTUM, 3));
   PetscCall(PetscArraycpy(angular, sums + ANGULAR, 3));
   PetscCall(PetscArraycpy(turned, sums + TURNED, 3));
+  PetscCall(PetscArraycpy(place, sums + PLACE, 3));
   if (!body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
   /* around the ring it adds up to nothing but what goes along the axis */
-  momentum[0] = 0;
+  momentum[0] = place[0] = 0;
   PetscCall(PetscArrayzero(angular, 3));
   PetscCall(PetscArrayzero(turned, 3));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -75,6 +75,32 @@ PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[]
 }
 
 /*@
+  ContactPairIsNamed - whether the user has named a pair
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. named - false where the program has chosen it, as one of all bodies with each other
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPair()`
+@*/
+PetscErrorCode ContactPairIsNamed(Contact contact, PetscInt pair, PetscBool *named)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(named, 3);
+  ContactCheckPair(contact, pair);
+  *named = (PetscBool)(!contact->neighbours.come_and_go && !contact->pairs[pair].chosen);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   ContactGetPairNormal - mean outward normal of the first body of a pair
 
   Not Collective

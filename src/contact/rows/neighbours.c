@@ -78,42 +78,6 @@ PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Boxes of all bodies where they are, of all ranks: lower corners, and upper ones with their sign changed [m] */
-static PetscErrorCode GetBoxes(Contact contact)
-{
-  ContactNeighbours *neighbours = &contact->neighbours;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscReal         *box = neighbours->boxes + 6 * b;
-    const PetscScalar *x, *u = NULL;
-    PetscInt           n;
-    Vec                positions, displacements;
-
-    for (PetscInt k = 0; k < 6; k++) box[k] = PETSC_MAX_REAL;
-    for (PetscInt d = contact->dim; d < 3; d++) box[d] = box[3 + d] = 0;
-    PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
-    PetscCall(VecGetLocalSize(positions, &n));
-    PetscCall(VecGetArrayRead(positions, &x));
-    displacements = NULL;
-    if (contact->setup) PetscCall(BodyGetSolution(contact->bodies[b], &displacements, NULL, NULL));
-    if (displacements) PetscCall(VecGetArrayRead(displacements, &u));
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscReal at = PetscRealPart(x[i]) + (u ? PetscRealPart(u[i]) : 0);
-      const PetscInt  d  = i % contact->dim;
-
-      box[d]     = PetscMin(box[d], at);
-      box[3 + d] = PetscMin(box[3 + d], -at);
-    }
-    if (displacements) PetscCall(VecRestoreArrayRead(displacements, &u));
-    PetscCall(VecRestoreArrayRead(positions, &x));
-  }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, neighbours->boxes, (PetscMPIInt)(6 * contact->n_bodies), MPIU_REAL, MPIU_MIN,
-                               PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Distance of two boxes [m] */
 PetscReal ContactBoxDistance(const PetscReal a[], const PetscReal b[])
 {
@@ -267,7 +231,7 @@ PetscErrorCode ContactFindNeighbours(Contact contact, PetscReal near, PetscInt *
 
   PetscFunctionBegin;
   *n = 0;
-  PetscCall(GetBoxes(contact));
+  PetscCall(BodyGetAllBoxes(contact->n_bodies, contact->bodies, neighbours->boxes));
   PetscCall(FindBodies(contact, near, n));
   PetscCall(FindObstacles(contact, near, n));
   if (*n > 1) PetscCall(PetscTimSort(*n, neighbours->found, 2 * sizeof(PetscInt), ComparePairs, NULL));

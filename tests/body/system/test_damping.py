@@ -214,7 +214,7 @@ def test_a_block_comes_to_rest_on_the_floor(impakt):
 def test_elements_at_massless_nodes(impakt):
     """They have no dashpots, which the view says; where all are, damping by the stiffness would do nothing, and is refused."""
     case = "-options_file options/blocks.opts -time_end 1e-5 -left_damping_stiffness 1e-6"
-    left = re.search(r"body left:.*\n +(\d+) cells.*\n(?:.*\n)*? +Rayleigh damping: .* in (\d+) elements", impakt(case).stdout)
+    left = re.search(r"body left:.*\n.*\n +(\d+) cells.*\n(?:.*\n)*? +Rayleigh damping: .* in (\d+) elements", impakt(case).stdout)
     assert 0 < int(left.group(2)) < int(left.group(1))
     run = impakt(f"{case} -left_dm_plex_box_faces 1,4", expect_failure=True)
     assert re.search("-left_damping_stiffness has no effect.*-left_mass_redistribute", run.stderr)
