@@ -246,10 +246,26 @@ typedef struct {
   PetscReal friction_loss;   /* energy that friction has taken so far [J] */
   PetscReal obstacle_work;   /* work that an obstacle whose surface moves has done so far [J] */
   PetscInt  sliding;         /* of the nodes in contact those that slide, with friction */
-  PetscReal overlap_unfelt;  /* about how deep the bodies are inside each other somewhere before any node of the pair has touched: gaps are
-                                means around the nodes that have the rows. 0 or positive, and never of ties [m] */
   PetscReal beyond_impulse;  /* what nodes beyond the end of the partner bear of that, see `TransferSetGuards()`; not trapezoidal [N s] */
 } ContactPairState;
+
+/* Overlap from which on bodies are inside each other [parts of an element]: faces that do not match leave about 0.01 */
+#define CONTACT_OVERLAP 0.05
+
+/*S
+   ContactOverlap - the deepest point of a body inside another or an obstacle, or of another inside it
+
+   Level: intermediate
+
+.seealso: `ContactGetOverlaps()`
+S*/
+typedef struct {
+  PetscInt  other; /* number of the other body; obstacles are counted after all bodies; -1: there is none */
+  PetscReal depth; /* distance of the point from the closest face [m] */
+  PetscReal part;  /* the same in parts of the smallest face there; of tied bodies what is more than at the start */
+  PetscReal x[3];  /* the point [m] */
+  PetscBool pair;  /* they are a contact pair */
+} ContactOverlap;
 
 /*S
    ContactCounts - how much work the steps so far took
@@ -366,8 +382,8 @@ PETSC_EXTERN PetscErrorCode ContactStepBack(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetStepLevel(Contact, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt, PetscInt);
-PETSC_EXTERN PetscErrorCode ContactIsUnfelt(Contact, PetscInt, PetscReal, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactGetOverlap(Contact, PetscInt, const ContactPairState *, PetscReal *, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactGetOverlaps(Contact, ContactOverlap[]);
+PETSC_EXTERN PetscErrorCode ContactGetOverlapName(Contact, const ContactOverlap *, const char *[]);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetUnresolvedEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);

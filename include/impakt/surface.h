@@ -43,6 +43,20 @@ typedef struct {
   PetscReal *face_areas;                /* per face [m^2, m or 1] */
 } SurfaceData;
 
+/*S
+   SurfaceDepth - the deepest point of one surface inside the body of another
+
+   Level: developer
+
+.seealso: `Surface`, `SurfacesFindDepths()`
+S*/
+typedef struct {
+  PetscInt  surfaces[2]; /* number of the surface that has the point, and of that whose body it is in; numbers of obstacles follow */
+  PetscReal depth;       /* distance of the point from the closest face of the second surface; 0 where no point is inside [m] */
+  PetscReal size;        /* edge of the smallest face there, of either surface [m or 1] */
+  PetscReal x[3];        /* the point [m] */
+} SurfaceDepth;
+
 PETSC_EXTERN PetscErrorCode SurfaceInitializePackage(void);
 PETSC_EXTERN PetscErrorCode SurfaceFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode SurfaceCreate(DM, const char[], Surface *);
@@ -51,6 +65,8 @@ PETSC_EXTERN PetscErrorCode SurfaceSetRound(Surface, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceSetAxisymmetric(Surface);
 PETSC_EXTERN PetscErrorCode SurfaceSetMirrors(Surface, PetscInt, const PetscInt[], PetscInt);
 PETSC_EXTERN PetscErrorCode SurfaceUpdate(Surface, Vec);
+PETSC_EXTERN PetscErrorCode SurfacesFindDepths(MPI_Comm, PetscInt, const Surface[], PetscInt, const Obstacle[], PetscInt *,
+                                               SurfaceDepth *[]);
 PETSC_EXTERN PetscErrorCode SurfaceView(Surface, PetscViewer);
 PETSC_EXTERN PetscErrorCode SurfaceViewFromOptions(Surface, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode SurfaceDestroy(Surface *);

@@ -43,9 +43,6 @@ typedef struct {
   const PetscBool *changed;  /* the last update has built the row anew, and has changed it */
   const PetscBool *followed; /* the row has followed the surfaces since, see TransferFollow() */
   const PetscReal *slip;     /* by how much the partner had slipped between the two last builds of the row, in parts of the face size */
-  const PetscReal *dip;      /* how far the closest point of the partner near the node was below the row's gap when it was built last: gaps
-                                are means around their nodes [m] */
-  PetscReal        most_dip; /* the largest of these on this rank [m] */
   const PetscReal *bow;      /* depth that the row may have between surfaces which only touch, since the partner's faces are bent [m] */
 } TransferRows;
 
@@ -72,6 +69,7 @@ PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle,
 PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
 PETSC_EXTERN PetscErrorCode TransferLayAgain(Transfer);
 PETSC_EXTERN PetscErrorCode TransferSetMoved(Transfer, PetscBool);
+PETSC_EXTERN PetscErrorCode TransferSetBoundaries(Transfer, Surface, Surface);
 PETSC_EXTERN PetscErrorCode TransferSetOwner(Transfer, PetscMPIInt);
 PETSC_EXTERN PetscErrorCode TransferGetOwner(Transfer, PetscMPIInt *);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);

@@ -132,10 +132,12 @@ static void SweptBox(const SurfaceData *data, PetscReal ahead, PetscReal behind,
   }
 }
 
-static void FillFace(Surface surface, PetscInt f, Face *face)
+/* Face f of a surface, where it is now */
+void SurfaceGetFace(Surface surface, PetscInt f, Face *face)
 {
   const SurfaceData *data = &surface->data;
 
+  face->size = FaceSize(data->face_nodes, data->face_areas[f]);
   for (PetscInt d = 0; d < 3; d++) face->normal[d] = data->face_normals[3 * f + d];
   for (PetscInt k = 0; k < data->face_nodes; k++) {
     const PetscInt node = data->faces[f * data->face_nodes + k];
@@ -167,7 +169,7 @@ PetscErrorCode ExchangeFaces(MPI_Comm comm, Surface from, Surface to, PetscReal 
       PetscBool        meets  = PETSC_TRUE;
       Face             face   = {0};
 
-      FillFace(to, f, &face);
+      SurfaceGetFace(to, f, &face);
       for (PetscInt d = 0; d < data->dim; d++) {
         PetscReal lower = face.x[0][d], upper = face.x[0][d];
 

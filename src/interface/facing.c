@@ -195,8 +195,9 @@ static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An upper bound of the depth by which two bodies overlap under displacements u, collective on a communicator that has all of both [m] */
-PetscErrorCode SurfaceComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap)
+/* An upper bound of the depth by which two bodies overlap under displacements u, collective on a communicator that has all of both, and
+   what of it is for round-off [m] */
+PetscErrorCode SurfaceComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap, PetscReal *round_off)
 {
   Directions *directions;
 
@@ -205,6 +206,7 @@ PetscErrorCode SurfaceComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface 
   PetscCall(GetDirections(comm, a, &directions[0]));
   PetscCall(GetDirections(comm, b, &directions[1]));
   PetscCall(ComputeOverlap(comm, a, u_a, b, u_b, &directions[0], &directions[1], overlap));
+  *round_off = OVERLAP_FLOOR * PetscMax(directions[0].extent, directions[1].extent);
   PetscCall(PetscFree(directions));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

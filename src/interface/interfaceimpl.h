@@ -33,8 +33,14 @@ struct _p_Surface {
 typedef struct {
   PetscInt    dofs[4], owner_index[4];
   PetscMPIInt owner_rank[4];
-  PetscReal   x[4][3], normal[3];
+  PetscReal   x[4][3], normal[3], size;
 } Face;
+
+/* The closest point of some faces: the square of its distance, how high above that face the point is that looks, and the edge of the face;
+   negative heights are inside */
+typedef struct {
+  PetscReal square, height, size;
+} Closest;
 
 /* The plane in which a Dirichlet face is compared with faces of its partner: centroid, unit normal n, and tangents with t0 x t1 = n */
 typedef struct {
@@ -75,9 +81,6 @@ typedef struct {
   PetscReal *partner;              /* of a node on a sharp edge: mean outward normal of what it sees of the partner at the build, if that
                                       has no sharp edge there, else 0; 3 each */
   PetscReal *bow;                  /* depth that the bend of the partner's faces makes of surfaces that only touch [m] */
-  PetscReal *dip;                  /* how far the partner's closest point near the node was below the row's gap at the build, 0 where
-                                      none was, or none is known, as between points [m] */
-  PetscReal  most_dip;             /* the largest of them */
   PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
@@ -133,6 +136,7 @@ struct _p_Transfer {
   PetscMPIInt    owner;              /* that rank, see TransferSetOwner(); PETSC_DECIDE: there may be several */
   PetscBool      idle;               /* it is another one than this, which has no rows */
   Surface        dirichlet, neumann; /* neumann NULL: an obstacle */
+  Surface        boundaries[2];      /* of both bodies, see TransferSetBoundaries(); or NULL */
   Obstacle       obstacle;
   PetscInt       dim, n;
   PetscReal      slip_bound, angle_bound;
@@ -195,12 +199,19 @@ PETSC_INTERN PetscReal PolygonMeasure(PetscInt, const PetscReal[][2], PetscReal[
 PETSC_INTERN PetscReal PolygonDistance(PetscInt, const PetscReal[][2], const PetscReal[]);
 PETSC_INTERN PetscInt  PolygonQuadrature(PetscInt, const PetscReal[][2], PetscReal[][2], PetscReal[]);
 
+PETSC_INTERN void     ClosestTake(Closest *, const Closest *);
+PETSC_INTERN void     FaceFindClosest(PetscInt, const Face *, const PetscReal[], Closest *);
+PETSC_INTERN PetscInt FaceFindCrossings(PetscInt, const Face *, const PetscReal[], const PetscReal[], PetscReal[2]);
+
 PETSC_INTERN PetscErrorCode TreeCreate(PetscInt, PetscInt, const Face[], Tree *);
 PETSC_INTERN PetscErrorCode TreeDestroy(Tree *);
 PETSC_INTERN PetscErrorCode TreeQuery(Tree *, const Frame *, const PetscReal[], const PetscReal[], PetscInt *, const PetscInt *[]);
+PETSC_INTERN void           BoxDistances(const PetscReal[], const PetscReal[], const PetscReal[], PetscReal *, PetscReal *);
+PETSC_INTERN void           TreeFindClosest(const Tree *, PetscInt, const Face[], const PetscReal[], Closest *);
 
 PETSC_INTERN PetscErrorCode CreateVectorForest(MPI_Comm, PetscInt, PetscInt, const PetscInt[], const PetscSFNode[], PetscSF *);
 PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm, size_t, PetscInt, const PetscMPIInt[], const void *, PetscInt *, void **);
+PETSC_INTERN void           SurfaceGetFace(Surface, PetscInt, Face *);
 PETSC_INTERN PetscErrorCode ExchangeFaces(MPI_Comm, Surface, Surface, PetscReal, PetscReal, PetscInt *, Face *[]);
 PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceMarkVertices(DM, PetscInt, const PetscInt[], PetscSF, PetscInt[]);
@@ -208,10 +219,10 @@ PETSC_INTERN PetscErrorCode SurfaceFindEdges(Surface, PetscSF);
 PETSC_INTERN void           SurfaceMirrorNormal(Surface, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceKeepFaces(Surface, const PetscBool[]);
-PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(MPI_Comm, Surface, Vec, Surface, Vec, PetscReal *);
+PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(MPI_Comm, Surface, Vec, Surface, Vec, PetscReal *, PetscReal *);
 
-PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscReal[],
-                                              PetscReal[], PetscInt *, Share *[]);
+PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscReal[], PetscInt *,
+                                              Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
@@ -223,7 +234,6 @@ PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
-PETSC_INTERN void           RowSetFindMostDip(PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetConnectColumns(MPI_Comm, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],

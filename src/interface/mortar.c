@@ -8,11 +8,6 @@
    the weights of the rows, grow like one over this pivot */
 #define SINGULAR 1e-3
 
-/* Shape function of a node from which on a point of the face is near the node: half way to the next one it is 0.5, between four of them
- * 0.25
- */
-#define NEAR_NODE 0.2
-
 /* Integrals over the covered part of one Dirichlet face */
 typedef struct {
   PetscInt  n;
@@ -203,38 +198,10 @@ static PetscReal GapAtEnd(Surface surface, PetscInt k, const PetscInt nodes[], c
   return smallest;
 }
 
-/* The closest points of the partner near the nodes of a face, along the normals of these. Of plane faces they are among the corners of the
-   covered parts. */
-static void FindLowest(Surface surface, const PetscInt nodes[], const Patch *patch, const Segments *segments, PetscInt begin, PetscInt end,
-                       const Face faces[], PetscReal lowest[])
-{
-  const SurfaceData *data = &surface->data;
-
-  for (PetscInt i = begin; i < end; i++) {
-    const Segment *segment = &segments->list[i];
-
-    for (PetscInt v = 0; v < segment->n; v++) {
-      PetscReal own[4], partner[4], apart[3] = {0}, normal[3];
-
-      FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, segment->polygon[v], own);
-      FaceShapes(segments->face_nodes, (const PetscReal(*)[2])segment->partner_corners, segment->polygon[v], partner);
-      for (PetscInt d = 0; d < 3; d++) {
-        for (PetscInt j = 0; j < segments->face_nodes; j++) apart[d] += partner[j] * faces[segment->partner].x[j][d];
-        for (PetscInt k = 0; k < patch->n; k++) apart[d] -= own[k] * data->positions[3 * nodes[k] + d];
-      }
-      for (PetscInt k = 0; k < patch->n; k++) {
-        if (own[k] <= NEAR_NODE) continue;
-        GapNormal(surface, segments, nodes[k], &faces[segment->partner], normal);
-        lowest[nodes[k]] = PetscMin(lowest[nodes[k]], Dot(normal, apart));
-      }
-    }
-  }
-}
-
 /* Integrates over the segments `begin` to `end` - 1, which all belong to one Dirichlet face */
 static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, PetscInt begin, PetscInt end, const Face faces[],
-                                    const PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscReal lowest[], PetscReal seen[],
-                                    PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
+                                    const PetscInt marks[], PetscReal lumped[], PetscReal ends[], PetscReal seen[], PetscInt *n_shares,
+                                    Share shares[], PetscMPIInt owners[])
 {
   const PetscInt n = surface->data.face_nodes, f = segments->list[begin].face, n_partner = segments->face_nodes,
                  *nodes = surface->data.faces + f * n;
@@ -250,7 +217,6 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
     SetUpPatch(surface, f, marks, &patch);
     for (PetscInt i = begin; i < end; i++) IntegrateSegment(&patch, &segments->list[i], n_partner, cross[i - begin]);
     ComputeDual(&patch, dual);
-    FindLowest(surface, nodes, &patch, segments, begin, end, faces, lowest);
     for (PetscInt k = 0; k < n; k++)
       if (marks[nodes[k]] == MARK_BEYOND)
         ends[nodes[k]] = PetscMin(ends[nodes[k]], GapAtEnd(surface, k, nodes, &patch, segments, begin, end, faces));
@@ -275,11 +241,11 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
 
 /* Integrates over all that lies opposite, at most `ahead` before and `behind` behind the Dirichlet side [m]. For each node that this rank
    has: `marks`, what lies opposite; `lumped`, its D_i, summed over all ranks if this rank owns the node; `ends`, the gap where the partner
-   ends, if this rank owns the node and it lies beyond that end; `lowest`, the gap of the partner's closest point near the node; `seen`, the
+   ends, if this rank owns the node and it lies beyond that end; `seen`, the
    integral of its function times the normal of the partner, if this rank owns the node. `shares`
    are the M_ij of the rows of this rank, in pieces; free with PetscFree(). */
 PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal behind, PetscInt marks[], PetscReal lumped[],
-                                 PetscReal ends[], PetscReal lowest[], PetscReal seen[], PetscInt *n_shares, Share *shares[])
+                                 PetscReal ends[], PetscReal seen[], PetscInt *n_shares, Share *shares[])
 {
   Surface      dirichlet = transfer->dirichlet;
   Segments     segments  = {.ahead = ahead, .behind = behind, .guards = transfer->guards, .face_nodes = transfer->neumann->data.face_nodes};
@@ -293,7 +259,7 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   PetscCall(ExchangeFaces(transfer->comm, dirichlet, transfer->neumann, ahead, behind, &n_faces, &faces));
   for (PetscInt i = 0; i < dirichlet->data.n_nodes; i++) {
     marks[i] = MARK_NONE;
-    ends[i] = lowest[i] = PETSC_MAX_REAL;
+    ends[i]  = PETSC_MAX_REAL;
   }
   PetscCall(SegmentsFind(&dirichlet->data, n_faces, faces, marks, &segments));
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_INT, marks, marks, MPI_MAX));
@@ -305,16 +271,14 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   PetscCall(PetscArrayzero(seen, 3 * dirichlet->data.n_nodes));
   for (PetscInt begin = 0, end; begin < segments.n; begin = end) {
     for (end = begin + 1; end < segments.n && segments.list[end].face == segments.list[begin].face;) end++;
-    PetscCall(IntegrateFace(dirichlet, &segments, begin, end, faces, marks, lumped, ends, lowest, seen, &n_mine, mine, owners));
+    PetscCall(IntegrateFace(dirichlet, &segments, begin, end, faces, marks, lumped, ends, seen, &n_mine, mine, owners));
   }
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, lumped, lumped, MPIU_SUM));
   PetscCall(PetscSFReduceBegin(dirichlet->vectors, MPIU_REAL, seen, seen, MPIU_SUM));
   PetscCall(PetscSFReduceEnd(dirichlet->vectors, MPIU_REAL, seen, seen, MPIU_SUM));
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
-  PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, lowest, lowest, MPIU_MIN));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
-  PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, lowest, lowest, MPIU_MIN));
   if (transfer->owner >= 0) PetscCall(PetscArrayzero(owners, n_mine)); /* of one rank alone that is its number */
   PetscCall(ExchangeRecords(transfer->comm, sizeof(Share), n_mine, owners, mine, n_shares, (void **)shares));
   counts[0] = segments.candidates;

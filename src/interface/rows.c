@@ -9,8 +9,6 @@
 #define PRUNE 1e-12 /* smaller weights are round-off, and would only fill the matrices */
 /* In a rebuild, partners are looked for this far behind at least [parts of the smallest face] */
 #define LEAST_DEPTH 0.5
-/* Points of the partner that are closer than the gap of a row by less than this are round-off of a flat one [parts of the face] */
-#define FLAT 1e-6
 /* Gaps are along normals, which may be oblique to the shortest way out of an overlap: this many times as long, at 60 degrees */
 #define OBLIQUE 2
 
@@ -20,7 +18,7 @@ PetscErrorCode RowSetAllocate(PetscInt dim, PetscInt n, PetscInt n_shares, RowSe
   PetscCall(PetscMemzero(set, sizeof(*set)));
   PetscCall(PetscCalloc7(n, &set->opposite, n, &set->beyond, n, &set->changed, n, &set->gap, n, &set->area, dim * n, &set->normals, n + 1,
                          &set->offsets));
-  PetscCall(PetscCalloc4(n, &set->rest, n, &set->bow, n, &set->dip, 3 * n, &set->partner));
+  PetscCall(PetscCalloc3(n, &set->rest, n, &set->bow, 3 * n, &set->partner));
   PetscCall(PetscMalloc2(n_shares, &set->shares, n_shares, &set->columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -29,16 +27,10 @@ PetscErrorCode RowSetDestroy(RowSet *set)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree7(set->opposite, set->beyond, set->changed, set->gap, set->area, set->normals, set->offsets));
-  PetscCall(PetscFree4(set->rest, set->bow, set->dip, set->partner));
+  PetscCall(PetscFree3(set->rest, set->bow, set->partner));
   PetscCall(PetscFree2(set->shares, set->columns));
   PetscCall(PetscSFDestroy(&set->vectors));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-void RowSetFindMostDip(PetscInt n, RowSet *set)
-{
-  set->most_dip = 0;
-  for (PetscInt row = 0; row < n; row++) set->most_dip = PetscMax(set->most_dip, set->dip[row]);
 }
 
 /* Orders shares by row, then by displacement, then by value, so that sums do not depend on the order in which ranks and faces add to them
@@ -163,11 +155,11 @@ static PetscBool SeesSmooth(Transfer transfer, PetscInt node, const PetscReal se
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes
    that touch, and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
-   touches when the end of the partner does, not before or after. `lowest`: the gap of the partner's closest point near the node [m].
+   touches when the end of the partner does, not before or after.
    `columns`: normals of the partner's nodes, and the same without those on sharp edges. */
 static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[],
-                                const PetscReal *columns[2], PetscReal end, PetscReal lowest, const PetscReal seen[], PetscReal ahead,
-                                PetscReal behind, RowSet *set)
+                                const PetscReal *columns[2], PetscReal end, const PetscReal seen[], PetscReal ahead, PetscReal behind,
+                                RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
@@ -222,7 +214,6 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind, set->bow[row]));
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
   set->gap[row] = gap;
-  set->dip[row] = present - lowest > FLAT * data->sizes[row] ? present - lowest : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -269,7 +260,6 @@ static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
   set->gap[row]      = transfer->rows.gap[row];
   set->rest[row]     = transfer->rows.rest[row];
   set->bow[row]      = transfer->rows.bow[row];
-  set->dip[row]      = transfer->rows.dip[row];
   for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
   for (PetscInt d = 0; d < 3; d++) set->partner[3 * row + d] = transfer->rows.partner[3 * row + d];
 }
@@ -309,13 +299,36 @@ static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], Petsc
   }
 }
 
-/* How far behind a node its partner may be: as far as the bodies can overlap [m] */
+/* How deep the bodies are inside each other at any point [m] */
+static PetscErrorCode FindDeepest(Transfer transfer, const Vec u[2], PetscReal *deepest)
+{
+  SurfaceDepth *depths;
+  PetscInt      n;
+
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceUpdate(transfer->boundaries[side], u[side]));
+  PetscCall(SurfacesFindDepths(transfer->comm, 2, transfer->boundaries, 0, NULL, &n, &depths));
+  *deepest = 0;
+  for (PetscInt i = 0; i < n; i++) *deepest = PetscMax(*deepest, depths[i].depth);
+  PetscCall(PetscFree(depths));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far behind a node its partner may be: as far as the bodies overlap [m]. Where their hulls do by more than a face, one may be in a
+   hollow of the other, and faces farther behind a node be on the far sides of both bodies. */
 static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal *behind)
 {
+  PetscReal least = transfer->built ? LEAST_DEPTH * transfer->smallest_size : 0, round_off, deepest = 0;
+
   PetscFunctionBegin;
-  PetscCall(SurfaceComputeOverlap(transfer->comm, transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind));
-  if (transfer->dim > 1) *behind *= OBLIQUE;
-  if (transfer->built && transfer->dim > 1) *behind = PetscMax(*behind, LEAST_DEPTH * transfer->smallest_size);
+  PetscCall(SurfaceComputeOverlap(transfer->comm, transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind, &round_off));
+  if (transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  *behind *= OBLIQUE;
+  if (*behind > PetscMax(least, OBLIQUE * round_off) && transfer->boundaries[0]) {
+    PetscCall(FindDeepest(transfer, (const Vec[2]){u_dirichlet, u_neumann}, &deepest));
+    *behind = PetscMin(*behind, OBLIQUE * (deepest + round_off));
+  }
+  *behind = PetscMax(*behind, least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -324,16 +337,16 @@ static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
-  PetscReal         *lumped, *ends, *lowest, *seen, *x, *reference, *normals, *smooth, behind;
+  PetscReal         *lumped, *ends, *seen, *x, *reference, *normals, *smooth, behind;
   PetscInt           n_shares, *marks;
   Share             *shares;
   RowSet             set;
 
   PetscFunctionBegin;
   PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, &behind));
-  PetscCall(PetscMalloc5(dirichlet->n_nodes, &marks, dirichlet->n_nodes, &lumped, dirichlet->n_nodes, &ends, dirichlet->n_nodes, &lowest,
-                         3 * dirichlet->n_nodes, &seen));
-  PetscCall(TransferIntegrate(transfer, near, behind, marks, lumped, ends, lowest, seen, &n_shares, &shares));
+  PetscCall(
+      PetscMalloc4(dirichlet->n_nodes, &marks, dirichlet->n_nodes, &lumped, dirichlet->n_nodes, &ends, 3 * dirichlet->n_nodes, &seen));
+  PetscCall(TransferIntegrate(transfer, near, behind, marks, lumped, ends, seen, &n_shares, &shares));
   PetscCall(KeepShares(transfer, lumped, &n_shares, &shares));
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &set));
   PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
@@ -353,18 +366,17 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
     set.area[row]   = lumped[row];
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
     else
-      PetscCall(FinishRow(transfer, row, x, reference, (const PetscReal *[2]){normals, smooth}, ends[row], lowest[row], seen + 3 * row,
-                          near, behind, &set));
+      PetscCall(
+          FinishRow(transfer, row, x, reference, (const PetscReal *[2]){normals, smooth}, ends[row], seen + 3 * row, near, behind, &set));
     if (!set.opposite[row]) set.area[row] = 0;
   }
-  RowSetFindMostDip(transfer->n, &set);
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
   PetscCall(TransferAllocateColumns(transfer));
   PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
   PetscCall(PetscFree4(x, reference, normals, smooth));
-  PetscCall(PetscFree5(marks, lumped, ends, lowest, seen));
+  PetscCall(PetscFree4(marks, lumped, ends, seen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -136,3 +136,39 @@ PetscErrorCode TreeQuery(Tree *tree, const Frame *frame, const PetscReal lower[]
   *found = tree->found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* The square of the least distance of a point from a box, and of its largest one [m^2] */
+void BoxDistances(const PetscReal lower[], const PetscReal upper[], const PetscReal x[], PetscReal *least, PetscReal *largest)
+{
+  *least = *largest = 0;
+  for (PetscInt d = 0; d < 3; d++) {
+    *least += PetscSqr(PetscMax(0, PetscMax(lower[d] - x[d], x[d] - upper[d])));
+    *largest += PetscSqr(PetscMax(PetscAbsReal(lower[d] - x[d]), PetscAbsReal(upper[d] - x[d])));
+  }
+}
+
+/* The closest point of the faces of a tree, no farther than `closest` says: that with which it begins */
+void TreeFindClosest(const Tree *tree, PetscInt n, const Face faces[], const PetscReal x[], Closest *closest)
+{
+  PetscInt stack[128], depth = 0;
+
+  if (tree->n_boxes) stack[depth++] = 0;
+  while (depth) {
+    const Box *box = &tree->boxes[stack[--depth]];
+    PetscReal  least[2], largest;
+
+    BoxDistances(box->lower, box->upper, x, &least[0], &largest);
+    if (least[0] > closest->square) continue;
+    if (box->child < 0) {
+      for (PetscInt i = box->begin; i < box->end; i++) FaceFindClosest(n, &faces[tree->order[i]], x, closest);
+      continue;
+    }
+    for (PetscInt k = 0; k < 2; k++) {
+      const Box *child = &tree->boxes[box->child + k];
+
+      BoxDistances(child->lower, child->upper, x, &least[k], &largest);
+    }
+    stack[depth++] = box->child + (least[0] <= least[1]); /* the nearer one comes first */
+    stack[depth++] = box->child + (least[0] > least[1]);
+  }
+}

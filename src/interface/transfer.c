@@ -154,6 +154,35 @@ PetscErrorCode TransferSetMoved(Transfer transfer, PetscBool moved)
 }
 
 /*@
+  TransferSetBoundaries - gives the whole boundaries of both bodies, by which it is known how deep they lie inside each other
+
+  Logically Collective
+
+  Input Parameters:
++ transfer  - the `Transfer`, between two surfaces
+. dirichlet - all faces of the body of the Dirichlet side; it belongs to the caller and must live as long
+- neumann   - of the Neumann side
+
+  Level: developer
+
+  Note:
+  Without them partners are looked for as far behind a node as the hulls of both bodies overlap, which is far where one body is in a hollow
+  of the other.
+
+.seealso: `Transfer`, `TransferUpdate()`, `SurfacesFindDepths()`
+@*/
+PetscErrorCode TransferSetBoundaries(Transfer transfer, Surface dirichlet, Surface neumann)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscValidHeaderSpecific(dirichlet, SURFACE_CLASSID, 2);
+  PetscValidHeaderSpecific(neumann, SURFACE_CLASSID, 3);
+  transfer->boundaries[0] = dirichlet;
+  transfer->boundaries[1] = neumann;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   TransferSetOwner - says that one rank has all of both surfaces, so that it needs no other to update the rows
 
   Logically Collective
@@ -272,8 +301,6 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->followed = transfer->followed;
   rows->slip     = transfer->slip;
   rows->bow      = set->bow;
-  rows->dip      = set->dip;
-  rows->most_dip = set->most_dip;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

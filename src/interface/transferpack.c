@@ -5,7 +5,7 @@
 #include "interfaceimpl.h"
 #include "transfervisit.h"
 
-#define N_ROW     43 /* numbers of a node of the first side: key, 40 more */
+#define N_ROW     42 /* numbers of a node of the first side: key, 39 more */
 #define N_SHARE   11 /* key of its row, position of the partner's node, weight, goal and slope */
 #define N_PARTNER 12 /* key, place at the last build, place and motion at the last update */
 
@@ -20,7 +20,6 @@ static void CopyRow(Transfer transfer, PetscInt i, PetscBool back, PetscReal *pa
   TablesCopyReals(back, 1, &rows->gap[i], &packed);
   TablesCopyReals(back, 1, &rows->area[i], &packed);
   TablesCopyReals(back, 1, &rows->bow[i], &packed);
-  TablesCopyReals(back, 1, &rows->dip[i], &packed);
   TablesCopyReals(back, 1, &rows->rest[i], &packed);
   TablesCopyReals(back, dim, rows->normals + dim * i, &packed);
   packed += 3 - dim;
@@ -237,7 +236,6 @@ PetscErrorCode TransferUnpack(Transfer transfer, const char pair[], Tables table
     PetscCall(PetscArraycpy(copy, packed + N_ROW * row, N_ROW));
     CopyRow(transfer, i, PETSC_TRUE, copy + 3);
   }
-  RowSetFindMostDip(transfer->n, &transfer->rows);
   transfer->saved.builds = 0;
   if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Name(pair, "partners", name, sizeof(name)));

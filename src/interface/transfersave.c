@@ -14,8 +14,6 @@ static PetscErrorCode CopyNumbers(PetscInt dim, PetscInt n, const RowSet *from, 
   PetscCall(PetscArraycpy(to->partner, from->partner, 3 * n));
   PetscCall(PetscArraycpy(to->rest, from->rest, n));
   PetscCall(PetscArraycpy(to->bow, from->bow, n));
-  PetscCall(PetscArraycpy(to->dip, from->dip, n));
-  to->most_dip = from->most_dip;
   PetscCall(PetscArraycpy(to->shares, from->shares, from->offsets[n]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -373,7 +373,7 @@ PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   stay as they are too: each change of a row costs a little energy. In one dimension rows are built once.
 
   A build looks ahead of a node as far as `near`, or four faces further than the distance of the boxes about both surfaces, if that is more;
-  and behind the node as far as the two bodies can overlap at all.
+  and behind the node as far as the two bodies overlap, see `TransferSetBoundaries()`.
 
 .seealso: `Transfer`, `TransferSetBounds()`, `TransferGetRows()`, `TransferBeginUpdate()`
 @*/

@@ -25,8 +25,6 @@ static PetscErrorCode VisitRows(Transfer transfer, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "normals", dim * n, rows->normals));
   PetscCall(CheckpointVisitReals(checkpoint, "partner", 3 * n, rows->partner));
   PetscCall(CheckpointVisitReals(checkpoint, "bow", n, rows->bow));
-  PetscCall(CheckpointVisitReals(checkpoint, "dip", n, rows->dip));
-  RowSetFindMostDip(n, rows);
   PetscCall(CheckpointVisitReals(checkpoint, "rest", n, rows->rest));
   if (!CheckpointLoads(checkpoint) || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, n, rows));

@@ -39,16 +39,15 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   }
   /* the forces at both ends of a step do not tell what those inside have done, where it is cut or bodies have times in common there */
   contact->impulse += state->normal_impulse - memory->impulse;
-  memory->impulse         = state->normal_impulse;
-  contact->force_peak     = PetscMax(contact->force_peak, state->force);
-  contact->tension_max    = PetscMax(contact->tension_max, state->tension);
-  contact->gap_min        = PetscMin(contact->gap_min, state->gap);
-  contact->overlap_unfelt = PetscMax(contact->overlap_unfelt, state->overlap_unfelt);
-  contact->area_max       = PetscMax(contact->area_max, state->area);
-  contact->active_max     = PetscMax(contact->active_max, state->active);
-  contact->sliding_max    = PetscMax(contact->sliding_max, state->sliding);
-  contact->friction_loss  = state->friction_loss;
-  contact->obstacle_work  = state->obstacle_work;
+  memory->impulse        = state->normal_impulse;
+  contact->force_peak    = PetscMax(contact->force_peak, state->force);
+  contact->tension_max   = PetscMax(contact->tension_max, state->tension);
+  contact->gap_min       = PetscMin(contact->gap_min, state->gap);
+  contact->area_max      = PetscMax(contact->area_max, state->area);
+  contact->active_max    = PetscMax(contact->active_max, state->active);
+  contact->sliding_max   = PetscMax(contact->sliding_max, state->sliding);
+  contact->friction_loss = state->friction_loss;
+  contact->obstacle_work = state->obstacle_work;
   for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
   contact->gap_final = state->gap;
   memory->touches    = touches;
@@ -91,8 +90,7 @@ PetscErrorCode StatisticsAddContact(Statistics s, const ControllerFrame *frame)
     any.sliding += frame->pairs[i].sliding;
     any.friction_loss += frame->pairs[i].friction_loss;
     any.obstacle_work += frame->pairs[i].obstacle_work;
-    any.tension        = PetscMax(any.tension, frame->pairs[i].tension);
-    any.overlap_unfelt = PetscMax(any.overlap_unfelt, frame->pairs[i].overlap_unfelt);
+    any.tension = PetscMax(any.tension, frame->pairs[i].tension);
   }
   AddContact(&r->contact, &s->any, &any, frame->time);
   r->steps++;

@@ -334,6 +334,14 @@ PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, PetscBool same_ranks, C
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FieldsGetInterval - controller steps from frame to frame */
+PetscErrorCode FieldsGetInterval(Fields fields, PetscInt *interval)
+{
+  PetscFunctionBegin;
+  *interval = fields->interval;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* FieldsGetPaths - where the files are; either may be NULL */
 PetscErrorCode FieldsGetPaths(Fields fields, const char *path[], const char *xdmf[])
 {

@@ -216,6 +216,7 @@ PetscErrorCode OutputReport(Output output)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
   PetscCall(StatisticsGetResults(output->statistics, &results));
+  PetscCall(StatisticsAddOverlaps(output->statistics));
   PetscCall(StatisticsSetDeviation(output->statistics, output->deviation));
   if (output->history) PetscCall(HistoryFlush(output->history));
   if (output->fields) PetscCall(FieldsFinish(output->fields));

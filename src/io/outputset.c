@@ -195,6 +195,8 @@ PetscErrorCode OutputSetFields(Output output, const char path[], PetscInt interv
   PetscCall(OutputCheckPaths(comm, output->summary_path, output->history_path, path, output->checkpoints.path));
   PetscCall(FieldsCreate(output->controller, path, interval, precision, &output->fields));
   PetscCall(ControllerMonitorSet(output->controller, FieldsMonitor, output->fields, NULL));
+  PetscCall(FieldsGetInterval(output->fields, &interval));
+  PetscCall(StatisticsSetFrames(output->statistics, interval));
   PetscCall(PetscStrncpy(output->fields_path, path, sizeof(output->fields_path)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

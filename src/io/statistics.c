@@ -8,6 +8,8 @@
 #define ROUND_OFF 1e-9
 /* Room for series of forces at first */
 #define SERIES_BYTES (1 << 16)
+/* Controller steps from look to look at overlaps where no fields are written. A look takes less than a step. */
+#define OVERLAP_STEPS 100
 
 /* Radius of gyration of the box about a body's mesh, about its centre [m] */
 static PetscErrorCode GetGyration(Body body, PetscReal *radius)
@@ -48,6 +50,9 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
   PetscCall(ControllerGetBodies(controller, &s->results.n_bodies, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &s->results.n_pairs));
+  s->contact = contact;
+  PetscCall(PetscMalloc1(s->results.n_bodies, &s->overlaps));
+  s->frames = OVERLAP_STEPS;
   PetscCall(ContactTimesCreate(controller, &s->times));
   PetscCall(PetscCalloc2(s->results.n_pairs, &s->results.pairs, s->results.n_bodies, &s->results.bodies));
   PetscCall(ControllerGetSupports(controller, &s->results.n_supports, &supports));
@@ -60,6 +65,7 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
                          s->results.n_bodies, &s->mass, s->results.n_bodies, &s->gyration));
   for (PetscInt i = 0; i < s->results.n_bodies; i++) {
     s->results.bodies[i].displacement_error = NAN;
+    s->results.bodies[i].overlap.other      = -1;
     PetscCall(BodyHasHistory(bodies[i], &s->results.bodies[i].plastic));
     PetscCall(BodyGetMass(bodies[i], &s->mass[i]));
     PetscCall(GetGyration(bodies[i], &s->gyration[i]));
@@ -213,6 +219,32 @@ static void AddSupports(Statistics s, const ControllerFrame *frame)
   }
 }
 
+/* StatisticsSetFrames - overlaps are looked for every so many controller steps, as often as fields are written, and at the end; Not
+   Collective */
+PetscErrorCode StatisticsSetFrames(Statistics statistics, PetscInt interval)
+{
+  PetscFunctionBegin;
+  statistics->frames = interval;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* StatisticsAddOverlaps - takes note of how deep bodies are inside each other now, unless that has been done; Collective */
+PetscErrorCode StatisticsAddOverlaps(Statistics s)
+{
+  PetscFunctionBegin;
+  if (s->looked) PetscFunctionReturn(PETSC_SUCCESS);
+  s->looked = PETSC_TRUE;
+  PetscCall(ContactGetOverlaps(s->contact, s->overlaps));
+  for (PetscInt i = 0; i < s->results.n_bodies; i++) {
+    BodyStatistics *body = &s->results.bodies[i];
+
+    if (s->overlaps[i].part <= body->overlap.part) continue;
+    body->overlap      = s->overlaps[i];
+    body->overlap_time = s->time;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   StatisticsMonitor - takes note of a controller step
 
@@ -234,6 +266,9 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   PetscCall(ContactTimesAdd(s->times, frame));
   PetscCall(LinearLimitsCheck(controller, frame, s->results.bodies));
   if (frame->step > 0) PetscCall(StatisticsAddContact(s, frame));
+  s->time   = frame->time;
+  s->looked = PETSC_FALSE;
+  if (frame->step % s->frames == 0) PetscCall(StatisticsAddOverlaps(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -353,6 +388,7 @@ PetscErrorCode StatisticsDestroy(Statistics *statistics)
   PetscFunctionBegin;
   if (!*statistics) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactTimesDestroy(&(*statistics)->times));
+  PetscCall(PetscFree((*statistics)->overlaps));
   PetscCall(PetscFree((*statistics)->results.supports));
   PetscCall(PetscFree2((*statistics)->results.pairs, (*statistics)->results.bodies));
   PetscCall(PetscFree5((*statistics)->pair, (*statistics)->initial_energy, (*statistics)->body_change, (*statistics)->mass,

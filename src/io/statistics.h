@@ -17,7 +17,6 @@ typedef struct {
   PetscReal force_peak, tension_max;          /* over the whole run [N] */
   PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */
   PetscReal gap_min;                          /* smallest gap at the end of a step; those of rows are means around nodes [m] */
-  PetscReal overlap_unfelt;                   /* the largest of a point before any node of the pair has touched; 0 or positive [m] */
   ContactTimesResults times;                  /* inside controller steps, by interpolation */
   PetscReal           impulse_vector[3]; /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
   PetscReal           area_max;          /* in contact at the same time [m^2] */
@@ -29,16 +28,18 @@ typedef struct {
 } ContactStatistics;
 
 typedef struct {
-  PetscReal kinetic, potential, peak_potential;     /* at the end, at the end, largest [J] */
-  PetscReal displacement_error;                     /* at the end, relative L2, against an exact displacement; not-a-number without one */
-  PetscReal external_work;                          /* at the end, by loads [J] */
-  PetscReal hourglass_energy, hourglass_energy_max; /* at the end, largest; 0 but for elements with one point [J] */
-  PetscReal damping_work;                           /* at the end, taken by Rayleigh damping [J] */
-  PetscReal rotation_max;                           /* largest mean rotation of a linear body, 0 for others [rad] */
-  PetscInt  inverted_max;                           /* most elements of a linear body that were inside out at a time, 0 for others */
-  PetscBool plastic;                                /* its material flows */
-  PetscReal plastic_work;                           /* at the end, with what hardening stores of it [J] */
-  PetscReal energy_error_min,
+  PetscReal      kinetic, potential, peak_potential; /* at the end, at the end, largest [J] */
+  PetscReal      displacement_error;                 /* at the end, relative L2, against an exact displacement; not-a-number without one */
+  PetscReal      external_work;                      /* at the end, by loads [J] */
+  PetscReal      hourglass_energy, hourglass_energy_max; /* at the end, largest; 0 but for elements with one point [J] */
+  PetscReal      damping_work;                           /* at the end, taken by Rayleigh damping [J] */
+  PetscReal      rotation_max;                           /* largest mean rotation of a linear body, 0 for others [rad] */
+  PetscInt       inverted_max;                           /* most elements of a linear body that were inside out at a time, 0 for others */
+  PetscBool      plastic;                                /* its material flows */
+  PetscReal      plastic_work;                           /* at the end, with what hardening stores of it [J] */
+  ContactOverlap overlap;                                /* the deepest one in the frames that were looked at, */
+  PetscReal      overlap_time;                           /* and when that was [s] */
+  PetscReal      energy_error_min,
       energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */
 } BodyStatistics;
 
@@ -75,6 +76,8 @@ typedef struct _n_Statistics *Statistics;
 
 PETSC_INTERN PetscErrorCode      StatisticsCreate(Controller, Statistics *);
 PETSC_INTERN ControllerMonitorFn StatisticsMonitor;
+PETSC_INTERN PetscErrorCode      StatisticsSetFrames(Statistics, PetscInt);
+PETSC_INTERN PetscErrorCode      StatisticsAddOverlaps(Statistics);
 PETSC_INTERN PetscErrorCode      StatisticsGetResults(Statistics, const StatisticsResults **);
 PETSC_INTERN PetscErrorCode      StatisticsSetDeviation(Statistics, Deviation);
 PETSC_INTERN PetscErrorCode      StatisticsVisit(Statistics, Checkpoint);

@@ -10,6 +10,11 @@ typedef struct {
 
 struct _n_Statistics {
   StatisticsResults results;
+  Contact           contact;  /* the controller's */
+  ContactOverlap   *overlaps; /* work space, per body */
+  PetscInt          frames;   /* controller steps between two at whose ends overlaps are looked for */
+  PetscReal         time;     /* at the end of the last step [s] */
+  PetscBool         looked;   /* they have been looked for there */
   ContactMemory     any, *pair;
   ContactTimes      times;
   PetscInt          total_sweeps, contact_sweeps;

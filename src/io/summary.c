@@ -3,6 +3,7 @@
 #include "outputfile.h"
 #include "ranks.h"
 #include "summaryimpl.h"
+#include <math.h>
 
 static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatistics *contact, PetscBool friction)
 {
@@ -21,7 +22,6 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SummarySetReal(object, "tension_max", contact->tension_max));
   PetscCall(SummarySetReal(object, "impulse", contact->impulse));
   PetscCall(SummarySetReal(object, "max_penetration", PetscMax(0, -contact->gap_min)));
-  PetscCall(SummarySetReal(object, "overlap_unfelt", contact->overlap_unfelt));
   PetscCall(SummarySetReal(object, "area_max", contact->area_max));
   PetscCall(SummarySetInteger(object, "active_max", contact->active_max));
   PetscCall(SummarySetReal(object, "gap_min", contact->gap_min));
@@ -33,7 +33,37 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddContact(json_t *root, Contact contact, const StatisticsResults *results)
+/* The deepest overlap of bodies with each other and with obstacles, in parts of an element */
+static PetscErrorCode AddOverlap(json_t *root, Controller controller, Contact contact, const StatisticsResults *results)
+{
+  json_t               *object, *names = json_array();
+  const Body           *bodies;
+  const BodyStatistics *body    = results->bodies;
+  const ContactOverlap *overlap = &body->overlap;
+  const char           *name[2];
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetBodies(controller, NULL, &bodies));
+  for (PetscInt b = 1; b < results->n_bodies; b++)
+    if (results->bodies[b].overlap.part > overlap->part) {
+      body    = &results->bodies[b];
+      overlap = &body->overlap;
+    }
+  PetscCall(PetscObjectGetName((PetscObject)bodies[body - results->bodies], &name[0]));
+  PetscCall(ContactGetOverlapName(contact, overlap, &name[1]));
+  PetscCall(SummarySetObject(root, "overlap", &object));
+  for (PetscInt k = 0; k < 2 && name[1]; k++)
+    PetscCheck(!json_array_append_new(names, json_string(name[k])), PETSC_COMM_SELF, PETSC_ERR_LIB,
+               "Jansson cannot store 'bodies' in the summary: out of memory, or not UTF-8");
+  PetscCall(SummarySetMember(object, "bodies", names));
+  PetscCall(SummarySetReal(object, "depth", overlap->depth));
+  PetscCall(SummarySetReal(object, "part", overlap->part));
+  PetscCall(SummarySetReal(object, "time", name[1] ? body->overlap_time : NAN));
+  PetscCall(SummarySetVector(object, "position", overlap->x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode AddContact(json_t *root, Controller controller, Contact contact, const StatisticsResults *results)
 {
   json_t     *object, *pair;
   ContactType type;
@@ -48,6 +78,7 @@ static PetscErrorCode AddContact(json_t *root, Contact contact, const Statistics
   PetscCall(SummarySetObject(root, "contact", &object));
   PetscCall(SummarySetMember(object, "type", json_string(type)));
   PetscCall(SetContactStatistics(object, &results->contact, friction));
+  PetscCall(AddOverlap(object, controller, contact, results));
   if (friction) {
     ContactCounts counts;
 
@@ -291,7 +322,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   root = json_object();
   PetscCall(SummarySetMember(root, "version", json_string(IMPAKT_VERSION)));
   PetscCall(AddRun(root, controller));
-  PetscCall(AddContact(root, contact, results));
+  PetscCall(AddContact(root, controller, contact, results));
   PetscCall(AddSchwarz(root, contact, results));
   PetscCall(AddStepControl(root, controller));
   PetscCall(SummaryAddBodies(root, bodies, results));

@@ -76,8 +76,7 @@ static PetscErrorCode AddNumbers(Verdict *verdict)
       [VERDICT_UNTIED]   = {"pair", "pairs", "the ties of which tie nothing"},
       [VERDICT_APART]    = {"pair", "pairs", "that never touched"},
       [VERDICT_BEYOND]   = {"pair", "pairs", "of which nodes beyond the end of the partner bear much"},
-      [VERDICT_INSIDE]   = {"pair", "pairs", "that end inside each other"},
-      [VERDICT_UNFELT]   = {"pair", "pairs", "that were inside each other between nodes"},
+      [VERDICT_INSIDE]   = {"body", "bodies", "that were inside others"},
   };
 
   PetscFunctionBegin;
@@ -224,20 +223,40 @@ static PetscErrorCode LookAtBody(Body body, const BodyStatistics *statistics, Ve
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where a body was inside another, or inside an obstacle */
+static PetscErrorCode LookAtOverlap(Contact contact, Body body, const BodyStatistics *statistics, Verdict *verdict)
+{
+  const ContactOverlap *overlap = &statistics->overlap;
+  const char           *name, *other, *advice = "they are no pair of -contact_pairs";
+  PetscBool             penalty;
+
+  PetscFunctionBegin;
+  if (!(overlap->part > CONTACT_OVERLAP)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectGetName((PetscObject)body, &name));
+  PetscCall(ContactGetOverlapName(contact, overlap, &other));
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &penalty));
+  if (overlap->pair && penalty) advice = "set a larger -contact_penalty";
+  else if (overlap->pair)
+    advice = "refine them there, give the rows to the one with the sharper corners (-contact_rows), or take a smaller -time_step";
+  PetscCall(AddOfKind(verdict, VERDICT_INSIDE,
+                      "'%s' and '%s' were %.3g m inside each other, %.3g %% of an element, at (%.4g, %.4g, %.4g) and %.4g s: %s", name,
+                      other, (double)overlap->depth, (double)(100 * overlap->part), (double)overlap->x[0], (double)overlap->x[1],
+                      (double)overlap->x[2], (double)statistics->overlap_time, advice));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairState *state, const StatisticsResults *results,
                                  Verdict *verdict)
 {
   const char *name;
   char        nearest[64];
   ContactLaw  law;
-  PetscReal   depth;
-  PetscBool   inside, unfelt, named;
+  PetscBool   named;
   PetscInt    side;
 
   PetscFunctionBegin;
   PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
   PetscCall(ContactGetLaw(contact, &law));
-  PetscCall(ContactGetOverlap(contact, p, state, &depth, &inside));
   if (law == CONTACT_LAW_TIED && !results->pairs[p].active_max)
     PetscCall(AddOfKind(verdict, VERDICT_UNTIED, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
   PetscCall(ContactPairIsNamed(contact, p, &named));
@@ -258,14 +277,6 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
                   "tip; set -contact_rows %s, or refine the surface",
                   (double)(100 * state->beyond_impulse / PetscAbsReal(state->normal_impulse)), name, side ? "first" : "second"));
   }
-  PetscCall(ContactIsUnfelt(contact, p, results->pairs[p].overlap_unfelt, &unfelt));
-  if (unfelt)
-    PetscCall(AddOfKind(
-        verdict, VERDICT_UNFELT,
-        "%s were about %.3g m inside each other between nodes before any touched, as where a corner comes between two: name the body "
-        "with the corner first in -contact_pairs, or refine the surfaces",
-        name, (double)results->pairs[p].overlap_unfelt));
-  if (inside) PetscCall(AddOfKind(verdict, VERDICT_INSIDE, "%s end %.3g m inside each other", name, (double)depth));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -292,7 +303,10 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
   PetscCall(ControllerGetBodies(controller, NULL, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(LookAtSteps(controller, contact, results, verdict));
-  for (PetscInt b = 0; b < results->n_bodies; b++) PetscCall(LookAtBody(bodies[b], &results->bodies[b], verdict));
+  for (PetscInt b = 0; b < results->n_bodies; b++) {
+    PetscCall(LookAtBody(bodies[b], &results->bodies[b], verdict));
+    PetscCall(LookAtOverlap(contact, bodies[b], &results->bodies[b], verdict));
+  }
   if (results->steps && results->n_pairs) {
     PetscCall(PetscMalloc1(results->n_pairs, &states));
     PetscCall(ContactGetPairStates(contact, states));

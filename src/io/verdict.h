@@ -12,14 +12,13 @@ typedef enum {
   VERDICT_APART,
   VERDICT_BEYOND,
   VERDICT_INSIDE,
-  VERDICT_UNFELT,
   VERDICT_KINDS
 } VerdictKind;
 
 #define VERDICT_OF_A_KIND 3 /* sentences of one kind; one more has the number of the others */
 #define VERDICT_OF_RUN    10
 #define VERDICT_MAX       (VERDICT_OF_RUN + VERDICT_KINDS * (VERDICT_OF_A_KIND + 1))
-#define VERDICT_SIZE      256
+#define VERDICT_SIZE      320
 
 /* One sentence for each thing that is amiss */
 typedef struct {

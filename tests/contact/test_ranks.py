@@ -36,7 +36,7 @@ def tolerance(name, value, force):
         return 1e-10  # of the initial energy or momentum: differences of sums, whose round-off is 1e-12 after 1e4 steps
     if name.endswith("_time"):
         return 1e-8 * abs(value) + 1e-15  # s; of times of the order of 1e-4 s, which the onset at 0 is the difference of
-    if name.endswith(("max_penetration", "gap_min", "overlap_unfelt")):
+    if name.endswith(("max_penetration", "gap_min", "overlap.depth")):
         return 1e-11  # m; what the outer iteration leaves, which stops at 1e-12 m
     if name.endswith(("force_std", "tension_max")):
         return 1e-10 * force  # N

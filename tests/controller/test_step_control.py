@@ -76,7 +76,7 @@ def test_inside_each_other(impakt):
     summary = run.summary
     assert summary["contact"]["in_contact_at_end"]
     assert "still in contact" in run.stdout
-    assert any("inside each other" in text and "left:right" in text for text in summary["warnings"])
+    assert any("'left' and 'right' were" in text and "inside each other" in text for text in summary["warnings"])
     assert summary["contact"]["gap_final"] < 0
 
 

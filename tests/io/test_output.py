@@ -27,7 +27,6 @@ CONTACT = {
     "tension_max": float,
     "impulse": float,
     "max_penetration": float,
-    "overlap_unfelt": float,
     "area_max": float,
     "active_max": int,
     "gap_min": float,
@@ -37,7 +36,7 @@ PAIR = {**CONTACT, "impulse_vector": list}
 SUMMARY = {
     "version": str,
     "run": {"complete": bool, "controller_steps": int, "time": float},
-    "contact": {"type": str, **CONTACT},
+    "contact": {"type": str, "overlap": {"bodies": list, "depth": float, "part": float, "time": type(None), "position": list}, **CONTACT},
     "pairs": {"left:right": PAIR},
     "schwarz": {
         "max": int,

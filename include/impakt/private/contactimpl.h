@@ -388,6 +388,14 @@ typedef struct {
   ContactPairState *states; /* work space, per pair */
 } ContactTold;
 
+/* How deep bodies are inside each other, see src/contact/interface/overlap.c */
+typedef struct {
+  Surface      *boundaries; /* per body: all of its faces; NULL until they are asked for */
+  MPI_Comm      own, comm;  /* on which all ranks call together alone, so that PETSc counts its messages alike; PETSc's own of that */
+  PetscInt      n_allowed;
+  SurfaceDepth *allowed; /* overlaps of the start that are there on purpose; of infinite depth where nothing counts */
+} ContactOverlaps;
+
 /* Which bodies are near each other where pairs come and go, see src/contact/rows/neighbours.c */
 typedef struct {
   PetscBool                 all;          /* the program is to choose all pairs, and has not yet */
@@ -476,6 +484,7 @@ struct _p_Contact {
   ContactFriction   friction;
   ContactWork       work;
   ContactNeighbours neighbours;
+  ContactOverlaps   overlaps;
   PetscBool parallel_factors; /* the interface has factors that several ranks make together, perhaps not twice the same to the last bit */
   PetscBool surfaces_known;   /* ContactSetUpSurfaces() has been called */
   PetscBool setup;            /* ContactSetUp() has been called */

@@ -442,6 +442,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->work.told));
   PetscCall(PetscFree(c->work.boxes));
   PetscCall(ContactDestroyResultants(c));
+  PetscCall(ContactDestroyOverlaps(c));
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));
   PetscCall(ContactDestroyFriction(c));

@@ -11,6 +11,7 @@ static PetscErrorCode AllocateBodies(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(n, &contact->ends));
+  PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));
   PetscCall(PetscCalloc6(n, &contact->spares, n, &contact->work.hands_over, 6 * n, &contact->work.traces, BODY_CONDITION_COUNTS * n,
                          &contact->work.counts, n, &contact->work.words, n, &contact->work.left_out));
   PetscCall(PetscCalloc7(2 * n, &contact->work.speeds, n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n,
@@ -183,10 +184,7 @@ PetscErrorCode ContactSetUp(Contact contact)
 /* The present states are the start; `of_state`: they come from another run */
 static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
 {
-  ContactPairState  *states;
-  const ContactPair *overlaps = NULL;
-  PetscReal          depth    = 0;
-  PetscBool          renewed;
+  PetscBool renewed;
 
   PetscFunctionBegin;
   PetscCall(ContactRenewNeighbours(contact, 0, PETSC_TRUE, &renewed)); /* initial displacements count */
@@ -195,20 +193,7 @@ static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
   PetscCall(ContactDropShared(contact));
   ContactAlignRubbingRows(contact);
   PetscCall(ContactLetTouch(contact, of_state));
-  PetscCall(PetscMalloc1(contact->n_pairs, &states));
-  PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
-  for (PetscInt p = 0; p < contact->n_pairs && !overlaps; p++) {
-    if (!(states[p].gap < -contact->options.tolerance)) continue;
-    overlaps = &contact->pairs[p];
-    depth    = -states[p].gap;
-  }
-  PetscCall(PetscFree(states));
-  if (overlaps && overlaps->obstacle) PetscCall(ContactRefuseInside(contact, overlaps, depth));
-  PetscCheck(!overlaps, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "Bodies '%s' and '%s' overlap by %g m at the start; move one of them (-%s_dm_plex_box_lower, -%s_initial_displacement, ...)",
-             ((PetscObject)contact->bodies[overlaps->body[0]])->name, ((PetscObject)contact->bodies[overlaps->body[1]])->name,
-             (double)depth, ((PetscObject)contact->bodies[overlaps->body[0]])->name,
-             ((PetscObject)contact->bodies[overlaps->body[0]])->name);
+  if (contact->n_pairs || contact->neighbours.come_and_go) PetscCall(ContactStartOverlaps(contact, of_state));
   PetscCall(ContactSetMeanForces(contact));
   PetscCall(ContactBalanceStart(contact));
   PetscCall(ContactStartTies(contact));

@@ -1,11 +1,11 @@
-/* Bodies that are inside each other. */
+/* Bodies that are inside each other, or inside obstacles. */
 #include <contact/parts.h>
 
-/* Depth from which on bodies are inside each other, in parts of a contact element: what penalty springs, and faces that do not match, leave
-   of depth is less where they do what they should */
+/* Depth of rows that bodies in contact leave behind at the end of a run, in parts of a contact element */
 #define INSIDE 0.02
-/* The same somewhere between nodes, before any node of the pair has touched: discs of 16 edges that meet have up to 0.05 */
-#define UNFELT 0.1
+/* Overlap with which no run starts, whatever its rows say, in parts of an element: it is more than edges make of two circles that touch all
+   round, 0.2 for four edges. A smaller one that rows do not have is told at the end. */
+#define NO_START 0.25
 
 /* Size of the smallest contact element of both bodies [m] */
 static PetscErrorCode LeastElement(Contact contact, const ContactPair *pair, PetscReal *least)
@@ -49,79 +49,247 @@ PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Size of the smallest contact element of what pair `pair` tells of [m] */
-static PetscErrorCode LeastTold(Contact contact, PetscInt pair, PetscReal *least)
+/* Whether a body may touch another, or an obstacle: `other` counts obstacles after all bodies */
+static PetscBool MayTouch(Contact contact, PetscInt body, PetscInt other)
 {
+  if (contact->neighbours.come_and_go) return PETSC_TRUE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    if (other >= contact->n_bodies
+            ? pair->body[0] == body && pair->obstacle == contact->obstacles[other - contact->n_bodies]
+            : !pair->obstacle && PetscMin(pair->body[0], pair->body[1]) == body && PetscMax(pair->body[0], pair->body[1]) == other)
+      return PETSC_TRUE;
+  }
+  return PETSC_FALSE;
+}
+
+/* The whole boundary of a body, not moved */
+PetscErrorCode ContactGetBoundary(Contact contact, PetscInt body, Surface *boundary)
+{
+  Surface *own = &contact->overlaps.boundaries[body];
+
   PetscFunctionBegin;
-  *least = PETSC_MAX_REAL;
-  if (!contact->neighbours.come_and_go) PetscCall(LeastElement(contact, &contact->pairs[pair], least));
-  else
-    for (PetscInt b = 0; b < contact->n_bodies; b++) *least = PetscMin(*least, contact->neighbours.edge[b]);
+  if (!*own) PetscCall(ContactCreateSurface(contact, body, NULL, own));
+  *boundary = *own;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How deep each body is in any other, and in any obstacle, where they are now; the body with the lower number comes first */
+static PetscErrorCode FindDepths(Contact contact, PetscInt *n, SurfaceDepth *depths[])
+{
+  ContactOverlaps *overlaps = &contact->overlaps;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    Surface boundary = NULL;
+    Vec     u;
+
+    PetscCall(ContactGetBoundary(contact, b, &boundary));
+    PetscCall(BodyGetSolution(contact->bodies[b], &u, NULL, NULL));
+    PetscCall(SurfaceUpdate(boundary, u));
+  }
+  if (!overlaps->comm) { /* a rank that integrates a body by itself creates objects by itself, on the communicator of all */
+    PetscCallMPI(MPI_Comm_dup(PetscObjectComm((PetscObject)contact), &overlaps->own));
+    PetscCall(PetscCommDuplicate(overlaps->own, &overlaps->comm, NULL));
+  }
+  PetscCall(
+      SurfacesFindDepths(overlaps->comm, contact->n_bodies, overlaps->boundaries, contact->n_obstacles, contact->obstacles, n, depths));
+  for (PetscInt i = 0; i < *n; i++) {
+    PetscInt *of = (*depths)[i].surfaces;
+
+    if (of[0] > of[1]) {
+      const PetscInt swap = of[0];
+
+      of[0] = of[1];
+      of[1] = swap;
+    }
+    for (PetscInt k = 0; k < 2 && contact->dim == 1 && (*depths)[i].depth > 0; k++) { /* faces are points */
+      PetscReal size;
+
+      if (of[k] >= contact->n_bodies) continue;
+      PetscCall(BodyGetContactElementSize(contact->bodies[of[k]], &size));
+      (*depths)[i].size = k ? PetscMin((*depths)[i].size, size) : size;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RefuseOverlap(Contact contact, const SurfaceDepth *overlap)
+{
+  const char *name = ((PetscObject)contact->bodies[overlap->surfaces[0]])->name;
+
+  PetscFunctionBegin;
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+          "Bodies '%s' and '%s' overlap by %g m at the start, at (%g, %g, %g); move one of them (-%s_dm_plex_box_lower, "
+          "-%s_initial_displacement, ...)",
+          name, ((PetscObject)contact->bodies[overlap->surfaces[1]])->name, (double)overlap->depth, (double)overlap->x[0],
+          (double)overlap->x[1], (double)overlap->x[2], name, name);
+}
+
+/* The deepest of the overlaps of a pair; NULL: none */
+static const SurfaceDepth *FindDeepest(const ContactPair *pair, PetscInt n, const SurfaceDepth depths[])
+{
+  const PetscInt      first = PetscMin(pair->body[0], pair->body[1]), second = PetscMax(pair->body[0], pair->body[1]);
+  const SurfaceDepth *deepest = NULL;
+
+  for (PetscInt i = 0; i < n; i++)
+    if (depths[i].surfaces[0] == first && depths[i].surfaces[1] == second && (!deepest || depths[i].depth > deepest->depth))
+      deepest = &depths[i];
+  return deepest;
+}
+
+/* Ends with an error if a pair overlaps at the start: by more than the tolerance where rows have it, which may have faces on the far sides
+   of both bodies for partners, and by more than any mesh makes of surfaces that touch where they do not */
+static PetscErrorCode RefuseOverlaps(Contact contact, PetscBool of_state, PetscInt n, const SurfaceDepth depths[])
+{
+  const SurfaceDepth *refused = NULL;
+  const ContactPair  *inside  = NULL;
+  PetscReal           depth   = 0;
+  ContactPairState   *states;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_pairs, &states));
+  PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
+  for (PetscInt p = 0; p < contact->n_pairs && !inside && !refused; p++) {
+    const ContactPair  *pair    = &contact->pairs[p];
+    const SurfaceDepth *deepest = pair->obstacle ? NULL : FindDeepest(pair, n, depths);
+
+    if (!(states[p].gap < -contact->options.tolerance)) continue;
+    if (pair->obstacle) inside = pair;
+    else if (deepest && deepest->depth > contact->options.tolerance) refused = deepest;
+    depth = -states[p].gap;
+  }
+  PetscCall(PetscFree(states));
+  for (PetscInt i = 0; i < n && !refused && !of_state && contact->options.law != CONTACT_LAW_TIED; i++) {
+    const PetscInt *of = depths[i].surfaces;
+
+    if (depths[i].depth > NO_START * depths[i].size && of[1] < contact->n_bodies && MayTouch(contact, of[0], of[1])) refused = &depths[i];
+  }
+  if (inside) PetscCall(ContactRefuseInside(contact, inside, depth));
+  if (refused) PetscCall(RefuseOverlap(contact, refused));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Refuses bodies that overlap at the start, and notes what overlaps on purpose: tied bodies, of which more counts later, and what is no
+   pair, of which nothing does */
+PetscErrorCode ContactStartOverlaps(Contact contact, PetscBool of_state)
+{
+  ContactOverlaps *overlaps = &contact->overlaps;
+  SurfaceDepth    *depths;
+  PetscInt         n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree(overlaps->allowed));
+  overlaps->n_allowed = 0;
+  PetscCall(FindDepths(contact, &n, &depths));
+  overlaps->allowed = depths; /* freed with contact, also after an error */
+  PetscCall(RefuseOverlaps(contact, of_state, n, depths));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt *of = depths[i].surfaces;
+
+    if (depths[i].depth == 0) continue;
+    if (contact->options.law != CONTACT_LAW_TIED) {
+      if (depths[i].depth <= CONTACT_OVERLAP * depths[i].size) continue;
+      if (of[1] < contact->n_bodies && MayTouch(contact, of[0], of[1])) continue;
+      depths[i].depth = PETSC_MAX_REAL;
+    } else if (!MayTouch(contact, of[0], of[1])) depths[i].depth = PETSC_MAX_REAL;
+    depths[overlaps->n_allowed++] = depths[i];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ContactGetOverlap - how deep the bodies of a pair are inside each other
+  ContactGetOverlaps - how deep bodies are inside each other and inside obstacles now, anywhere on their surfaces
 
   Collective
 
-  Input Parameters:
-+ contact - the `Contact`, set up
-. pair    - 0 to the number of pairs - 1
-- state   - its state, as `ContactGetPairStates()` tells it
-
-  Output Parameters:
-+ depth  - the largest at any contact node, 0 or positive [m]
-- inside - whether that is more than a fiftieth of a contact element; never with tied surfaces
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetPairStates()`
-@*/
-PetscErrorCode ContactGetOverlap(Contact contact, PetscInt pair, const ContactPairState *state, PetscReal *depth, PetscBool *inside)
-{
-  PetscReal least;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(state, 3);
-  PetscAssertPointer(depth, 4);
-  PetscAssertPointer(inside, 5);
-  *depth = PetscMax(-state->gap, 0);
-  PetscCall(LeastTold(contact, pair, &least));
-  *inside = (PetscBool)(contact->options.law != CONTACT_LAW_TIED && *depth > INSIDE * least);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactIsUnfelt - whether bodies were deep inside each other before any row felt it
-
-  Not Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up
-. pair    - 0 to the number of pairs - 1
-- overlap - the largest `overlap_unfelt` of its states [m]
+  Input Parameter:
+. contact - the `Contact`, set up
 
   Output Parameter:
-. unfelt - whether that is more than a tenth of a contact element
+. overlaps - for each body the deepest overlap with a body of a higher number, or an obstacle
 
   Level: intermediate
 
   Note:
-  A sharp corner that comes between two nodes of the surface that has the rows is not felt before the faces beside it reach these nodes.
-  With rows on the body that has the corner it is, at once.
+  Deepest is what is most in parts of an element. All faces of all bodies count, whichever have contact rows. Left out are obstacles that
+  are no pair of the body, and bodies that are no pair and overlap at the start; of tied bodies what is more than at the start counts.
 
-.seealso: `Contact`, `ContactPairState`, `ContactGetOverlap()`
+.seealso: `Contact`, `ContactOverlap`, `SurfacesFindDepths()`
 @*/
-PetscErrorCode ContactIsUnfelt(Contact contact, PetscInt pair, PetscReal overlap, PetscBool *unfelt)
+PetscErrorCode ContactGetOverlaps(Contact contact, ContactOverlap overlaps[])
 {
-  PetscReal least;
+  SurfaceDepth *depths;
+  PetscInt      n;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(unfelt, 4);
-  PetscCall(LeastTold(contact, pair, &least));
-  *unfelt = (PetscBool)(overlap > UNFELT * least);
+  PetscAssertPointer(overlaps, 2);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) overlaps[b] = (ContactOverlap){.other = -1};
+  if (!contact->n_pairs && !contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FindDepths(contact, &n, &depths));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt *of      = depths[i].surfaces;
+    ContactOverlap *overlap = &overlaps[of[0]];
+    PetscReal       depth   = depths[i].depth;
+    PetscBool       pair;
+
+    for (PetscInt k = 0; k < contact->overlaps.n_allowed; k++) {
+      const SurfaceDepth *allowed = &contact->overlaps.allowed[k];
+
+      if (allowed->surfaces[0] == of[0] && allowed->surfaces[1] == of[1]) depth = PetscMin(depth, depths[i].depth - allowed->depth);
+    }
+    if (depth <= PetscMax(overlap->part * depths[i].size, contact->options.tolerance)) continue;
+    pair = MayTouch(contact, of[0], of[1]);
+    if (!pair && of[1] >= contact->n_bodies) continue; /* planes go on where no body is meant to touch them */
+    overlap->other = of[1];
+    overlap->depth = depths[i].depth;
+    overlap->part  = depth / depths[i].size;
+    overlap->pair  = pair;
+    PetscCall(PetscArraycpy(overlap->x, depths[i].x, 3));
+  }
+  PetscCall(PetscFree(depths));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ContactGetOverlapName - name of the other body, or of the obstacle, of an overlap
+
+  Not Collective
+
+  Input Parameters:
++ contact - the `Contact`
+- overlap - the overlap
+
+  Output Parameter:
+. name - the name; `NULL` where nothing overlaps
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetOverlaps()`
+@*/
+PetscErrorCode ContactGetOverlapName(Contact contact, const ContactOverlap *overlap, const char *name[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(overlap, 2);
+  PetscAssertPointer(name, 3);
+  if (overlap->other >= contact->n_bodies) PetscCall(ObstacleGetName(contact->obstacles[overlap->other - contact->n_bodies], name));
+  else *name = overlap->other < 0 ? NULL : ((PetscObject)contact->bodies[overlap->other])->name;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactDestroyOverlaps(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies && contact->overlaps.boundaries; b++)
+    PetscCall(SurfaceDestroy(&contact->overlaps.boundaries[b]));
+  PetscCall(PetscFree(contact->overlaps.boundaries));
+  if (contact->overlaps.comm) {
+    PetscCall(PetscCommDestroy(&contact->overlaps.comm));
+    PetscCallMPI(MPI_Comm_free(&contact->overlaps.own));
+  }
+  PetscCall(PetscFree(contact->overlaps.allowed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

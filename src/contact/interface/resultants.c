@@ -20,7 +20,7 @@ enum {
 #define N_KEPT CONTACT_IMPULSES
 
 /* Of what the largest value of a pair's rows is found */
-enum { MAX_PENETRATION, MAX_TENSION, MAX_UNFELT, N_MAXIMA };
+enum { MAX_PENETRATION, MAX_TENSION, N_MAXIMA };
 
 /* Makes room for the resultants of all pairs, and notes cross-sections */
 PetscErrorCode ContactSetUpPairResultants(Contact contact)
@@ -221,28 +221,6 @@ static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
   return PETSC_FALSE;
 }
 
-/* Rows with gaps of more than this part of a face have no corner beside them of which they should feel something: they look along the
-   flanks of bodies that pass each other */
-#define CLOSE 0.5
-
-/* Of a pair that does not touch: the smallest gap, with its sign turned, and how deep the partner's points near the nodes are [m] */
-static PetscErrorCode FindUnloaded(Contact contact, const ContactPair *pair, PetscReal maxima[])
-{
-  TransferRows rows;
-
-  PetscFunctionBegin;
-  if (pair->far) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = pair->begin; i < pair->end; i++) maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
-  PetscCall(TransferGetRows(pair->transfer, &rows));
-  for (PetscInt i = pair->begin; i < pair->end && rows.most_dip > -maxima[MAX_PENETRATION]; i++) {
-    const PetscInt node = (i - pair->begin) / pair->components;
-
-    if (rows.dip[node] > 0 && contact->rows.opposite[i] && !rows.beyond[node] && contact->end.gap[i] <= CLOSE * rows.size[node])
-      maxima[MAX_UNFELT] = PetscMax(maxima[MAX_UNFELT], rows.dip[node] - contact->end.gap[i]);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* This rank's sums and largest values over the rows of pair p */
 static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
 {
@@ -257,9 +235,10 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   sums[SUM_NORMAL_IMPULSE] = contact->resultants.impulse[N_KEPT * p + 6];
   sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
   maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
-  maxima[MAX_TENSION] = maxima[MAX_UNFELT] = 0;
+  maxima[MAX_TENSION]      = 0;
   if (!contact->held.merger && !IsLoaded(contact, pair)) { /* moments of merged rows take a word of all ranks */
-    PetscCall(FindUnloaded(contact, pair, maxima));
+    for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++)
+      maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(TransferGetRows(pair->transfer, &rows));
@@ -314,13 +293,9 @@ PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscIn
     }
     state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
     state->beyond_impulse = sums[SUM_BEYOND];
-    /* once they have touched, rows of surfaces that roll on each other are older than what they say of points between nodes */
-    if (!state->active && state->force == 0 && sums[SUM_NORMAL_IMPULSE] == 0 && contact->options.law != CONTACT_LAW_TIED)
-      state->overlap_unfelt = maxima[MAX_UNFELT];
-    else state->overlap_unfelt = 0;
-    state->sliding       = (PetscInt)sums[SUM_SLIDING];
-    state->friction_loss = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
-    state->obstacle_work = contact->friction.pair_driven ? contact->friction.pair_driven[p] : 0;
+    state->sliding        = (PetscInt)sums[SUM_SLIDING];
+    state->friction_loss  = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
+    state->obstacle_work  = contact->friction.pair_driven ? contact->friction.pair_driven[p] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -92,9 +92,8 @@ PetscErrorCode ContactTakeLeave(Contact contact, const ContactPair *pair, const 
    all that is told are those over all pairs. */
 static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairState *state)
 {
-  sum->gap            = PetscMin(sum->gap, state->gap);
-  sum->tension        = PetscMax(sum->tension, state->tension);
-  sum->overlap_unfelt = PetscMax(sum->overlap_unfelt, state->overlap_unfelt);
+  sum->gap     = PetscMin(sum->gap, state->gap);
+  sum->tension = PetscMax(sum->tension, state->tension);
   for (PetscInt d = 0; d < 3; d++) {
     sum->force_vector[d] += sign * state->force_vector[d];
     sum->moment[d] += sign * state->moment[d];

@@ -5,7 +5,7 @@
 #define FORCE_ROUND_OFF 1e-9
 
 /* A surface of a body; `name` NULL: the whole of it */
-static PetscErrorCode CreateSurface(Contact contact, PetscInt body, const char name[], Surface *surface)
+PetscErrorCode ContactCreateSurface(Contact contact, PetscInt body, const char name[], Surface *surface)
 {
   PetscBool axisymmetric;
   DM        dm;
@@ -25,7 +25,7 @@ static PetscErrorCode CreateFacing(Contact contact, const ContactPair *pair, Sur
   PetscFunctionBegin;
   surfaces[0] = surfaces[1] = NULL;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-    PetscCall(CreateSurface(contact, pair->body[side], pair->surface[side], &surfaces[side]));
+    PetscCall(ContactCreateSurface(contact, pair->body[side], pair->surface[side], &surfaces[side]));
   PetscCall(SurfaceKeepFacing(surfaces[0], surfaces[1], pair->obstacle, PETSC_TRUE, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -182,7 +182,7 @@ static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt s
 
   entry  = &contact->surfaces[contact->n_surfaces++];
   *entry = (ContactSurface){.body = pair->body[side], .name = pair->surface[side], .shared = shared};
-  PetscCall(CreateSurface(contact, pair->body[side], pair->surface[side], &entry->surface));
+  PetscCall(ContactCreateSurface(contact, pair->body[side], pair->surface[side], &entry->surface));
   PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
   PetscCall(PetscObjectReference((PetscObject)entry->surface));
   pair->surfaces[side] = entry->surface;
@@ -207,7 +207,7 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
 
     *entry = (ContactSurface){.body = b, .shared = PETSC_TRUE};
     PetscCall(BodyGetDM(contact->bodies[b], &dm));
-    PetscCall(CreateSurface(contact, b, NULL, &entry->surface));
+    PetscCall(ContactCreateSurface(contact, b, NULL, &entry->surface));
     PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
     PetscCall(SurfaceGetVertices(entry->surface, &n, &vertices));
     PetscCall(BodySetContactNodes(contact->bodies[b], n, vertices));
@@ -363,6 +363,12 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
   }
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(SetOwner(contact, pair));
+  if (!pair->obstacle && contact->dim > 1) {
+    Surface boundaries[2] = {NULL, NULL};
+
+    for (PetscInt side = 0; side < 2; side++) PetscCall(ContactGetBoundary(contact, pair->body[side], &boundaries[side]));
+    PetscCall(TransferSetBoundaries(pair->transfer, boundaries[0], boundaries[1]));
+  }
   PetscCall(TransferSetMoved(pair->transfer, PETSC_TRUE));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
   pair->rests = (PetscBool)!inertia;

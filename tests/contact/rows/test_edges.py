@@ -97,4 +97,4 @@ def test_stops_after_the_way_of_coulomb(shared_run):
     way = np.sum((speed[1:] + speed[:-1]) / 2 * np.diff(time))
     assert way == pytest.approx(1 / (2 * 0.3 * 9.81), rel=0.01)  # measured: 0.16989 m
     assert abs(speed[-1]) < 1e-3
-    assert run.summary["contact"]["overlap_unfelt"] == 0
+    assert run.summary["contact"]["overlap"]["part"] <= 0.05
