@@ -261,7 +261,7 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
     marks[i] = MARK_NONE;
     ends[i]  = PETSC_MAX_REAL;
   }
-  PetscCall(SegmentsFind(&dirichlet->data, n_faces, faces, marks, &segments));
+  PetscCall(SegmentsFind(dirichlet, n_faces, faces, marks, &segments));
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_INT, marks, marks, MPI_MAX));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_INT, marks, marks, MPI_MAX));
   PetscCall(PetscSFBcastBegin(dirichlet->sf, MPIU_INT, marks, marks, MPI_REPLACE));

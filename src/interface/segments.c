@@ -5,6 +5,9 @@
 #define MARGIN 0.05  /* a node no further beyond the end of the partner counts as covered */
 #define REACH  0.95  /* a node beyond that, but no further than this, guards the end; at 1 the next node of a matching mesh would too */
 #define SLIVER 1e-10 /* smaller common parts of two faces are round-off of faces that have an edge in common */
+/* A face beside a sharp edge has nothing opposite if less of it is covered: it lies beside what the partner stands on, as the side of a
+   base does over whose edge a block slides, which sags by a part of this */
+#define GRAZED 0.01
 /* Of two partners over the same part of a face, the one whose gap is larger by this much is hidden behind the other, if that one covers
    more than this part of its area */
 #define HIDDEN_DISTANCE 0.5
@@ -109,6 +112,18 @@ static void DropHidden(const Target *target, Segments *segments, PetscInt begin)
   segments->n = kept;
 }
 
+/* Drops what lies opposite to a face beside a sharp edge if that is hardly any of the face */
+static void DropGrazed(const Target *target, const PetscBool sharp[], Segments *segments, PetscInt begin)
+{
+  PetscReal covered = 0, centroid[2];
+  PetscBool edge    = PETSC_FALSE;
+
+  for (PetscInt k = 0; k < target->n; k++) edge = (PetscBool)(edge || sharp[target->data->faces[target->face * target->n + k]]);
+  for (PetscInt i = begin; i < segments->n; i++)
+    covered += PolygonMeasure(segments->list[i].n, (const PetscReal(*)[2])segments->list[i].polygon, centroid);
+  if (edge && covered < GRAZED * target->area) segments->n = begin;
+}
+
 /* In one dimension: the nearest point whose normal has the opposite direction */
 static PetscErrorCode ComparePoints(const SurfaceData *data, PetscInt f, PetscInt n_faces, const Face faces[], Segments *segments)
 {
@@ -175,9 +190,10 @@ static PetscErrorCode CompareWithTree(const Target *target, Tree *tree, const Fa
 
 /* Finds the common parts of the Dirichlet faces of this rank and of the faces of the partner, at most segments->ahead before and
    segments->behind behind them [m]. Marks the nodes of the Dirichlet faces, which must be MARK_NONE before. */
-PetscErrorCode SegmentsFind(const SurfaceData *data, PetscInt n_faces, const Face faces[], PetscInt marks[], Segments *segments)
+PetscErrorCode SegmentsFind(Surface surface, PetscInt n_faces, const Face faces[], PetscInt marks[], Segments *segments)
 {
-  Tree tree;
+  const SurfaceData *data = &surface->data;
+  Tree               tree;
 
   PetscFunctionBegin;
   if (data->dim == 1) {
@@ -193,6 +209,7 @@ PetscErrorCode SegmentsFind(const SurfaceData *data, PetscInt n_faces, const Fac
     SetUpTarget(data, f, &target);
     PetscCall(CompareWithTree(&target, &tree, faces, segments));
     DropHidden(&target, segments, begin);
+    if (segments->guards) DropGrazed(&target, surface->sharp, segments, begin); /* not from ties */
     MarkNodes(&target, segments, begin, marks);
   }
   PetscCall(TreeDestroy(&tree));

@@ -21,4 +21,4 @@ typedef struct {
   Segment   *list;          /* segments of one Dirichlet face follow each other */
 } Segments;
 
-PETSC_INTERN PetscErrorCode SegmentsFind(const SurfaceData *, PetscInt, const Face[], PetscInt[], Segments *);
+PETSC_INTERN PetscErrorCode SegmentsFind(Surface, PetscInt, const Face[], PetscInt[], Segments *);
