@@ -163,11 +163,17 @@ PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
+/* Numbers of a pair that ranks add up, see pairsupdate.c */
+#define CONTACT_SUMS (TRANSFER_SUMS + 2)
 /* What ContactUpdatePairs() says of the rows of a pair */
 enum { ROWS_STAY, ROWS_FOLLOWED, ROWS_REBUILT };
 
-PETSC_INTERN PetscErrorCode ContactUpdatePairs(Contact, PetscReal);
+PETSC_INTERN PetscErrorCode ContactUpdatePairs(Contact);
+PETSC_INTERN PetscErrorCode ContactMeasureReach(Contact, PetscReal *);
+PETSC_INTERN PetscReal      ContactPairReach(Contact, const ContactPair *);
+PETSC_INTERN PetscReal      ContactRowReach(Contact, const ContactPair *, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
+PETSC_INTERN PetscErrorCode ContactPairStartsAnew(Contact, const ContactPair *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactSetUpSavedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroySavedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
@@ -212,6 +218,7 @@ PETSC_INTERN PetscErrorCode ContactDestroyFloating(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);
+PETSC_INTERN PetscBool      ContactHasTouched(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactVisitImpulses(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactPackImpulses(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactUnpackImpulses(Contact, Tables);

@@ -229,6 +229,7 @@ PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
 PETSC_INTERN PetscErrorCode TransferFindTurn(Transfer, PetscReal[]);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
+PETSC_INTERN PetscErrorCode TransferGetReach(Transfer, PetscReal, PetscReal *);
 PETSC_INTERN PetscBool      RowPartnerNormal(Surface, const RowSet *, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);

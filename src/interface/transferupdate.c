@@ -144,7 +144,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
 
 /* How far ahead of a node to look for partners [m]: at least as far as the caller wants, and some faces further than the distance of the
    boxes about both surfaces, so that the closest partner is always known. Faces further away are not sent to other ranks. */
-static PetscErrorCode GetReach(Transfer transfer, PetscReal near, PetscReal *reach)
+PetscErrorCode TransferGetReach(Transfer transfer, PetscReal near, PetscReal *reach)
 {
   const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
   PetscReal corners[13], square = 0; /* for each side the upper corner and the lower one with its sign changed; then the largest face */
@@ -199,26 +199,6 @@ PetscErrorCode TransferSleep(Transfer transfer)
   transfer->saved.same      = PETSC_FALSE;
   transfer->follow.has_last = PETSC_FALSE;
   transfer->sleeps          = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  TransferLayAgain - has the next `TransferUpdate()` build all rows, however little the surfaces have moved
-
-  Logically Collective
-
-  Input Parameter:
-. transfer - the `Transfer`
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`
-@*/
-PetscErrorCode TransferLayAgain(Transfer transfer)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  transfer->built_near = -1; /* as if no partner were known */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -278,7 +258,8 @@ PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neu
 
   Input Parameters:
 + transfer - the `Transfer`
-- sums     - of all ranks
+. sums     - of all ranks
+- anew     - whether to build all rows where the surfaces are, however little these have moved
 
   Output Parameter:
 . largest - of this rank, of which the largest of all ranks are to be given to `TransferEndUpdate()`
@@ -287,15 +268,21 @@ PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neu
 
 .seealso: `Transfer`, `TransferUpdate()`, `TransferBeginUpdate()`, `TransferEndUpdate()`
 @*/
-PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRANSFER_SUMS], PetscReal largest[TRANSFER_LARGEST])
+PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRANSFER_SUMS], PetscBool anew,
+                                     PetscReal largest[TRANSFER_LARGEST])
 {
   PetscBool slipped;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscAssertPointer(sums, 2);
-  PetscAssertPointer(largest, 3);
+  PetscAssertPointer(largest, 4);
   for (PetscInt k = 0; k < TRANSFER_LARGEST; k++) largest[k] = 0;
+  if (anew) {
+    transfer->due   = PETSC_TRUE;
+    transfer->looks = PETSC_FALSE;
+    if (transfer->follow.known) PetscCall(PetscArrayzero(transfer->follow.known, transfer->n)); /* no row goes on from where it is */
+  }
   if (!transfer->looks) PetscFunctionReturn(PETSC_SUCCESS);
   GetMotion(transfer, sums, largest);
   PetscCall(HasSlipped(transfer, &slipped));
@@ -340,7 +327,7 @@ PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neuma
     transfer->followed[row] = PETSC_FALSE;
   }
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetReach(transfer, near, &reach));
+  PetscCall(TransferGetReach(transfer, near, &reach));
   if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
   else PetscCall(TransferBuildObstacleRows(transfer, reach));
   for (PetscInt row = 0; row < transfer->n; row++) /* a gap that is that of the surfaces again has no turn in it */
@@ -388,7 +375,7 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   PetscCall(TransferBeginUpdate(transfer, u_dirichlet, u_neumann, near, sums));
   if (transfer->looks && transfer->neumann)
     PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, TRANSFER_SUMS, MPIU_REAL, MPIU_SUM, transfer->comm));
-  PetscCall(TransferCompareMotion(transfer, sums, largest));
+  PetscCall(TransferCompareMotion(transfer, sums, PETSC_FALSE, largest));
   if (transfer->looks) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, largest, TRANSFER_LARGEST, MPIU_REAL, MPIU_MAX, transfer->comm));
   PetscCall(TransferEndUpdate(transfer, u_dirichlet, u_neumann, near, largest, rebuilt));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -107,6 +107,7 @@ PETSC_EXTERN PetscErrorCode BodyComputeEnergy(Body, PetscReal *);
 #define BODY_MEASURE_SUMS 24
 PETSC_EXTERN PetscErrorCode BodyGetAllMeasures(PetscInt, const Body[], PetscReal[], BodyMeasures[]);
 PETSC_EXTERN PetscErrorCode BodyComputeEnergies(PetscInt, const Body[], PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyGetOwnKinetic(PetscInt, const Body[], const BodyMeasures[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetAllBoxes(PetscInt, const Body[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);

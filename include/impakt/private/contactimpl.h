@@ -414,30 +414,36 @@ typedef struct {
   ContactTold               told;
 } ContactNeighbours;
 
+/* How fast bodies move at the start of the step, see reach.c */
+typedef struct {
+  PetscReal *mean;   /* per body: mean velocity of its nodes [m/s], and their number */
+  PetscReal *spread; /* per body: the most by which the velocity of a node differs from that [m/s]; where pairs come and go the largest
+                        acceleration [m/s^2] */
+} ContactReach;
+
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
-  PetscReal     *speeds;       /* two per body */
-  PetscReal     *traces;       /* six numbers per body, see ContactGetBodyTraces() */
-  PetscInt      *counts;       /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
-  BodyWord      *words;        /* per body: see ContactTellWords() */
-  PetscBool     *left_out;     /* per body: it is not integrated with others */
-  PetscScalar   *told;         /* all words at once */
-  PetscInt       most_told;    /* numbers that there is room for in these */
-  PetscReal     *boxes;        /* per surface: lower corner, and the upper one with its sign changed [m] */
-  int           *hands_over;   /* per body: it begins the step with forces along other rows than it ends it with */
-  PetscBool     *flags;        /* to a body */
-  PetscReal     *last_gap;     /* per row */
-  PetscReal     *tilts;        /* per node of a pair */
-  PetscBool     *moved;        /* per row */
-  PetscReal     *last_force;   /* per row */
-  PetscReal     *handover;     /* two numbers to a body per row */
-  PetscInt      *intervals;    /* to a body */
-  PetscInt      *entry_counts; /* two numbers per row */
-  PetscReal     *rest;         /* to a body */
-  int           *updated;      /* per pair: what has become of its rows, see pairsupdate.c */
-  PetscReal     *motion;       /* per pair: how far its surfaces have moved, see pairsupdate.c */
-  PetscReal     *off;          /* per pair: how far planes of nodes in contact are off its obstacle, see layahead.c */
-  BodyCondition *conditions;   /* to a body */
+  PetscReal     *traces;        /* six numbers per body, see ContactGetBodyTraces() */
+  PetscInt      *counts;        /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
+  BodyWord      *words;         /* per body: see ContactTellWords() */
+  PetscBool     *left_out;      /* per body: it is not integrated with others */
+  PetscScalar   *told;          /* all words at once */
+  PetscInt       most_told;     /* numbers that there is room for in these */
+  PetscReal     *boxes;         /* per surface: lower corner, and the upper one with its sign changed [m] */
+  int           *hands_over;    /* per body: it begins the step with forces along other rows than it ends it with */
+  PetscBool     *flags;         /* to a body */
+  PetscReal     *last_gap;      /* per row */
+  PetscReal     *tilts, *drift; /* per node of a pair */
+  PetscBool     *moved;         /* per row */
+  PetscReal     *last_force;    /* per row */
+  PetscReal     *handover;      /* two numbers to a body per row */
+  PetscInt      *intervals;     /* to a body */
+  PetscInt      *entry_counts;  /* two numbers per row */
+  PetscReal     *rest;          /* to a body */
+  int           *updated;       /* per pair: what has become of its rows, see pairsupdate.c */
+  PetscReal     *motion;        /* per pair: how far its surfaces have moved, see pairsupdate.c */
+  PetscReal     *off;           /* per pair: how far planes of nodes in contact are off its partner, see layahead.c */
+  BodyCondition *conditions;    /* to a body */
 } ContactWork;
 
 struct _p_Contact {
@@ -484,6 +490,7 @@ struct _p_Contact {
   ContactFriction   friction;
   ContactWork       work;
   ContactNeighbours neighbours;
+  ContactReach      reach;
   ContactOverlaps   overlaps;
   PetscBool parallel_factors; /* the interface has factors that several ranks make together, perhaps not twice the same to the last bit */
   PetscBool surfaces_known;   /* ContactSetUpSurfaces() has been called */

@@ -1,6 +1,9 @@
 /* Energies, momentum, mean rotation, and boxes about bodies. */
 #include <body/layout/bodyimpl.h>
 
+/* Of the kinetic energy this part counts even where all bodies move alike: less is round-off of it */
+#define ROUND_OFF 1e-9
+
 /* Sums over nodes and elements that measures are made of; beyond them are the works of loads and of dashpots, in all accepted steps and in
    the one that has not been accepted yet */
 #define N_SUMS (BODY_MEASURE_SUMS - 4)
@@ -289,6 +292,46 @@ PetscErrorCode BodyComputeEnergies(PetscInt n, const Body bodies[], PetscReal su
 PetscReal BodyMeasuresGetBalance(const BodyMeasures *measures)
 {
   return measures->kinetic + measures->potential + measures->damping_work + measures->plastic_work - measures->external_work;
+}
+
+/*@
+  BodyGetOwnKinetic - kinetic energy of some bodies that they have in every frame
+
+  Not Collective
+
+  Input Parameters:
++ n        - number of bodies
+. bodies   - all bodies of a system
+- measures - of each, see `BodyGetAllMeasures()`
+
+  Output Parameter:
+. kinetic - of bodies that are not led. Where nothing outside holds, loads or stops any of them that of their common motion is left out: so
+            it is the same in frames that move [J]
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetAllMeasures()`, `BodyGetLed()`
+@*/
+PetscErrorCode BodyGetOwnKinetic(PetscInt n, const Body bodies[], const BodyMeasures measures[], PetscReal *kinetic)
+{
+  PetscReal momentum[3] = {0}, mass = 0, common = 0;
+  PetscBool free = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  *kinetic = 0;
+  for (PetscInt b = 0; b < n; b++) {
+    PetscBool led;
+
+    PetscCall(BodyGetLed(bodies[b], NULL, &led));
+    /* the staggered energy is round-off of much more, or negative, in the first step of a load that sets in at zero */
+    *kinetic += led ? 0 : measures[b].kinetic_unstaggered;
+    for (PetscInt d = 0; d < 3; d++) momentum[d] += measures[b].momentum[d];
+    mass += bodies[b]->mass.total;
+    free = (PetscBool)(free && !measures[b].loaded);
+  }
+  for (PetscInt d = 0; d < 3; d++) common += 0.5 * PetscSqr(momentum[d]) / mass;
+  if (free) *kinetic = PetscMax(*kinetic - common, ROUND_OFF * *kinetic);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@

@@ -156,20 +156,16 @@ static PetscErrorCode BookLevel(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Kinetic and potential energy of all bodies, without what is given to them for good: that of a rigid body that is led. Collective. */
+/* Kinetic and potential energy of all bodies, the same in every frame, see `BodyGetOwnKinetic()`. Collective. */
 static PetscErrorCode GetOwnEnergy(Contact contact, PetscReal *energy)
 {
-  const BodyMeasures *measures = contact->energy.measures;
+  BodyMeasures *measures = contact->energy.measures;
 
   PetscFunctionBegin;
-  *energy = 0;
-  PetscCall(BodyGetAllMeasures(contact->n_bodies, contact->bodies, contact->energy.sums, contact->energy.measures));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool given;
-
-    PetscCall(BodyGetLed(contact->bodies[b], NULL, &given));
-    *energy += (given ? 0 : measures[b].kinetic) + measures[b].potential;
-  }
+  PetscCall(BodyGetAllMeasures(contact->n_bodies, contact->bodies, contact->energy.sums, measures));
+  for (PetscInt b = 0; b < contact->n_bodies && contact->n_obstacles; b++) measures[b].loaded = PETSC_TRUE; /* obstacles do not move */
+  PetscCall(BodyGetOwnKinetic(contact->n_bodies, contact->bodies, measures, energy));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) *energy += measures[b].potential;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

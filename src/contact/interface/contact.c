@@ -289,12 +289,10 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
   PetscInt          nearest = 0;
   const char       *between = "";
   ContactPairState *states;
-  PetscReal        *boxes;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(n, &states, 6 * contact->n_bodies, &boxes));
+  PetscCall(PetscMalloc1(n, &states));
   PetscCall(ContactComputePairStates(contact, 0, n, states));
-  PetscCall(BodyGetAllBoxes(contact->n_bodies, contact->bodies, boxes));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  smallest distance%s:", n > MOST_DISTANCES ? " (of chosen pairs that of the nearest)" : ""));
   for (PetscInt p = 1; p < n; p++)
     if (states[p].gap < states[nearest].gap) nearest = p;
@@ -305,13 +303,10 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s ", between, pair->name));
     between = ",";
     if (states[p].gap < CONTACT_NO_GAP) PetscCall(PetscViewerASCIIPrintf(viewer, "%.4g m", (double)states[p].gap));
-    else if (pair->obstacle) PetscCall(PetscViewerASCIIPrintf(viewer, "nothing lies opposite"));
-    else
-      PetscCall(PetscViewerASCIIPrintf(viewer, "nothing lies opposite, boxes %.4g m apart",
-                                       (double)ContactBoxDistance(boxes + 6 * pair->body[0], boxes + 6 * pair->body[1])));
+    else PetscCall(PetscViewerASCIIPrintf(viewer, "nothing lies opposite"));
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
-  PetscCall(PetscFree2(states, boxes));
+  PetscCall(PetscFree(states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -436,7 +431,8 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyNeighbours(c));
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
-  PetscCall(PetscFree7(c->work.speeds, c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
+  PetscCall(PetscFree2(c->reach.mean, c->reach.spread));
+  PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
   PetscCall(PetscFree6(c->spares, c->work.hands_over, c->work.traces, c->work.counts, c->work.words, c->work.left_out));
   PetscCall(PetscFree(c->ends));
   PetscCall(PetscFree(c->work.told));

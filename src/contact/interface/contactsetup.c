@@ -11,11 +11,12 @@ static PetscErrorCode AllocateBodies(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(n, &contact->ends));
+  PetscCall(PetscCalloc2(4 * n, &contact->reach.mean, 2 * n, &contact->reach.spread));
   PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));
   PetscCall(PetscCalloc6(n, &contact->spares, n, &contact->work.hands_over, 6 * n, &contact->work.traces, BODY_CONDITION_COUNTS * n,
                          &contact->work.counts, n, &contact->work.words, n, &contact->work.left_out));
-  PetscCall(PetscCalloc7(2 * n, &contact->work.speeds, n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n,
-                         &contact->nodes.dofs, n, &contact->nodes.n, n, &contact->nodes.n_all));
+  PetscCall(PetscCalloc6(n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n, &contact->nodes.dofs, n,
+                         &contact->nodes.n, n, &contact->nodes.n_all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

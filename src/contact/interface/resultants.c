@@ -181,6 +181,12 @@ PetscErrorCode ContactAddImpulses(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a pair has had a force in an accepted step, along rows of this rank */
+PetscBool ContactHasTouched(Contact contact, const ContactPair *pair)
+{
+  return (PetscBool)(contact->resultants.impulse[N_KEPT * (pair - contact->pairs) + 6] != 0);
+}
+
 /* This rank's share of the moment of a pair about the origin on the partner of the body that has the rows [N m] */
 static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, PetscReal moment[])
 {

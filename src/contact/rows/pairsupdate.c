@@ -14,9 +14,10 @@
 
 /* Rows of two bodies with inertia follow their surfaces, so that neither angular momentum nor energy is lost as they slide and turn. Rows
    of static bodies are built anew at the place where they are, and merged rows are means of several. */
-static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, PetscReal near, PetscBool *any)
+static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, PetscBool *any)
 {
-  PetscBool *touches = contact->work.flags, linear = PETSC_TRUE; /* of each node, which has several rows with friction */
+  const PetscReal near    = ContactPairReach(contact, pair);
+  PetscBool      *touches = contact->work.flags, linear = PETSC_TRUE; /* of each node, which has several rows with friction */
 
   PetscFunctionBegin;
   *any = PETSC_FALSE;
@@ -78,10 +79,22 @@ static PetscErrorCode ReduceMotion(Contact contact, PetscInt each, MPI_Op operat
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the surfaces of each pair have moved since its rows were built, of all pairs at once */
-static PetscErrorCode CompareMotion(Contact contact, PetscReal near)
+/* Whether rows of a pair touch on this rank, or have had a force, and the number of those that may close in this step */
+static void CountTouching(Contact contact, const ContactPair *pair, PetscReal counts[2])
 {
-  PetscReal *sums = contact->work.motion + TRANSFER_SUMS * contact->n_pairs, *largest = sums + TRANSFER_SUMS * contact->n_pairs;
+  counts[0] = ContactHasTouched(contact, pair);
+  counts[1] = 0;
+  for (PetscInt i = pair->begin; i < pair->end && !pair->obstacle && !counts[0]; i += pair->components) {
+    counts[0] += contact->start.active[i];
+    counts[1] += contact->rows.opposite[i] && contact->start.gap[i] <= ContactRowReach(contact, pair, contact->rows.normal + 3 * i);
+  }
+}
+
+/* How far the surfaces of each pair have moved since its rows were built, of all pairs at once. Rows of surfaces that may touch in this
+   step for the first time are built where the surfaces are now: what happens then does not depend on when they were built before. */
+static PetscErrorCode CompareMotion(Contact contact)
+{
+  PetscReal *sums = contact->work.motion + CONTACT_SUMS * contact->n_pairs, *largest = sums + CONTACT_SUMS * contact->n_pairs;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -90,23 +103,29 @@ static PetscErrorCode CompareMotion(Contact contact, PetscReal near)
 
     if (!MayChange(pair)) continue;
     PetscCall(GetDisplacements(contact, pair, u));
-    if (pair->ahead) PetscCall(TransferLayAgain(pair->transfer));
-    PetscCall(TransferBeginUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, sums + TRANSFER_SUMS * p));
+    PetscCall(TransferBeginUpdate(pair->transfer, u[0], u[1], ContactPairReach(contact, pair), sums + CONTACT_SUMS * p));
+    CountTouching(contact, pair, sums + CONTACT_SUMS * p + TRANSFER_SUMS);
   }
-  PetscCall(ReduceMotion(contact, TRANSFER_SUMS, MPIU_SUM, sums));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (MayChange(&contact->pairs[p]))
-      PetscCall(TransferCompareMotion(contact->pairs[p].transfer, sums + TRANSFER_SUMS * p, largest + TRANSFER_LARGEST * p));
+  PetscCall(ReduceMotion(contact, CONTACT_SUMS, MPIU_SUM, sums));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair   = &contact->pairs[p];
+    const PetscReal   *counts = sums + CONTACT_SUMS * p + TRANSFER_SUMS;
+
+    if (!MayChange(pair)) continue;
+    PetscCall(TransferCompareMotion(pair->transfer, sums + CONTACT_SUMS * p, (PetscBool)(pair->ahead || (counts[0] == 0 && counts[1] > 0)),
+                                    largest + TRANSFER_LARGEST * p));
+  }
   PetscCall(ReduceMotion(contact, TRANSFER_LARGEST, MPIU_MAX, largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The rows of a pair where its bodies are; none, where they are far apart */
-static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscReal near, PetscBool *rebuilt)
+static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt)
 {
-  const PetscReal   *largest = contact->work.motion + 2 * TRANSFER_SUMS * contact->n_pairs + TRANSFER_LARGEST * p;
+  const PetscReal   *largest = contact->work.motion + 2 * CONTACT_SUMS * contact->n_pairs + TRANSFER_LARGEST * p;
   const ContactPair *pair    = &contact->pairs[p];
-  Vec                u[2];
+  const PetscInt     sides   = pair->obstacle ? 1 : 2;
+  Vec                u[2], at[2];
 
   PetscFunctionBegin;
   if (pair->far) {
@@ -115,14 +134,16 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscReal near, Pe
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(GetDisplacements(contact, pair, u));
-  if (pair->ahead) PetscCall(SurfaceUpdate(pair->surfaces[0], contact->ends[pair->body[0]]));
-  PetscCall(TransferEndUpdate(pair->transfer, u[0], u[1], pair->obstacle ? PETSC_MAX_REAL : near, largest, rebuilt));
-  if (pair->ahead) PetscCall(SurfaceUpdate(pair->surfaces[0], u[0])); /* which other pairs may have too */
+  for (PetscInt side = 0; side < 2; side++) at[side] = pair->ahead && u[side] ? contact->ends[pair->body[side]] : u[side];
+  for (PetscInt side = 0; side < sides && pair->ahead; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
+  PetscCall(TransferEndUpdate(pair->transfer, at[0], at[1], ContactPairReach(contact, pair), largest, rebuilt));
+  /* other pairs may have these surfaces too */
+  for (PetscInt side = 0; side < sides && pair->ahead; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], u[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What becomes of the rows of a pair in this step */
-static PetscErrorCode RenewPair(Contact contact, PetscInt p, PetscReal near, int *updated)
+static PetscErrorCode RenewPair(Contact contact, PetscInt p, int *updated)
 {
   const ContactPair *pair     = &contact->pairs[p];
   PetscBool          followed = PETSC_FALSE, rebuilt, logged;
@@ -131,23 +152,23 @@ static PetscErrorCode RenewPair(Contact contact, PetscInt p, PetscReal near, int
   *updated = ROWS_STAY;
   if (pair->bonded || (pair->far && pair->was_far)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StageBegin(STAGE_SEARCH, &logged));
-  PetscCall(UpdatePair(contact, p, near, &rebuilt));
+  PetscCall(UpdatePair(contact, p, &rebuilt));
   PetscCall(StageEnd(logged));
-  if (!pair->far) PetscCall(FollowPair(contact, pair, near, &followed));
+  if (!pair->far) PetscCall(FollowPair(contact, pair, &followed));
   *updated = rebuilt ? ROWS_REBUILT : followed ? ROWS_FOLLOWED : ROWS_STAY;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Builds the rows of those pairs again whose surfaces have slid or turned far enough, and lets those near contact follow: what has become
    of them, for each pair, the same on all ranks */
-PetscErrorCode ContactUpdatePairs(Contact contact, PetscReal near)
+PetscErrorCode ContactUpdatePairs(Contact contact)
 {
   int      *updated = contact->work.updated;
   PetscBool logged;
 
   PetscFunctionBegin;
   PetscCall(StageBegin(STAGE_SEARCH, &logged));
-  PetscCall(CompareMotion(contact, near));
+  PetscCall(CompareMotion(contact));
   PetscCall(StageEnd(logged));
   /* those of several ranks first, which wait for each other there, and would for what each has to do by itself */
   for (PetscInt pass = 0; pass < 2; pass++)
@@ -155,7 +176,7 @@ PetscErrorCode ContactUpdatePairs(Contact contact, PetscReal near)
       PetscMPIInt owner;
 
       PetscCall(TransferGetOwner(contact->pairs[p].transfer, &owner));
-      if ((owner >= 0) == (pass > 0)) PetscCall(RenewPair(contact, p, near, &updated[p]));
+      if ((owner >= 0) == (pass > 0)) PetscCall(RenewPair(contact, p, &updated[p]));
     }
   /* of its own rows, and of a pair that it has to itself, each rank alone knows */
   if (contact->ranks.size > 1)

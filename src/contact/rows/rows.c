@@ -42,12 +42,12 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc5(contact->rows.n_all, &contact->ranks.row_pair, n, &contact->ranks.mine_active, contact->rows.n_all,
                          &contact->ranks.all_active, contact->ranks.size, &contact->ranks.counts, contact->ranks.size,
                          &contact->ranks.offsets));
-  PetscCall(PetscCalloc3(n, &contact->ties.holds, n, &contact->ties.distance, 2 * n, &contact->work.entry_counts));
+  PetscCall(PetscCalloc4(n, &contact->ties.holds, n, &contact->ties.distance, 2 * n, &contact->work.entry_counts, n, &contact->work.drift));
   PetscCall(PetscCalloc7(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap, n, &contact->work.tilts));
   PetscCall(PetscCalloc7(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
                          &contact->rows.followed, n, &contact->work.moved, n, &contact->work.flags, n, &contact->work.rest));
-  PetscCall(PetscCalloc3(contact->n_pairs, &contact->work.updated, (2 * TRANSFER_SUMS + TRANSFER_LARGEST) * contact->n_pairs,
+  PetscCall(PetscCalloc3(contact->n_pairs, &contact->work.updated, (2 * CONTACT_SUMS + TRANSFER_LARGEST) * contact->n_pairs,
                          &contact->work.motion, contact->n_pairs, &contact->work.off));
   PetscCall(ContactSetUpSavedRows(contact));
   PetscCall(PetscMPIIntCast(n, &mine));
@@ -265,7 +265,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(ContactDestroyBodyRows(contact));
   PetscCall(PetscFree(contact->ranks.visits));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
-  PetscCall(PetscFree3(contact->ties.holds, contact->ties.distance, contact->work.entry_counts));
+  PetscCall(PetscFree4(contact->ties.holds, contact->ties.distance, contact->work.entry_counts, contact->work.drift));
   PetscCall(ContactDestroySavedRows(contact));
   PetscCall(ContactDestroyTurns(contact));
   PetscCall(ContactDestroySharedNodes(contact));

@@ -10,8 +10,6 @@
 #define TAKEN_BACK 3
 /* Two rows of a node are nearly the same condition if the cosine of the angle between their normals is above this: 26 degrees */
 #define PARALLEL 0.9
-/* Surfaces are looked for in the next controller step within this many times the way that bodies can make in it at their present speeds */
-#define AHEAD 2
 
 /* Cosine of the angle between the normals of two rows */
 static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
@@ -35,28 +33,6 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
     contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + neumann[i - pair->shift[1]] -
                                                   dirichlet[i - pair->shift[0]];
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The largest component on this rank, without sign. VecNorm() would cost as much as all else here: it also looks for components that are
-   not a number, which bodies do themselves after they have been integrated. */
-static PetscErrorCode GetLargest(Vec vec, PetscReal *largest)
-{
-  const PetscScalar *values;
-  PetscReal          most = 0;
-  PetscInt           n;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(vec, &n));
-  PetscCall(VecGetArrayRead(vec, &values));
-#pragma omp simd reduction(max : most)
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal size = PetscAbsScalar(values[i]);
-
-    most = size > most ? size : most;
-  }
-  PetscCall(VecRestoreArrayRead(vec, &values));
-  *largest = most;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -108,45 +84,6 @@ PetscErrorCode ContactDropShared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The sum of the two largest speeds of all bodies */
-static PetscReal TwoFastest(Contact contact, const PetscReal speeds[])
-{
-  PetscReal first = 0, second = 0;
-
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    second = PetscMax(second, PetscMin(first, speeds[b]));
-    first  = PetscMax(first, speeds[b]);
-  }
-  return first + second;
-}
-
-/* How far apart surfaces may be that touch in the next controller step [m], from the way that the fastest nodes of the two fastest bodies
-   make towards each other. `reach`: the same of bodies, where pairs come and go, with what accelerations at the start add: those at rest
-   have no speed yet. */
-static PetscErrorCode GetReach(Contact contact, PetscReal *near, PetscReal *reach)
-{
-  const PetscReal ahead  = AHEAD * PetscSqrtReal((PetscReal)contact->dim) * contact->step;
-  const PetscBool gains  = contact->neighbours.come_and_go;
-  PetscReal      *speeds = contact->work.speeds, *faster = speeds + contact->n_bodies;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Vec velocity, acceleration;
-
-    PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, &acceleration));
-    PetscCall(GetLargest(velocity, &speeds[b]));
-    if (!gains) continue;
-    PetscCall(GetLargest(acceleration, &faster[b]));
-    faster[b] = speeds[b] + 0.5 * faster[b] * contact->step;
-  }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, speeds, (PetscMPIInt)((gains ? 2 : 1) * contact->n_bodies), MPIU_REAL, MPIU_MAX,
-                               PetscObjectComm((PetscObject)contact)));
-  *near  = ahead * TwoFastest(contact, speeds);
-  *reach = gains ? ahead * TwoFastest(contact, faster) : *near;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What remains of a shift, by which the gap of a row in contact goes on from where it was [m]. If surfaces slide far without losing
    contact, shifts add up: between two builds a row moves along the plane across its normal, from which a curved partner bends away, so that
    surfaces would be kept apart by more and more. What a shift is beyond APART is taken back in proportion to the slip [edges of the face],
@@ -158,7 +95,7 @@ static PetscReal RemainingShift(PetscReal shift, PetscReal size, PetscReal slip)
 
 /* Whether gaps of a pair are those of the surfaces wherever its rows are built: on obstacles, which have no facets, and without inertia, be
    the partner static or rigid */
-static PetscErrorCode StartsAnew(Contact contact, const ContactPair *pair, PetscBool *anew)
+PetscErrorCode ContactPairStartsAnew(Contact contact, const ContactPair *pair, PetscBool *anew)
 {
   PetscFunctionBegin;
   *anew = (PetscBool)(pair->obstacle || pair->rests);
@@ -184,7 +121,7 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
     PetscBool          anew;
     TransferRows       rows;
 
-    PetscCall(StartsAnew(contact, pair, &anew));
+    PetscCall(ContactPairStartsAnew(contact, pair, &anew));
     for (PetscInt i = pair->begin; i < pair->end && anew; i++)
       if (contact->rows.changed[i]) contact->rows.gap_shift[i] = 0;
     if (anew) continue;
@@ -305,13 +242,13 @@ static void Affect(Contact contact, const ContactPair *pair, PetscBool rebuilt)
    near contact follow. Rows in contact that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
 {
-  PetscReal near = 0, reach = 0;
+  PetscReal reach = 0;
   PetscBool any = PETSC_FALSE, built = PETSC_FALSE, logged;
 
   PetscFunctionBegin;
   if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || (!contact->n_pairs && !contact->neighbours.come_and_go))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetReach(contact, &near, &reach));
+  PetscCall(ContactMeasureReach(contact, &reach));
   PetscCall(ContactRenewNeighbours(contact, reach, PETSC_FALSE, &any));
   if (contact->attempt.again) PetscCall(ContactRestoreRows(contact));
   else PetscCall(ContactSaveRows(contact));
@@ -328,7 +265,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactMoveSurfaces(contact));
   PetscCall(ContactFindFarPairs(contact, reach));
   PetscCall(StageEnd(logged));
-  PetscCall(ContactUpdatePairs(contact, near));
+  PetscCall(ContactUpdatePairs(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const PetscBool rebuilt = (PetscBool)(contact->work.updated[p] == ROWS_REBUILT);
 

@@ -90,9 +90,9 @@ def test_finer_side(shared_run):
     assert np.array_equal(one, -other) and np.abs(one).max() > 1e3
 
 
-@pytest.mark.parametrize(("pair", "turn", "most"), [*validate(("a:b", 0, 4e-3)), *long(("b:a", 33, 4e-3))])
+@pytest.mark.parametrize(("pair", "turn", "most"), [*validate(("a:b", 0, 5.5e-3)), *long(("b:a", 33, 4e-3))])
 def test_balls(pair, turn, most, shared_run):
-    """Balls of 40 edges round, the second time with the mesh askew: 3.0e-3 and 2.3e-3, where without it is 0.05 to 0.27, and energy -5e-6. With 64 edges it is
+    """Balls of 40 edges round, the second time with the mesh askew: 4.3e-3 and 3.0e-3 (3.0e-3 and 2.3e-3 with rows that were laid before they met), where without it is 0.05 to 0.27, and energy -5e-6. With 64 edges it is
     7e-4 and 2.0e-3."""
     run = shared_run(balls(10, pair, turn))
     assert max(spins(run, turn=turn)) <= most

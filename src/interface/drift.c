@@ -1,0 +1,86 @@
+/* How far the rows of a transfer are off from those that would be built where the surfaces are now. */
+#include "interfaceimpl.h"
+
+/* Gaps of rows that are built where the surfaces are, without taking them; PETSC_MAX_REAL: nothing lies opposite */
+static PetscErrorCode GetNewGaps(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal gaps[])
+{
+  const RowSet         kept   = transfer->rows;
+  const TransferCounts counts = transfer->counts;
+  PetscReal            reach;
+
+  PetscFunctionBegin;
+  PetscCall(RowSetAllocate(transfer->dim, transfer->n, 0, &transfer->rows));
+  PetscCall(PetscArrayzero(transfer->keep, transfer->n));
+  PetscCall(PetscArrayzero(transfer->goes_on, transfer->n));
+  PetscCall(TransferGetReach(transfer, 0, &reach));
+  PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  for (PetscInt row = 0; row < transfer->n; row++)
+    gaps[row] = transfer->rows.opposite[row] ? TransferPresentGap(transfer, row) : PETSC_MAX_REAL;
+  PetscCall(RowSetDestroy(&transfer->rows));
+  transfer->rows   = kept;
+  transfer->counts = counts;
+  PetscCall(TransferAllocateColumns(transfer));
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.reference, transfer->column_reference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of an obstacle: how far it is from the planes, and turned against them */
+static PetscErrorCode GetObstacleDrift(Transfer transfer, PetscReal drift[], PetscReal turn[])
+{
+  const SurfaceData *data = &transfer->dirichlet->data;
+
+  PetscFunctionBegin;
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    const PetscReal *normal = transfer->rows.normals + transfer->dim * row, *x = data->positions + 3 * row;
+    PetscReal        gradient[3], chord                                        = 0;
+
+    if (!transfer->rows.opposite[row]) continue;
+    PetscCall(ObstacleGetGap(transfer->obstacle, x, &drift[row], gradient));
+    drift[row] -= transfer->rows.gap[row];
+    for (PetscInt d = 0; d < transfer->dim; d++) {
+      drift[row] += normal[d] * (x[d] - data->reference[3 * row + d]);
+      chord += PetscSqr(gradient[d] + normal[d]);
+    }
+    turn[row] = 2 * PetscAsinReal(PetscMin(1, 0.5 * PetscSqrtReal(chord)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferGetDrift - how far rows are off from those that would be built where the surfaces are now
+
+  Collective
+
+  Input Parameters:
++ transfer    - the `Transfer`, updated once at least, in two or three dimensions
+. u_dirichlet - displacements of the body of the Dirichlet side
+- u_neumann   - of the Neumann side; `NULL`: an obstacle
+
+  Output Parameters:
++ drift - for each row of this rank the difference of the gaps, 0 where nothing is opposite [m]
+- turn  - the angle between the normals, of rows against an obstacle, 0 of others [rad]
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferUpdate()`, `TransferCompareMotion()`
+@*/
+PetscErrorCode TransferGetDrift(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal drift[], PetscReal turn[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscCall(PetscArrayzero(drift, transfer->n));
+  PetscCall(PetscArrayzero(turn, transfer->n));
+  if (transfer->idle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
+  if (transfer->obstacle) {
+    PetscCall(GetObstacleDrift(transfer, drift, turn));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
+  PetscCall(GetNewGaps(transfer, u_dirichlet, u_neumann, drift));
+  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  for (PetscInt row = 0; row < transfer->n; row++)
+    drift[row] = transfer->rows.opposite[row] && drift[row] < PETSC_MAX_REAL ? drift[row] - TransferPresentGap(transfer, row) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
