@@ -39,6 +39,7 @@ static void ClosestOfTriangle(const PetscReal *corners[3], const PetscReal x[], 
   PetscReal sides[2][3], from[3], smallest = PETSC_MAX_REAL;
   PetscBool above = PETSC_TRUE;
 
+  for (PetscInt d = 0; d < 3; d++) closest[d] = corners[0][d]; /* of an x that is no number */
   for (PetscInt k = 0; k < 2; k++) Subtract(corners[k + 1], corners[0], sides[k]);
   Cross(sides[0], sides[1], normal);
   if (Normalize(normal) == 0) above = PETSC_FALSE;

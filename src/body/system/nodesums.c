@@ -6,7 +6,7 @@
 #include <impakt/private/simd.h>
 
 /* What is summed up: m v.v, m a.a and u.f, then vectors: m v, (X + u) x m v, m (X - C) x u, m (X + u) */
-enum { KINETIC, STAGGERED, POTENTIAL, MOMENTUM, ANGULAR = MOMENTUM + 3, TURNED = ANGULAR + 3, PLACE = TURNED + 3, QUANTITIES = PLACE + 3 };
+enum { KINETIC = 0, STAGGERED = 1, POTENTIAL = 2, MOMENTUM = 3, ANGULAR = 6, TURNED = 9, PLACE = 12, QUANTITIES = 15 };
 /* In one dimension sums have four parts, since each addition to a single one would wait for the one before it; elsewhere there are enough
  */
 #define PARTS 4

@@ -36,7 +36,7 @@ static PetscErrorCode LookAtNodes(Vec vec, PetscInt dim, const PetscReal mean[],
   }
   PetscCall(VecRestoreArrayRead(vec, &values));
   if (mean) *spread = PetscSqrtReal(most);
-  else sum[3] = (PetscReal)(n / dim);
+  else sum[3] = (PetscReal)n / (PetscReal)dim;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
