@@ -416,9 +416,9 @@ typedef struct {
 
 /* How fast bodies move at the start of the step, see reach.c */
 typedef struct {
-  PetscReal *mean;   /* per body: mean velocity of its nodes [m/s], and their number */
-  PetscReal *spread; /* per body: the most by which the velocity of a node differs from that [m/s]; where pairs come and go the largest
-                        acceleration [m/s^2] */
+  PetscReal *mean;         /* per body: mean velocity of its nodes [m/s], and their number */
+  PetscReal *spread;       /* per body: the most by which the velocity of a node differs from that [m/s] */
+  PetscReal *acceleration; /* per body: the largest of a node, where pairs come and go [m/s^2]; follows `spread` in memory */
 } ContactReach;
 
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */

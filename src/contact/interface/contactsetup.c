@@ -12,6 +12,7 @@ static PetscErrorCode AllocateBodies(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(n, &contact->ends));
   PetscCall(PetscCalloc2(4 * n, &contact->reach.mean, 2 * n, &contact->reach.spread));
+  contact->reach.acceleration = contact->reach.spread + n;
   PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));
   PetscCall(PetscCalloc6(n, &contact->spares, n, &contact->work.hands_over, 6 * n, &contact->work.traces, BODY_CONDITION_COUNTS * n,
                          &contact->work.counts, n, &contact->work.words, n, &contact->work.left_out));

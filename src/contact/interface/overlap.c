@@ -98,12 +98,7 @@ static PetscErrorCode FindDepths(Contact contact, PetscInt *n, SurfaceDepth *dep
   for (PetscInt i = 0; i < *n; i++) {
     PetscInt *of = (*depths)[i].surfaces;
 
-    if (of[0] > of[1]) {
-      const PetscInt swap = of[0];
-
-      of[0] = of[1];
-      of[1] = swap;
-    }
+    PetscCall(PetscSortInt(2, of));
     for (PetscInt k = 0; k < 2 && contact->dim == 1 && (*depths)[i].depth > 0; k++) { /* faces are points */
       PetscReal size;
 

@@ -13,9 +13,11 @@
 /* Boxes of all surfaces where they are, of all ranks */
 static PetscErrorCode GetBoxes(Contact contact)
 {
-  PetscReal *boxes = contact->work.boxes;
+  PetscReal *boxes;
 
   PetscFunctionBegin;
+  if (!contact->work.boxes) PetscCall(PetscMalloc1(6 * contact->n_surfaces, &contact->work.boxes));
+  boxes = contact->work.boxes;
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
     PetscReal         *box = boxes + 6 * s;
     const SurfaceData *data;
@@ -37,17 +39,15 @@ static PetscErrorCode GetBoxes(Contact contact)
 /* Where pairs come and go, there are those alone whose bodies are near; but some are not yet so near that they need rows with partners */
 static PetscErrorCode FindFarNeighbours(Contact contact, PetscReal near)
 {
-  const PetscReal *boxes, *edge = contact->neighbours.edge;
+  const PetscReal *edge = contact->neighbours.edge;
 
   PetscFunctionBegin;
-  if (!contact->work.boxes) PetscCall(PetscMalloc1(6 * contact->n_surfaces, &contact->work.boxes));
   PetscCall(GetBoxes(contact));
-  boxes = contact->work.boxes;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
 
     if (pair->obstacle) continue;
-    pair->distance = ContactBoxDistance(boxes + 6 * pair->place[0], boxes + 6 * pair->place[1]);
+    pair->distance = ContactBoxDistance(contact->work.boxes + 6 * pair->place[0], contact->work.boxes + 6 * pair->place[1]);
     pair->far      = (PetscBool)(pair->distance > near + PetscMax(edge[pair->body[0]], edge[pair->body[1]]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,7 +66,6 @@ PetscErrorCode ContactFindFarPairs(Contact contact, PetscReal near)
   }
   for (PetscInt p = 0; p < contact->n_pairs && chosen <= FEW_PAIRS; p++) chosen += contact->pairs[p].chosen && !contact->pairs[p].obstacle;
   if (chosen <= FEW_PAIRS) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!contact->work.boxes) PetscCall(PetscMalloc1(6 * contact->n_surfaces, &contact->work.boxes));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal size;
 

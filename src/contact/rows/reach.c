@@ -15,8 +15,24 @@ static PetscReal Norm(const PetscReal v[3])
   return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* Adds up the vectors of the nodes of this rank, and their number; or finds the most by which any differs from `mean` */
-static PetscErrorCode LookAtNodes(Vec vec, PetscInt dim, const PetscReal mean[], PetscReal sum[4], PetscReal *spread)
+/* Adds up the vectors of the nodes of this rank, and their number */
+static PetscErrorCode SumNodes(Vec vec, PetscInt dim, PetscReal sum[4])
+{
+  const PetscScalar *values;
+  PetscInt           n;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(vec, &n));
+  PetscCall(VecGetArrayRead(vec, &values));
+  for (PetscInt i = 0; i < n; i += dim)
+    for (PetscInt d = 0; d < dim; d++) sum[d] += PetscRealPart(values[i + d]);
+  PetscCall(VecRestoreArrayRead(vec, &values));
+  sum[3] = (PetscReal)n / (PetscReal)dim;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The most by which the vector of any node of this rank differs from `mean` */
+static PetscErrorCode FindSpread(Vec vec, PetscInt dim, const PetscReal mean[], PetscReal *spread)
 {
   const PetscScalar *values;
   PetscReal          most = 0;
@@ -28,15 +44,11 @@ static PetscErrorCode LookAtNodes(Vec vec, PetscInt dim, const PetscReal mean[],
   for (PetscInt i = 0; i < n; i += dim) {
     PetscReal square = 0;
 
-    for (PetscInt d = 0; d < dim; d++) {
-      if (mean) square += PetscSqr(PetscRealPart(values[i + d]) - mean[d]);
-      else sum[d] += PetscRealPart(values[i + d]);
-    }
+    for (PetscInt d = 0; d < dim; d++) square += PetscSqr(PetscRealPart(values[i + d]) - mean[d]);
     most = square > most ? square : most;
   }
   PetscCall(VecRestoreArrayRead(vec, &values));
-  if (mean) *spread = PetscSqrtReal(most);
-  else sum[3] = (PetscReal)n / (PetscReal)dim;
+  *spread = PetscSqrtReal(most);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,7 +67,7 @@ static PetscReal TwoFastest(Contact contact, PetscBool gains)
     PetscReal apart[3], speed;
 
     for (PetscInt d = 0; d < 3; d++) apart[d] = reach->mean[4 * b + d] - (n > 0 ? mean[d] / n : 0);
-    speed  = Norm(apart) + reach->spread[2 * b] + (gains ? 0.5 * reach->spread[2 * b + 1] * contact->step : 0);
+    speed  = Norm(apart) + reach->spread[b] + (gains ? 0.5 * reach->acceleration[b] * contact->step : 0);
     second = PetscMax(second, PetscMin(first, speed));
     first  = PetscMax(first, speed);
   }
@@ -77,7 +89,7 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
     Vec velocity;
 
     PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
-    PetscCall(LookAtNodes(velocity, contact->dim, NULL, mean + 4 * b, NULL));
+    PetscCall(SumNodes(velocity, contact->dim, mean + 4 * b));
   }
   if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean, (PetscMPIInt)(4 * n), MPIU_REAL, MPIU_SUM, comm));
   for (PetscInt b = 0; b < n; b++) {
@@ -85,8 +97,8 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
 
     for (PetscInt d = 0; d < 3; d++) mean[4 * b + d] /= PetscMax(mean[4 * b + 3], 1);
     PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, &acceleration));
-    PetscCall(LookAtNodes(velocity, contact->dim, mean + 4 * b, NULL, &spread[2 * b]));
-    if (gains) PetscCall(LookAtNodes(acceleration, contact->dim, none, NULL, &spread[2 * b + 1]));
+    PetscCall(FindSpread(velocity, contact->dim, mean + 4 * b, &spread[b]));
+    if (gains) PetscCall(FindSpread(acceleration, contact->dim, none, &contact->reach.acceleration[b]));
   }
   if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, spread, (PetscMPIInt)(2 * n), MPIU_REAL, MPIU_MAX, comm));
   *reach = AHEAD * contact->step * TwoFastest(contact, gains);
@@ -101,14 +113,14 @@ PetscReal ContactPairReach(Contact contact, const ContactPair *pair)
 
   if (pair->obstacle) return PETSC_MAX_REAL;
   for (PetscInt d = 0; d < 3; d++) apart[d] = mean[4 * pair->body[0] + d] - mean[4 * pair->body[1] + d];
-  return AHEAD * contact->step * (Norm(apart) + spread[2 * pair->body[0]] + spread[2 * pair->body[1]]);
+  return AHEAD * contact->step * (Norm(apart) + spread[pair->body[0]] + spread[pair->body[1]]);
 }
 
 /* The gap from which on a row of a pair of bodies may close in the step [m]. `normal`: of the row, away from the first body */
 PetscReal ContactRowReach(Contact contact, const ContactPair *pair, const PetscReal normal[])
 {
   const PetscReal *mean = contact->reach.mean, *spread = contact->reach.spread;
-  PetscReal        speed = spread[2 * pair->body[0]] + spread[2 * pair->body[1]];
+  PetscReal        speed = spread[pair->body[0]] + spread[pair->body[1]];
 
   for (PetscInt d = 0; d < contact->dim; d++) speed += normal[d] * (mean[4 * pair->body[0] + d] - mean[4 * pair->body[1] + d]);
   return CLOSES * contact->step * speed;
