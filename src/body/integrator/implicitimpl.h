@@ -2,6 +2,10 @@
 #pragma once
 #include <body/layout/bodyimpl.h>
 
+/* Descents that the line search wants of a static body, in parts of the slope, see newton.c */
+#define BODY_STATIC_WHOLE   (-1e12)
+#define BODY_STATIC_DESCENT 1e-4
+
 typedef struct {
   PetscReal alpha_m, alpha_f, gamma, beta; /* of TSALPHA2 */
   Mat       matrix;                        /* K + shift M, its held dofs eliminated: body->solver has its factors */
@@ -13,6 +17,7 @@ typedef struct {
   PetscBool  deformed[STEP_MAX_CUTS + 1]; /* it was, and not at none */
   PetscReal  shift;                       /* [1/s^2]; 0 without inertia */
   PetscReal  shift_velocity;              /* of C where the body is damped [1/s] */
+  PetscReal  first;                       /* norm of the first residual of the substep [N] */
   PetscReal  terms, round_off;            /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
   PetscReal  unit_strain;                 /* norm of the forces of strains of size 1, of a nonlinear body [N] */
   Vec        lead[4];                     /* work of BodyImplicitCarry() */

@@ -34,6 +34,32 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A substep of a nonlinear body: with whole steps of Newton's method, or else with steps that make the residual less */
+static PetscErrorCode MakeSubstep(Body body)
+{
+  SNES                snes;
+  SNESLineSearch      line_search;
+  SNESConvergedReason reason;
+  PetscReal           whole;
+  PetscBool           backtracks;
+
+  PetscFunctionBegin;
+  PetscCall(TSStep(body->time.ts));
+  PetscCall(TSGetSNES(body->time.ts, &snes));
+  PetscCall(SNESGetConvergedReason(snes, &reason));
+  PetscCall(SNESGetLineSearch(snes, &line_search));
+  PetscCall(PetscObjectTypeCompare((PetscObject)line_search, SNESLINESEARCHBT, &backtracks));
+  if (reason >= 0 || !backtracks || body->time.substeps > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  (void)ConstrainedSolverTakeFailure(body->solver);
+  StepFailureClear(&body->failure);
+  PetscCall(BodyRestore(body));
+  PetscCall(SNESLineSearchBTGetAlpha(line_search, &whole));
+  PetscCall(SNESLineSearchBTSetAlpha(line_search, BODY_STATIC_DESCENT));
+  PetscCall(TSStep(body->time.ts));
+  PetscCall(SNESLineSearchBTSetAlpha(line_search, whole));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode GetParameters(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
@@ -54,6 +80,7 @@ static PetscErrorCode SetUp(Body body)
              "course of %" PetscInt_FMT " substeps; set -%sts_time_step to -time_step, or prescribe displacements",
              body->hdr.name, body->time.substeps, ((PetscObject)body)->prefix);
   PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
+  if (!body->model.linear && !body->history) body->integrator->ops.step = MakeSubstep;
   for (PetscInt k = 0; k < 4 && !body->model.linear; k++)
     PetscCall(BodyCreateVec(body, &((BodyImplicit *)body->integrator->data)->lead[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
