@@ -212,6 +212,7 @@ PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpFloating(Contact);
+PETSC_INTERN PetscErrorCode ContactSetUpSprings(Contact);
 PETSC_INTERN PetscErrorCode ContactMakeStep(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyFloating(Contact);
 

@@ -34,7 +34,7 @@ PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
   PetscCall(PetscHeaderCreate(*controller, CONTROLLER_CLASSID, "Controller", "Controller time stepper", "Controller", comm,
                               ControllerDestroy, ControllerView));
   (*controller)->guard.part = ENERGY_GUARD;
-  (*controller)->most_cuts  = CONTROLLER_STEP_CUTS;
+  (*controller)->most_cuts  = PETSC_DECIDE;
   if (!getrusage(RUSAGE_SELF, &usage)) (*controller)->start_memory = 1024 * (PetscLogDouble)usage.ru_maxrss; /* Linux counts kB */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

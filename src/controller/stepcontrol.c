@@ -8,6 +8,9 @@
 
 /* Part of the stable step up to which explicit steps may be mixed with halves of them */
 #define NEAR_STABLE 0.95
+/* How often a step may be cut by default; of runs with static bodies, where a cut is one of the load and costs no more than its steps */
+#define STEP_CUTS   4
+#define STATIC_CUTS 10
 
 /*@
   ControllerSetStepCuts - sets how often a controller step that fails may be cut in halves
@@ -19,7 +22,7 @@
 - cuts       - 0: never, so that a step that fails ends the run; at most `STEP_MAX_CUTS`
 
   Options Database Key:
-. -controller_step_cuts n - the number, 4
+. -controller_step_cuts n - the number, 4, with static bodies 10
 
   Level: intermediate
 
@@ -59,7 +62,7 @@ PetscErrorCode ControllerSetStepCuts(Controller controller, PetscInt cuts)
 . controller - the `Controller`
 
   Output Parameter:
-. cuts - the number
+. cuts - the number; `PETSC_DECIDE` before `ControllerSetUp()` where nobody has said
 
   Level: intermediate
 
@@ -101,13 +104,15 @@ PetscErrorCode ControllerGetCuts(Controller controller, ControllerCuts *cuts)
 /* Reads -controller_step_cuts */
 PetscErrorCode ControllerReadStepControl(Controller controller)
 {
-  PetscInt cuts = controller->most_cuts;
+  PetscInt  cuts = controller->most_cuts;
+  PetscBool set;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)controller);
   PetscCall(PetscOptionsInt("-controller_step_cuts", "How often a controller step that fails is cut in halves", "ControllerSetStepCuts",
-                            cuts, &cuts, NULL));
+                            cuts, &cuts, &set));
   PetscOptionsEnd();
+  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(cuts >= 0 && cuts <= STEP_MAX_CUTS, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT,
              "-controller_step_cuts %" PetscInt_FMT ": a controller step can be cut in halves 0 to %d times", cuts, STEP_MAX_CUTS);
   PetscCall(ControllerSetStepCuts(controller, cuts));
@@ -140,6 +145,13 @@ PetscErrorCode ControllerSetUpStepControl(Controller controller)
 
   PetscFunctionBegin;
   PetscCall(ContactCanCut(controller->contact, &can));
+  for (PetscInt b = 0; b < controller->n_bodies && controller->most_cuts == PETSC_DECIDE; b++) {
+    PetscBool is_static;
+
+    PetscCall(BodyIsStatic(controller->bodies[b], &is_static));
+    if (is_static) controller->most_cuts = STATIC_CUTS;
+  }
+  if (controller->most_cuts == PETSC_DECIDE) controller->most_cuts = STEP_CUTS;
   if (!can && controller->most_cuts) controller->whole = "the method changes the state that its steps start from";
   for (PetscInt b = 0; b < controller->n_bodies && controller->most_cuts && can; b++) {
     PetscBool near;

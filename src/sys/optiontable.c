@@ -159,12 +159,12 @@ static const KnownOption options[] = {
     {"time", OPTION_OF_BODY, "ts_type", "alpha2|centraldifference|static|rigid",
      "integrator: implicit, explicit, none (no inertia), or that of rigid bodies; default alpha2"},
     {"time", OPTION_OF_BODY, "artificial_stiffness", "part",
-     "of the springs that hold a static body, where contact or ties alone do, while contact forces are found, in parts of its own; default "
-     "1e-2, of a nonlinear one 1"},
+     "of the springs that hold a static body, where contact or ties alone do, while contact forces are found, in parts of that of the "
+     "softest "
+     "static body; default 5e-2, of a nonlinear one 1"},
     {"time", OPTION_OF_RUN, "controller_step_cuts", "n",
      "how often a controller step that does not converge, inverts an element, or loses or gains energy at contact, is cut in halves, "
-     "default 4; 0: it "
-     "ends the run"},
+     "default 4, with static bodies 10; 0: it ends the run"},
     {"time", OPTION_OF_BODY, "ts_time_step", "dt|auto",
      "substep [s], default the controller step, and auto for an explicit body that is unstable in it; auto: 0.9 of the stable step of an "
      "explicit body, made smaller to divide the controller step"},

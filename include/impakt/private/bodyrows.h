@@ -132,6 +132,8 @@ PETSC_EXTERN PetscErrorCode BodyWholeRowsRenew(Mat, PetscBool, const PetscInt[])
 /* Static bodies that contact or ties alone hold */
 PETSC_EXTERN PetscErrorCode BodyIsFloating(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyResetSprings(Body);
+PETSC_EXTERN PetscErrorCode BodyGetLeastStiffness(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodySetSpringStiffness(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodyMeasureSprings(Body, BodySpringState *);
 PETSC_EXTERN PetscErrorCode BodyMoveSprings(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);

@@ -10,10 +10,11 @@
 
   Input Parameters:
 + body - the `Body`, not yet set up
-- part - of the least that the body sets against being stretched along its longest edge and bent, by force over displacement; positive
+- part - of the least that the softest static body sets against being stretched along its longest edge and bent, by force over
+         displacement; positive
 
   Options Database Key:
-. -<body>_artificial_stiffness part - the part, 1e-2, of a nonlinear body 1
+. -<body>_artificial_stiffness part - the part, 5e-2, of a nonlinear body 1
 
   Level: advanced
 
@@ -60,6 +61,29 @@ PetscErrorCode BodyIsFloating(Body body, PetscBool *floating)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(floating, 2);
   *floating = (PetscBool)(body->springs.n > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodySetSpringStiffness - sets the stiffness of the artificial springs of a floating body
+
+  Logically Collective
+
+  Input Parameters:
++ body  - the `Body`, after `BodySetUpSteps()`, before `BodyBeginSetUp()`; one without springs is left as it is
+- least - what `BodyGetLeastStiffness()` says of the softest of the bodies that may touch each other, of which the springs take their part
+[N/m]
+
+  Level: developer
+
+.seealso: `Body`, `BodyIsFloating()`, `BodySetArtificialStiffness()`
+@*/
+PetscErrorCode BodySetSpringStiffness(Body body, PetscReal least)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveReal(body, least, 2);
+  body->springs.stiffness = body->springs.part * least;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

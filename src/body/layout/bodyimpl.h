@@ -266,9 +266,10 @@ struct _p_Body {
   struct _BodyLoads   *loads; /* conditions on surfaces and forces from outside; NULL: none */
   BodyHeld             held;
   BodySprings          springs;
-  struct _BodyPoints  *points;   /* that are observed, see src/body/interface/points.c; NULL: none */
-  struct _BodyDamping *damping;  /* dashpots, see src/body/system/damping.c; NULL: none */
-  PetscBool            unloaded; /* while its compliance is probed: no forces from outside, held dofs at zero */
+  struct _BodyPoints  *points;     /* that are observed, see src/body/interface/points.c; NULL: none */
+  struct _BodyDamping *damping;    /* dashpots, see src/body/system/damping.c; NULL: none */
+  PetscBool            loads_grow; /* over the first controller step, see BodyAddExternalForce() */
+  PetscBool            unloaded;   /* while its compliance is probed: no forces from outside, held dofs at zero */
   /* what BodyGetPositionChange() compares with */
   struct {
     Vec       u;

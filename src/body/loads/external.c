@@ -1,11 +1,17 @@
 /* What loads do to a body: forces from outside, and the work of these and of held displacements. */
 #include <body/layout/bodyimpl.h>
 
-/* f += scale * forces from outside at time t [N] */
+/* f += scale * forces from outside at time t [N]. Loads that a static body has from the start, at rest as it is, grow to what they are over
+   the first controller step: halves of that step are halves of the load. */
 PetscErrorCode BodyAddExternalForce(Body body, PetscReal t, PetscScalar scale, Vec f)
 {
+  const PetscReal part = (t - body->time.start) / (body->time.shared * body->time.whole_step);
+
   PetscFunctionBegin;
-  if (body->loads && !body->unloaded) PetscCall(BodyLoadsAddForce(body, t, scale, f));
+  if (!body->loads || body->unloaded) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyLoadsAddForce(body, t, scale, f));
+  if (body->loads_grow && part < 1 - PETSC_SQRT_MACHINE_EPSILON)
+    PetscCall(BodyLoadsAddForce(body, body->time.start, (part - 1) * scale, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -64,7 +70,13 @@ PetscErrorCode BodySetUpWork(Body body)
   if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
   body->state.external_work = body->saved.external_work = 0;
   if (body->integrator->has_inertia) PetscCall(ComputeApplied(body, body->state.applied));
-  else PetscCall(VecCopy(body->state.internal_force, body->state.applied));
+  else {
+    PetscReal largest;
+
+    PetscCall(VecCopy(body->state.internal_force, body->state.applied));
+    PetscCall(VecNorm(body->state.u, NORM_INFINITY, &largest));
+    body->loads_grow = (PetscBool)(largest == 0);
+  }
   PetscCall(VecCopy(body->state.applied, body->saved.applied));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -10,11 +10,12 @@
    and the body set against the motion; motions that nothing resists and nothing drives stay as they are.
 */
 #include "held.h"
+#include <impakt/private/bodyrows.h>
 
-/* Of the springs, in parts of the body's own stiffness, by default: soft beside what holds a body, and stiff enough that round-off in
-   forces does not show in displacements, which is 1e-14 of them over the part with linear bodies, and what Newton's method leaves with
-   others */
-#define LINEAR_PART    1e-2
+/* Of the springs, in parts of the stiffness of the softest static body, by default: soft beside what holds a body, and stiff enough that
+   round-off in forces does not show in displacements, which is 1e-14 of them over the part with linear bodies, and what Newton's method
+   leaves with others */
+#define LINEAR_PART    5e-2
 #define NONLINEAR_PART 1
 /* The strain of the displacements by which a body's stiffness is measured: small, since the material may be nonlinear */
 #define STRAIN 1e-6
@@ -51,13 +52,31 @@ static PetscErrorCode MeasureStiffness(Body body, const RigidFrame *frame, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The least of what the body sets against being stretched along its longest edge, and bent [N/m] */
-static PetscErrorCode GetStiffness(Body body, const RigidFrame *frame, PetscReal *least)
+/*@
+  BodyGetLeastStiffness - the least of what a body sets against being stretched along its longest edge, and bent
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, which deforms, after `BodySetUpSteps()`
+
+  Output Parameter:
+. least - force over displacement, of the undeformed body [N/m]
+
+  Level: developer
+
+.seealso: `Body`, `BodySetSpringStiffness()`
+@*/
+PetscErrorCode BodyGetLeastStiffness(Body body, PetscReal *least)
 {
-  PetscReal box[6]  = {0};
-  PetscInt  longest = 0;
+  PetscReal  box[6]  = {0};
+  PetscInt   longest = 0;
+  RigidFrame frame;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(least, 2);
+  PetscCall(BodyGetRigidFrame(body, &frame));
   PetscCall(DMGetBoundingBox(body->mesh.dm, box, box + 3));
   for (PetscInt d = 1; d < body->mesh.dim; d++)
     if (box[3 + d] - box[d] > box[3 + longest] - box[longest]) longest = d;
@@ -65,7 +84,7 @@ static PetscErrorCode GetStiffness(Body body, const RigidFrame *frame, PetscReal
   for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscReal stiffness = 0;
 
-    PetscCall(MeasureStiffness(body, frame, longest, d, &stiffness));
+    PetscCall(MeasureStiffness(body, &frame, longest, d, &stiffness));
     *least = PetscMin(*least, stiffness);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -168,8 +187,8 @@ PetscErrorCode BodySetUpSprings(Body body, PetscInt n_free, const PetscReal free
   springs->n = n_free;
   if (!n_free) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetRigidFrame(body, &frame));
-  PetscCall(GetStiffness(body, &frame, &springs->stiffness));
   if (springs->part == PETSC_DECIDE) springs->part = body->model.linear ? LINEAR_PART : NONLINEAR_PART;
+  PetscCall(BodyGetLeastStiffness(body, &springs->stiffness));
   springs->stiffness *= springs->part;
   springs->size = frame.size;
   PetscCall(PetscArraycpy(springs->motions, free, n_free * frame.n));

@@ -137,6 +137,7 @@ PetscErrorCode ContactSetUp(Contact contact)
              contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law]);
   PetscCall(ContactSetUpScales(contact));
   PetscCall(ShareControllerStep(contact));
+  PetscCall(ContactSetUpSprings(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StatusLineTell("matrices of body %s", ((PetscObject)contact->bodies[b])->name);
     PetscCall(BodyBeginSetUp(contact->bodies[b]));

@@ -10,9 +10,12 @@
 #define MAX_TIMES 200
 /* Springs do not pull where their stretch is below this part of the displacements that they pull at */
 #define STRETCH_RTOL 1e-12
-/* or, where it has not fallen for so many times, below so many times the tolerance on positions: that is the round-off of contact forces */
+/* or, where their forces are below this part of those of contact on any body, and it has not fallen for so many times below so many times
+   the tolerance on positions, or for more times: that is the round-off of contact forces */
 #define STRETCH_ATOL 10
+#define REST_FORCE   3e-9
 #define MAX_STALLS   3
+#define LONG_STALLS  10
 /* A stretch above this part of the last one does not fall */
 #define FALLS 0.5
 /* One that changes by less than this part of it is steady */
@@ -21,6 +24,28 @@
 #define FAR           100
 #define FAR_NONLINEAR 0.5
 
+/* Springs of bodies that contact alone holds are as soft beside the softest of all static bodies as beside their own: a stiff body that
+   lies on a soft one has to sink in as far as that gives way. Before matrices are made. */
+PetscErrorCode ContactSetUpSprings(Contact contact)
+{
+  PetscReal least = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const Body body = contact->bodies[b];
+    PetscBool  is_static, rigid;
+    PetscReal  stiffness;
+
+    PetscCall(BodyIsStatic(body, &is_static));
+    PetscCall(BodyIsRigid(body, &rigid));
+    if (!is_static || rigid) continue;
+    PetscCall(BodyGetLeastStiffness(body, &stiffness));
+    least = PetscMin(least, stiffness);
+  }
+  for (PetscInt b = 0; b < contact->n_bodies && least < PETSC_MAX_REAL; b++) PetscCall(BodySetSpringStiffness(contact->bodies[b], least));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* After the bodies and the rows */
 PetscErrorCode ContactSetUpFloating(Contact contact)
 {
@@ -28,7 +53,7 @@ PetscErrorCode ContactSetUpFloating(Contact contact)
   const PetscInt   n = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc2(n, &f->bodies, n, &f->states));
+  PetscCall(PetscCalloc3(n, &f->bodies, n, &f->states, n, &f->work));
   for (PetscInt b = 0; b < n; b++) {
     PetscBool floating;
 
@@ -53,7 +78,7 @@ PetscErrorCode ContactDestroyFloating(Contact contact)
   ContactFloating *f = &contact->floating;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree2(f->bodies, f->states));
+  PetscCall(PetscFree3(f->bodies, f->states, f->work));
   PetscCall(PetscFree4(f->root, f->stretch, f->last, f->move));
   PetscCall(PetscFree4(f->moves, f->changes, f->basis, f->directions));
   PetscCall(PetscFree2(f->start_force, f->start_active));
@@ -75,20 +100,42 @@ static PetscErrorCode RefuseUnheld(Contact contact, Body body)
       name, (double)contact->floating.time, motion, name);
 }
 
+/* The largest sum of the sizes of the contact forces on a body [N] */
+static PetscErrorCode FindLargestForce(Contact contact, PetscReal *largest)
+{
+  PetscReal *forces = contact->floating.work;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(forces, contact->n_bodies));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) forces[pair->body[side]] += PetscAbsReal(contact->end.force[i]);
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, forces, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  *largest = 0;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) *largest = PetscMax(*largest, forces[b]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* How the springs of all bodies are stretched; whether they have come to rest */
 static PetscErrorCode Measure(Contact contact, PetscInt times, PetscBool *rest)
 {
   const PetscReal  atol = STRETCH_ATOL * CONTACT_POSITION_TOLERANCE * contact->scale.length;
   ContactFloating *f    = &contact->floating;
+  PetscReal        force;
 
   PetscFunctionBegin;
   *rest = PETSC_TRUE;
+  PetscCall(FindLargestForce(contact, &force));
   PetscCall(PetscArraycpy(f->last, f->stretch, f->n_springs));
   for (PetscInt k = 0; k < f->n; k++) {
     ContactSprings  *springs = &f->bodies[k];
     BodySpringState *state   = &f->states[k];
     const Body       body    = contact->bodies[springs->body];
-    PetscReal        most = 0, square = 0, last = 0, change = 0;
+    PetscReal        most = 0, square = 0, last = 0, change = 0, least;
 
     PetscCall(BodyMeasureSprings(body, state));
     for (PetscInt i = 0; i < state->n; i++) {
@@ -100,10 +147,13 @@ static PetscErrorCode Measure(Contact contact, PetscInt times, PetscBool *rest)
       last += PetscSqr(f->last[at]);
       change += PetscSqr(f->stretch[at] - f->last[at]);
     }
+    least           = force > 0 ? REST_FORCE * force / state->stiffness : atol;
     springs->stalls = times && square > PetscSqr(FALLS) * last ? springs->stalls + 1 : 0;
-    springs->steady = times && most > atol && change < PetscSqr(STEADY) * last ? springs->steady + 1 : 0;
-    if (most > STRETCH_RTOL * state->displacement && (springs->stalls < MAX_STALLS || most > atol)) *rest = PETSC_FALSE;
-    if (springs->stalls && state->way > (state->linear ? FAR : FAR_NONLINEAR) * state->size && most > atol)
+    springs->steady = times && most > least && change < PetscSqr(STEADY) * last ? springs->steady + 1 : 0;
+    if (most > STRETCH_RTOL * state->displacement &&
+        (springs->stalls < MAX_STALLS || most > least || (springs->stalls < LONG_STALLS && most > atol)))
+      *rest = PETSC_FALSE;
+    if (springs->stalls && state->way > (state->linear ? FAR : FAR_NONLINEAR) * state->size && most > least)
       PetscCall(RefuseUnheld(contact, body));
     PetscCall(PetscInfo(contact, "body '%s': springs stretched by %g m after a way of %g m, step made %" PetscInt_FMT " times\n",
                         ((PetscObject)body)->name, (double)most, (double)state->way, times + 1));

@@ -20,7 +20,7 @@
 #define STEADY_TIMES 3
 #define LONGER       8
 #define FIRST_STRAIN 1e-2
-#define LARGE_STRAIN 0.1
+#define LARGE_STRAIN 0.04
 
 static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
 {
@@ -117,19 +117,47 @@ static PetscErrorCode DropLong(ContactFloating *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bodies that fall freely leap */
-static PetscErrorCode Leap(ContactFloating *f)
+/* For each body the smallest gap of its rows, 0 where it is in contact; PETSC_MAX_REAL: nothing lies opposite [m] */
+static PetscErrorCode FindGaps(Contact contact, PetscReal gaps[])
 {
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) gaps[b] = PETSC_MAX_REAL;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
+      const PetscReal gap = contact->end.active[i] ? 0 : PetscMax(contact->end.gap[i], 0);
+
+      if (!contact->rows.opposite[i]) continue;
+      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) gaps[pair->body[side]] = PetscMin(gaps[pair->body[side]], gap);
+    }
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, gaps, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Bodies that fall freely leap: one that touches nothing by its gap, others the farther the longer they fall */
+static PetscErrorCode Leap(Contact contact)
+{
+  ContactFloating *f = &contact->floating;
+
+  PetscFunctionBegin;
+  PetscCall(FindGaps(contact, f->work));
   for (PetscInt k = 0; k < f->n; k++) {
     const BodySpringState *state   = &f->states[k];
     ContactSprings        *springs = &f->bodies[k];
     const PetscReal       *stretch = f->stretch + springs->begin;
+    const PetscReal        gap     = f->work[springs->body];
     PetscReal              leap;
 
-    if (springs->steady < STEADY_TIMES) continue;
-    leap = LengthOfStrain(state, FIRST_STRAIN) * PetscPowRealInt(LONGER, springs->leaps++);
-    if (!state->linear) leap = PetscMin(leap, LengthOfStrain(state, LARGE_STRAIN));
+    if (gap > 0 && gap < PETSC_MAX_REAL) leap = gap;
+    else if (springs->steady < STEADY_TIMES) continue;
+    else {
+      leap = LengthOfStrain(state, FIRST_STRAIN) * PetscPowRealInt(LONGER, springs->leaps++);
+      if (!state->linear) leap = PetscMin(leap, LengthOfStrain(state, LARGE_STRAIN));
+    }
     PetscCall(PetscArraycpy(f->move + springs->begin, stretch, state->n));
     Scale(state->n, PetscMax(1, f->root[springs->begin] * leap / PetscSqrtReal(Dot(state->n, stretch, stretch))), f->move + springs->begin);
     springs->steady = 0;
@@ -161,7 +189,7 @@ PetscErrorCode SpringsMove(Contact contact, PetscBool moved)
   }
   PetscCall(Extrapolate(f));
   PetscCall(DropLong(f));
-  PetscCall(Leap(f));
+  PetscCall(Leap(contact));
   for (PetscInt k = 0; k < f->n; k++) {
     PetscReal move[BODY_MAX_SPRINGS];
 

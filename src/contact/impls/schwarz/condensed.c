@@ -102,15 +102,24 @@ static PetscErrorCode MarkUnshared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the forces of a pair are to be unknowns: both sides answer by massless layers alone, or are linear bodies of one substep whose
-   rows are too many for dense matrices */
+/* Whether the forces of a pair are to be unknowns: a side is static, not linear and held by contact alone; or there are many rows, and both
+   sides answer by massless layers alone, or are linear bodies of one substep, for whose rows dense matrices are too large */
 static PetscErrorCode PairPrefersForces(Contact contact, const ContactPair *pair, PetscBool *prefers)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
-  PetscBool      large   = (PetscBool)(contact->rows.n_all > schwarz->dense_limit);
+  const Schwarz  *schwarz = (const Schwarz *)contact->data;
+  const PetscBool many    = (PetscBool)(contact->rows.n_all > PetscMin(SCHWARZ_DENSE_ROWS, schwarz->dense_limit));
+  const PetscBool large   = (PetscBool)(contact->rows.n_all > schwarz->dense_limit);
+  PetscBool       floats  = PETSC_FALSE;
 
   PetscFunctionBegin;
-  *prefers = PETSC_TRUE;
+  for (PetscInt side = 0; side < 2 && !floats; side++) {
+    PetscBool exact;
+
+    PetscCall(BodyIsFloating(contact->bodies[pair->body[side]], &floats));
+    PetscCall(BodyComplianceIsExact(contact->bodies[pair->body[side]], &exact));
+    floats = (PetscBool)(floats && !exact);
+  }
+  *prefers = (PetscBool)(many || floats);
   for (PetscInt side = 0; side < 2; side++) {
     const Body body = contact->bodies[pair->body[side]];
     Mat        K;
@@ -121,21 +130,21 @@ static PetscErrorCode PairPrefersForces(Contact contact, const ContactPair *pair
     PetscCall(BodyComplianceIsExact(body, &exact));
     PetscCall(BodyFeelsEndForce(body, &feels));
     PetscCall(BodyGetSubsteps(body, &substeps));
-    if (!K && !(large && exact && feels && substeps == 1)) *prefers = PETSC_FALSE;
+    if (!K && !(large && exact && feels && substeps == 1) && !(floats && feels)) *prefers = PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Newton's method finds forces as well as displacements. Where there are many rows, a body under given forces takes one solution with its
    factors, or with those of its massless layer, and one with prescribed displacements as many as conjugate gradients make: there forces
-   become the unknowns. */
+   become the unknowns. So they do where a nonlinear body is held by contact alone: a stiff one that lies on a soft one, prescribed to the
+   last digit of its place, would push with the round-off of that times its stiffness. */
 PetscErrorCode SchwarzPreferForces(Contact contact)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  if (contact->rows.n_all <= PetscMin(SCHWARZ_DENSE_ROWS, schwarz->dense_limit) || schwarz->swap || schwarz->mode == SCHWARZ_MASS ||
-      schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
+  if (schwarz->swap || schwarz->mode == SCHWARZ_MASS || schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
     PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];

@@ -2,6 +2,16 @@
 #include "schwarzimpl.h"
 #include <sys/petsccompat.h>
 
+/* Sweeps of an iteration before it may end as round-off has it; forces that change by less than this part of them are steady; so many
+   sweeps in a row with steady forces and no smaller change of position than before: an iteration that converges, however slowly, has none
+ */
+#define STALL_FROM    3
+#define STEADY_FORCE  1e-6
+#define STEADY_SWEEPS 4
+/* Forces found on the compliance that are steady to this part of them are near enough to count from the bodies under them, so often */
+#define NEAR_FORCE 1e-2
+#define MOST_BASES 3
+
 /* How far the contact nodes of a body on one side of the pairs have moved since the last sweep, and where they are [m] */
 static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *change, PetscReal *position)
 {
@@ -93,6 +103,39 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the change of position is what round-off leaves, and no sweep makes it less: it does not fall, and forces stay as they are. Where
+   a body that is hardly held, by a soft spring or its inertia in a long step, touches a stiff one, the round-off of forces moves it by more
+   than any tolerance in parts of its size. Sweeps on the compliance have that of how far bodies would go without contact too, and are made
+   again from where they are with it. */
+static PetscErrorCode FindStall(Contact contact)
+{
+  Schwarz     *schwarz = (Schwarz *)contact->data;
+  PetscScalar *last = schwarz->stall.force, *now = last + contact->rows.n;
+  PetscReal    sums[2] = {0, 0}, part;
+
+  PetscFunctionBegin;
+  if (++schwarz->stall.sweeps < STALL_FROM) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SchwarzGetForces(contact, now));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    sums[0] += PetscSqr(now[i] - last[i]);
+    sums[1] += PetscSqr(now[i]);
+    last[i] = now[i];
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  part                  = sums[1] > 0 ? PetscSqrtReal(sums[0] / sums[1]) : PETSC_INFINITY;
+  schwarz->stall.rebase = (PetscBool)(schwarz->step == STEP_CONDENSED && schwarz->stall.bases < MOST_BASES && part > STEADY_FORCE);
+  if (schwarz->stall.sweeps > STALL_FROM && schwarz->change >= schwarz->stall.least &&
+      part <= (schwarz->stall.rebase ? NEAR_FORCE : STEADY_FORCE))
+    schwarz->stall.steady++;
+  else schwarz->stall.steady = 0;
+  schwarz->stall.least = PetscMin(schwarz->stall.least, schwarz->change);
+  PetscCall(PetscInfo(contact, "change of position %g m, the least before %g m; of forces %g in parts of them\n", (double)schwarz->change,
+                      (double)schwarz->stall.least, (double)part));
+  if (schwarz->stall.steady >= STEADY_SWEEPS) schwarz->converged = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Compares the change of position with the tolerances, and notes the worst one */
 PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
 {
@@ -103,7 +146,12 @@ PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
   PetscReal      worst    = -1;
 
   PetscFunctionBegin;
-  schwarz->converged = PETSC_TRUE;
+  if (!schwarz->swept) {
+    schwarz->stall.sweeps = schwarz->stall.steady = 0;
+    schwarz->stall.least                          = PETSC_MAX_REAL;
+  }
+  schwarz->stall.rebase = PETSC_FALSE;
+  schwarz->converged    = PETSC_TRUE;
   for (PetscInt k = 0; k < measures; k++) {
     PetscReal change, position;
 
@@ -121,6 +169,7 @@ PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
      the predictor alone would be near enough for positions */
   if (schwarz->tied.any && schwarz->newton && !schwarz->swept && worst > 0) schwarz->converged = PETSC_FALSE;
   if (schwarz->leaves) schwarz->converged = PETSC_FALSE;
+  if (!schwarz->converged && !schwarz->leaves) PetscCall(FindStall(contact));
   schwarz->swept  = PETSC_TRUE;
   schwarz->leaves = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);

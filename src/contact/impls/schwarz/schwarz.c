@@ -96,8 +96,8 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->rows.n, MPIU_INT, schwarz->all_offset, contact->ranks.counts,
                               contact->ranks.offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
   PetscCall(PetscFree(mine));
-  PetscCall(
-      PetscMalloc3(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->previous, contact->rows.n, &schwarz->by_force));
+  PetscCall(PetscMalloc4(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->stall.force, 2 * contact->rows.n,
+                         &schwarz->previous, contact->rows.n, &schwarz->by_force));
   PetscCall(PetscCalloc2(contact->rows.n, &schwarz->known, contact->rows.n, &schwarz->solved_active));
   PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &schwarz->rounds));
   schwarz->rounds.recheck = schwarz->recheck;
@@ -221,7 +221,7 @@ static PetscErrorCode ContactReset_Schwarz(Contact contact)
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
   PetscCall(PetscFree3(schwarz->exchange, schwarz->offset, schwarz->all_offset));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
-  PetscCall(PetscFree3(schwarz->kept_force, schwarz->previous, schwarz->by_force));
+  PetscCall(PetscFree4(schwarz->kept_force, schwarz->stall.force, schwarz->previous, schwarz->by_force));
   PetscCall(RoundsDestroy(&schwarz->rounds));
   PetscCall(SchwarzDestroyTurns(contact));
   PetscCall(PetscFree(schwarz->row_work));

@@ -177,7 +177,14 @@ typedef struct {
   PetscBool   leaves;           /* the next sweep leaves massless layers off balance, for Newton's step to find it */
   PetscReal   change, position; /* of the last sweep: the body with the worst ratio */
   PetscReal   growth;           /* of the change over that of the sweep before */
-  PetscBool   converged;
+  struct {
+    PetscInt     sweeps, steady; /* of this iteration; the last of them in which neither forces nor the change of position got better */
+    PetscInt     bases;          /* how often the compliance has been counted from other forces in this step */
+    PetscBool    rebase;         /* it is to be once more */
+    PetscReal    least;          /* change of position in this iteration [m] */
+    PetscScalar *force;          /* of the rows after the last sweep, and room for those of this one [N] */
+  } stall;
+  PetscBool converged;
   /* work space */
   PetscScalar *previous;   /* displacements of the rows of both bodies of each pair in the last sweep */
   PetscScalar *row_work;   /* three for each row */

@@ -174,6 +174,12 @@ static PetscErrorCode Finish(Contact contact, PetscBool *changed)
   PetscCall(SchwarzFinishCondensed(contact));
   schwarz->step = STEP_WHOLE;
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (schwarz->stall.rebase) {
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetBase(contact->bodies[b]));
+    schwarz->stall.bases++;
+    *changed = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ContactAny(contact, PETSC_TRUE, changed));
   if (!*changed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++)
@@ -198,6 +204,7 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
   PetscCall(SchwarzBeginGroups(contact));
   PetscCall(ContactBeginRelease(contact, SchwarzPairRests));
   schwarz->have_base = schwarz->iterated = PETSC_FALSE;
+  schwarz->stall.bases                   = 0;
   if (schwarz->swap && schwarz->started && !contact->energy.again && !contact->attempt.again) PetscCall(SchwarzSwapSides(contact));
   schwarz->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
