@@ -87,7 +87,9 @@ c_files    = $(shell find src include tests -name '*.[ch]')
 sh_files  := .setup/common .setup/debian .setup/petsc .setup/python .ci/run
 TESTS     ?= tests
 bin       := $(dir $(PYTHON))
-say        = $(if $(V),,@echo "  $(1) $@";)
+# A line for each folder, or for what else is named, when the first file there is made. With V=1 make shows whole commands instead.
+say        = $(if $(V),,@$(call once,$(1),$(or $(2),$@)))
+once       = $(if $(filter $(1):$(2),$(said)),,$(eval said += $(1):$(2))$(info $()  $(1) $(2)))
 
 # Runs on one machine, also as root in a container, and with more ranks than cores. Parallelism is MPI's.
 export OMPI_ALLOW_RUN_AS_ROOT := 1
@@ -205,7 +207,7 @@ analyse: $(members:.o=.tidy) $(BUILD)/src/main.tidy ## clang-tidy and cppcheck o
 
 # An object is older than its clang-tidy if nothing that it is made of has changed since
 $(BUILD)/%.tidy: $(BUILD)/%.o .clang-tidy
-	$(call say,TIDY) $(analysis)clang-tidy --quiet $*.c -- $(CPPFLAGS) -I$(BUILD) $(patsubst -I%,-isystem %,$(filter -I%,$(mpi_flags))) $(CFLAGS) >$@.log 2>/dev/null || { cat $@.log; exit 1; }
+	$(call say,TIDY,$(*D)) $(analysis)clang-tidy --quiet $*.c -- $(CPPFLAGS) -I$(BUILD) $(patsubst -I%,-isystem %,$(filter -I%,$(mpi_flags))) $(CFLAGS) >$@.log 2>/dev/null || { cat $@.log; exit 1; }
 	@touch $@
 
 # A line of a sum over nodes runs 5e9 times in all tests, which gcovr would take for an error of gcov, and so are counts below zero (GCC bug 68080)
@@ -245,7 +247,7 @@ $(BUILD)/libimpakt.so: $(members) $(BUILD)/members
 	$(call say,LINK) $(CC) $(CFLAGS) $(SHARED) -shared -Wl,-soname,libimpakt.so.$(interface) -Wl,-z,defs -o $@ $(members) $(LIBS)
 
 $(units): %: %.o $(BUILD)/libimpakt.a
-	$(call say,LINK) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
+	$(call say,LINK,$(@D)) $(CC) $(CFLAGS) -o $@ $^ $(shell pkg-config --libs cmocka) $(LIBS)
 
 $(replays): %: %.o $(if $(FUZZ),,$(BUILD)/tests/fuzz/replay.o) $(BUILD)/libimpakt.a
 	$(call say,LINK) $(CC) $(CFLAGS) $(if $(FUZZ),-fsanitize=fuzzer) -o $@ $^ $(LIBS)
@@ -257,7 +259,7 @@ $(filter $(BUILD)/src/element/% $(BUILD)/src/material/%,$(members)): private CFL
 
 $(BUILD)/%.o: %.c $(BUILD)/flags $(PETSC_ROOT)/include/petscconf.h
 	@mkdir -p $(@D)
-	$(call say,CC) $(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
+	$(call say,CC,$(<D)) $(CC) $(CPPFLAGS) $(CFLAGS) -MMD -MP -c -o $@ $<
 
 $(BUILD)/yardstick: tests/scaling/yardstick.c
 	@mkdir -p $(@D)
