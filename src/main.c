@@ -63,7 +63,7 @@ static PetscErrorCode Start(CommandLine *line)
 {
   int         required = MPI_THREAD_FUNNELED, provided, n = line->n;
   char      **words = line->words;
-  PetscMPIInt rank;
+  PetscMPIInt rank, size;
 
   /* PetscFunctionBegin would need PETSc */
   if (MPI_Init_thread(&n, &words, required, &provided)) return PETSC_ERR_MPI;
@@ -72,7 +72,8 @@ static PetscErrorCode Start(CommandLine *line)
   PetscCall(ImpaktInitialize(&n, &words));
   PetscCheck(!line->error[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", line->error);
   PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  StopSignalsBegin(rank);
+  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
+  StopSignalsBegin(rank, size);
   PetscCall(CommandLineInsert(line));
   PetscCall(OptionsCheckValues());
   return PETSC_SUCCESS;

@@ -132,6 +132,7 @@ static PetscErrorCode AfterStep(Controller controller, PetscInt step, void *cont
   StopSignals  signals = {0, PETSC_FALSE};
   PetscBool    late = PETSC_FALSE, due = PETSC_FALSE;
   PetscInt     steps;
+  PetscMPIInt  size;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetTimes(controller, NULL, NULL, &steps));
@@ -139,7 +140,8 @@ static PetscErrorCode AfterStep(Controller controller, PetscInt step, void *cont
   if (signals.stop || late) {
     *stop = c->stopped = PETSC_TRUE;
     PetscCall(Write(output, step));
-    PetscCall(TellEnd(output, step, late ? "-max_wall_time" : StopSignalName(signals.stop)));
+    PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)output), &size));
+    PetscCall(TellEnd(output, step, late ? "-max_wall_time" : StopSignalName(signals.stop, (PetscBool)(size > 1))));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (step == steps || signals.checkpoint || due || (c->interval && step && step % c->interval == 0)) PetscCall(Write(output, step));
@@ -246,16 +248,20 @@ PetscErrorCode OutputSetMaxWallTime(Output output, PetscReal seconds)
   The step under way is finished, a checkpoint is written where there are any, and `ControllerSolve()` returns. A second SIGINT ends the
   process at once. What handled these signals before is replaced; `OutputDestroy()` has them do what they do by default.
 
-  The ranks of a run look at the same step, every 0.05 s or at each step if these take longer.
+  The ranks of a run look at the same step, every 0.05 s or at each step if these take longer. If SIGTERM comes while nobody reads what they
+  print, as of Open MPI's mpiexec, the output from then on is dropped.
 
 .seealso: `Output`, `OutputSetCheckpoint()`, `OutputIsStopped()`
 @*/
 PetscErrorCode OutputCatchSignals(Output output)
 {
+  PetscMPIInt size;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
   output->checkpoints.catches = PETSC_TRUE;
-  StopSignalsCatch();
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)output), &size));
+  StopSignalsCatch((PetscBool)(size > 1));
   PetscCall(ControllerSetAfterStep(output->controller, AfterStep, output));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,11 +7,15 @@
    SIGUSR1 is handled by Note() until it comes, then by Noted() until it has been taken.
 
    Before that, while meshes are read and matrices made, there is no step to be finished and nothing to be saved: these three end the
-   process at once, with a line that says so. EndFirst() handles them on the first rank, EndOther() on the others.
+   process at once, with a line that says so. EndAlone() handles them in a run on one rank; on several ranks EndFirst() does on the first,
+   EndOther() on the others.
 */
 #define _POSIX_C_SOURCE 200809L
 #include "stopsignals.h"
+#include <errno.h>
+#include <fcntl.h>
 #include <impakt.h>
+#include <poll.h>
 #include <signal.h>
 #include <string.h>
 #include <sys/statusline.h>
@@ -37,20 +41,48 @@ static void Note(int number)
   Handle(number, number == SIGINT ? SIG_DFL : number == SIGTERM ? SIG_IGN : Noted);
 }
 
-/* The one line, and the end. What is called here may be called where a signal is handled. */
-static void EndFirst(int number)
+/* Note() for SIGTERM on several ranks. From Ctrl-C to SIGKILL, 1 s after SIGTERM, Open MPI's mpiexec reads nothing of what the ranks print.
+   Where it has room for no more, the first rank would wait until SIGKILL, without a checkpoint: what it prints from now on is dropped. */
+static void NoteLaunched(int number)
 {
-  const char *text =
-      number == SIGHUP
-          ? "impakt: ended by SIGHUP during the set-up, before the first step: there is nothing to continue, the same command begins anew\n"
-      : number == SIGINT
-          ? "impakt: ended by SIGINT during the set-up, before the first step: there is nothing to continue, the same command begins anew\n"
-          : "impakt: ended by SIGTERM during the set-up, before the first step: there is nothing to continue, the same command begins "
-            "anew\n";
+  const int     error  = errno; /* that of the call that the signal interrupts */
+  struct pollfd output = {.fd = STDOUT_FILENO, .events = POLLOUT};
+  int           nowhere;
 
+  Note(number);
+  if (!poll(&output, 1, 0)) {
+    nowhere = open("/dev/null", O_WRONLY);
+    if (nowhere >= 0) dup2(nowhere, STDOUT_FILENO); /* a write that waits is begun again, and ends there */
+  }
+  errno = error;
+}
+
+const char *StopSignalName(int number, PetscBool launched)
+{
+  if (number == SIGTERM && launched) return "SIGTERM (mpiexec sends it for SIGINT too)";
+  return number == SIGINT ? "SIGINT" : number == SIGHUP ? "SIGHUP" : "SIGTERM";
+}
+
+/* The one line, and the end. What is called here may be called where a signal is handled. */
+static void End(int number, PetscBool launched)
+{
+  char text[256] = "impakt: ended by ";
+
+  strcat(text, StopSignalName(number, launched));
+  strcat(text, " during the set-up, before the first step: there is nothing to continue, the same command begins anew\n");
   StatusLineBreak();
   if (write(STDERR_FILENO, text, strlen(text)) < 0) _exit(IMPAKT_STOPPED); /* who would be told? */
   _exit(IMPAKT_STOPPED);
+}
+
+static void EndAlone(int number)
+{
+  End(number, PETSC_FALSE);
+}
+
+static void EndFirst(int number)
+{
+  End(number, PETSC_TRUE);
 }
 
 /* Where another rank ends, mpiexec ends the first one by SIGTERM, which has the word then */
@@ -70,9 +102,9 @@ static PetscBool Handles(int number, void (*handler)(int))
 /* From now on signals end the process with a line that says that there is nothing to continue; but SIGUSR1 is taken note of, and asks for a
    checkpoint after the first step, and two others no longer end it. An interrupt that the process ignores, as one does that a shell has
    started in the background, stays ignored, and so does the end of the terminal where nohup has started the process. */
-void StopSignalsBegin(PetscMPIInt rank)
+void StopSignalsBegin(PetscMPIInt rank, PetscMPIInt size)
 {
-  void (*const end)(int) = rank ? EndOther : EndFirst;
+  void (*const end)(int) = rank ? EndOther : size > 1 ? EndFirst : EndAlone;
 
   if (!Handles(SIGINT, SIG_IGN)) Handle(SIGINT, end);
   if (!Handles(SIGHUP, SIG_IGN)) Handle(SIGHUP, end);
@@ -84,11 +116,11 @@ void StopSignalsBegin(PetscMPIInt rank)
 
 /* From now on signals are taken note of; those that are ignored stay so, and one for a checkpoint that has come already is not lost
  */
-void StopSignalsCatch(void)
+void StopSignalsCatch(PetscBool launched)
 {
   if (!Handles(SIGINT, SIG_IGN)) Handle(SIGINT, Note);
   if (!Handles(SIGHUP, SIG_IGN)) Handle(SIGHUP, Note);
-  Handle(SIGTERM, Note);
+  Handle(SIGTERM, launched ? NoteLaunched : Note);
   if (!Handles(SIGUSR1, Noted)) Handle(SIGUSR1, Note);
 }
 
@@ -98,12 +130,7 @@ void StopSignalsRelease(void)
   const int numbers[] = {SIGINT, SIGHUP, SIGTERM, SIGUSR1};
 
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(numbers); i++)
-    if (Handles(numbers[i], Note) || Handles(numbers[i], Noted)) Handle(numbers[i], SIG_DFL);
-}
-
-const char *StopSignalName(int number)
-{
-  return number == SIGINT ? "SIGINT" : number == SIGHUP ? "SIGHUP" : "SIGTERM";
+    if (Handles(numbers[i], Note) || Handles(numbers[i], NoteLaunched) || Handles(numbers[i], Noted)) Handle(numbers[i], SIG_DFL);
 }
 
 /* What has been asked for since the last call. To be called only after StopSignalsCatch(); a signal that has come to end the run stays. */

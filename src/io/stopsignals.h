@@ -7,8 +7,8 @@ typedef struct {
   PetscBool checkpoint; /* one has been asked for */
 } StopSignals;
 
-PETSC_INTERN void        StopSignalsBegin(PetscMPIInt);
-PETSC_INTERN void        StopSignalsCatch(void);
+PETSC_INTERN void        StopSignalsBegin(PetscMPIInt, PetscMPIInt);
+PETSC_INTERN void        StopSignalsCatch(PetscBool);
 PETSC_INTERN void        StopSignalsRelease(void);
 PETSC_INTERN void        StopSignalsTake(StopSignals *);
-PETSC_INTERN const char *StopSignalName(int);
+PETSC_INTERN const char *StopSignalName(int, PetscBool);
