@@ -19,7 +19,7 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 from figures import BLACK, COLOURS, CannotDraw
-from impakt_results import CannotRead, read
+from impakt_results import CannotRead, figures, read
 from matplotlib.figure import Figure
 
 COUNTS = ("_faces", "_divisions", "_layers", "_refine")
@@ -44,41 +44,18 @@ def size(run, option):
     return 1 / number if option.endswith(COUNTS) else number
 
 
-def figure_of(run, name):
-    """A number of the summary by its path, or None where it is null."""
-    at = run.summary
-    if at is None:
-        raise CannotDraw(f"{run.path}: there is no summary beside it; make the run with -output_summary")
-    for key in name.split("/"):
-        if not isinstance(at, dict) or key not in at:
-            raise CannotDraw(f"{run.path}: its summary has no {name}; it has {', '.join(numbers(run.summary))}")
-        at = at[key]
-    if at is not None and (isinstance(at, bool) or not isinstance(at, (int, float))):
-        raise CannotDraw(f"{run.path}: {name} in its summary is not a number")
-    return at
-
-
-def numbers(summary, path=""):
-    """Paths of all numbers of a summary, but for cost."""
-    for key, value in summary.items():
-        if isinstance(value, dict) and key != "timing":
-            yield from numbers(value, f"{path}{key}/")
-        elif isinstance(value, (int, float)) and not isinstance(value, bool):
-            yield path + key
-
-
 def chosen(runs, asked):
     """Names of figures to draw."""
     if asked:
         return asked
-    errors = [name for name in numbers(runs[0].summary or {}) if name.startswith("errors/") and name.count("/") == 1]
-    errors += [name for name in numbers(runs[0].summary or {}) if name.endswith("/displacement_error")]
-    return (errors or [name for name in DEFAULTS if figure_of(runs[0], name) is not None])[:MOST]
+    errors = [name for name in figures(runs[0].summary or {}) if name.startswith("errors/") and name.count("/") == 1]
+    errors += [name for name in figures(runs[0].summary or {}) if name.endswith("/displacement_error")]
+    return (errors or [name for name in DEFAULTS if runs[0].figure(name) is not None])[:MOST]
 
 
 def errors(runs, name):
     """The error of each run, not-a-number where there is none."""
-    values = np.array([np.nan if value is None else value for value in (figure_of(run, name) for run in runs)], dtype=float)
+    values = np.array([np.nan if value is None else value for value in (run.figure(name) for run in runs)], dtype=float)
     if is_error(name):
         return np.abs(values)
     best = values[0]

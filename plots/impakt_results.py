@@ -14,6 +14,7 @@
     run.options["-time_step"], run.number("-time_step")    # as the run was given them: text, and as a number
     run.energy, run.energy_error                           # of all bodies [J]; relative, less the work of loads
     run.summary["contact"]["impulse"]                      # figures of the JSON file; None where there is none
+    run.figure("contact/impulse")                          # the same by its path
     run.fields.times, run.fields.positions(-1)             # frames of -output_fields; nodes as deformed [m]
     run.fields["von_mises", -1]                            # a field of a frame: one number for each element or node
 
@@ -52,6 +53,15 @@ def open_file(path):
 
 def datasets(group):
     return {key: data[()] for key, data in group.items() if isinstance(data, h5py.Dataset)}
+
+
+def figures(summary, path=""):
+    """Paths of all numbers of a summary, but for cost."""
+    for key, value in summary.items():
+        if isinstance(value, dict) and key != "timing":
+            yield from figures(value, f"{path}{key}/")
+        elif isinstance(value, (int, float)) and not isinstance(value, bool):
+            yield path + key
 
 
 class Fields:
@@ -192,6 +202,19 @@ class Results:
             return json.loads(Path(path).read_text(encoding="utf-8"))
         except (OSError, ValueError) as error:
             raise CannotRead(f"the summary {path} cannot be read: {error}") from error
+
+    def figure(self, name):
+        """A number of the summary by its path, such as contact/impulse, or None where it is null."""
+        at = self.summary
+        if at is None:
+            raise CannotRead(f"{self.path}: there is no summary beside it; make the run with -output_summary")
+        for key in name.split("/"):
+            if not isinstance(at, dict) or key not in at:
+                raise CannotRead(f"{self.path}: its summary has no {name}; it has {', '.join(figures(self.summary))}")
+            at = at[key]
+        if at is not None and (isinstance(at, bool) or not isinstance(at, (int, float))):
+            raise CannotRead(f"{self.path}: {name} in its summary is not a number")
+        return at
 
     @cached_property
     def fields(self):

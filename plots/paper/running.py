@@ -9,17 +9,14 @@ import hashlib
 import json
 import os
 import shlex
-import subprocess
 import sys
 import time
 from concurrent.futures import FIRST_COMPLETED, ThreadPoolExecutor, wait
 from pathlib import Path
 
-from .experiments import ROOT
+from execute import execute
 
-ONE_THREAD = {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
-# As root, as in a container, Open MPI wants to be told twice
-AS_ROOT = {"OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
+from .experiments import ROOT
 
 
 class Runner:
@@ -82,38 +79,6 @@ class Runner:
         part.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
         part.replace(self.path(experiment, ".run"))
         return record
-
-
-def execute(command, folder, limit):
-    """Runs a command; returns what went wrong, or an empty text."""
-    environment = {**os.environ, **ONE_THREAD, **AS_ROOT}
-    try:
-        done = subprocess.run(
-            command,
-            cwd=folder,
-            env=environment,
-            timeout=limit,
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            text=True,
-            errors="replace",
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        return f"no result within {limit:g} s"
-    except OSError as error:
-        return str(error)
-    return "" if done.returncode == 0 else f"exit code {done.returncode}: {message_of(done.stdout + done.stderr)}"
-
-
-def message_of(output):
-    """PETSc's first lines of an error are its message; without them, the last lines of the output."""
-    lines = [line.partition("PETSC ERROR:")[2].strip() for line in output.splitlines() if "PETSC ERROR:" in line]
-    lines = [line for line in lines if line and not line.startswith("---")]
-    for end, line in enumerate(lines):
-        if line.startswith(("WARNING! There are unused", "See https", "PETSc Release")):
-            return " ".join(lines[:end])
-    return " ".join(lines[:2]) or " ".join(output.split("\n")[-4:]).strip() or "no message"
 
 
 class Progress:
