@@ -7,7 +7,7 @@
 #   INDICES=64              PETSc with indices of 64 bits, for more than 2^31 unknowns, in build/indices-64 (.setup/petsc --indices-64)
 #   COVERAGE=1              counts the lines that run, in build/coverage
 #   TESTS="tests/contact -k x"  what `make test` hands to pytest  V=1      show whole commands
-#   PREFIX=/usr/local       where `make install` puts program, library and headers; DESTDIR=stage puts them under a stage
+#   PREFIX=/usr/local       where `make install` puts program, library, headers, plots and options; DESTDIR=stage puts them under a stage
 
 # nproc alone would tell the threads of OpenMP where OMP_NUM_THREADS is set, as it often is beside MPI
 cores := $(shell env -u OMP_NUM_THREADS -u OMP_THREAD_LIMIT nproc)
@@ -127,8 +127,8 @@ endif
 
 all: $(BUILD)/impakt ## the program, build/impakt (the default)
 
-install: $(BUILD)/impakt $(BUILD)/libimpakt.so ## program, shared library, headers and impakt.pc, below PREFIX
-	@mkdir -p $(stage)/bin $(stage)/lib/pkgconfig $(stage)/include/impakt/private
+install: $(BUILD)/impakt $(BUILD)/libimpakt.so ## program, shared library, headers, impakt.pc, programs of plots/ and options files, below PREFIX
+	@mkdir -p $(stage)/bin $(stage)/lib/pkgconfig $(stage)/include/impakt/private $(stage)/share/impakt/plots $(stage)/share/impakt/options
 	install -m 755 $(BUILD)/impakt $(stage)/bin
 	install -m 755 $(BUILD)/libimpakt.so $(stage)/lib/libimpakt.so.$(version)
 	ln -sf libimpakt.so.$(version) $(stage)/lib/libimpakt.so.$(interface)
@@ -136,6 +136,9 @@ install: $(BUILD)/impakt $(BUILD)/libimpakt.so ## program, shared library, heade
 	install -m 644 include/impakt.h $(stage)/include
 	install -m 644 $(wildcard include/impakt/*.h) $(stage)/include/impakt
 	install -m 644 $(wildcard include/impakt/private/*.h) $(stage)/include/impakt/private
+	@echo "plots/*.py and options/*.opts to $(stage)/share/impakt"
+	@install -m 644 plots/*.py $(stage)/share/impakt/plots
+	@install -m 644 options/*.opts $(stage)/share/impakt/options
 	@echo "impakt.pc to $(stage)/lib/pkgconfig"
 	@printf '%s\n' 'prefix=$(prefix)' 'libdir=$${prefix}/lib' 'includedir=$${prefix}/include' '' 'Name: Impakt' \
 	  'Description: dynamic contact by the Schwarz alternating method' 'Version: $(version)' 'Cflags: -I$${includedir} $(pc_cflags)' \

@@ -2,6 +2,7 @@
 
 import re
 import shutil
+import sys
 
 import pytest
 from conftest import ROOT
@@ -31,6 +32,17 @@ def test_the_program_runs_from_there(installed, launch, tmp_path):  # noqa: F811
     done = launch([installed.prefix / "bin/impakt", "-options_file", options, "-time_end", "1e-4"], cwd=tmp_path, env=environment)
     assert done.returncode == 0
     assert "energy and momentum" in done.stdout
+
+
+def test_plots_and_options_are_there(installed, tmp_path):  # noqa: F811
+    """The files of both folders themselves, and a study that runs and draws a case from there."""
+    share = installed.prefix / "share/impakt"
+    for folder, kind in (("plots", "*.py"), ("options", "*.opts")):
+        there = {path.name: path.read_bytes() for path in (share / folder).iterdir()}
+        assert there == {path.name: path.read_bytes() for path in (ROOT / folder).glob(kind)}
+    words = [share / "options/rigid-mass.opts", tmp_path / "study.png", "--vary", "time_step=1e-6,2e-6", "--options", "-time_end 1e-5"]
+    run([sys.executable, share / "plots/study.py", *words], cwd=share, env=environment)
+    assert (tmp_path / "study.png").read_bytes()[:4] == b"\x89PNG"
 
 
 # These want a shape's definitions before them, as src/element/hex8.h has them
