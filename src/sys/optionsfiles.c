@@ -8,11 +8,18 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 #include <sys/stat.h>
 #include "optionsfiles.h"
 
 /* What some editors put before the text of a file in UTF-8 */
 #define BYTE_ORDER_MARK "\xef\xbb\xbf"
+
+/* An option and the line of a file that gives it */
+typedef struct {
+  char    *name;
+  PetscInt line;
+} Given;
 
 typedef struct Place *Place;
 /* Where a walk through the files is: a file, included by the line of another */
@@ -21,16 +28,18 @@ struct Place {
   PetscInt    line;
   struct stat status;
   const Place by;
+  Given      *given; /* the options that the file itself has given so far, where they are checked */
+  size_t      n_given;
 };
 
 typedef struct {
   char              *error; /* what is wrong with the files, if somebody wants to know */
   size_t             error_size;
+  PetscBool          checks; /* options that a file gives twice are wrong with it */
   const struct stat *sought; /* a file, or NULL */
   PetscBool          found;  /* it has been visited */
-  const char        *option; /* which one is looked for, else NULL */
-  char              *origin; /* where it stands last, as "file, line 3" */
-  size_t             origin_size;
+  OptionsVisitor     visit;  /* called for each option, or NULL */
+  void              *context;
   char               prefixes[8][PETSC_MAX_OPTION_NAME]; /* by -prefix_push */
   int                n_prefixes;
 } Walk;
@@ -137,10 +146,58 @@ static PetscErrorCode PushPrefix(Walk *walk, const char prefix[], Place place)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Keeps an option, with its prefix, to be compared with the others of the file. PETSc's own allocation wants PETSc to run */
+static PetscErrorCode KeepGiven(const char option[], Place place)
+{
+  PetscFunctionBegin;
+  if (!(place->n_given & (place->n_given + 1))) { /* room for 1, 3, 7, ... */
+    Given *larger = realloc(place->given, 2 * (place->n_given + 1) * sizeof(*larger));
+
+    PetscCheck(larger, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the options of '%s'", place->path);
+    place->given = larger;
+  }
+  place->given[place->n_given].line = place->line;
+  place->given[place->n_given].name = strdup(option);
+  PetscCheck(place->given[place->n_given].name, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the options of '%s'", place->path);
+  place->n_given++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static int CompareGiven(const void *a, const void *b)
+{
+  const Given *left = (const Given *)a, *right = (const Given *)b;
+  const int    order = strcasecmp(left->name, right->name);
+
+  return order ? order : left->line < right->line ? -1 : left->line > right->line;
+}
+
+/* Blames the file for the first option that it gives twice, if there is one, and forgets its options */
+static PetscErrorCode CheckGiven(Walk *walk, Place place)
+{
+  const Given *first = NULL;
+
+  PetscFunctionBegin;
+  if (place->n_given) qsort(place->given, place->n_given, sizeof(*place->given), CompareGiven);
+  for (size_t i = 1; i < place->n_given; i++)
+    if (!strcasecmp(place->given[i - 1].name, place->given[i].name) && (!first || place->given[i].line < first[1].line))
+      first = &place->given[i - 1];
+  if (first && !walk->error[0]) {
+    char problem[PETSC_MAX_OPTION_NAME + 64];
+
+    PetscCall(PetscSNPrintf(problem, sizeof(problem), "-%s stands in line %" PetscInt_FMT " already: take one of the two out", first->name,
+                            first->line));
+    place->line = first[1].line;
+    PetscCall(Blame(walk, place, problem));
+  }
+  for (size_t i = 0; i < place->n_given; i++) free(place->given[i].name);
+  free(place->given);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A line of a file: the name of an option and, where it has one, its value */
 static PetscErrorCode VisitOption(Walk *walk, const char name[], const char value[], Place place)
 {
-  PetscBool file, push, pop, same = PETSC_FALSE;
+  PetscBool file, push, pop;
 
   PetscFunctionBegin;
   PetscCall(PetscStrcasecmp(name, "-options_file", &file));
@@ -150,12 +207,13 @@ static PetscErrorCode VisitOption(Walk *walk, const char name[], const char valu
   else if (push) PetscCall(PushPrefix(walk, value, place));
   else if (pop && walk->n_prefixes) walk->n_prefixes--;
   else if (pop) PetscCall(Blame(walk, place, "-prefix_pop without a -prefix_push before it"));
-  else if (walk->option && name[0] == '-') {
-    char full[PETSC_MAX_OPTION_NAME];
+  else if ((walk->visit || walk->checks) && name[0] == '-') {
+    char full[PETSC_MAX_OPTION_NAME], origin[PETSC_MAX_PATH_LEN + 64];
 
     PetscCall(PetscSNPrintf(full, sizeof(full), "%s%s", walk->n_prefixes ? walk->prefixes[walk->n_prefixes - 1] : "", name + 1));
-    PetscCall(PetscStrcasecmp(full, walk->option, &same));
-    if (same) PetscCall(PetscSNPrintf(walk->origin, walk->origin_size, "%s, line %" PetscInt_FMT, place->path, place->line));
+    PetscCall(PetscSNPrintf(origin, sizeof(origin), "%s, line %" PetscInt_FMT, place->path, place->line));
+    if (walk->checks) PetscCall(KeepGiven(full, place));
+    if (walk->visit) PetscCall((*walk->visit)(full, value, origin, walk->context));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -209,6 +267,7 @@ static PetscErrorCode VisitLines(Walk *walk, FILE *file, Place place)
     if (name) PetscCall(VisitOption(walk, name, NextWord(&rest), place));
   }
   free(text);
+  PetscCall(CheckGiven(walk, place));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -246,7 +305,7 @@ static PetscErrorCode VisitFile(Walk *walk, const char text[], Place by)
 /* What is wrong with an options file or with one that it includes; nothing if all of them can be read. PETSc need not run */
 PetscErrorCode OptionsFileCheck(const char path[], char error[], size_t size)
 {
-  Walk walk = {.error = error, .error_size = size};
+  Walk walk = {.error = error, .error_size = size, .checks = PETSC_TRUE};
 
   PetscFunctionBegin;
   error[0] = 0;
@@ -254,48 +313,76 @@ PetscErrorCode OptionsFileCheck(const char path[], char error[], size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All options files of the command line, up to an option of the command line that overrules them: whether there is one */
-static PetscErrorCode VisitCommandLine(Walk *walk, PetscBool *overruled)
+/* All options files of the command line, then its own options, which overrule them */
+static PetscErrorCode VisitCommandLine(Walk *walk)
 {
   int    argc;
   char **argv;
 
   PetscFunctionBegin;
-  *overruled = PETSC_FALSE;
   PetscCall(PetscGetArgs(&argc, &argv));
-  for (int i = 1; i < argc && !*overruled; i++) {
-    PetscBool file;
+  for (int options = 0; options < 2; options++)
+    for (int i = 1; i < argc; i++) {
+      PetscBool file, key = PETSC_TRUE;
 
-    PetscCall(PetscStrcasecmp(argv[i], "-options_file", &file));
-    if (walk->option && argv[i][0] == '-') PetscCall(PetscStrcasecmp(argv[i] + 1, walk->option, overruled));
-    if (file && i + 1 < argc) PetscCall(VisitFile(walk, argv[i + 1], NULL));
-  }
+      PetscCall(PetscStrcasecmp(argv[i], "-options_file", &file));
+      if (i + 1 < argc) PetscCall(PetscOptionsValidKey(argv[i + 1], &key));
+      if (file && i + 1 < argc && !options) PetscCall(VisitFile(walk, argv[i + 1], NULL));
+      if (options && !file && argv[i][0] == '-' && walk->visit)
+        PetscCall((*walk->visit)(argv[i] + 1, key ? NULL : argv[i + 1], "the command line", walk->context));
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether a file is one of the options files of the run */
 PetscErrorCode OptionsFilesInclude(const struct stat *status, PetscBool *include)
 {
-  char      error[1024] = "";
-  Walk      walk        = {.error = error, .error_size = sizeof(error), .sought = status};
-  PetscBool overruled;
+  char error[1024] = "";
+  Walk walk        = {.error = error, .error_size = sizeof(error), .sought = status};
 
   PetscFunctionBegin;
-  PetscCall(VisitCommandLine(&walk, &overruled));
+  PetscCall(VisitCommandLine(&walk));
   *include = walk.found;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Calls a function for each option of the files and of the command line (without its dash, with its prefix): its value, or NULL, and where
+   it stands, as "file, line 3". Of an option that stands more than once the last one counts. */
+PetscErrorCode OptionsVisit(OptionsVisitor visit, void *context)
+{
+  char error[1024] = "";
+  Walk walk        = {.error = error, .error_size = sizeof(error), .visit = visit, .context = context};
+
+  PetscFunctionBegin;
+  PetscCall(VisitCommandLine(&walk));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+typedef struct {
+  const char *option;
+  char       *origin;
+  size_t      size;
+} Search;
+
+static PetscErrorCode NoteOrigin(const char option[], const char value[], const char origin[], void *context)
+{
+  const Search *search = (const Search *)context;
+  PetscBool     same;
+
+  PetscFunctionBegin;
+  (void)value;
+  PetscCall(PetscStrcasecmp(option, search->option, &same));
+  if (same) PetscCall(PetscStrncpy(search->origin, origin, search->size));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Where an option (without its dash) comes from: "the command line", a file and its line, or nothing if neither is known */
 PetscErrorCode OptionsFindOrigin(const char option[], char origin[], size_t size)
 {
-  char      error[1024] = "";
-  Walk      walk        = {.error = error, .error_size = sizeof(error), .option = option, .origin = origin, .origin_size = size};
-  PetscBool overruled;
+  Search search = {.option = option, .origin = origin, .size = size};
 
   PetscFunctionBegin;
   origin[0] = 0;
-  PetscCall(VisitCommandLine(&walk, &overruled));
-  if (overruled) PetscCall(PetscStrncpy(origin, "the command line", size));
+  PetscCall(OptionsVisit(NoteOrigin, &search));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

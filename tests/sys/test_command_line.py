@@ -87,6 +87,8 @@ LINES = {
     "byte-order mark": ("\ufeff-time_end 1", ["line 1", "byte-order mark"]),
     "line ends of old systems": ("-time_end 1\r-time_step 1", ["line 1", "carriage return"]),
     "zero byte": ("-time_end 1\n-time_\0", ["line 2", "zero byte"]),
+    "option twice": ("-time_end 1\n\n-time_step 1 # s\n-time_end 2", ["line 4", "-time_end stands in line 1 already"]),
+    "option twice by a prefix": ("-prefix_push left_\n-density 1\n-prefix_pop\n-density 1\n-LEFT_density 1", ["line 5", "-left_density stands in line 2 already"]),
 }
 
 
@@ -109,6 +111,25 @@ def test_place_in_a_file(words, tmp_path):
     refused(words("outer.opts"), ["-left_density (inner.opts, line 3)", "'abc'"])
     (tmp_path / "inner.opts").write_text("-prefix_push left_\n  -poissons_ratio\n-prefix_pop\n")
     refused(words("outer.opts"), ["-left_poissons_ratio (inner.opts, line 2)", "no value"])
+
+
+def test_option_twice_in_an_included_file(words, tmp_path):
+    """The file that has both is named; another file, or the command line, may repeat an option, and the last one counts."""
+    (tmp_path / "inner.opts").write_text("-time_step 1e-6\n-time_end 1e-6\n-time_step 1e-6\n")
+    (tmp_path / "outer.opts").write_text(f"-time_end 7\n-options_file {BLOCKS}\n-options_file inner.opts\n")
+    refused(words("outer.opts", ranks=3), ["'inner.opts', line 3", "-time_step stands in line 1 already"])
+    (tmp_path / "inner.opts").write_text("-time_step 1e-6\n-time_end 3e-6\n")
+    assert steps(words("outer.opts")) == 3
+    assert steps(words("outer.opts", "-time_end", "2e-6")) == 2
+
+
+def test_no_file_repeats_an_option(words, tmp_path):
+    """All options files of options/ and tests/, which one file includes here: it is read to its end, which the last line shows."""
+    files = sorted(path for folder in ("options", "tests") for path in (ROOT / folder).rglob("*.opts"))
+    assert len(files) > 100
+    (tmp_path / "every.opts").write_text("".join(f"-options_file {file.relative_to(ROOT)}\n" for file in files) + "-prefix_pop\n")
+    (tmp_path / "tests").symlink_to(ROOT / "tests")
+    refused(words("every.opts"), [f"'every.opts', line {len(files) + 1}", "without a -prefix_push"])
 
 
 def test_command_line_overrules_files(words):
