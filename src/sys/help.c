@@ -1,4 +1,4 @@
-/* The screens of -help, -help TOPIC and -version.
+/* The screens of -help, -help TOPIC, -help WORD and -version.
 
    PETSc prints its own screens for these two options while it starts, and then lets the program run. So the program looks for them first,
    and starts PETSc without them. */
@@ -7,8 +7,8 @@
 #include <hdf5.h>
 #include <signal.h>
 #include "help.h"
-#include "optiontable.h"
 #include "names.h"
+#include "optionwords.h"
 
 /* The Makefile knows with what */
 #if !defined(IMPAKT_OPTIMISATION)
@@ -129,7 +129,7 @@ static PetscErrorCode PrintScreen(void)
   PetscCall(GetVersions(&v));
   topics = OptionTopicsGet(&n);
   PetscCall(ImpaktPrintUsage(stdout));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "-help TOPIC prints the options of a topic and ends:\n"));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "-help TOPIC prints the options of a topic, -help WORD those for a word:\n"));
   for (size_t t = 0; t < n; t++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-10s %s\n", topics[t].name, topics[t].text));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  all        the options of all topics, and those of PETSc\n"
                                           "  markdown   the options of all topics, as tables in Markdown\n"
@@ -147,6 +147,14 @@ static const char *PrintedPrefix(OptionOwner owner)
   return owner == OPTION_OF_BODY ? "<body>_" : owner == OPTION_OF_OBSTACLE ? "<obstacle>_" : "";
 }
 
+static PetscErrorCode PrintOption(const KnownOption *option)
+{
+  PetscFunctionBegin;
+  PetscCall(
+      PetscPrintf(PETSC_COMM_WORLD, "  -%s%s %s\n      %s\n", PrintedPrefix(option->owner), option->name, option->value, option->text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode PrintTopic(const OptionTopic *topic)
 {
   const KnownOption *options;
@@ -159,9 +167,7 @@ static PetscErrorCode PrintTopic(const OptionTopic *topic)
     PetscBool same;
 
     PetscCall(PetscStrcmp(options[i].topic, topic->name, &same));
-    if (same)
-      PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  -%s%s %s\n      %s\n", PrintedPrefix(options[i].owner), options[i].name, options[i].value,
-                            options[i].text));
+    if (same) PetscCall(PrintOption(&options[i]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -247,29 +253,53 @@ static PetscErrorCode PrintSolvers(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FindTopic(const char name[], const OptionTopic **topic)
+/* The topic of this name, or NULL; and the names of all topics */
+static PetscErrorCode FindTopic(const char name[], const OptionTopic **topic, char list[], size_t size)
 {
   const OptionTopic *topics;
-  char               list[512] = "";
   size_t             n;
 
   PetscFunctionBegin;
-  topics = OptionTopicsGet(&n);
-  *topic = NULL;
-  for (size_t t = 0; t < n && !*topic; t++) {
+  topics  = OptionTopicsGet(&n);
+  *topic  = NULL;
+  list[0] = 0;
+  for (size_t t = 0; t < n; t++) {
     PetscBool same;
 
     PetscCall(PetscStrcmp(topics[t].name, name, &same));
     if (same) *topic = &topics[t];
-    PetscCall(NamesAppend(list, sizeof(list), ", ", topics[t].name));
+    PetscCall(NamesAppend(list, size, ", ", topics[t].name));
   }
-  PetscCheck(*topic, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "-help %s: there is no such topic; topics are %s, all, markdown", name, list);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The options that a word means, then those with the word in their names, then those with the word in their texts */
+static PetscErrorCode PrintFound(const char word[], const char topics[])
+{
+  const KnownOption *options;
+  size_t             n, n_found = 0;
+
+  PetscFunctionBegin;
+  options = KnownOptionsGet(&n);
+  for (PetscInt wanted = 0; wanted < 3; wanted++)
+    for (size_t i = 0; i < n; i++) {
+      PetscInt rank;
+
+      PetscCall(OptionGetRank(&options[i], word, &rank));
+      if (rank != wanted) continue;
+      if (!n_found++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: no topic; options that have to do with this word\n\n", word));
+      PetscCall(PrintOption(&options[i]));
+    }
+  PetscCheck(n_found, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
+             "-help %s: there is no such topic, and no option with this word in its name or text; topics are %s, all, markdown", word,
+             topics);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Answer(Request request, const char topic[], PetscBool all)
 {
   const OptionTopic *found;
+  char               topics[512];
   PetscBool          markdown = PETSC_FALSE;
 
   PetscFunctionBegin;
@@ -282,8 +312,9 @@ static PetscErrorCode Answer(Request request, const char topic[], PetscBool all)
   } else if (all) PetscCall(PrintSolvers());
   else if (markdown) PetscCall(PrintTopics(PrintMarkdown));
   else {
-    PetscCall(FindTopic(topic, &found));
-    PetscCall(PrintTopic(found));
+    PetscCall(FindTopic(topic, &found, topics, sizeof(topics)));
+    if (found) PetscCall(PrintTopic(found));
+    else PetscCall(PrintFound(topic, topics));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,9 @@
 /* Option hygiene: every option that is given must have been read by somebody. */
 #include <impakt.h>
+#include <string.h>
 #include "names.h"
-#include "optiontable.h"
+#include "optionwords.h"
+#include "overriddenlists.h"
 
 /* These are read by PETSc when it solves or finalises, so they are unread before the run */
 static const char *const late_options[] = {"schwarz_snes_view",
@@ -33,62 +35,58 @@ static const char *const late_options[] = {"schwarz_snes_view",
                                            "on_error_abort",
                                            "on_error_mpiabort"};
 
-/* Levenshtein's distance between two short words */
-static PetscInt EditDistance(const char a[], const char b[])
+/* Why nobody has read an option, and what to do */
+static PetscErrorCode FindReason(const char name[], PetscInt n, const char *const bodies[], char reason[], size_t size)
 {
-  size_t   n, m;
-  PetscInt row[129];
-
-  if (PetscStrlen(a, &n) || PetscStrlen(b, &m) || n > 128 || m > 128) return 1000;
-  for (size_t j = 0; j <= m; j++) row[j] = (PetscInt)j;
-  for (size_t i = 1; i <= n; i++) {
-    PetscInt diagonal = row[0];
-
-    row[0] = (PetscInt)i;
-    for (size_t j = 1; j <= m; j++) {
-      const PetscInt above = row[j];
-
-      row[j]   = PetscMin(PetscMin(row[j] + 1, row[j - 1] + 1), diagonal + (a[i - 1] != b[j - 1]));
-      diagonal = above;
-    }
-  }
-  return row[m];
-}
-
-/* The options of one kind, each behind a prefix, if one is nearer than what there is */
-static PetscErrorCode FindNearestOf(const char name[], OptionOwner owner, const char prefix[], PetscInt *best, char nearest[], size_t size)
-{
-  const KnownOption *options;
-  size_t             n;
+  char      text[768], need[160];
+  PetscBool known;
 
   PetscFunctionBegin;
-  options = KnownOptionsGet(&n);
-  for (size_t i = 0; i < n; i++) {
-    char     full[128];
-    PetscInt distance;
-
-    if (options[i].owner != owner) continue;
-    PetscCall(PetscSNPrintf(full, sizeof(full), "%s%s%s", prefix, prefix[0] ? "_" : "", options[i].name));
-    distance = EditDistance(name, full);
-    if (distance >= *best) continue;
-    *best = distance;
-    PetscCall(PetscStrncpy(nearest, full, size));
-  }
+  PetscCall(OptionsFindOverridden(name, n, bodies, reason, size));
+  if (reason[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OptionsFindNeed(name, need, sizeof(need)));
+  PetscCall(OptionsSuggest(name, n, bodies, &known, text, sizeof(text)));
+  if (need[0] && (known || strchr(name, ':'))) PetscCall(PetscSNPrintf(reason, size, "needs %s", need)); /* or a pair of contact */
+  else if (known) PetscCall(PetscSNPrintf(reason, size, "goes with another method or type than the one chosen"));
+  else PetscCall(PetscSNPrintf(reason, size, "the nearest known one is %s", text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FindNearest(const char name[], PetscInt n_bodies, const char *const bodies[], char nearest[], size_t size)
+/* Options that nobody has read, as "-a 1, -b 2 (why), -c (why)": a text with one reason at least has room in an error of PETSc's, which has
+   2048 bytes */
+typedef struct {
+  PetscInt n;
+  char     text[1850];
+  char     given[800], reason[900]; /* the options with the reason of the last one */
+} Unread;
+
+/* Ends the options of one reason */
+static PetscErrorCode Close(Unread *unread)
 {
-  char   **obstacles;
-  PetscInt best = 1000, n;
+  char group[sizeof(unread->given) + sizeof(unread->reason) + 4];
 
   PetscFunctionBegin;
-  nearest[0] = 0;
-  PetscCall(FindNearestOf(name, OPTION_OF_RUN, "", &best, nearest, size));
-  for (PetscInt b = 0; b < n_bodies; b++) PetscCall(FindNearestOf(name, OPTION_OF_BODY, bodies[b], &best, nearest, size));
-  PetscCall(NamesRead(NULL, "-obstacles", &n, &obstacles, NULL));
-  for (PetscInt o = 0; o < n; o++) PetscCall(FindNearestOf(name, OPTION_OF_OBSTACLE, obstacles[o], &best, nearest, size));
-  PetscCall(NamesDestroy(n, &obstacles));
+  if (!unread->given[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscSNPrintf(group, sizeof(group), "%s (%s)", unread->given, unread->reason));
+  PetscCall(NamesAppend(unread->text, sizeof(unread->text), ", ", group));
+  unread->given[0] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Add(Unread *unread, const char name[], const char value[], PetscInt n, const char *const bodies[])
+{
+  char      reason[sizeof(unread->reason)], given[512];
+  PetscBool same;
+
+  PetscFunctionBegin;
+  if (unread->n > 100) PetscFunctionReturn(PETSC_SUCCESS); /* more than the message has room for */
+  PetscCall(FindReason(name, n, bodies, reason, sizeof(reason)));
+  PetscCall(PetscStrcmp(reason, unread->reason, &same));
+  if (!same) PetscCall(Close(unread));
+  PetscCall(PetscStrncpy(unread->reason, reason, sizeof(unread->reason)));
+  PetscCall(PetscSNPrintf(given, sizeof(given), "-%s%s%s", name, value && value[0] ? " " : "", value ? value : ""));
+  PetscCall(NamesAppend(unread->given, sizeof(unread->given), ", ", given));
+  unread->n++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,34 +102,30 @@ static PetscErrorCode FindNearest(const char name[], PetscInt n_bodies, const ch
   Level: developer
 
   Note:
-  To be called when everything has been set up and nothing been computed. Names the nearest known option.
+  To be called when everything has been set up and nothing been computed. Names the option that may have been meant, by letters or by
+  meaning; what an option needs beside it; and the list that an option is left over from.
 
 .seealso: `ImpaktPrintOptions()`
 @*/
 PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
 {
-  PetscInt n_left, unread = 0;
-  char   **names, **values, message[1800] = "";
+  PetscInt n_left;
+  char   **names, **values;
+  Unread   unread = {.n = 0};
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsLeftGet(NULL, &n_left, &names, &values));
   for (PetscInt i = 0; i < n_left; i++) {
-    PetscBool late = PETSC_FALSE, known;
-    char      nearest[128], reason[256], line[512];
+    PetscBool late = PETSC_FALSE;
 
     for (size_t k = 0; k < sizeof(late_options) / sizeof(late_options[0]) && !late; k++)
       PetscCall(PetscStrcmp(names[i], late_options[k], &late));
-    if (late) continue;
-    PetscCall(FindNearest(names[i], n, bodies, nearest, sizeof(nearest)));
-    PetscCall(PetscStrcmp(names[i], nearest, &known));
-    if (known) PetscCall(PetscSNPrintf(reason, sizeof(reason), "it goes with another method or type than the one chosen"));
-    else PetscCall(PetscSNPrintf(reason, sizeof(reason), "the nearest known one is -%s", nearest));
-    PetscCall(PetscSNPrintf(line, sizeof(line), "-%s%s%s (%s)", names[i], values[i] ? " " : "", values[i] ? values[i] : "", reason));
-    PetscCall(NamesAppend(message, sizeof(message), ", ", line));
-    unread++;
+    if (!late) PetscCall(Add(&unread, names[i], values[i], n, bodies));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n_left, &names, &values));
-  PetscCheck(!unread, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
-             "Unknown option%s, or without effect here: %s. `impakt -help all` lists the options", unread == 1 ? "" : "s", message);
+  PetscCall(Close(&unread));
+  PetscCheck(!unread.n, PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT,
+             "Unknown option%s, or without effect here: %s. `impakt -help all` lists the options, `impakt -help WORD` those with a word",
+             unread.n == 1 ? "" : "s", unread.text);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,5 @@
-/* Option hygiene: an option that nobody has read is refused, with the nearest known one. Lists of names, of any length. Every class prints
-   itself where an option asks for it. */
+/* Option hygiene: an option that nobody has read is refused, with the nearest known one. Lists of names, of any
+   length. Every class prints itself where an option asks for it. */
 #include "simulation.h"
 #include <sys/names.h>
 
@@ -40,6 +40,38 @@ static void misspelt_options_are_refused(void **state)
 
   AddCollision(4, 3, 0);
   ok(SimulationCreate(simulation));
+  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+    PetscOptions options = options_begin("%s", cases[i].given);
+
+    refused(PETSC_ERR_USER_INPUT, cases[i].words, ImpaktCheckOptions(2, names));
+    options_drop(options);
+  }
+}
+
+/* What a word means counts more than its letters: first of the owner that the option names, then of the run; what it needs stands beside */
+static void options_are_suggested_by_meaning(void **state)
+{
+  const struct {
+    const char *given, *words;
+  } cases[] = {
+      {"-left_velocity 1", "nearest known one is -left_initial_velocity)"},
+      {"-velocity 1", "nearest known one is -left_initial_velocity)"},
+      {"-friction 0.3", "nearest known one is -contact_friction, with -contact_law coulomb)"},
+      {"-friction 0.3 -contact_law coulomb", "nearest known one is -contact_friction)"},
+      {"-dt 1", "nearest known one is -time_step)"},
+      {"-left_dt 1", "nearest known one is -left_ts_time_step)"},
+      {"-output h.h5", "-output_history or -output_summary or -output_fields)"},
+      {"-left_E 1", "nearest known one is -left_youngs_modulus)"},
+      {"-left_nu 1", "nearest known one is -left_poissons_ratio)"},
+      {"-gravity 1", "nearest known one is -left_gravity)"},
+      {"-right_time_end 1", "nearest known one is -time_end)"},
+      {"-floor_v 1 -obstacles floor", "nearest known one is -floor_velocity)"},
+      {"-contact_friction 0.3", "-contact_friction 0.3 (needs -contact_law coulomb)"},
+      {"-contact_friction_left:right 0.3", "-contact_friction_left:right 0.3 (needs -contact_law coulomb)"},
+      {"-lagrange_snes_max_it 3", "-lagrange_snes_max_it 3 (needs -contact_type lagrange)"},
+  };
+
+  (void)state;
   for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
     PetscOptions options = options_begin("%s", cases[i].given);
 
@@ -209,6 +241,7 @@ int main(int argc, char **argv)
       simulation_test(read_options_pass),
       simulation_test(late_options_pass),
       simulation_test(misspelt_options_are_refused),
+      simulation_test(options_are_suggested_by_meaning),
       simulation_test(all_unread_options_are_named),
       simulation_test(options_without_effect_are_refused),
       simulation_test(options_of_other_bodies_are_refused),

@@ -132,6 +132,58 @@ def test_no_file_repeats_an_option(words, tmp_path):
     refused(words("every.opts"), [f"'every.opts', line {len(files) + 1}", "without a -prefix_push"])
 
 
+TWO = """-bodies a,b
+-obstacles floor,wall
+-contact_pairs a:b,b:floor
+-contact_law coulomb
+-contact_friction 0.2
+-contact_friction_a:b 0.3
+-time_end 1e-5
+-time_step 1e-6
+-a_dm_plex_dim 2
+-a_dm_plex_box_faces 4,4
+-a_gravity 0,-9.81
+-a_youngs_modulus 210e9
+-a_density 7800
+-a_poissons_ratio 0.3
+-b_dm_plex_dim 2
+-b_density 7800
+-b_translate 0,1.1
+-b_youngs_modulus 1e9
+-floor_obstacle_type plane
+-floor_point 0,-0.1
+-floor_normal 0,1
+-wall_obstacle_type plane
+-wall_point 5,-0.1
+-wall_normal -1,0
+-b_boundary_displacement ymax,xmax
+-b_boundary_displacement_ymax 0,0
+-b_boundary_displacement_xmax 0,0
+"""
+# What overrides a list, and what is told of the options that are left over
+LISTS = {
+    "bodies": (["-bodies", "a", "-contact_pairs", "none"], ["-b_translate 0,1.1, -b_youngs_modulus 1e9 (of 'b', which -bodies a,b (two.opts, line 1) names; -bodies a (the command line)"]),
+    "obstacles": (["-obstacles", "floor"], ["-wall_normal -1,0, -wall_obstacle_type plane, -wall_point 5,-0.1 (of 'wall', which -obstacles floor,wall (two.opts, line 2) names"]),
+    "pairs": (["-contact_pairs", "b:floor"], ["-contact_friction_a:b 0.3 (of 'a:b', which -contact_pairs a:b,b:floor (two.opts, line 3) names; -contact_pairs b:floor (the command line)"]),
+    "boundary": (["-b_boundary_displacement", "ymax"], ["-b_boundary_displacement_xmax 0,0 (of 'xmax', which -b_boundary_displacement ymax,xmax (two.opts, line 25) names"]),
+}
+
+
+@pytest.mark.parametrize(("case", "ranks"), [*((case, 1) for case in LISTS), ("bodies", 3)])
+def test_lists_that_are_overridden(case, ranks, words, tmp_path):
+    given, named = LISTS[case]
+    (tmp_path / "two.opts").write_text(TWO)
+    run = words("two.opts", *given, ranks=ranks)
+    refused(run, named)
+    assert "nearest" not in run.stderr
+
+
+def test_list_overridden_by_a_file(words, tmp_path):
+    (tmp_path / "two.opts").write_text(TWO)
+    (tmp_path / "one.opts").write_text("-options_file two.opts\n-obstacles floor\n")
+    refused(words("one.opts"), ["which -obstacles floor,wall (two.opts, line 2) names; -obstacles floor (one.opts, line 2) overrides that list"])
+
+
 def test_command_line_overrules_files(words):
     """On whichever side of the file an option stands; a file may stand alone, before or after."""
     end = ["-time_end", "3e-6"]

@@ -115,12 +115,49 @@ def test_topics(say):
     assert in_table(say("-help_options", stderr="impakt: warning: -help_options is the old name of -help all\n")) == names
 
 
+# A word, the options that come first, and some that come later since their text has the word
+WORDS = {
+    "velocity": (["<body>_initial_velocity", "<obstacle>_velocity"], {"<body>_probe", "output_fields"}),
+    "friction": (["contact_friction"], {"contact_friction_kinetic", "contact_law"}),
+    "gravity": (["<body>_gravity"], set()),
+    "dt": (["time_step", "<body>_ts_time_step"], set()),
+    "E": (["<body>_youngs_modulus"], set()),
+    "nu": (["<body>_poissons_ratio"], set()),
+    "output": (["output_history", "output_summary", "output_fields"], {"output_view"}),
+    "Gmsh": (["<body>_dm_plex_filename"], {"<body>_<block>_material_type"}),
+    "youngs_modulus": (["<body>_youngs_modulus"], set()),
+    "glue": (["contact_law"], set()),
+}
+
+
+@pytest.mark.parametrize("word", list(WORDS))
+def test_words(word, say):
+    """What a word means comes first, though the names of the options be others; nothing comes twice."""
+    first, later = WORDS[word]
+    text = say("-help", word, ranks=2 if word == "dt" else 1)
+    names = in_table(text)
+    assert text.startswith(f"{word}: no topic")
+    assert names[: len(first)] == first
+    assert later <= set(names) - set(first)
+    assert len(set(names)) == len(names)
+
+
+def test_meanings_are_of_options(say):
+    """The table of other words names options that exist."""
+    table = (ROOT / "src/sys/optionwords.c").read_text().split("meanings[] = {")[1].split("};")[0]
+    meant = re.findall(r'\{"(\w+)", "[^"]+"\}', table)
+    names = {re.sub(r"^<\w+>_", "", name) for topic in TOPICS for name in in_table(say("-help", topic))}
+    assert len(meant) > 30
+    assert set(meant) <= names
+
+
 def test_unknown_topic(launch):
-    done = launch([IMPAKT, "-help", "glue"], 2, timeout=60)
+    """Neither a topic nor a word of an option."""
+    done = launch([IMPAKT, "-help", "frobnicate"], 2, timeout=60)
     assert done.returncode > 0
     lines = [line for line in done.stderr.splitlines() if line.startswith("impakt: error")]
     assert len(lines) == 1
-    assert "-help glue" in lines[0]
+    assert "-help frobnicate" in lines[0] and "no option with this word" in lines[0]
     assert lines[0].endswith("topics are " + ", ".join([*TOPICS, "all", "markdown"]))
     assert not done.stdout.strip()
 

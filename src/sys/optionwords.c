@@ -1,0 +1,279 @@
+/* Options by their meaning: for -help WORD, and for what the message about an unknown option suggests. */
+#define _POSIX_C_SOURCE 200809L /* strncasecmp() */
+#include <petscsys.h>
+#include <string.h>
+#include <strings.h>
+#include "names.h"
+#include "optionwords.h"
+
+/* Other words for an option, as they stand in books and in input files of other programs. A word of one letter counts as it is written. */
+static const struct {
+  const char *option, *words;
+} meanings[] = {
+    {"bodies", "parts solids subdomains"},
+    {"initial_velocity", "velocity speed vel v v0"},
+    {"initial_displacement", "displacement u0"},
+    {"rigid", "stiff undeformable"},
+    {"damping_mass", "damping damp rayleigh alpha viscosity"},
+    {"damping_stiffness", "damping damp rayleigh beta viscosity"},
+    {"dm_plex_box_faces", "elements cells resolution nx divisions mesh_size"},
+    {"dm_plex_box_lower", "size box corner"},
+    {"dm_plex_box_upper", "size box corner length width height"},
+    {"dm_plex_filename", "mesh mesh_file gmsh msh exodus file"},
+    {"dm_plex_dim", "dim dimension"},
+    {"dm_plex_simplex", "triangles tetrahedra tri tet"},
+    {"translate", "position offset move origin"},
+    {"rotate", "angle tilt orientation"},
+    {"material_type", "law model constitutive plasticity plastic rubber"},
+    {"density", "rho mass"},
+    {"youngs_modulus", "E young modulus elastic_modulus stiffness"},
+    {"poissons_ratio", "nu poisson"},
+    {"yield_stress", "yield sigma_y plastic"},
+    {"boundary_displacement", "displacement fix fixed clamp support dirichlet boundary bc"},
+    {"boundary_traction", "traction pressure load force neumann"},
+    {"body_force", "force load"},
+    {"gravity", "g weight acceleration"},
+    {"time_start", "start begin t_start t0"},
+    {"time_end", "end stop duration end_time final_time t_end tend"},
+    {"time_step", "dt step timestep delta_t"},
+    {"ts_time_step", "dt step timestep time_step substep substeps"},
+    {"ts_type", "integrator explicit implicit static newmark time_integrator"},
+    {"contact_pairs", "pairs contact_surfaces"},
+    {"contact_type", "contact_method"},
+    {"contact_law", "tie glue bond coulomb"},
+    {"contact_friction", "friction mu friction_coefficient coefficient_of_friction"},
+    {"contact_penalty", "penalty_parameter"},
+    {"obstacles", "wall floor ground plane"},
+    {"velocity", "speed v belt"},
+    {"output_fields", "output paraview vtk xdmf vtu frames results"},
+    {"output_history", "output results"},
+    {"output_summary", "output results json"},
+    {"probe", "point points sensor monitor_point"},
+    {"max_wall_time", "walltime time_limit"},
+    {"monitor_interval", "monitor verbose print"},
+    {"checkpoint", "save"},
+    {"restart", "resume"},
+};
+
+/* What an option needs beside itself: an option that begins so wants that other one to have this value; `standard`: what it has where it
+   is not given */
+static const struct {
+  const char *begin, *other, *value, *standard;
+} needs[] = {
+    {"contact_friction", "contact_law", "coulomb", "frictionless"},
+    {"contact_penalty", "contact_type", "penalty", "schwarz"},
+    {"penalty_", "contact_type", "penalty", "schwarz"},
+    {"lagrange_", "contact_type", "lagrange", "schwarz"},
+    {"contact_augmentation_", "contact_type", "augmented_lagrangian", "schwarz"},
+    {"schwarz_", "contact_type", "schwarz", "schwarz"},
+};
+
+/* Whether a text is one of the words of a list with blanks between them */
+static PetscBool HasWord(const char list[], const char word[])
+{
+  const size_t length = strlen(word);
+
+  for (const char *at = list; *at; at += strspn(at, " ")) {
+    const size_t end = strcspn(at, " ");
+
+    if (end == length && !(length == 1 ? strncmp(at, word, 1) : strncasecmp(at, word, length))) return PETSC_TRUE;
+    at += end;
+  }
+  return PETSC_FALSE;
+}
+
+/* Whether a word means an option, whatever the option is called */
+static PetscBool Means(const char word[], const char option[])
+{
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(meanings); i++)
+    if (!strcmp(meanings[i].option, option) && HasWord(meanings[i].words, word)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* Whether a text has another in it, in whichever case */
+static PetscBool Contains(const char text[], const char part[])
+{
+  const size_t length = strlen(part);
+
+  for (const char *at = text; *at; at++)
+    if (!strncasecmp(at, part, length)) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* How near an option is to a word: 0, the word means it; 1, its name has the word; 2, its text has the word; -1, it has nothing to do with
+   the word. Words of one and two letters are in the middle of too many others. */
+PetscErrorCode OptionGetRank(const KnownOption *option, const char word[], PetscInt *rank)
+{
+  const PetscBool is_long = (PetscBool)(strlen(word) > 2);
+
+  PetscFunctionBegin;
+  *rank = -1;
+  if (is_long && Contains(option->text, word)) *rank = 2;
+  if (is_long && Contains(option->name, word)) *rank = 1;
+  if (Means(word, option->name) || !strcasecmp(option->name, word)) *rank = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Levenshtein's distance between two short words */
+static PetscInt EditDistance(const char a[], const char b[])
+{
+  const size_t n = strlen(a), m = strlen(b);
+  PetscInt     row[129];
+
+  if (n > 128 || m > 128) return 1000;
+  for (size_t j = 0; j <= m; j++) row[j] = (PetscInt)j;
+  for (size_t i = 1; i <= n; i++) {
+    PetscInt diagonal = row[0];
+
+    row[0] = (PetscInt)i;
+    for (size_t j = 1; j <= m; j++) {
+      const PetscInt above = row[j];
+
+      row[j]   = PetscMin(PetscMin(row[j] + 1, row[j - 1] + 1), diagonal + (a[i - 1] != b[j - 1]));
+      diagonal = above;
+    }
+  }
+  return row[m];
+}
+
+/* An unknown option, and what is found for it */
+typedef struct {
+  const char *name;
+  OptionOwner owner;        /* whose the name of that owner is which the option begins with; of the run: it begins with none */
+  char        prefix[256];  /* that name, with an underscore; nothing: of the run */
+  const char *rest;         /* what follows */
+  char        another[256]; /* a body that an option may be meant for which begins with no name */
+  PetscInt    distance;     /* of the nearest option, by its letters */
+  char        nearest[256];
+} Unknown;
+
+/* The options of one kind, each behind the name of an owner, if one is nearer than what there is */
+static PetscErrorCode TryOwner(Unknown *unknown, OptionOwner owner, const char name[])
+{
+  const KnownOption *options;
+  char               prefix[256];
+  size_t             n;
+
+  PetscFunctionBegin;
+  options = KnownOptionsGet(&n);
+  PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%s%s", name, name[0] ? "_" : ""));
+  if (!strncasecmp(unknown->name, prefix, strlen(prefix)) && strlen(prefix) > strlen(unknown->prefix)) {
+    unknown->owner = owner;
+    unknown->rest  = unknown->name + strlen(prefix);
+    PetscCall(PetscStrncpy(unknown->prefix, prefix, sizeof(unknown->prefix)));
+  }
+  for (size_t i = 0; i < n; i++) {
+    char     full[256];
+    PetscInt distance;
+
+    if (options[i].owner != owner) continue;
+    PetscCall(PetscSNPrintf(full, sizeof(full), "%s%s", prefix, options[i].name));
+    distance = EditDistance(unknown->name, full);
+    if (distance >= unknown->distance) continue;
+    unknown->distance = distance;
+    PetscCall(PetscStrncpy(unknown->nearest, full, sizeof(unknown->nearest)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The owners of options: the run, the bodies, obstacles */
+static PetscErrorCode TryOwners(Unknown *unknown, PetscInt n_bodies, const char *const bodies[])
+{
+  char   **obstacles;
+  PetscInt n;
+
+  PetscFunctionBegin;
+  PetscCall(TryOwner(unknown, OPTION_OF_RUN, ""));
+  for (PetscInt b = 0; b < n_bodies; b++) PetscCall(TryOwner(unknown, OPTION_OF_BODY, bodies[b]));
+  PetscCall(NamesRead(NULL, "-obstacles", &n, &obstacles, NULL));
+  for (PetscInt o = 0; o < n; o++) PetscCall(TryOwner(unknown, OPTION_OF_OBSTACLE, obstacles[o]));
+  PetscCall(NamesDestroy(n, &obstacles));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The options of an owner that have this rank for the rest of the unknown option, as "-a or -b" */
+static PetscErrorCode AddMeant(const Unknown *unknown, OptionOwner owner, const char prefix[], PetscInt wanted, char text[], size_t size)
+{
+  const KnownOption *options;
+  size_t             n;
+
+  PetscFunctionBegin;
+  options = KnownOptionsGet(&n);
+  for (size_t i = 0; i < n; i++) {
+    char     full[256];
+    PetscInt rank;
+
+    if (options[i].owner != owner || strchr(options[i].name, '<')) continue;
+    PetscCall(OptionGetRank(&options[i], unknown->rest, &rank));
+    if (rank != wanted) continue;
+    PetscCall(PetscSNPrintf(full, sizeof(full), "-%s%s", prefix, options[i].name));
+    PetscCall(NamesAppend(text, size, " or ", full));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What an unknown option may mean: of the owner that it names, of the run, or, where it names none, of the bodies */
+static PetscErrorCode FindMeant(const Unknown *unknown, char text[], size_t size)
+{
+  PetscFunctionBegin;
+  for (PetscInt rank = 0; rank < 2 && !text[0]; rank++) {
+    PetscCall(AddMeant(unknown, unknown->owner, unknown->prefix, rank, text, size));
+    if (!text[0] && unknown->owner != OPTION_OF_RUN) PetscCall(AddMeant(unknown, OPTION_OF_RUN, "", rank, text, size));
+    if (!text[0] && unknown->owner == OPTION_OF_RUN && unknown->another[0])
+      PetscCall(AddMeant(unknown, OPTION_OF_BODY, unknown->another, rank, text, size));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What an option (without its dash) needs that the run has not chosen, as "-contact_law coulomb"; or nothing */
+PetscErrorCode OptionsFindNeed(const char option[], char need[], size_t size)
+{
+  PetscFunctionBegin;
+  need[0] = 0;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(needs) && !need[0]; i++) {
+    char      other[64], value[64];
+    PetscBool same;
+
+    if (strncasecmp(option, needs[i].begin, strlen(needs[i].begin)) != 0) continue;
+    PetscCall(PetscSNPrintf(other, sizeof(other), "-%s", needs[i].other));
+    PetscCall(PetscStrncpy(value, needs[i].standard, sizeof(value)));
+    PetscCall(PetscOptionsGetString(NULL, NULL, other, value, sizeof(value), NULL));
+    PetscCall(PetscStrcmp(value, needs[i].value, &same));
+    if (!same) PetscCall(PetscSNPrintf(need, size, "%s %s", other, needs[i].value));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  OptionsSuggest - what an option that nobody has read may have been meant to be
+
+  Input Parameters:
++ name   - the option, without its dash
+. n      - number of bodies
+. bodies - their names
+- size   - room in `text`
+
+  Output Parameters:
++ known - an option of that name exists, and nothing is suggested
+- text  - one or several with "or" between them, with what they need beside
+
+  Note:
+  A slip of the pen first, up to two letters; then what the words mean; then the nearest by letters.
+*/
+PetscErrorCode OptionsSuggest(const char name[], PetscInt n, const char *const bodies[], PetscBool *known, char text[], size_t size)
+{
+  Unknown unknown = {.name = name, .rest = name, .owner = OPTION_OF_RUN, .distance = 1000};
+  char    need[160];
+
+  PetscFunctionBegin;
+  text[0] = 0;
+  if (n) PetscCall(PetscSNPrintf(unknown.another, sizeof(unknown.another), "%s_", bodies[0]));
+  PetscCall(TryOwners(&unknown, n, bodies));
+  *known = (PetscBool)(unknown.distance == 0);
+  if (*known) PetscFunctionReturn(PETSC_SUCCESS);
+  if (unknown.distance > 2 || 4 * (size_t)unknown.distance > strlen(name)) PetscCall(FindMeant(&unknown, text, size));
+  if (!text[0]) PetscCall(PetscSNPrintf(text, size, "-%s", unknown.nearest));
+  PetscCall(OptionsFindNeed(text + 1, need, sizeof(need)));
+  if (need[0]) PetscCall(PetscSNPrintf(text + strlen(text), size - strlen(text), ", with %s", need));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,5 @@
+/* Options that belong to a name of a list which another list has taken the place of. Private to sys. */
+#pragma once
+#include <petscsys.h>
+
+PETSC_INTERN PetscErrorCode OptionsFindOverridden(const char[], PetscInt, const char *const[], char[], size_t);
