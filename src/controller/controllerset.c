@@ -1,6 +1,7 @@
 /* What programs and options set of a simulation: bodies and times; and the package of the class. */
 #include "controllerimpl.h"
 #include <sys/names.h>
+#include <sys/sharedoptions.h>
 #include <sys/package.h>
 #include <sys/statusline.h>
 #include <sys/stages.h>
@@ -98,11 +99,12 @@ static PetscErrorCode ReadBodies(Controller controller)
   PetscCheck(
       (set && n) || first, comm, PETSC_ERR_USER_INPUT,
       "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
+  for (PetscInt b = 0; b < n && !error; b++) error = NamesCheck(comm, "bodies", names[b]);
+  if (!error) error = OptionsExpandShared(comm, n, names);
   for (PetscInt b = 0; b < n && !error; b++) {
     Body body = NULL;
 
-    error = NamesCheck(comm, "bodies", names[b]);
-    if (!error) error = BodyCreate(comm, names[b], &body);
+    error = BodyCreate(comm, names[b], &body);
     if (!error) error = ControllerAddBody(controller, body);
     PetscCall(BodyDestroy(&body));
   }
@@ -228,6 +230,8 @@ static PetscErrorCode ReadTimes(Controller controller)
 
   Options Database Keys:
 + -bodies a,b         - names of the bodies; options of body a begin with -a_
+. -all_gravity g, ... - an option of each of these bodies that has none of that name, nor by its material
+. -a_material steel   - body a has the options that begin with -material_steel_, but for those that it has itself
 . -time_start t       - [s], default 0
 . -time_end t         - [s]; the run ends with the first controller step that reaches it
 . -time_step (auto|dt) - controller step, at whose ends all bodies are synchronised [s]; auto: the largest that resolves contact

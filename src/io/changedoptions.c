@@ -3,10 +3,11 @@
 #include <string.h>
 #include <sys/optionstext.h>
 
-/* Options that change what is written, shown or read, how long the run is, and nothing else: by how they begin, without the dash */
+/* Options that change what is written, shown or read, how long the run is, and nothing else: by how they begin, without the dash. Options
+   of all bodies and of materials are among those of the bodies too, as -left_density, where they are compared. */
 static const char *const free_options[] = {
-    "output_", "checkpoint", "restart", "max_wall_time", "monitor_interval", "progress",     "time_end", "options_",
-    "log_",    "info",       "malloc",  "memory_view",   "citations",        "skip_petscrc", "on_error", "no_signal_handler"};
+    "output_", "checkpoint", "restart",     "max_wall_time", "monitor_interval", "progress", "time_end",          "options_", "log_",
+    "info",    "malloc",     "memory_view", "citations",     "skip_petscrc",     "on_error", "no_signal_handler", "all_",     "material_"};
 
 typedef struct {
   const char *name, *value;

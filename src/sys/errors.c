@@ -4,6 +4,7 @@
 #include <unistd.h>
 #include "errors.h"
 #include "optionvalues.h"
+#include "sharedoptions.h"
 #include "statusline.h"
 
 /* Errors whose message says all that the user can do about them: those too that PETSc has with the words of an option */
@@ -31,8 +32,8 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
                                  const char *message, void *ctx)
 {
   PetscMPIInt rank = 0, size = 1, initialized = 0;
-  char        text[4096];
-  PetscBool   explained = PETSC_FALSE;
+  char        text[4096], shared[2048] = "";
+  PetscBool   explained = PETSC_FALSE, running = PETSC_FALSE;
 
   (void)ctx;
   if (type != PETSC_ERROR_INITIAL) return code;
@@ -51,10 +52,11 @@ PetscErrorCode ImpaktReportError(MPI_Comm comm, int line, const char *function, 
   if (initialized && comm != MPI_COMM_NULL && comm != MPI_COMM_SELF) MPI_Comm_rank(comm, &rank);
   if (initialized && comm == MPI_COMM_SELF) MPI_Comm_size(MPI_COMM_WORLD, &size);
   if (rank) return code;
+  if (!message || PetscInitialized(&running) || !running || OptionsExplainShared(message, shared, sizeof(shared))) shared[0] = 0;
   if (size > 1) {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank);
-    fprintf(stderr, "impakt: error on rank %d: %s\n", rank, message ? message : "");
-  } else fprintf(stderr, "impakt: error: %s\n", message ? message : "");
+    fprintf(stderr, "impakt: error on rank %d: %s%s%s\n", rank, message ? message : "", shared[0] ? "; here " : "", shared);
+  } else fprintf(stderr, "impakt: error: %s%s%s\n", message ? message : "", shared[0] ? "; here " : "", shared);
   if (!explained && !IsUsersBusiness(function, code))
     fprintf(stderr, "impakt: in %s() at %s:%d, PETSc error %d\n", function, file, line, (int)code);
   (void)fflush(stderr);

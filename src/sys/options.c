@@ -2,8 +2,10 @@
 #include <impakt.h>
 #include <string.h>
 #include "names.h"
+#include "optionstext.h"
 #include "optionwords.h"
 #include "overriddenlists.h"
+#include "sharedoptions.h"
 
 /* These are read by PETSc when it solves or finalises, so they are unread before the run */
 static const char *const late_options[] = {"schwarz_snes_view",
@@ -38,15 +40,18 @@ static const char *const late_options[] = {"schwarz_snes_view",
 /* Why nobody has read an option, and what to do */
 static PetscErrorCode FindReason(const char name[], PetscInt n, const char *const bodies[], char reason[], size_t size)
 {
-  char      text[768], need[160];
-  PetscBool known;
+  char      text[768], need[160], material[128];
+  PetscBool known, named = PETSC_TRUE;
 
   PetscFunctionBegin;
   PetscCall(OptionsFindOverridden(name, n, bodies, reason, size));
   if (reason[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OptionsFindNeed(name, need, sizeof(need)));
   PetscCall(OptionsSuggest(name, n, bodies, &known, text, sizeof(text)));
-  if (need[0] && (known || strchr(name, ':'))) PetscCall(PetscSNPrintf(reason, size, "needs %s", need)); /* or a pair of contact */
+  PetscCall(OptionsFindMaterial(name, material, sizeof(material)));
+  if (material[0]) PetscCall(OptionsMaterialIsNamed(material, n, bodies, &named));
+  if (!named) PetscCall(PetscSNPrintf(reason, size, "no body names this material, as in -%s_material %s", n ? bodies[0] : "all", material));
+  else if (need[0] && (known || strchr(name, ':'))) PetscCall(PetscSNPrintf(reason, size, "needs %s", need)); /* or a pair of contact */
   else if (known) PetscCall(PetscSNPrintf(reason, size, "goes with another method or type than the one chosen"));
   else PetscCall(PetscSNPrintf(reason, size, "the nearest known one is %s", text));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -90,6 +95,24 @@ static PetscErrorCode Add(Unread *unread, const char name[], const char value[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The options of all bodies and of materials that have been given to bodies none of which has read them */
+static PetscErrorCode AddShared(Unread *unread, PetscInt n, const char *const bodies[])
+{
+  char       *all, *text;
+  const char *name, *value;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  for (text = all; OptionsTextNext(&text, &name, &value);) {
+    PetscBool lost = PETSC_FALSE;
+
+    if (OptionsIsShared(name + 1)) PetscCall(OptionsSharedIsUnread(name + 1, n, bodies, &lost));
+    if (lost) PetscCall(Add(unread, name + 1, value, n, bodies));
+  }
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
   ImpaktCheckOptions - stops with an error if an option has been given that nobody has read
 
@@ -114,13 +137,22 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
   Unread   unread = {.n = 0};
 
   PetscFunctionBegin;
+  PetscCall(AddShared(&unread, n, bodies)); /* first, since the others count as read below */
   PetscCall(PetscOptionsLeftGet(NULL, &n_left, &names, &values));
   for (PetscInt i = 0; i < n_left; i++) {
     PetscBool late = PETSC_FALSE;
+    char      shared[PETSC_MAX_OPTION_NAME];
 
     for (size_t k = 0; k < sizeof(late_options) / sizeof(late_options[0]) && !late; k++)
       PetscCall(PetscStrcmp(names[i], late_options[k], &late));
-    if (!late) PetscCall(Add(&unread, names[i], values[i], n, bodies));
+    if (late) continue;
+    PetscCall(OptionsFindShared(names[i], values[i], shared, sizeof(shared)));
+    if (shared[0]) { /* it has been given to all bodies, some of which have no use for it */
+      char name[PETSC_MAX_OPTION_NAME];
+
+      PetscCall(PetscSNPrintf(name, sizeof(name), "-%s", names[i]));
+      PetscCall(PetscOptionsHasName(NULL, NULL, name, &late));
+    } else PetscCall(Add(&unread, names[i], values[i], n, bodies));
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n_left, &names, &values));
   PetscCall(Close(&unread));

@@ -1,4 +1,4 @@
-/* Options files, looked at apart from PETSc: whether it can read them, and in which line an option stands. Private to sys. */
+/* Options files, looked at apart from PETSc: whether it can read them, and in which line an option stands. Private to src. */
 #pragma once
 #include <petscsys.h>
 #include <sys/stat.h>

@@ -18,6 +18,8 @@ static const OptionTopic topics[] = {
 
 static const KnownOption options[] = {
     {"bodies", OPTION_OF_RUN, "bodies", "a,b", "names of the bodies; options of body a begin with -a_"},
+    {"bodies", OPTION_OF_RUN, "all_<option>", "value",
+     "an option of all bodies: each body that -bodies names has it, unless it, or its material, has an option of that name of its own"},
     {"bodies", OPTION_OF_BODY, "initial_velocity", "v[,v,v]", "velocity at the start [m/s], numbers or formulas in x, y, z; default 0"},
     {"bodies", OPTION_OF_BODY, "initial_displacement", "u[,u,u]",
      "displacement at the start [m], numbers or formulas in x, y, z; default 0"},
@@ -88,6 +90,9 @@ static const KnownOption options[] = {
     {"meshes", OPTION_OF_BODY, "rotate_centre", "x,y[,z]", "point that the rotation leaves in place [m], default the origin"},
     {"meshes", OPTION_OF_BODY, "translate", "x,y[,z]", "translation of the mesh, after the rotation [m]"},
 
+    {"materials", OPTION_OF_BODY, "material", "name", "named material: the body has the options that begin with -material_<name>_"},
+    {"materials", OPTION_OF_RUN, "material_<name>_<option>", "value",
+     "an option of the named material, as in -material_steel_density 7800: each body with that material has it, unless it has its own"},
     {"materials", OPTION_OF_BODY, "material_type",
      "linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook",
      "constitutive model, default linear_elastic"},

@@ -12,6 +12,7 @@
 #include "optionsfiles.h"
 #include "optiontable.h"
 #include "optionvalues.h"
+#include "sharedoptions.h"
 
 /* Whether an option belongs to a line of the table, whatever body or obstacle it is of */
 static PetscErrorCode Matches(const char option[], const KnownOption *known, PetscBool *matches)
@@ -251,7 +252,7 @@ static PetscErrorCode Describe(const char value[], const PetscReal *printed, cha
     PetscCall(PetscTokenFind(words, &word));
     if (!word) break;
     PetscCall(PetscOptionsValidKey(word, &key));
-    if (!key) continue;
+    if (!key || OptionsIsShared(word + 1)) continue; /* ImpaktReportError() adds whence the option of a body comes */
     PetscCall(PetscOptionsUsed(NULL, word + 1, &used));
     if (used) PetscCall(PetscOptionsFindPair(NULL, NULL, word, &given, &set));
     if (!set || !given || !(value ? Contains(given, value) : printed ? HasNumber(given, *printed) : HasInfinite(given))) continue;

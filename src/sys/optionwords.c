@@ -5,6 +5,7 @@
 #include <strings.h>
 #include "names.h"
 #include "optionwords.h"
+#include "sharedoptions.h"
 
 /* Other words for an option, as they stand in books and in input files of other programs. A word of one letter counts as it is written. */
 static const struct {
@@ -24,6 +25,7 @@ static const struct {
     {"dm_plex_simplex", "triangles tetrahedra tri tet"},
     {"translate", "position offset move origin"},
     {"rotate", "angle tilt orientation"},
+    {"material", "named_material"},
     {"material_type", "law model constitutive plasticity plastic rubber"},
     {"density", "rho mass"},
     {"youngs_modulus", "E young modulus elastic_modulus stiffness"},
@@ -176,15 +178,23 @@ static PetscErrorCode TryOwner(Unknown *unknown, OptionOwner owner, const char n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The owners of options: the run, the bodies, obstacles */
+/* The owners of options: the run, the bodies, all of them, materials, obstacles */
 static PetscErrorCode TryOwners(Unknown *unknown, PetscInt n_bodies, const char *const bodies[])
 {
-  char   **obstacles;
+  char   **obstacles, material[128];
   PetscInt n;
 
   PetscFunctionBegin;
   PetscCall(TryOwner(unknown, OPTION_OF_RUN, ""));
   for (PetscInt b = 0; b < n_bodies; b++) PetscCall(TryOwner(unknown, OPTION_OF_BODY, bodies[b]));
+  PetscCall(TryOwner(unknown, OPTION_OF_BODY, "all"));
+  PetscCall(OptionsFindMaterial(unknown->name, material, sizeof(material)));
+  if (material[0]) {
+    char name[160];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "material_%s", material));
+    PetscCall(TryOwner(unknown, OPTION_OF_BODY, name));
+  }
   PetscCall(NamesRead(NULL, "-obstacles", &n, &obstacles, NULL));
   for (PetscInt o = 0; o < n; o++) PetscCall(TryOwner(unknown, OPTION_OF_OBSTACLE, obstacles[o]));
   PetscCall(NamesDestroy(n, &obstacles));
@@ -219,8 +229,10 @@ static PetscErrorCode FindMeant(const Unknown *unknown, char text[], size_t size
   for (PetscInt rank = 0; rank < 2 && !text[0]; rank++) {
     PetscCall(AddMeant(unknown, unknown->owner, unknown->prefix, rank, text, size));
     if (!text[0] && unknown->owner != OPTION_OF_RUN) PetscCall(AddMeant(unknown, OPTION_OF_RUN, "", rank, text, size));
-    if (!text[0] && unknown->owner == OPTION_OF_RUN && unknown->another[0])
-      PetscCall(AddMeant(unknown, OPTION_OF_BODY, unknown->another, rank, text, size));
+    if (!text[0] && unknown->owner == OPTION_OF_RUN) {
+      if (unknown->another[0]) PetscCall(AddMeant(unknown, OPTION_OF_BODY, unknown->another, rank, text, size));
+      if (text[0]) PetscCall(AddMeant(unknown, OPTION_OF_BODY, "all_", rank, text, size));
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

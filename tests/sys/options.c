@@ -1,4 +1,4 @@
-/* Option hygiene: an option that nobody has read is refused, with the nearest known one. Lists of names, of any
+/* Option hygiene: an option that nobody has read is refused, with the nearest known one. Options that bodies share. Lists of names, of any
    length. Every class prints itself where an option asks for it. */
 #include "simulation.h"
 #include <sys/names.h>
@@ -55,7 +55,7 @@ static void options_are_suggested_by_meaning(void **state)
     const char *given, *words;
   } cases[] = {
       {"-left_velocity 1", "nearest known one is -left_initial_velocity)"},
-      {"-velocity 1", "nearest known one is -left_initial_velocity)"},
+      {"-velocity 1", "nearest known one is -left_initial_velocity or -all_initial_velocity)"},
       {"-friction 0.3", "nearest known one is -contact_friction, with -contact_law coulomb)"},
       {"-friction 0.3 -contact_law coulomb", "nearest known one is -contact_friction)"},
       {"-dt 1", "nearest known one is -time_step)"},
@@ -63,7 +63,7 @@ static void options_are_suggested_by_meaning(void **state)
       {"-output h.h5", "-output_history or -output_summary or -output_fields)"},
       {"-left_E 1", "nearest known one is -left_youngs_modulus)"},
       {"-left_nu 1", "nearest known one is -left_poissons_ratio)"},
-      {"-gravity 1", "nearest known one is -left_gravity)"},
+      {"-gravity 1", "nearest known one is -left_gravity or -all_gravity)"},
       {"-right_time_end 1", "nearest known one is -time_end)"},
       {"-floor_v 1 -obstacles floor", "nearest known one is -floor_velocity)"},
       {"-contact_friction 0.3", "-contact_friction 0.3 (needs -contact_law coulomb)"},
@@ -99,6 +99,63 @@ static void options_without_effect_are_refused(void **state)
   AddOptions("-contact_type schwarz -contact_penalty 1e5");
   ok(SimulationCreate(simulation));
   refused(PETSC_ERR_USER_INPUT, "-contact_penalty 1e5|without effect", ImpaktCheckOptions(2, names));
+}
+
+/* -all_ and -material_ give bodies what they do not have themselves, the material before -all_; what only some of them read is no error */
+static void shared_options(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+  const char *value[4];
+  const char *wanted[]  = {"3", "2", "0.25", "0.125"};
+  const char *options[] = {"-left_density", "-right_density", "-left_cross_section", "-right_cross_section"};
+
+  AddCollision(4, 3, 0);
+  ok(PetscOptionsClearValue(NULL, "-left_density"));
+  ok(PetscOptionsClearValue(NULL, "-right_density"));
+  AddOptions("-all_material brass -right_material steel -material_brass_density 3 -material_steel_density 2 -all_density 7 "
+             "-all_cross_section 0.25 -right_cross_section 0.125 -all_snes_max_it 7 -left_material_type saint_venant_kirchhoff");
+  ok(SimulationCreate(simulation));
+  for (int i = 0; i < 4; i++) {
+    ok(PetscOptionsFindPair(NULL, NULL, options[i], &value[i], NULL));
+    assert_string_equal(value[i], wanted[i]);
+  }
+  ok(ImpaktCheckOptions(2, names));
+  near(Momentum(simulation, 0), 3 * 0.25 * (1 - COLLISION_GAP / 2) * COLLISION_SPEED, 1e-14);
+  near(Momentum(simulation, 1), -2 * 0.125 * (1 - COLLISION_GAP / 2) * COLLISION_SPEED, 1e-14);
+}
+
+static void shared_options_without_effect_are_refused(void **state)
+{
+  Simulation *simulation = (Simulation *)*state;
+
+  AddCollision(4, 3, 0);
+  AddOptions("-all_thickness 2 -all_densty 3 -right_material steel -material_steel_yield_stress 4 -material_brass_density 5");
+  ok(SimulationCreate(simulation));
+  refused(PETSC_ERR_USER_INPUT,
+          "-all_densty 3 (the nearest known one is -all_density)|-all_thickness 2|-material_steel_yield_stress 4 (goes with another|"
+          "-material_brass_density 5 (no body names this material, as in -left_material brass)",
+          ImpaktCheckOptions(2, names));
+}
+
+static void names_of_shared_options_are_refused(void **state)
+{
+  const struct {
+    const char *given, *words;
+  } cases[] = {
+      {"-bodies all", "-bodies: 'all' cannot be a name"},
+      {"-bodies material_a", "-bodies: 'material_a' cannot be a name"},
+      {"-bodies a -a_material gold -material_steel_density 1", "-a_material gold: there is no material 'gold'|there are: steel"},
+      {"-bodies a -all_material gold", "-all_material gold: there is no material 'gold'|there are: none"},
+  };
+  Simulation *simulation = (Simulation *)*state;
+
+  for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
+    PetscOptions options = options_begin("%s", cases[i].given);
+
+    refused(PETSC_ERR_USER_INPUT, cases[i].words, SimulationCreate(simulation));
+    ok(ControllerDestroy(&simulation->controller));
+    options_drop(options);
+  }
 }
 
 /* A body's options belong to bodies that there are */
@@ -244,6 +301,9 @@ int main(int argc, char **argv)
       simulation_test(options_are_suggested_by_meaning),
       simulation_test(all_unread_options_are_named),
       simulation_test(options_without_effect_are_refused),
+      simulation_test(shared_options),
+      simulation_test(shared_options_without_effect_are_refused),
+      simulation_test(names_of_shared_options_are_refused),
       simulation_test(options_of_other_bodies_are_refused),
       cmocka_unit_test(none_and_many),
       simulation_test(solids),

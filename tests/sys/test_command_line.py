@@ -6,7 +6,7 @@ import re
 import h5py
 import pytest
 from cases import long, validate
-from conftest import IMPAKT, ROOT
+from conftest import IMPAKT, ROOT, complaints
 from messages import check_message
 
 BLOCKS = "options/blocks.opts"
@@ -140,14 +140,13 @@ TWO = """-bodies a,b
 -contact_friction_a:b 0.3
 -time_end 1e-5
 -time_step 1e-6
--a_dm_plex_dim 2
--a_dm_plex_box_faces 4,4
--a_gravity 0,-9.81
--a_youngs_modulus 210e9
--a_density 7800
--a_poissons_ratio 0.3
--b_dm_plex_dim 2
--b_density 7800
+-all_dm_plex_dim 2
+-all_dm_plex_box_faces 4,4
+-all_material steel
+-all_gravity 0,-9.81
+-material_steel_youngs_modulus 210e9
+-material_steel_density 7800
+-material_steel_poissons_ratio 0.3
 -b_translate 0,1.1
 -b_youngs_modulus 1e9
 -floor_obstacle_type plane
@@ -165,7 +164,7 @@ LISTS = {
     "bodies": (["-bodies", "a", "-contact_pairs", "none"], ["-b_translate 0,1.1, -b_youngs_modulus 1e9 (of 'b', which -bodies a,b (two.opts, line 1) names; -bodies a (the command line)"]),
     "obstacles": (["-obstacles", "floor"], ["-wall_normal -1,0, -wall_obstacle_type plane, -wall_point 5,-0.1 (of 'wall', which -obstacles floor,wall (two.opts, line 2) names"]),
     "pairs": (["-contact_pairs", "b:floor"], ["-contact_friction_a:b 0.3 (of 'a:b', which -contact_pairs a:b,b:floor (two.opts, line 3) names; -contact_pairs b:floor (the command line)"]),
-    "boundary": (["-b_boundary_displacement", "ymax"], ["-b_boundary_displacement_xmax 0,0 (of 'xmax', which -b_boundary_displacement ymax,xmax (two.opts, line 25) names"]),
+    "boundary": (["-b_boundary_displacement", "ymax"], ["-b_boundary_displacement_xmax 0,0 (of 'xmax', which -b_boundary_displacement ymax,xmax (two.opts, line 24) names"]),
 }
 
 
@@ -182,6 +181,66 @@ def test_list_overridden_by_a_file(words, tmp_path):
     (tmp_path / "two.opts").write_text(TWO)
     (tmp_path / "one.opts").write_text("-options_file two.opts\n-obstacles floor\n")
     refused(words("one.opts"), ["which -obstacles floor,wall (two.opts, line 2) names; -obstacles floor (one.opts, line 2) overrides that list"])
+
+
+# What is wrong with an option that bodies share, and what is told of it
+SHARED = {
+    "number": (["-material_steel_density", "abc"], ["-a_density", "'abc' is not a number", "here -a_density is -material_steel_density (the command line)"]),
+    "sign": (["-material_steel_density", "-3"], ["a density must be positive", "here -a_density is -material_steel_density (the command line)"]),
+    "gravity": (["-all_gravity", "1,2,3"], ["-a_gravity", "here -a_gravity is -all_gravity (the command line)"]),
+    "no value": (["-material_steel_density"], ["-material_steel_density (the command line) has no value"]),
+    "misspelt": (["-all_densty", "3"], ["-all_densty 3 (the nearest known one is -all_density)"]),
+    "meaning": (["-material_steel_E", "3"], ["-material_steel_E 3 (the nearest known one is -material_steel_youngs_modulus)"]),
+    "for no body": (["-all_cross_section", "3"], ["-all_cross_section 3 (goes with another method or type"]),
+    "block": (["-all_skin_density", "3"], ["-all_skin_density 3"]),
+    "Newton's method": (["-all_snes_rtol", "1e-9"], ["-a_snes_rtol has no effect", "here -a_snes_rtol is -all_snes_rtol (the command line)"]),
+    "unknown material": (["-b_material", "stel"], ["-b_material stel: there is no material 'stel'", "there are: steel"]),
+    "unused material": (["-material_brass_density", "3"], ["-material_brass_density 3 (no body names this material, as in -a_material brass)"]),
+}
+
+
+@pytest.mark.parametrize(("case", "ranks"), [*((case, 1) for case in SHARED), ("sign", 3), ("for no body", 3)])
+def test_wrong_shared_options(case, ranks, words, tmp_path):
+    given, named = SHARED[case]
+    (tmp_path / "two.opts").write_text(TWO)
+    refused(words("two.opts", *given, ranks=ranks), named)
+
+
+def contents(path):
+    found = {}
+    with h5py.File(path) as file:
+        file.visititems(lambda name, item: found.update({name: item[()]}) if isinstance(item, h5py.Dataset) else None)
+    return found
+
+
+def test_shared_options_are_those_of_bodies(words, tmp_path):
+    """The same bits as with options of each body; a run goes on from one that has the same values by other options, and is refused with others."""
+    own = {"dm_plex_dim": 2, "dm_plex_box_faces": "4,4", "gravity": "0,-9.81", "density": 7800, "poissons_ratio": 0.3}
+    plain = [line for line in TWO.splitlines() if not re.match("-(all|material)_", line)]
+    plain += [f"-{body}_{option} {value}" for body in "ab" for option, value in own.items()] + ["-a_youngs_modulus 210e9"]
+    (tmp_path / "two.opts").write_text(TWO)
+    (tmp_path / "plain.opts").write_text("\n".join(plain))
+    (tmp_path / "all.opts").write_text("\n".join(line for line in plain if "density" not in line) + "\n-all_density 7800\n")
+    for name, ranks in (("two", 1), ("two", 3), ("plain", 1), ("plain", 3)):
+        run = words(f"{name}.opts", "-output_history", f"{name}{ranks}.h5", "-checkpoint", f"{name}{ranks}.c.h5", "-malloc_dump", ranks=ranks)
+        assert steps(run) == 10 and not complaints(run.stdout + run.stderr)
+    for ranks in (1, 3):
+        found, expected = (contents(tmp_path / f"{name}{ranks}.h5") for name in ("two", "plain"))
+        assert found.keys() == expected.keys() and len(found) > 20
+        assert all(found[key].tobytes() == expected[key].tobytes() for key in found if found[key].dtype.kind == "f")
+    assert steps(words("all.opts", "-restart", "plain1.c.h5", "-time_end", "2e-5")) == 20
+    changed = ["-restart", "two1.c.h5", "-time_end", "2e-5", "-material_steel_density", "7900"]
+    refused(words("two.opts", *changed), ["-a_density 7900 (it had 7800), -b_density 7900 (it had 7800)", "-b_density is -material_steel_density (the command line)"])
+
+
+def test_bodies_come_first(words, tmp_path):
+    """A body's own option, then its material's, then that of all bodies; what only one body can use is no error."""
+    (tmp_path / "two.opts").write_text(TWO)
+    more = ["-all_density", "1", "-b_density", "2", "-all_snes_rtol", "1e-9", "-a_material_type", "neo_hookean"]
+    run = words("two.opts", *more, "-output_summary", "s.json", "-a_body_view", "ascii:a.txt", "-b_body_view", "ascii:b.txt", "-malloc_dump")
+    assert steps(run) == 10 and not complaints(run.stdout + run.stderr)
+    masses = {name: float(re.search(r"mass (\S+) kg", (tmp_path / f"{name}.txt").read_text())[1]) for name in "ab"}
+    assert masses == pytest.approx({"a": 7800, "b": 2})  # blocks of 1 m x 1 m x 1 m
 
 
 def test_command_line_overrules_files(words):

@@ -7,6 +7,7 @@
 #include <sys/names.h>
 #include <sys/optionstext.h>
 #include <sys/optiontable.h>
+#include <sys/sharedoptions.h>
 
 /* An option of the body: what stands behind its prefix, and its value */
 typedef struct {
@@ -33,10 +34,11 @@ static PetscErrorCode CollectOptions(const char prefix[], char text[], PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Options of materials that a block may have: not those of elements and sections, which are the body's */
+/* Options of materials that a block may have: not those of elements and sections, which are the body's, and not the body's named material
+ */
 static PetscBool IsOfMaterial(const KnownOption *option)
 {
-  const char *const others[] = {"cross_section", "thickness", "plane_stress", "axisymmetric", "element_formulation"};
+  const char *const others[] = {"material", "cross_section", "thickness", "plane_stress", "axisymmetric", "element_formulation"};
 
   if (option->owner != OPTION_OF_BODY || strcmp(option->topic, "materials") != 0) return PETSC_FALSE;
   if (option->name[0] == '<') return PETSC_FALSE; /* this kind of options itself */
@@ -87,7 +89,7 @@ static PetscErrorCode IsBody(Body body, const char block[], PetscBool *listed, P
 static PetscErrorCode CheckBlock(Body body, const BodyOption *option, const char block[], PetscBool *is_block)
 {
   PetscBool listed, is_body;
-  char      list[1024];
+  char      list[1024], shared[PETSC_MAX_OPTION_NAME];
 
   PetscFunctionBegin;
   PetscCall(IsBody(body, block, &listed, &is_body));
@@ -97,6 +99,8 @@ static PetscErrorCode CheckBlock(Body body, const BodyOption *option, const char
              block, block, body->hdr.name);
   /* in programs without -bodies it may be the option of a body that comes later */
   if (*is_block || is_body || !listed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(OptionsFindShared(option->full + 1, option->value, shared, sizeof(shared)));
+  if (shared[0]) PetscFunctionReturn(PETSC_SUCCESS); /* of all bodies: others may have such a block */
   PetscCall(MeshListBlocks(body->mesh.dm, list, sizeof(list)));
   SETERRQ(PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "%s: the mesh of body '%s' has no block '%s'; it has: %s", option->full,
           body->hdr.name, block, list[0] ? list : "none");

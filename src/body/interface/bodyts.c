@@ -2,6 +2,7 @@
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
 #include <sys/optionstext.h>
+#include <sys/sharedoptions.h>
 #include <strings.h>
 
 /* Stable step of a body over the time that a plane wave takes through its mean element, about: 0.77 of cubes and squares with Poisson's
@@ -271,9 +272,27 @@ PetscErrorCode BodySetTimeFromOptions(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a body without Newton's method has the option as all bodies have it, some of which make one */
+static PetscErrorCode IsForOthers(PetscInt n, const Body bodies[], const char name[], const char value[], const char rest[],
+                                  PetscBool *others)
+{
+  char shared[PETSC_MAX_OPTION_NAME];
+
+  PetscFunctionBegin;
+  *others = PETSC_FALSE;
+  PetscCall(OptionsFindShared(name + 1, value, shared, sizeof(shared)));
+  for (PetscInt b = 0; b < n && shared[0] && !*others; b++) {
+    char option[PETSC_MAX_OPTION_NAME];
+
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", rest));
+    if (bodies[b]->integrator->uses_newton) PetscCall(PetscOptionsHasName(NULL, ((PetscObject)bodies[b])->prefix, option, others));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* An error if the option is one of Newton's method of a body that makes none. Most options are of no Newton's method: bodies are looked at
    for the few others alone. */
-static PetscErrorCode CheckNewtonOption(PetscInt n, const Body bodies[], const char name[])
+static PetscErrorCode CheckNewtonOption(PetscInt n, const Body bodies[], const char name[], const char value[])
 {
   char lower[PETSC_MAX_OPTION_NAME], *found;
 
@@ -286,14 +305,15 @@ static PetscErrorCode CheckNewtonOption(PetscInt n, const Body bodies[], const c
     Body        body   = bodies[b];
     const char *prefix = ((PetscObject)body)->prefix;
     char        first[128];
+    PetscBool   others;
 
     PetscCall(PetscSNPrintf(first, sizeof(first), "-%ssnes_", prefix));
-    PetscCheck(
-        body->integrator->uses_newton || strncasecmp(name, first, strlen(first)) != 0, PetscObjectComm((PetscObject)body),
-        PETSC_ERR_USER_INPUT,
-        "%s has no effect: body '%s' is explicit, rigid or of a linear material, and needs no Newton's method in its steps; leave it "
-        "out, or choose -%smaterial_type neo_hookean and -%sts_type alpha2",
-        name, body->hdr.name, prefix, prefix);
+    if (body->integrator->uses_newton || strncasecmp(name, first, strlen(first)) != 0) continue;
+    PetscCall(IsForOthers(n, bodies, name, value, name + 1 + strlen(prefix), &others));
+    PetscCheck(others, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+               "%s has no effect: body '%s' is explicit, rigid or of a linear material, and needs no Newton's method in its steps; leave "
+               "it out, or choose -%smaterial_type neo_hookean and -%sts_type alpha2",
+               name, body->hdr.name, prefix, prefix);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -322,7 +342,7 @@ PetscErrorCode BodyRefuseNewtonOptions(PetscInt n, const Body bodies[])
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetAll(NULL, &all));
-  for (text = all; OptionsTextNext(&text, &name, &value);) PetscCall(CheckNewtonOption(n, bodies, name));
+  for (text = all; OptionsTextNext(&text, &name, &value);) PetscCall(CheckNewtonOption(n, bodies, name, value));
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
