@@ -15,8 +15,17 @@ from pathlib import Path
 import h5py
 import matplotlib
 import numpy as np
-from figures import BLUE, DASHED, CannotDraw, command_line, history_file, scale
+from figures import (
+    BLUE,
+    DASHED,
+    CannotDraw,
+    command_line,
+    history_file,
+    labelled,
+    scale,
+)
 from hertz import find_fields
+from impakt_results import text
 from matplotlib.figure import Figure
 
 
@@ -95,6 +104,7 @@ class Run:
                 pair["friction_loss"][()],
                 float(options["-contact_friction"]),
             )
+            self.joule = text(pair["friction_loss"].attrs["units"])
             self.load, self.across = -force[:, self.dim - 1], force[:, self.dim - 2]
         self.path = Path(path)
         self.a, self.peak = hertz(self.dim, self.load, self.radius / 2, self.modulus)
@@ -206,12 +216,12 @@ def draw_traction(axes, run):
 def draw_loop(axes, run):
     last = len(run.time) - 1
     turn = int(np.argmax(run.q))
-    factor, unit = scale(run.loss[last], "J")
+    factor, unit = scale(run.loss[last], run.joule)
     axes.plot(run.time, run.q, color=BLUE, label="Q/µP")
     theory = run.half_loop(turn, last)
     other = axes.twinx()
     other.plot(run.time, factor * run.loss, color="0.4", label="taken by friction")
-    other.set_ylabel(f"taken by friction [{unit}]")
+    other.set_ylabel(labelled("taken by friction", unit))
     other.axhline(factor * (run.loss[turn] + theory), **DASHED)
     axes.set_title(
         f"spheres pushed to and fro: half a loop takes {factor * theory:.3g} {unit} in theory"

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from figures import BLUE, ORANGE, CannotDraw, scale
+from figures import BLUE, ORANGE, CannotDraw, labelled, scale, time_scale
 from impakt_results import CannotRead, read
 from matplotlib.figure import Figure
 
@@ -47,14 +47,14 @@ def differences(a, b):
         largest = max(np.abs(values[known]).max(initial=0) for values in (one, other))
         off = np.where(known, np.abs(one - other), 0).max(axis=0)
         when = off.argmax()
-        rows.append((name, a.units.get(name, "J" if name == "system/energy" else ""), largest, off[when], times[when], off[-1]))
+        rows.append((name, a.units["energy/change"] if name == "system/energy" else a.units[name], largest, off[when], times[when], off[-1]))
     return sorted(rows, key=lambda row: -(row[3] / row[2] if row[2] else 0))
 
 
-def table(rows):
-    """As text."""
+def table(rows, time="s"):
+    """As text; `time`: its unit."""
     width = max(len(row[0]) for row in rows)
-    lines = [f"{'series':{width}}  {'unit':8} {'largest':>12} {'difference':>12} {'relative':>9} {'at time [s]':>12} {'at the end':>12}"]
+    lines = [f"{'series':{width}}  {'unit':8} {'largest':>12} {'difference':>12} {'relative':>9} {labelled('at time', time):>12} {'at the end':>12}"]
     for name, unit, largest, off, when, end in rows[:MOST_ROWS]:
         lines.append(f"{name:{width}}  {unit:8} {largest:12.5g} {off:12.3e} {off / largest if largest else 0:9.1e} {when:12.5g} {end:12.3e}")
     if len(rows) > MOST_ROWS:
@@ -71,12 +71,12 @@ def settings(a, b):
 def panel(axes, runs, series, title, quantity, unit, factor):
     """One quantity of both runs; `series(run)` gives a line or several."""
     drawn = [[np.asarray(values, dtype=float) for values in series(run)] for run in runs]
-    size, unit = scale(max((np.nanmax(np.abs(values)) for lines in drawn for values in lines if np.isfinite(values).any()), default=0), unit) if unit else (1, "1")
+    size, unit = scale(max((np.nanmax(np.abs(values)) for lines in drawn for values in lines if np.isfinite(values).any()), default=0), unit)
     for run, lines, style in zip(runs, drawn, STYLES, strict=True):
         for i, values in enumerate(lines):
             axes.plot(factor * run.time, size * values, label=run.label if i == 0 else None, **style)
     axes.set_title(title)
-    axes.set_ylabel(f"{quantity} [{unit}]")
+    axes.set_ylabel(labelled(quantity, unit))
     axes.grid(color="0.9", linewidth=0.6)
     axes.margins(x=0.01)
 
@@ -85,18 +85,18 @@ def draw(a, b, path):
     runs = (a, b)
     a.label, b.label = (str(run.path) for run in runs) if a.path.stem == b.path.stem else (run.path.stem for run in runs)
     pairs = [name for name in a.pairs if name in b.pairs]
-    span = max(np.ptp(run.time) for run in runs)
-    factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, "s")
+    factor, unit = time_scale(max((run.time for run in runs), key=np.ptp), a.units["time"])
+    newton, metre, joule = (next((unit for name, unit in a.units.items() if name.endswith(end)), "") for end in ("force", "contact_position", "energy/change"))
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "axes.axisbelow": True})
     figure = Figure(figsize=(10, 7), layout="constrained")
     (force, energy), (gap, error) = figure.subplots(2, 2, sharex=True)
-    panel(force, runs, lambda run: [run.pairs[name]["force"] for name in pairs], "contact force", "force", "N", factor)
-    panel(gap, runs, lambda run: [run.gap(name) for name in pairs], "smallest gap", "gap", "m", factor)
-    panel(energy, runs, lambda run: [run.total("kinetic"), run.total("potential")], "kinetic and potential energy", "energy", "J", factor)
-    panel(error, runs, lambda run: [run.energy_error], "error of the energy", "rel. error", "", factor)
+    panel(force, runs, lambda run: [run.pairs[name]["force"] for name in pairs], "contact force", "force", newton, factor)
+    panel(gap, runs, lambda run: [run.gap(name) for name in pairs], "smallest gap", "gap", metre, factor)
+    panel(energy, runs, lambda run: [run.total("kinetic"), run.total("potential")], "kinetic and potential energy", "energy", joule, factor)
+    panel(error, runs, lambda run: [run.energy_error], "error of the energy", "rel. error", "1", factor)
     error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
     for axes in (gap, error):
-        axes.set_xlabel(f"time [{unit}]")
+        axes.set_xlabel(labelled("time", unit))
     figure.legend(*energy.get_legend_handles_labels(), loc="outside upper center", ncols=2, frameon=False)
     figure.savefig(path, dpi=150)
 
@@ -117,7 +117,7 @@ def main(arguments):
     except (CannotRead, OSError, ValueError) as error:
         print(f"plots/compare.py: {error}", file=sys.stderr)
         return 1
-    print(table(rows))
+    print(table(rows, a.units["time"]))
     if other:
         print("\noptions that differ\n  " + "\n  ".join(other))
     if len(arguments) == 3:

@@ -8,7 +8,7 @@ For two blocks, one on the other along z, whose contact pressure should be unifo
 import sys
 
 import numpy as np
-from figures import CannotDraw, command_line
+from figures import CannotDraw, command_line, labelled, scale
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from mpl_toolkits.mplot3d.art3d import Poly3DCollection
@@ -50,7 +50,10 @@ def draw_errors(axes, fields, block, name, colour):
     nodes = origin[active[origin]]
     dots = axes.scatter(*fields.points[nodes, :2].T, c=np.maximum(error[nodes], FLOOR), norm=LogNorm(FLOOR, CEILING), s=45, zorder=2)
     axes.set_aspect("equal")
-    axes.set(xlabel="x [m]", ylabel="y [m]", title=f"{name}: {len(nodes)} nodes, {pressure[nodes].mean() / 1e6:.4g} MPa,\nat most {error[nodes].max():.1e} off")
+    metre = fields.units(("displacement", None))
+    factor, unit = scale(pressure[nodes].mean(), fields.units(("contact_pressure", None)))
+    axes.set(xlabel=labelled("x", metre), ylabel=labelled("y", metre))
+    axes.set_title(f"{name}: {len(nodes)} nodes, {factor * pressure[nodes].mean():.4g} {unit},\nat most {error[nodes].max():.1e} off")
     return dots
 
 

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import matplotlib
 import numpy as np
-from figures import BLACK, COLOURS, CannotDraw
+from figures import BLACK, COLOURS, CannotDraw, labelled
 from impakt_results import CannotRead, figures, read
 from matplotlib.figure import Figure
 
@@ -101,14 +101,14 @@ def guide(axes, sizes, found):
         axes.loglog(sizes, 0.6 * min(last) * (sizes / sizes[-1]) ** power, color=BLACK, linewidth=0.8, linestyle=style, label=f"slope {power}")
 
 
-def draw(sizes, found, against, path):
+def draw(sizes, found, against, time, path):
     matplotlib.rcParams.update({"font.size": 9, "lines.linewidth": 1.2, "axes.axisbelow": True})
     figure = Figure(figsize=(8.5, 5), layout="constrained")
     axes = figure.subplots()
     for i, (name, (values, power)) in enumerate(found.items()):
         axes.loglog(sizes, np.where(values > 0, values, np.nan), color=COLOURS[i % len(COLOURS)], marker=MARKERS[i % len(MARKERS)], markersize=5, label=f"{name}: {power:.2f}")
     guide(axes, sizes, found)
-    axes.set_xlabel(f"1 / {against}" if against.endswith(COUNTS) else f"{against} [s]" if against.endswith("time_step") else against)
+    axes.set_xlabel(f"1 / {against}" if against.endswith(COUNTS) else labelled(against, time) if against.endswith("time_step") else against)
     axes.set_ylabel("error [1]")
     axes.grid(color="0.9", linewidth=0.6, which="both")
     figure.legend(frameon=False, title="error: slope", fontsize=8, loc="outside right upper")
@@ -130,9 +130,10 @@ def parse(arguments):
 def main(arguments):
     options = parse(arguments)
     try:
-        sizes, found = measure([read(path) for path in options.histories], options.against.lstrip("-"), options.figure)
+        runs = [read(path) for path in options.histories]
+        sizes, found = measure(runs, options.against.lstrip("-"), options.figure)
         Path(options.picture).parent.mkdir(parents=True, exist_ok=True)
-        draw(sizes, found, options.against.lstrip("-"), options.picture)
+        draw(sizes, found, options.against.lstrip("-"), runs[0].units["time"], options.picture)
     except (CannotRead, OSError, ValueError) as error:
         print(f"plots/convergence.py: {error}", file=sys.stderr)
         return 1

@@ -5,12 +5,14 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import h5py
+import numpy as np
 from impakt_results import CannotRead
 
 # Okabe and Ito's colours, told apart with any colour vision
 BLUE, ORANGE, GREEN, PURPLE, BLACK = "#0072B2", "#D55E00", "#009E73", "#CC79A7", "#000000"
 COLOURS = (BLUE, ORANGE, GREEN, PURPLE)
 DASHED = {"color": BLACK, "linestyle": (0, (4, 3)), "linewidth": 1.2, "zorder": 3}
+PREFIXED = ("mm", "mJ", "MPa", "t mm")  # units that take no more prefixes
 PREFIXES = ((1e9, "G"), (1e6, "M"), (1e3, "k"), (1, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"))
 
 
@@ -19,11 +21,26 @@ class CannotDraw(CannotRead):
 
 
 def scale(largest, unit):
-    """A factor and a unit in which `largest` is a number from 1 to 1000."""
+    """A factor and a unit in which `largest` is a number from 1 to 1000; 1 and the same unit where it takes no prefix: a number, mm, none at all."""
+    if unit in ("", "1") or unit.startswith(PREFIXED):
+        return 1.0, unit
     for size, prefix in PREFIXES:
         if largest >= size:
             return 1 / size, prefix + unit
     return 1.0, unit
+
+
+def time_scale(time, unit="s"):
+    """A factor and a unit for the axis of times, by how long they take."""
+    span = np.ptp(time)
+    if unit != "s":
+        return 1, unit
+    return (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, unit)
+
+
+def labelled(quantity, unit):
+    """What stands beside an axis: without brackets where the run has no units (-units none)."""
+    return f"{quantity} [{unit}]" if unit else quantity
 
 
 @contextmanager

@@ -15,7 +15,16 @@ from pathlib import Path
 import h5py
 import matplotlib
 import numpy as np
-from figures import BLUE, DASHED, CannotDraw, command_line, history_file, scale
+from figures import (
+    BLUE,
+    DASHED,
+    CannotDraw,
+    command_line,
+    history_file,
+    labelled,
+    scale,
+)
+from impakt_results import text
 from matplotlib.figure import Figure
 
 PARTS = {"full": 1, "half": 2, "quarter": 4}
@@ -101,6 +110,7 @@ def read(path):
         series |= {"time": file["time"][()], "velocity": velocities[0] - (velocities[1] if len(balls) == 2 else 0), "momentum": ball.parts * momenta[0]}
         if not ball.static:
             series["mass"] = ball.parts / sum(velocity[0] / momentum[0] for velocity, momentum in zip(velocities, momenta, strict=True))
+        series["units"] = {"force": text(pair["force"].attrs["units"]), "time": text(file["time"].attrs["units"])}
     if ball.static:
         series |= pressures(ball, find_fields(Path(path), options))
     return ball, series
@@ -122,6 +132,7 @@ def pressures(ball, path):
         positions = file["mesh/positions"][:, : ball.dim]
         last = max(file["contact_pressure"])
         pressure, active, gap = (file[f"{name}/{last}"][()].ravel() for name in ("contact_pressure", "contact_active", "contact_gap"))
+        unit = file[f"contact_pressure/{last}"].attrs["units"]
     if isinstance(ball, Pair) or ball.rings:  # on the axis through the origin
         surface = np.isfinite(gap)
     else:
@@ -129,7 +140,7 @@ def pressures(ball, path):
         surface = ball.lower_surface(positions)
     distance = np.linalg.norm(positions[:, :-1], axis=1)
     order = np.flatnonzero(surface)[np.argsort(distance[surface])]
-    return {"distance": distance[order], "pressure": pressure[order], "touches": active[order] > 0}
+    return {"distance": distance[order], "pressure": pressure[order], "touches": active[order] > 0, "unit": text(unit)}
 
 
 def fit(distance, pressure):
@@ -140,7 +151,7 @@ def fit(distance, pressure):
 
 def draw_pressure(axes, ball, series):
     radius, peak = ball.contact(series["force"][-1])
-    factor, unit = scale(peak, "Pa")
+    factor, unit = scale(peak, series["unit"])
     distance = np.linspace(0, 1.2, 600)
     shown = series["distance"] < 1.2 * radius
     axes.plot(series["distance"][shown] / radius, factor * series["pressure"][shown], "o", color=BLUE, markersize=3, label="nodes")
@@ -148,21 +159,21 @@ def draw_pressure(axes, ball, series):
     how = f"pressed together, a = {radius / ball.radius:.3f} R*" if isinstance(ball, Pair) else f"pressed on a plane, a = {radius / ball.radius:.3f} R"
     axes.set_title(f"{ball.name} {how}")
     axes.set_xlabel("distance from the axis / a")
-    axes.set_ylabel(f"contact pressure [{unit}]")
+    axes.set_ylabel(labelled("contact pressure", unit))
 
 
 def draw_force(axes, ball, series):
     speed = abs(series["velocity"][0])
     time, force = ball.force_over_time(series["mass"], speed)
-    factor, unit = scale(force.max(), "N")
-    late, time_unit = scale(series["time"][-1], "s")
+    factor, unit = scale(force.max(), series["units"]["force"])
+    late, time_unit = scale(series["time"][-1], series["units"]["time"])
     start = series["time"][np.argmax(series["force"] > 0) - 1]
     axes.plot(late * series["time"], factor * series["force"], color=BLUE, label="Impakt")
     axes.plot(late * (start + time), factor * force, **DASHED, label="Hertz")
     how = "hit, part with" if isinstance(ball, Pair) else "falls on a plane, leaves with"
     axes.set_title(f"{ball.name} {how} {abs(series['velocity'][-1]) / speed:.4f} of the velocity")
-    axes.set_xlabel(f"time [{time_unit}]")
-    axes.set_ylabel(f"contact force [{unit}]")
+    axes.set_xlabel(labelled("time", time_unit))
+    axes.set_ylabel(labelled("contact force", unit))
 
 
 def draw(*files, path):

@@ -9,7 +9,15 @@ import sys
 
 import matplotlib
 import numpy as np
-from figures import COLOURS, GREEN, CannotDraw, command_line, scale
+from figures import (
+    COLOURS,
+    GREEN,
+    CannotDraw,
+    command_line,
+    labelled,
+    scale,
+    time_scale,
+)
 from impakt_results import read
 from matplotlib.figure import Figure
 
@@ -19,11 +27,11 @@ MOST_NAMED = 8  # pairs; more would fill the figure with their names
 def draw_pairs(axes, time, series, title, quantity, unit):
     """One line for each pair."""
     finite = [np.abs(values[np.isfinite(values)]) for values in series.values()]
-    factor, unit = scale(max((values.max() for values in finite if values.size), default=0), unit) if unit != "1" else (1, unit)
+    factor, unit = scale(max((values.max() for values in finite if values.size), default=0), unit)
     for i, (name, values) in enumerate(series.items()):
         axes.plot(time, factor * values, color=COLOURS[i % len(COLOURS)], label=name.replace(":", " : ") if i < MOST_NAMED else None)
     axes.set_title(title)
-    axes.set_ylabel(f"{quantity} [{unit}]")
+    axes.set_ylabel(labelled(quantity, unit))
 
 
 def draw(file, path):
@@ -32,17 +40,17 @@ def draw(file, path):
     if not run.pairs and not held:
         raise CannotDraw(f"{file} is not the history of an Impakt run with contact, or with held surfaces")
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.2, "axes.axisbelow": True})
-    span = np.ptp(run.time)
-    factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, "s")
+    factor, unit = time_scale(run.time, run.units["time"])
+    newton, metre = (next((unit for name, unit in run.units.items() if name.endswith(end)), "") for end in ("force", "contact_position"))
     time, pairs = factor * run.time, run.pairs
 
     figure = Figure(figsize=(10, 7), layout="constrained")
     (force, error), (active, gap) = figure.subplots(2, 2, sharex=True)
     forces = {name: pair["force_vector"] for name, pair in pairs.items()} | held
     title = " and ".join(["contact force"] * bool(pairs) + ["reaction"] * bool(held))
-    draw_pairs(force, time, {name: np.linalg.norm(vector, axis=1) for name, vector in forces.items()}, title, "force", "N")
+    draw_pairs(force, time, {name: np.linalg.norm(vector, axis=1) for name, vector in forces.items()}, title, "force", newton)
     draw_pairs(active, time, {name: pair["active"] for name, pair in pairs.items()}, "nodes in contact", "nodes", "1")
-    draw_pairs(gap, time, {name: run.gap(name) for name in pairs}, "smallest gap", "gap", "m")
+    draw_pairs(gap, time, {name: run.gap(name) for name in pairs}, "smallest gap", "gap", metre)
     error.plot(time, run.energy_error, color=GREEN)
     error.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2), useMathText=True)
     error.set_title("error of the energy of all bodies")
@@ -52,7 +60,7 @@ def draw(file, path):
         axes.grid(color="0.9", linewidth=0.6)
         axes.margins(x=0.01)
     for axes in (active, gap):
-        axes.set_xlabel(f"time [{unit}]")
+        axes.set_xlabel(labelled("time", unit))
     if forces:
         force.legend(frameon=True, framealpha=0.9, edgecolor="0.8")
     figure.savefig(path, dpi=150)

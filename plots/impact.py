@@ -19,7 +19,9 @@ from figures import (
     ORANGE,
     CannotDraw,
     command_line,
+    labelled,
     scale,
+    time_scale,
 )
 from impakt_results import read as read_results
 from matplotlib.figure import Figure
@@ -35,6 +37,7 @@ def read(path):
     return {
         "options": run.options,
         "time": run.time,
+        "units": run.units,
         "sweeps": run.sweeps,
         "energy_error": run.energy_error,
         "forces": {name: run.pairs[name]["force"] for name in pairs},
@@ -108,36 +111,36 @@ def exact_solution(history, axis):
 
 def draw_positions(axes, history, exact, axis, time):
     positions = {name: along(history["bodies"][name]["contact_position"], axis) for name in history["pair"]}
-    factor, unit = scale(max(np.abs(values).max() for values in positions.values()), "m")
+    factor, unit = scale(max(np.abs(values).max() for values in positions.values()), history["units"][f"body/{history['pair'][0]}/contact_position"])
     for colour, (name, values) in zip(COLOURS, positions.items()):
         axes.plot(time, factor * values, color=colour, label=name)
         if exact:
             axes.plot(time, factor * exact["position"][name], **DASHED)
     axes.set_title("contact position")
-    axes.set_ylabel(f"position [{unit}]")
+    axes.set_ylabel(labelled("position", unit))
 
 
 def draw_forces(axes, history, exact, time):
     forces = history["forces"]
-    factor, unit = scale(max(np.abs(values).max() for values in forces.values()), "N")
+    factor, unit = scale(max(np.abs(values).max() for values in forces.values()), history["units"][f"contact/{next(iter(forces))}/force"])
     for colour, (name, values) in zip(COLOURS, forces.items()):
         axes.plot(time, factor * values, color=colour, label=name.replace(":", " : "))
     if exact:
         axes.plot(time, factor * exact["force"], **DASHED)
     axes.set_title("contact force")
-    axes.set_ylabel(f"force [{unit}]")
+    axes.set_ylabel(labelled("force", unit))
 
 
 def draw_energies(axes, history, exact, time):
     name = history["pair"][0]
     body = history["bodies"][name]
-    factor, unit = scale(max(body["kinetic"].max(), body["potential"].max()), "J")
+    factor, unit = scale(max(body["kinetic"].max(), body["potential"].max()), history["units"]["energy/change"])
     for colour, key in ((BLUE, "kinetic"), (ORANGE, "potential")):
         axes.plot(time, factor * body[key], color=colour, label=key)
         if exact:
             axes.plot(time, factor * exact[key], **DASHED)
     axes.set_title(f"energy of {name}; error of the system")
-    axes.set_ylabel(f"energy [{unit}]")
+    axes.set_ylabel(labelled("energy", unit))
     axes.tick_params(labelbottom=False)
 
 
@@ -161,8 +164,7 @@ def draw(file, path):
     matplotlib.rcParams.update({"font.size": 9, "axes.titlesize": 10, "lines.linewidth": 1.4, "axes.axisbelow": True})
     axis = contact_axis(history)
     exact = exact_solution(history, axis)
-    span = np.ptp(history["time"])
-    factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms")
+    factor, unit = time_scale(history["time"], history["units"]["time"])
     time = factor * history["time"]
 
     figure = Figure(figsize=(10, 7), layout="constrained")
@@ -181,7 +183,7 @@ def draw(file, path):
         axes.grid(color="0.9", linewidth=0.6)
         axes.margins(x=0.01)
         if axes is not energy:
-            axes.set_xlabel(f"time [{unit}]")
+            axes.set_xlabel(labelled("time", unit))
     for axes in (position, force, energy):
         if exact:
             axes.plot([], [], label="exact", **DASHED)

@@ -10,7 +10,8 @@
     run.pairs["left:right"]["force"]                       # [N]
     run.reactions["beam.xmin"]["moment"]                   # what holds a surface [N m], steps x 3; of an obstacle run.reactions["floor"]
     run.probes["beam/0"]["displacement"]                   # what the first point of -beam_probe does [m]
-    run.units["contact/left:right/force"]                  # "N"
+    run.units["contact/left:right/force"]                  # "N"; empty for -units none
+    run.unit_system                                        # "SI", "mm-t-s" or "none": units in these brackets are those of SI
     run.options["-time_step"], run.number("-time_step")    # as the run was given them: text, and as a number
     run.energy, run.energy_error                           # of all bodies [J]; relative, less the work of loads
     run.summary["contact"]["impulse"]                      # figures of the JSON file; None where there is none
@@ -80,6 +81,7 @@ class Fields:
             raise CannotRead(f"{path} has no fields of an Impakt run: {error}") from error
         self.frames = np.flatnonzero(~np.isnan(times))  # places of frames that the run did not come to have no time
         self.times = times[self.frames]
+        self.length, self.time_unit = (text(self.file[name].attrs["units"]) for name in ("mesh/positions", "time"))
 
     def __len__(self):
         return len(self.times)
@@ -133,6 +135,7 @@ class Results:
 
     def _attributes(self, file):
         self.version = text(file.attrs.get("version", ""))
+        self.unit_system = text(file.attrs.get("units", "SI"))
         self.options = {name: text(value) for name, value in file.attrs.items() if name.startswith("-")}
 
     def _note_units(self, name, item):

@@ -15,7 +15,7 @@ from types import SimpleNamespace
 
 import matplotlib
 import numpy as np
-from figures import COLOURS, CannotDraw, command_line
+from figures import COLOURS, CannotDraw, command_line, labelled, scale
 from impakt_results import Fields
 from matplotlib.figure import Figure
 
@@ -41,6 +41,7 @@ class Bodies:
 
     def __init__(self, path):
         fields = Fields(path)
+        self.length, self.time_unit = fields.length, fields.time_unit
         body, cells, self.times = fields.body, fields.cells, fields.times
         flat = np.ptp(fields.nodes[:, 2]) == 0
         self.reference = fields.nodes[:, :2]
@@ -120,9 +121,10 @@ def draw(*files, path):
     axes = figure.subplots()
     for colour, (name, bodies) in zip(COLOURS, runs, strict=False):
         depth = deepest(bodies)
-        axes.semilogy(bodies.times, np.maximum(depth, FLOOR), color=colour, label=f"{name}: elements of {1e3 * bodies.size():.3g} mm, at most {depth.max():.1e} of one")
+        factor, unit = scale(bodies.size(), bodies.length)
+        axes.semilogy(bodies.times, np.maximum(depth, FLOOR), color=colour, label=f"{name}: elements of {factor * bodies.size():.3g} {unit}, at most {depth.max():.1e} of one")
     axes.axhline(1e-6, color="0.5", linewidth=0.8, linestyle=":")
-    axes.set_xlabel("time [s]")
+    axes.set_xlabel(labelled("time", runs[0][1].time_unit))
     axes.set_ylabel("deepest overlap / element")
     axes.grid(color="0.9", linewidth=0.6)
     figure.legend(frameon=False, loc="outside upper center")

@@ -19,8 +19,9 @@ from xml.etree import ElementTree
 
 import h5py
 import numpy as np
-from figures import CannotDraw
+from figures import CannotDraw, time_scale
 from figures import scale as unit_scale
+from impakt_results import text
 from PIL import Image
 
 if not os.environ.get("DISPLAY") and ctypes.util.find_library("OSMesa"):
@@ -53,6 +54,7 @@ class Fields:
             where = grids[0].find("Geometry/DataItem").text.split(":")
             self.heavy = h5py.File(self.path.parent / where[0], "r")
             self.points = self.heavy[where[1]][()]
+            self.time_unit = text(self.heavy["time"].attrs["units"])
             if "displacement" not in self.datasets[0]:
                 raise KeyError("displacement")
         except (ElementTree.ParseError, AttributeError, IndexError, KeyError, ValueError) as error:
@@ -86,8 +88,7 @@ class Fields:
         return known[word]
 
     def units(self, field):
-        units = self.data(field[0], 0).attrs.get("units", "1")
-        return units.decode() if isinstance(units, bytes) else units
+        return text(self.data(field[0], 0).attrs.get("units", "1"))
 
     def limits(self, field, percentile):
         """Between which numbers of all frames colours change, but for not-a-numbers: the gap of nodes that are on no contact surface. So many percent
@@ -155,9 +156,9 @@ def flatness(bounds):
     return int((sizes > 1e-6 * sizes.max()).sum())
 
 
-def heading(words, time, span):
-    factor, unit = (1e6, "µs") if span < 5e-3 else (1e3, "ms") if span < 5 else (1, "s")
-    return f"{words + '    ' if words else ''}t = {factor * time:.4g} {unit}"
+def heading(words, time, times, unit):
+    factor, unit = time_scale(times, unit)
+    return f"{words + '    ' if words else ''}t = {factor * time:.4g} {unit}".rstrip()
 
 
 def ribbon(line, width):
@@ -181,7 +182,7 @@ class Camera:
         self.frames = frames
         self.bounds = fields.bounds(options.scale, range(len(fields)))
         low, high = fields.limits(self.field, options.percentile)
-        self.unit_factor, unit = unit_scale(max(abs(low), abs(high)), fields.units(self.field)) if fields.units(self.field) != "1" else (1, "")
+        self.unit_factor, unit = unit_scale(max(abs(low), abs(high)), fields.units(self.field))
         if abs(low + high) < 1e-3 * (high - low):
             low = -high  # so that 0 is in the middle
         self.limits = np.array((low, high)) * self.unit_factor
@@ -189,7 +190,7 @@ class Camera:
             self.limits = self.limits + np.array((-0.5, 0.5)) * max(1, abs(self.limits[0]))
         name, component = self.field
         self.label = NAMES.get(name, name) if component is None else options.field.replace("_", " ")
-        self.label = self.label.replace(" ", "\n") + (f"\n[{unit}]" if unit else "")
+        self.label = self.label.replace(" ", "\n") + (f"\n[{unit}]" if unit not in ("", "1") else "")
         if name == "body":
             self.label += ":\n" + "\n".join(f"{i} {each}" for i, each in enumerate(fields.data(name, 0).attrs["names"].split(",")[:MOST_NAMES]))
         peak = max(np.abs(fields.limits(self.field, 100)))
@@ -274,7 +275,7 @@ class Camera:
                 "height": 0.6,
             },
         )
-        plotter.add_text(heading(self.title, fields.times[frame], fields.times[-1] - fields.times[0]), position="upper_left", font_size=self.text * 0.75, color="black")
+        plotter.add_text(heading(self.title, fields.times[frame], fields.times, fields.time_unit), position="upper_left", font_size=self.text * 0.75, color="black")
         if not flat:
             plotter.add_axes(color="black", viewport=(PART[0][1] + 0.02, 0, 1, 0.22))
         self.place()

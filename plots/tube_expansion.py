@@ -9,7 +9,7 @@ sigma_theta - sigma_r = 2 / sqrt(3) times the equivalent stress. Integrated over
 import sys
 
 import numpy as np
-from figures import BLUE, DASHED, command_line, history_file
+from figures import BLUE, DASHED, command_line, history_file, labelled, scale
 from impakt_results import read
 from matplotlib.figure import Figure
 
@@ -81,13 +81,14 @@ def draw(path_of_run, path):
         run = read(path_of_run)
     largest = float(run.options["-liner_boundary_traction_xmin"].split("*")[0])
     tubes, pressure = Tubes.of_run(run), pressures(run, largest)
+    factor, unit = scale(largest, {"SI": "Pa", "mm-t-s": "MPa", "none": ""}[run.unit_system])
     figure = Figure(figsize=(6, 4), layout="constrained")
     axes = figure.subplots()
     for time in (np.linspace(0, 1, 201), np.linspace(1.001, 2, 201)):
         exact = largest * (1 - np.abs(1 - time))
-        axes.plot(exact / 1e6, expected(tubes, time, exact, largest) / 1e6, label="Hill, incompressible" if time[0] == 0 else None, **DASHED)
-    axes.plot(pressure / 1e6, contact_pressure(run) / 1e6, "o", color=BLUE, markersize=4, label="Impakt")
-    axes.set(xlabel="pressure in the liner [MPa]", ylabel="contact pressure [MPa]", title="a tube is pressed into another one and let go")
+        axes.plot(factor * exact, factor * expected(tubes, time, exact, largest), label="Hill, incompressible" if time[0] == 0 else None, **DASHED)
+    axes.plot(factor * pressure, factor * contact_pressure(run), "o", color=BLUE, markersize=4, label="Impakt")
+    axes.set(xlabel=labelled("pressure in the liner", unit), ylabel=labelled("contact pressure", unit), title="a tube is pressed into another one and let go")
     axes.legend()
     figure.savefig(path, dpi=120)
 

@@ -94,6 +94,20 @@ typedef struct {
   PetscReal smallest_step; /* that has been made; the controller step if none was cut [s] */
 } ControllerCuts;
 
+/*S
+   ControllerStatics - which bodies have no inertia
+
+   Level: intermediate
+
+.seealso: `ControllerGetStatics()`, `BodyIsStatic()`
+S*/
+typedef struct {
+  PetscBool some, all; /* of the bodies: then the time of the run is a number for loads alone, and there are no momenta */
+  PetscBool floating;  /* contact or ties alone hold one of them, in one direction at least */
+  PetscBool balanced; /* energies balance, but for errors. Not where all bodies are static and one floats: on its way through a gap to where
+                         contact holds it, nothing stores the work of its loads. */
+} ControllerStatics;
+
 typedef PetscErrorCode ControllerMonitorFn(Controller, const ControllerFrame *, void *);
 
 /*S
@@ -130,6 +144,7 @@ PETSC_EXTERN PetscErrorCode ControllerGetBodies(Controller, PetscInt *, const Bo
 PETSC_EXTERN PetscErrorCode ControllerGetContact(Controller, Contact *);
 PETSC_EXTERN PetscErrorCode ControllerGetProbes(Controller, PetscInt *, const ControllerProbe *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetSupports(Controller, PetscInt *, const ControllerSupport *[]);
+PETSC_EXTERN PetscErrorCode ControllerGetStatics(Controller, ControllerStatics *);
 PETSC_EXTERN PetscErrorCode ControllerGetTimes(Controller, PetscReal *, PetscReal *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ControllerGetResolvedStep(Controller, PetscReal *);
 PETSC_EXTERN PetscErrorCode ControllerGetTimings(Controller, PetscLogDouble *, PetscLogDouble *, PetscLogDouble *);

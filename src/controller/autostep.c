@@ -1,5 +1,6 @@
 /* The controller step that resolves contact: chosen where the user leaves it to the program, or what a given one is compared with. */
 #include "controllerimpl.h"
+#include <sys/units.h>
 
 /* A given step that is larger than this many times the one that resolves contact is worth a warning */
 #define MUCH_LARGER 10
@@ -102,14 +103,17 @@ PetscErrorCode ControllerWarnOfStep(Controller controller)
 {
   MPI_Comm        comm  = PetscObjectComm((PetscObject)controller);
   const PetscReal ratio = controller->resolved_step > 0 ? controller->time_step / controller->resolved_step : 0;
+  const char     *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)controller, UNIT_TIME, &unit));
   if (ratio <= MUCH_LARGER) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFPrintf(
       comm, stderr,
-      "impakt: warning: -time_step %g s is %.15g times the %.3g s that resolve contact (%s): contact that begins or ends within a "
-      "step takes or brings energy%s, and its forces are means over steps; -time_step auto takes %.3g s\n",
-      (double)controller->time_step, (double)PetscFloorReal(ratio + 0.5), (double)controller->resolved_step, controller->step_reason,
-      controller->most_cuts ? ", so that steps may have to be cut in halves" : "", (double)controller->resolved_step));
+      "impakt: warning: -time_step %g%s is %.15g times the %.3g%s that resolve contact (%s): contact that begins or ends within a "
+      "step takes or brings energy%s, and its forces are means over steps; -time_step auto takes %.3g%s\n",
+      (double)controller->time_step, unit, (double)PetscFloorReal(ratio + 0.5), (double)controller->resolved_step, unit,
+      controller->step_reason, controller->most_cuts ? ", so that steps may have to be cut in halves" : "",
+      (double)controller->resolved_step, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,6 +4,7 @@
 #include <sys/largepages.h>
 #include <sys/resource.h>
 #include <sys/stages.h>
+#include <sys/units.h>
 
 /* From so many bodies on their memory is on large pages */
 #define MANY_BODIES 16
@@ -69,6 +70,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(PetscTime(&begin));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactSetUpSurfaces(contact));
+  PetscCall(ControllerWarnOfUnits(controller)); /* before the checks that numbers in wrong units fail */
   PetscCall(ControllerChooseStep(controller));
   for (PetscInt b = 0; b < n; b++) PetscCall(BodySetControllerStep(controller->bodies[b], controller->time_start, controller->time_step));
   PetscCall(ContactSetUp(contact));
@@ -167,6 +169,7 @@ PetscErrorCode ControllerSolve(Controller controller)
 PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
 {
   PetscBool ascii;
+  Units     units;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
@@ -175,9 +178,11 @@ PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(controller->setup, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE, "Call ControllerSetUp() first");
-  PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g s, %" PetscInt_FMT " controller steps of %g s\n", (double)controller->time_start,
-                                   (double)(controller->time_start + controller->steps * controller->time_step), controller->steps,
-                                   (double)controller->time_step));
+  PetscCall(UnitsGet((PetscObject)controller, &units));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g%s, %" PetscInt_FMT " controller steps of %g%s\n", (double)controller->time_start,
+                                   (double)(controller->time_start + controller->steps * controller->time_step),
+                                   UnitsText(units, UNIT_TIME), controller->steps, (double)controller->time_step,
+                                   UnitsText(units, UNIT_TIME)));
   if (controller->whole) PetscCall(PetscViewerASCIIPrintf(viewer, "  steps that fail are not cut in halves: %s\n", controller->whole));
   if (controller->chooses_step)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  the largest step that resolves contact: %s\n", controller->step_reason));

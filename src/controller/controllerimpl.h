@@ -83,6 +83,8 @@ PETSC_INTERN PetscErrorCode ControllerSetUpTerminal(Controller);
 /* autostep.c */
 PETSC_INTERN PetscErrorCode ControllerChooseStep(Controller);
 PETSC_INTERN PetscErrorCode ControllerWarnOfStep(Controller);
+/* plausible.c */
+PETSC_INTERN PetscErrorCode ControllerWarnOfUnits(Controller);
 /* stepcontrol.c */
 PETSC_INTERN PetscErrorCode ControllerReadStepControl(Controller);
 PETSC_INTERN PetscErrorCode ControllerSetUpStepControl(Controller);

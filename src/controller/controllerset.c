@@ -5,6 +5,7 @@
 #include <sys/package.h>
 #include <sys/statusline.h>
 #include <sys/stages.h>
+#include <sys/units.h>
 
 PetscClassId CONTROLLER_CLASSID = 0;
 
@@ -220,6 +221,19 @@ static PetscErrorCode ReadTimes(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Labels are made of -units where they are printed, see UnitsGet() */
+static PetscErrorCode ReadUnits(Controller controller)
+{
+  Units units = UNITS_SI;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)controller);
+  PetscCall(PetscOptionsEnum("-units", "Units of the user's numbers, for labels and plausibility", "ControllerSetFromOptions", UnitsNames,
+                             (PetscEnum)units, (PetscEnum *)&units, NULL));
+  PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ControllerSetFromOptions - reads times, bodies and contact from the options
 
@@ -237,6 +251,7 @@ static PetscErrorCode ReadTimes(Controller controller)
 . -time_step (auto|dt) - controller step, at whose ends all bodies are synchronised [s]; auto: the largest that resolves contact
 . -controller_step_cuts n - how often a controller step that fails is cut in halves, 4
 . -monitor_interval n - a line on the terminal every n controller steps, 0 (default) for none
+. -units (SI|mm-t-s|none) - what the user's numbers are in, for labels and for warnings of implausible ones
 - -progress           - a progress bar on standard error, default where that is a terminal
 
   Level: beginner
@@ -256,6 +271,7 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   PetscCall(StageBegin(STAGE_SETUP, &logged));
   PetscCall(PetscTime(&begin));
+  PetscCall(ReadUnits(controller));
   PetscCall(ControllerSetUpTerminal(controller));
   if (!controller->contact) PetscCall(ReadBodies(controller));
   PetscCall(ReadTimes(controller));

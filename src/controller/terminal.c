@@ -1,6 +1,13 @@
 /* What a run shows on the terminal while it goes on. */
 #include "controllerimpl.h"
 #include <sys/statusline.h>
+#include <sys/units.h>
+
+/* How lines are printed */
+typedef struct {
+  PetscInt interval;
+  Units    units;
+} Lines;
 
 static PetscErrorCode FreeContext(void **ctx)
 {
@@ -11,23 +18,28 @@ static PetscErrorCode FreeContext(void **ctx)
 
 static PetscErrorCode PrintLine(Controller controller, const ControllerFrame *frame, void *ctx)
 {
-  const PetscInt interval = *(PetscInt *)ctx;
-  MPI_Comm       comm     = PetscObjectComm((PetscObject)controller);
-  PetscReal      force = 0, gap = PETSC_MAX_REAL;
-  PetscInt       active = 0;
+  const Lines      *lines = (const Lines *)ctx;
+  MPI_Comm          comm  = PetscObjectComm((PetscObject)controller);
+  PetscReal         force = 0, gap = PETSC_MAX_REAL;
+  PetscInt          active = 0;
+  ControllerStatics statics;
 
   PetscFunctionBegin;
-  if (frame->step % interval && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
+  if (frame->step % lines->interval && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < frame->n_pairs; p++) {
     force += frame->pairs[p].force;
     gap = PetscMin(gap, frame->pairs[p].gap);
     active += frame->pairs[p].active;
   }
-  PetscCall(PetscPrintf(comm, "step %8" PetscInt_FMT "  time %13.6e s  energy error %10.3e", frame->step, (double)frame->time,
-                        (double)(frame->energy_scale > 0 ? frame->energy_change / frame->energy_scale : frame->energy_change)));
+  PetscCall(ControllerGetStatics(controller, &statics));
+  PetscCall(
+      PetscPrintf(comm, "step %8" PetscInt_FMT "  time %13.6e%s", frame->step, (double)frame->time, UnitsText(lines->units, UNIT_TIME)));
+  if (statics.balanced)
+    PetscCall(PetscPrintf(comm, "  energy error %10.3e",
+                          (double)(frame->energy_scale > 0 ? frame->energy_change / frame->energy_scale : frame->energy_change)));
   if (frame->n_pairs)
-    PetscCall(PetscPrintf(comm, "  gap %10.3e m  active %" PetscInt_FMT "  force %12.5e N  sweeps %" PetscInt_FMT, (double)gap, active,
-                          (double)force, frame->sweeps));
+    PetscCall(PetscPrintf(comm, "  gap %10.3e%s  active %" PetscInt_FMT "  force %12.5e%s  sweeps %" PetscInt_FMT, (double)gap,
+                          UnitsText(lines->units, UNIT_LENGTH), active, (double)force, UnitsText(lines->units, UNIT_FORCE), frame->sweeps));
   if (frame->step_cuts) PetscCall(PetscPrintf(comm, "  cuts %" PetscInt_FMT, frame->step_cuts));
   PetscCall(PetscPrintf(comm, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -80,22 +92,24 @@ static PetscErrorCode TellProgress(Controller controller, PetscBool bar)
 
   Note:
   The energy error is that of the summary: the change of all energies less the work of loads, relative to the largest so far of
-  kinetic energy, strain energy and work (`ControllerFrame`).
+  kinetic energy, strain energy and work (`ControllerFrame`). It is left out where it means nothing (`ControllerStatics`). The force is the
+  sum over all pairs of forces along the normals. Units are those of `-units`.
 
 .seealso: `Controller`, `ControllerMonitorSet()`, `ControllerSetProgress()`
 @*/
 PetscErrorCode ControllerSetMonitorInterval(Controller controller, PetscInt interval)
 {
-  PetscInt *context;
+  Lines *lines;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   PetscValidLogicalCollectiveInt(controller, interval, 2);
   PetscCheck(interval > 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE,
              "An interval of %" PetscInt_FMT " steps must be positive", interval);
-  PetscCall(PetscNew(&context));
-  *context = interval;
-  PetscCall(ControllerMonitorSet(controller, PrintLine, context, FreeContext));
+  PetscCall(PetscNew(&lines));
+  lines->interval = interval;
+  PetscCall(UnitsGet((PetscObject)controller, &lines->units));
+  PetscCall(ControllerMonitorSet(controller, PrintLine, lines, FreeContext));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 /* The class: creation, shape, material, options, set-up, view, destruction. */
 #include <impakt/private/elementimpl.h>
 #include <sys/names.h>
+#include <sys/units.h>
 
 /*@
   ElementCreate - creates elements without a shape
@@ -257,7 +258,8 @@ PetscErrorCode ElementDuplicateOn(Element element, MPI_Comm comm, Material mater
 @*/
 PetscErrorCode ElementView(Element element, PetscViewer viewer)
 {
-  PetscBool ascii;
+  const char *unit;
+  PetscBool   ascii;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
@@ -266,10 +268,11 @@ PetscErrorCode ElementView(Element element, PetscViewer viewer)
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)element, viewer));
-  if (element->dim == 1) PetscCall(PetscViewerASCIIPrintf(viewer, "  cross-section %g m^2\n", (double)element->cross_section));
+  PetscCall(UnitsGetText((PetscObject)element, element->dim == 1 ? UNIT_AREA : UNIT_LENGTH, &unit));
+  if (element->dim == 1) PetscCall(PetscViewerASCIIPrintf(viewer, "  cross-section %g%s\n", (double)element->cross_section, unit));
   if (element->dim == 2)
     PetscCall(element->axisymmetric ? PetscViewerASCIIPrintf(viewer, "  rings about x = 0\n")
-                                    : PetscViewerASCIIPrintf(viewer, "  thickness %g m, %s\n", (double)element->cross_section,
+                                    : PetscViewerASCIIPrintf(viewer, "  thickness %g%s, %s\n", (double)element->cross_section, unit,
                                                              element->plane_stress ? "plane stress" : "plane strain"));
   if (element->formulation) PetscCall(PetscViewerASCIIPrintf(viewer, "  formulation %s\n", element->formulation));
   PetscTryTypeMethod(element, view, viewer);

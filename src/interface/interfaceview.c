@@ -1,5 +1,6 @@
 /* What surfaces and transfers tell of themselves. */
 #include "interfaceimpl.h"
+#include <sys/units.h>
 
 /* Whether there is anything to print on: ASCII viewers alone; standard output where none is given */
 static PetscErrorCode IsPrinted(PetscObject object, PetscViewer *viewer, PetscBool *printed)
@@ -26,23 +27,27 @@ static PetscErrorCode IsPrinted(PetscObject object, PetscViewer *viewer, PetscBo
 @*/
 PetscErrorCode SurfaceView(Surface surface, PetscViewer viewer)
 {
-  const SurfaceData *data;
-  PetscInt           counts[2];
-  PetscReal          area = 0;
-  PetscBool          printed;
+  const SurfaceData       *data;
+  PetscInt                 counts[2];
+  static const char *const powers[] = {"^0", "^1", "^2"};
+  const char              *unit;
+  PetscReal                area = 0;
+  PetscBool                printed;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
   PetscCall(IsPrinted((PetscObject)surface, &viewer, &printed));
   if (!printed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(UnitsGetText((PetscObject)surface, UNIT_LENGTH, &unit));
   data      = &surface->data;
   counts[0] = data->n_faces;
   counts[1] = data->n_owned;
   for (PetscInt f = 0; f < data->n_faces; f++) area += data->face_areas[f];
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)surface)));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &area, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)surface)));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "surface %s: %" PetscInt_FMT " faces, %" PetscInt_FMT " nodes, area %g m^%d\n",
-                                   ((PetscObject)surface)->name, counts[0], counts[1], (double)area, (int)data->dim - 1));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "surface %s: %" PetscInt_FMT " faces, %" PetscInt_FMT " nodes, area %g%s%s\n",
+                                   ((PetscObject)surface)->name, counts[0], counts[1], (double)area, unit,
+                                   unit[0] ? powers[data->dim - 1] : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 /* Rigid obstacles: the class, its shapes, and how far a point is from one. */
 #include "obstacleimpl.h"
+#include <sys/units.h>
 
 /* An axis whose first component is above this is crossed with the second unit vector, not the first, which it may be parallel to */
 #define NEARLY_PARALLEL 0.9
@@ -321,21 +322,23 @@ PetscErrorCode ObstacleGetName(Obstacle obstacle, const char *name[])
 PetscErrorCode ObstacleView(Obstacle obstacle, PetscViewer viewer)
 {
   const PetscReal *p = obstacle->point, *n = obstacle->direction;
+  const char      *unit;
   PetscBool        ascii;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscCall(UnitsGetText((PetscObject)obstacle, UNIT_LENGTH, &unit));
   if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)obstacle), &viewer));
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "obstacle %s: %s at (%g, %g, %g) m", ((PetscObject)obstacle)->name,
+  PetscCall(PetscViewerASCIIPrintf(viewer, "obstacle %s: %s at (%g, %g, %g)%s", ((PetscObject)obstacle)->name,
                                    obstacle->complete ? ObstacleTypes[obstacle->type] : "no shape", (double)p[0], (double)p[1],
-                                   (double)p[2]));
+                                   (double)p[2], unit));
   if (obstacle->type != OBSTACLE_SPHERE)
     PetscCall(PetscViewerASCIIPrintf(viewer, ", %s (%g, %g, %g)", obstacle->type == OBSTACLE_PLANE ? "normal" : "axis", (double)n[0],
                                      (double)n[1], (double)n[2]));
-  if (obstacle->type != OBSTACLE_PLANE) PetscCall(PetscViewerASCIIPrintf(viewer, ", radius %g m", (double)obstacle->radius));
+  if (obstacle->type != OBSTACLE_PLANE) PetscCall(PetscViewerASCIIPrintf(viewer, ", radius %g%s", (double)obstacle->radius, unit));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

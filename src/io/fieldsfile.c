@@ -8,21 +8,21 @@
 #include <math.h>
 
 const FieldsField fields_of_a_frame[FIELDS_PER_FRAME] = {
-    {"displacement", "m", 3, "Vector", PETSC_FALSE},
-    {"velocity", "m/s", 3, "Vector", PETSC_FALSE},
+    {"displacement", UNIT_LENGTH, 3, "Vector", PETSC_FALSE},
+    {"velocity", UNIT_VELOCITY, 3, "Vector", PETSC_FALSE},
     /* all nine components: with six, ParaView's readers differ in their order */
-    {"stress", "Pa", 9, "Tensor", PETSC_TRUE},
-    {"von_mises", "Pa", 1, "Scalar", PETSC_TRUE},
-    {"plastic_strain", "1", 1, "Scalar", PETSC_TRUE},
-    {"block", "1", 1, "Scalar", PETSC_TRUE},
-    {"contact_force", "N", 3, "Vector", PETSC_FALSE},
-    {"contact_pressure", "Pa", 1, "Scalar", PETSC_FALSE},
-    {"contact_gap", "m", 1, "Scalar", PETSC_FALSE},
-    {"contact_active", "1", 1, "Scalar", PETSC_FALSE},
-    {"friction_traction", "Pa", 3, "Vector", PETSC_FALSE},
-    {"contact_sliding", "1", 1, "Scalar", PETSC_FALSE},
-    {"slip_distance", "m", 1, "Scalar", PETSC_FALSE},
-    {"friction_loss", "J/m^2", 1, "Scalar", PETSC_FALSE},
+    {"stress", UNIT_STRESS, 9, "Tensor", PETSC_TRUE},
+    {"von_mises", UNIT_STRESS, 1, "Scalar", PETSC_TRUE},
+    {"plastic_strain", UNIT_ONE, 1, "Scalar", PETSC_TRUE},
+    {"block", UNIT_ONE, 1, "Scalar", PETSC_TRUE},
+    {"contact_force", UNIT_FORCE, 3, "Vector", PETSC_FALSE},
+    {"contact_pressure", UNIT_STRESS, 1, "Scalar", PETSC_FALSE},
+    {"contact_gap", UNIT_LENGTH, 1, "Scalar", PETSC_FALSE},
+    {"contact_active", UNIT_ONE, 1, "Scalar", PETSC_FALSE},
+    {"friction_traction", UNIT_STRESS, 3, "Vector", PETSC_FALSE},
+    {"contact_sliding", UNIT_ONE, 1, "Scalar", PETSC_FALSE},
+    {"slip_distance", UNIT_LENGTH, 1, "Scalar", PETSC_FALSE},
+    {"friction_loss", UNIT_ENERGY_ON_AREA, 1, "Scalar", PETSC_FALSE},
 };
 
 const char *const OutputPrecisions[] = {"single", "double", "OutputPrecision", "OUTPUT_", NULL};
@@ -82,8 +82,8 @@ static PetscErrorCode WriteUnits(hid_t dataset, const char units[], const char p
 }
 
 /* Makes a dataset, with its place in the file. It is closed again if `dataset` is NULL. */
-static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, hsize_t rows, PetscInt components, const char units[],
-                                    const char path[], hid_t *dataset)
+static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, hsize_t rows, PetscInt components, UnitDimension dimension,
+                                    Units units, const char path[], hid_t *dataset)
 {
   const hsize_t size[2] = {rows, (hsize_t)components};
   hid_t         space, layout, created;
@@ -97,7 +97,7 @@ static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, h
   PetscCall(HDF5Check(H5Pset_obj_track_times(layout, 0), "place a dataset", path));
   created = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
   PetscCall(HDF5Check(created, "create a dataset", path));
-  PetscCall(WriteUnits(created, units, path));
+  PetscCall(WriteUnits(created, UnitsLabel(units, dimension), path));
   PetscCall(HDF5Check(H5Pclose(layout), "close a property list", path));
   PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
   if (dataset) *dataset = created;
@@ -117,7 +117,7 @@ static PetscErrorCode CreateGroup(hid_t file, const char name[], const char path
 }
 
 /* Makes the dataset of times, which are not-a-number until their frames are in the file */
-static PetscErrorCode CreateTimes(hid_t file, PetscInt n_frames, const char path[])
+static PetscErrorCode CreateTimes(hid_t file, PetscInt n_frames, Units units, const char path[])
 {
   double *times;
   hid_t   dataset;
@@ -125,14 +125,14 @@ static PetscErrorCode CreateTimes(hid_t file, PetscInt n_frames, const char path
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n_frames, &times));
   for (PetscInt i = 0; i < n_frames; i++) times[i] = NAN;
-  PetscCall(CreateDataset(file, "time", H5T_IEEE_F64LE, (hsize_t)n_frames, 1, "s", path, &dataset));
+  PetscCall(CreateDataset(file, "time", H5T_IEEE_F64LE, (hsize_t)n_frames, 1, UNIT_TIME, units, path, &dataset));
   PetscCall(HDF5Check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times), "write times", path));
   PetscCall(HDF5Check(H5Dclose(dataset), "write times", path));
   PetscCall(PetscFree(times));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, const char path[])
+static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, Units units, const char path[])
 {
   const char *name;
   size_t      size = 1, used = 0;
@@ -141,10 +141,10 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, const char 
 
   PetscFunctionBegin;
   PetscCall(CreateGroup(file, "mesh", path));
-  PetscCall(CreateDataset(file, "mesh/positions", H5T_IEEE_F64LE, mesh->nodes.total, 3, "m", path, NULL));
-  PetscCall(CreateDataset(file, "mesh/cells", H5T_STD_I32LE, mesh->topology.total, mesh->cell_nodes, "1", path, NULL));
-  PetscCall(CreateDataset(file, "mesh/rank", H5T_STD_I32LE, mesh->cells.total, 1, "1", path, NULL));
-  PetscCall(CreateDataset(file, "mesh/body", H5T_STD_I32LE, mesh->cells.total, 1, "1", path, &dataset));
+  PetscCall(CreateDataset(file, "mesh/positions", H5T_IEEE_F64LE, mesh->nodes.total, 3, UNIT_LENGTH, units, path, NULL));
+  PetscCall(CreateDataset(file, "mesh/cells", H5T_STD_I32LE, mesh->topology.total, mesh->cell_nodes, UNIT_ONE, units, path, NULL));
+  PetscCall(CreateDataset(file, "mesh/rank", H5T_STD_I32LE, mesh->cells.total, 1, UNIT_ONE, units, path, NULL));
+  PetscCall(CreateDataset(file, "mesh/body", H5T_STD_I32LE, mesh->cells.total, 1, UNIT_ONE, units, path, &dataset));
   for (PetscInt b = 0; b < mesh->n_bodies; b++) {
     size_t length;
 
@@ -185,12 +185,14 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Field
   const hid_t type = precision == OUTPUT_DOUBLE ? H5T_IEEE_F64LE : H5T_IEEE_F32LE;
   char        name[64];
   hid_t       file;
+  Units       units;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGet(NULL, &units));
   PetscCall(HDF5Create(path, &file));
   PetscCall(HDF5WriteRun(file, options, path));
-  PetscCall(CreateMesh(file, mesh, path));
-  PetscCall(CreateTimes(file, n_frames, path));
+  PetscCall(CreateMesh(file, mesh, units, path));
+  PetscCall(CreateTimes(file, n_frames, units, path));
   for (FieldsKind i = 0; i < FIELDS_PER_FRAME; i++) {
     const FieldsField *field = &fields_of_a_frame[i];
 
@@ -198,8 +200,8 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Field
     PetscCall(CreateGroup(file, field->name, path));
     for (PetscInt k = 0; k < n_frames; k++) {
       PetscCall(FieldsFileGetDataset(i, k, sizeof(name), name));
-      PetscCall(CreateDataset(file, name, type, (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, field->units, path,
-                              NULL));
+      PetscCall(CreateDataset(file, name, type, (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, field->dimension,
+                              units, path, NULL));
     }
   }
   PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));

@@ -2,6 +2,7 @@
 #pragma once
 #include <impakt/io.h>
 #include "fieldsmesh.h"
+#include <sys/units.h>
 
 /* The names of frames have four digits, and all datasets of a run are made before its first frame */
 #define FIELDS_MAX_FRAMES 10000
@@ -33,10 +34,11 @@ typedef enum {
 } FieldsKind;
 
 typedef struct {
-  const char *name, *units;
-  PetscInt    components;
-  const char *attribute_type; /* XDMF's word for what the components are */
-  PetscBool   on_cells;       /* a value for each cell; otherwise for each node */
+  const char   *name;
+  UnitDimension dimension;
+  PetscInt      components;
+  const char   *attribute_type; /* XDMF's word for what the components are */
+  PetscBool     on_cells;       /* a value for each cell; otherwise for each node */
 } FieldsField;
 
 PETSC_INTERN const FieldsField fields_of_a_frame[FIELDS_PER_FRAME];

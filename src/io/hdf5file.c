@@ -2,6 +2,7 @@
 #include "hdf5file.h"
 #include <impakt.h>
 #include <sys/optionstext.h>
+#include <sys/units.h>
 
 /*
   HDF5Check - ends with an error if HDF5 could not do something
@@ -81,7 +82,7 @@ PetscErrorCode HDF5WriteText(hid_t object, const char name[], const char value[]
 }
 
 /*
-  HDF5WriteRun - writes the options and the version of a run as attributes, so that a file tells how it was made
+  HDF5WriteRun - writes the options, the version and the units of a run as attributes, so that a file tells how it was made
 
   Not Collective
 
@@ -94,9 +95,12 @@ PetscErrorCode HDF5WriteRun(hid_t file, const char options[], const char path[])
 {
   const char *name, *value;
   char       *copy, *rest;
+  Units       units;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGet(NULL, &units));
   PetscCall(HDF5WriteText(file, "version", IMPAKT_VERSION, path));
+  PetscCall(HDF5WriteText(file, "units", UnitsNames[units], path));
   PetscCall(PetscStrallocpy(options, &copy));
   for (rest = copy; OptionsTextNext(&rest, &name, &value);) PetscCall(HDF5WriteText(file, name, value, path));
   PetscCall(PetscFree(copy));

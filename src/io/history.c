@@ -7,6 +7,7 @@
 #include "series.h"
 #include <petsctime.h>
 #include <stdio.h>
+#include <sys/units.h>
 #include <unistd.h>
 
 #define BUFFER_BYTES      ((size_t)1 << 16) /* of records that wait for writing, at first */
@@ -29,6 +30,7 @@ struct _n_History {
   PetscBool     *plastic;         /* per body: its material flows */
   PetscBool     *hourglasses;     /* per body: its elements have one point */
   PetscBool     *rigid;           /* per body */
+  Units          units;
   PetscInt       n_series, width;
   Series        *series;
   PetscInt       n_records, capacity;
@@ -40,17 +42,17 @@ struct _n_History {
 };
 
 /* Adds a series, whose numbers come behind those of the others in a record; its name is "<group><of>/<what>" */
-static PetscErrorCode AddSeries(History history, const char group[], const char of[], const char what[], const char units[],
-                                PetscInt components, PetscBool integer)
+static PetscErrorCode AddSeries(History history, const char group[], const char of[], const char what[], UnitDimension dimension,
+                                PetscInt components)
 {
   Series *series = &history->series[history->n_series++];
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(series->name, sizeof(series->name), "%s%s%s%s", group, of, what[0] ? "/" : "", what));
-  series->units      = units;
+  series->units      = UnitsLabel(history->units, dimension);
   series->column     = history->width;
   series->components = components;
-  series->integer    = integer;
+  series->integer    = (PetscBool)(dimension == UNIT_ONE); /* what has no dimension is a count */
   history->width += components;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -78,24 +80,24 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &history->springs));
   PetscCall(PetscCalloc1(5 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
-  PetscCall(AddSeries(history, "/time", "", "", "s", 1, PETSC_FALSE));
-  PetscCall(AddSeries(history, "/schwarz", "", "iterations", "1", 1, PETSC_TRUE));
-  PetscCall(AddSeries(history, "/energy", "", "change", "J", 1, PETSC_FALSE));
-  PetscCall(AddSeries(history, "/energy", "", "scale", "J", 1, PETSC_FALSE));
-  if (history->springs) PetscCall(AddSeries(history, "/penalty_energy", "", "", "J", 1, PETSC_FALSE));
+  PetscCall(AddSeries(history, "/time", "", "", UNIT_TIME, 1));
+  PetscCall(AddSeries(history, "/schwarz", "", "iterations", UNIT_ONE, 1));
+  PetscCall(AddSeries(history, "/energy", "", "change", UNIT_ENERGY, 1));
+  PetscCall(AddSeries(history, "/energy", "", "scale", UNIT_ENERGY, 1));
+  if (history->springs) PetscCall(AddSeries(history, "/penalty_energy", "", "", UNIT_ENERGY, 1));
   for (PetscInt i = 0; i < n_pairs; i++) {
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
-    PetscCall(AddSeries(history, "/contact/", name, "force", "N", 1, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/contact/", name, "gap", "m", 1, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/contact/", name, "active", "1", 1, PETSC_TRUE));
-    PetscCall(AddSeries(history, "/contact/", name, "area", "m^2", 1, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/contact/", name, "force_vector", "N", 3, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/contact/", name, "moment", "N m", 3, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/contact/", name, "impulse", "N s", 3, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/contact/", name, "force", UNIT_FORCE, 1));
+    PetscCall(AddSeries(history, "/contact/", name, "gap", UNIT_LENGTH, 1));
+    PetscCall(AddSeries(history, "/contact/", name, "active", UNIT_ONE, 1));
+    PetscCall(AddSeries(history, "/contact/", name, "area", UNIT_AREA, 1));
+    PetscCall(AddSeries(history, "/contact/", name, "force_vector", UNIT_FORCE, 3));
+    PetscCall(AddSeries(history, "/contact/", name, "moment", UNIT_MOMENT, 3));
+    PetscCall(AddSeries(history, "/contact/", name, "impulse", UNIT_IMPULSE, 3));
     if (!history->friction) continue;
-    PetscCall(AddSeries(history, "/contact/", name, "friction_loss", "J", 1, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/contact/", name, "obstacle_work", "J", 1, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/contact/", name, "sliding", "1", 1, PETSC_TRUE));
+    PetscCall(AddSeries(history, "/contact/", name, "friction_loss", UNIT_ENERGY, 1));
+    PetscCall(AddSeries(history, "/contact/", name, "obstacle_work", UNIT_ENERGY, 1));
+    PetscCall(AddSeries(history, "/contact/", name, "sliding", UNIT_ONE, 1));
   }
   for (PetscInt i = 0; i < history->n_bodies; i++) {
     PetscInt *dim = &history->dims[i];
@@ -103,26 +105,26 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
     PetscCall(BodyGetDimension(bodies[i], dim));
-    PetscCall(AddSeries(history, "/body/", name, "kinetic", "J", 1, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/body/", name, "potential", "J", 1, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/body/", name, "contact_position", "m", *dim, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/body/", name, "contact_velocity", "m/s", *dim, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/body/", name, "mean_velocity", "m/s", *dim, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/body/", name, "external_work", "J", 1, PETSC_FALSE));
-    PetscCall(AddSeries(history, "/body/", name, "momentum", "kg m/s", *dim, PETSC_FALSE));
-    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_momentum", "kg m^2/s", 3, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/body/", name, "kinetic", UNIT_ENERGY, 1));
+    PetscCall(AddSeries(history, "/body/", name, "potential", UNIT_ENERGY, 1));
+    PetscCall(AddSeries(history, "/body/", name, "contact_position", UNIT_LENGTH, *dim));
+    PetscCall(AddSeries(history, "/body/", name, "contact_velocity", UNIT_VELOCITY, *dim));
+    PetscCall(AddSeries(history, "/body/", name, "mean_velocity", UNIT_VELOCITY, *dim));
+    PetscCall(AddSeries(history, "/body/", name, "external_work", UNIT_ENERGY, 1));
+    PetscCall(AddSeries(history, "/body/", name, "momentum", UNIT_MOMENTUM, *dim));
+    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_momentum", UNIT_ANGULAR_MOMENTUM, 3));
     PetscCall(BodyGetDamping(bodies[i], &mass, &stiffness));
     history->damped[i] = (PetscBool)(mass > 0 || stiffness > 0);
-    if (history->damped[i]) PetscCall(AddSeries(history, "/body/", name, "damping_work", "J", 1, PETSC_FALSE));
+    if (history->damped[i]) PetscCall(AddSeries(history, "/body/", name, "damping_work", UNIT_ENERGY, 1));
     PetscCall(BodyHasHistory(bodies[i], &history->plastic[i]));
-    if (history->plastic[i]) PetscCall(AddSeries(history, "/body/", name, "plastic_work", "J", 1, PETSC_FALSE));
+    if (history->plastic[i]) PetscCall(AddSeries(history, "/body/", name, "plastic_work", UNIT_ENERGY, 1));
     PetscCall(BodyHasHourglasses(bodies[i], &history->hourglasses[i]));
-    if (history->hourglasses[i]) PetscCall(AddSeries(history, "/body/", name, "hourglass_energy", "J", 1, PETSC_FALSE));
+    if (history->hourglasses[i]) PetscCall(AddSeries(history, "/body/", name, "hourglass_energy", UNIT_ENERGY, 1));
     PetscCall(BodyIsRigid(bodies[i], &history->rigid[i]));
     if (!history->rigid[i]) continue;
-    PetscCall(AddSeries(history, "/body/", name, "centre", "m", *dim, PETSC_FALSE));
-    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "rotation", "rad", 3, PETSC_FALSE));
-    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_velocity", "rad/s", 3, PETSC_FALSE));
+    PetscCall(AddSeries(history, "/body/", name, "centre", UNIT_LENGTH, *dim));
+    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "rotation", UNIT_ANGLE, 3));
+    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_velocity", UNIT_ANGULAR_VELOCITY, 3));
   }
   for (PetscInt i = 0; i < n_supports; i++) {
     const ControllerSupport *support = &supports[i];
@@ -132,8 +134,8 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
       PetscCall(PetscObjectGetName((PetscObject)bodies[support->body], &name));
       PetscCall(PetscSNPrintf(group, sizeof(group), "/body/%s/reaction/", name));
     } else PetscCall(PetscSNPrintf(group, sizeof(group), "/obstacle/"));
-    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "force" : "reaction/force", "N", 3, PETSC_FALSE));
-    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "moment" : "reaction/moment", "N m", 3, PETSC_FALSE));
+    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "force" : "reaction/force", UNIT_FORCE, 3));
+    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "moment" : "reaction/moment", UNIT_MOMENT, 3));
   }
   for (PetscInt i = 0; i < n_probes; i++) {
     const PetscInt dim = history->dims[probes[i].body];
@@ -142,10 +144,10 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
     PetscCall(PetscObjectGetName((PetscObject)bodies[probes[i].body], &name));
     PetscCall(PetscSNPrintf(group, sizeof(group), "/body/%s/probe/", name));
     PetscCall(PetscSNPrintf(number, sizeof(number), "%" PetscInt_FMT, probes[i].number));
-    PetscCall(AddSeries(history, group, number, "position", "m", dim, PETSC_FALSE));
-    PetscCall(AddSeries(history, group, number, "displacement", "m", dim, PETSC_FALSE));
-    PetscCall(AddSeries(history, group, number, "velocity", "m/s", dim, PETSC_FALSE));
-    PetscCall(AddSeries(history, group, number, "stress", "Pa", 6, PETSC_FALSE));
+    PetscCall(AddSeries(history, group, number, "position", UNIT_LENGTH, dim));
+    PetscCall(AddSeries(history, group, number, "displacement", UNIT_LENGTH, dim));
+    PetscCall(AddSeries(history, group, number, "velocity", UNIT_VELOCITY, dim));
+    PetscCall(AddSeries(history, group, number, "stress", UNIT_STRESS, 6));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -177,6 +179,7 @@ PetscErrorCode HistoryCreate(Controller controller, const char path[], History *
   PetscCall(PetscStrncpy(h->path, path, sizeof(h->path)));
   if (h->writes) {
     PetscCall(PetscOptionsGetAll(NULL, &h->options));
+    PetscCall(UnitsGet((PetscObject)controller, &h->units));
     PetscCall(AddAllSeries(h, controller));
     h->capacity = 1 + (PetscInt)(BUFFER_BYTES / (h->width * sizeof(PetscReal)));
     PetscCall(PetscMalloc1(h->capacity * h->width, &h->records));

@@ -1,5 +1,6 @@
 /* Constants of isotropic models, by which they agree with linear elasticity at small strain. */
 #include <impakt/private/isotropic.h>
+#include <sys/units.h>
 
 /* What the constants mean as Lame's; nothing as long as there is no Young's modulus */
 static void FindLamesConstants(Isotropic *constants)
@@ -86,9 +87,11 @@ static PetscErrorCode MaterialSetUp_Isotropic(Material material)
 static PetscErrorCode MaterialView_Isotropic(Material material, PetscViewer viewer)
 {
   const Isotropic *constants = (const Isotropic *)material->data;
+  const char      *unit;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g Pa, Poisson's ratio %g\n", (double)constants->youngs_modulus,
+  PetscCall(UnitsGetText((PetscObject)material, UNIT_STRESS, &unit));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g\n", (double)constants->youngs_modulus, unit,
                                    (double)constants->poissons_ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 /* The class: creation, type, options, view, destruction. */
 #include <impakt/private/materialimpl.h>
 #include <sys/names.h>
+#include <sys/units.h>
 
 /*@
   MaterialCreate - creates a material without a type
@@ -207,7 +208,8 @@ PetscErrorCode MaterialSetUp(Material material)
 @*/
 PetscErrorCode MaterialView(Material material, PetscViewer viewer)
 {
-  PetscBool ascii;
+  const char *unit;
+  PetscBool   ascii;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
@@ -216,8 +218,9 @@ PetscErrorCode MaterialView(Material material, PetscViewer viewer)
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)material, viewer));
-  PetscCall(
-      PetscViewerASCIIPrintf(viewer, "  density %g kg/m^3%s\n", (double)material->density, material->plane_stress ? ", plane stress" : ""));
+  PetscCall(UnitsGetText((PetscObject)material, UNIT_DENSITY, &unit));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  density %g%s%s\n", (double)material->density, unit,
+                                   material->plane_stress ? ", plane stress" : ""));
   PetscTryTypeMethod(material, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

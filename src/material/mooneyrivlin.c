@@ -7,6 +7,7 @@
    J dI1'/dF = 2 (1 + y)^2 (K - e1/3 cof F), J dI2'/dF = 2 (1 + y)^4 (2 K + J F (e1 I - E) - (4 e1 + 2 e2)/3 cof F). */
 #include <impakt/private/isotropic.h>
 #include <impakt/private/tensor.h>
+#include <sys/units.h>
 
 #define MAX_ITERATIONS 50
 
@@ -342,10 +343,13 @@ static PetscErrorCode MaterialSetFromOptions_MooneyRivlin(Material material)
 static PetscErrorCode MaterialView_MooneyRivlin(Material material, PetscViewer viewer)
 {
   const MooneyRivlin *model = (const MooneyRivlin *)material->data;
+  const char         *unit;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g Pa, Poisson's ratio %g, share of c01 %g\n",
-                                   (double)model->constants.youngs_modulus, (double)model->constants.poissons_ratio, (double)model->share));
+  PetscCall(UnitsGetText((PetscObject)material, UNIT_STRESS, &unit));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g, share of c01 %g\n",
+                                   (double)model->constants.youngs_modulus, unit, (double)model->constants.poissons_ratio,
+                                   (double)model->share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

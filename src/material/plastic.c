@@ -1,6 +1,7 @@
 /* The plastic models: constants with their options. */
 #include <impakt/private/plastic.h>
 #include <math.h>
+#include <sys/units.h>
 
 #define MAX_TABLE 256
 
@@ -287,23 +288,29 @@ static PetscErrorCode SetUp(Material material)
 static PetscErrorCode View(Material material, PetscViewer viewer)
 {
   const Plastic *plastic = GetPlastic(material);
+  const char    *unit;
+  Units          units;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g Pa, Poisson's ratio %g\n", (double)plastic->elastic.youngs_modulus,
+  PetscCall(UnitsGet((PetscObject)material, &units));
+  unit = UnitsText(units, UNIT_STRESS);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g\n", (double)plastic->elastic.youngs_modulus, unit,
                                    (double)plastic->elastic.poissons_ratio));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  yield stress %g Pa, hardening %s, modulus %g Pa, kinematic %g Pa\n", (double)plastic->yield,
-                                   plastic->hardening == HARDENING_JOHNSON_COOK ? "of Johnson and Cook" : laws[plastic->hardening],
-                                   (double)plastic->modulus, (double)plastic->kinematic));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  yield stress %g%s, hardening %s, modulus %g%s, kinematic %g%s\n", (double)plastic->yield,
+                                   unit, plastic->hardening == HARDENING_JOHNSON_COOK ? "of Johnson and Cook" : laws[plastic->hardening],
+                                   (double)plastic->modulus, unit, (double)plastic->kinematic, unit));
   if (plastic->hardening == HARDENING_VOCE)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  saturation %g Pa, at %g per plastic strain\n", (double)plastic->saturation,
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  saturation %g%s, at %g per plastic strain\n", (double)plastic->saturation, unit,
                                      (double)plastic->saturate_at));
   if (plastic->hardening == HARDENING_JOHNSON_COOK)
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  exponent %g, rate coefficient %g above %g 1/s, softening exponent %g from %g to %g K\n"
-                                     "  initial temperature %g K, heat fraction %g, specific heat %g J/(kg K)\n",
+                                     "  exponent %g, rate coefficient %g above %g%s, softening exponent %g from %g to %g%s\n"
+                                     "  initial temperature %g%s, heat fraction %g, specific heat %g%s\n",
                                      (double)plastic->exponent, (double)plastic->rate, (double)plastic->reference_rate,
-                                     (double)plastic->softening, (double)plastic->room, (double)plastic->melting, (double)plastic->initial,
-                                     (double)plastic->heat_fraction, (double)plastic->specific_heat));
+                                     UnitsText(units, UNIT_RATE), (double)plastic->softening, (double)plastic->room,
+                                     (double)plastic->melting, UnitsText(units, UNIT_TEMPERATURE), (double)plastic->initial,
+                                     UnitsText(units, UNIT_TEMPERATURE), (double)plastic->heat_fraction, (double)plastic->specific_heat,
+                                     UnitsText(units, UNIT_SPECIFIC_HEAT)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

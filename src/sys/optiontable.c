@@ -33,7 +33,8 @@ static const KnownOption options[] = {
     {"bodies", OPTION_OF_BODY, "mass_moments", "total|centre|inertia",
      "what that keeps: the total mass, its centre too, or (default) the moments of inertia too, where positive masses allow"},
     {"bodies", OPTION_OF_BODY, "damping_mass", "alpha",
-     "Rayleigh damping: forces alpha M v against the velocity [1/s]; damping ratio alpha/(2 omega) of angular frequency omega; default 0"},
+     "Rayleigh damping: forces alpha M v against the velocity [1/s]; damping ratio alpha/(2 omega) of angular frequency omega [rad/s]; "
+     "default 0"},
     {"bodies", OPTION_OF_BODY, "damping_stiffness", "beta",
      "Rayleigh damping: forces beta K v against the rate of strain [s]; damping ratio beta omega/2; not of elements at massless contact "
      "nodes; default 0"},
@@ -302,6 +303,9 @@ static const KnownOption options[] = {
      "lists options files to start from, or writes the one with this name, with remarks; and ends"},
     {"files", OPTION_OF_RUN, "options_file", "file",
      "more options from a file, which those of the command line overrule; a FILE.opts may stand alone"},
+    {"files", OPTION_OF_RUN, "units", "SI|mm-t-s|none",
+     "what the numbers of the run are in: m, kg, s, N, J, Pa; or mm, t, s, N, mJ, MPa; or any consistent set. For labels, and warnings of "
+     "implausible densities, moduli and sizes; default SI"},
     {"files", OPTION_OF_RUN, "output_history", "file.h5|none", "history of every controller step"},
     {"files", OPTION_OF_RUN, "output_summary", "file.json|none", "summary of the run"},
     {"files", OPTION_OF_BODY, "probe", "x,y[,z];x,y[,z]",

@@ -275,7 +275,8 @@ static const char *Advise(const char value[])
 
   if (tail > value && *tail == ',' && isdigit((unsigned char)tail[1]) && !strchr(tail + 1, ','))
     return "; decimals come after a point, not a comma";
-  if (end > value && isalpha((unsigned char)*end)) return "; numbers stand without units, which are those of the SI";
+  if (end > value && isalpha((unsigned char)*end))
+    return "; numbers stand without units: all are of one consistent set, SI unless -units says otherwise";
   return "";
 }
 

@@ -7,11 +7,14 @@ import sys
 import compare
 import convergence
 import h5py
+import history
+import impact
 import impakt_results
 import numpy as np
 import pytest
 from cases import DEFAULTS
 from conftest import ROOT
+from matplotlib.figure import Figure
 
 PNG = b"\x89PNG\r\n\x1a\n"
 SPRING = "-bodies b -b_dm_plex_dim 1 -b_dm_plex_box_faces 1 -b_density 1 -b_youngs_modulus 1 -b_initial_displacement 0.01*(x-0.5) -b_mass_type consistent -time_end 1"
@@ -190,3 +193,34 @@ def test_usage(call, capsys):
         with pytest.raises(SystemExit, match="2"):
             call(convergence, *words)
         assert message in capsys.readouterr().err
+
+
+@pytest.fixture
+def drawn(monkeypatch):
+    """drawn(draw, ...) -> labels and titles of the axes of a figure, whose picture is not made"""
+    figures = []
+    monkeypatch.setattr(Figure, "savefig", lambda figure, *_, **__: figures.append(figure))
+
+    def run(draw, *arguments, **more):
+        draw(*arguments, **more)
+        return {text for axes in figures.pop().axes for text in (axes.get_xlabel(), axes.get_ylabel(), axes.get_title()) if text}
+
+    return run
+
+
+@pytest.mark.parametrize(
+    "units, force, energy, gap, position, time",
+    [
+        ("SI", "force [N]", "energy [J]", "gap [mm]", "position [mm]", "time [µs]"),
+        ("mm-t-s", "force [N]", "energy [mJ]", "gap [mm]", "position [mm]", "time [µs]"),
+        ("none", "force", "energy", "gap", "position", "time"),
+    ],
+)
+def test_axes_are_labelled_in_the_units_of_the_run(units, force, energy, gap, position, time, shared_run, drawn):
+    """The high-speed impact, whose force is 100, energy 1.25, gap 0.04 and position 0.27 of whatever the units are, in 1e-3 s: a unit with a prefix takes no other."""
+    path = shared_run(f"{DEFAULTS} -units {units} -exact none -time_step 1e-6").folder / "history.h5"
+    run = impakt_results.read(path)
+    assert {force, gap, time, "nodes [1]"} <= drawn(history.draw, path, path="-")
+    assert {force, energy, position, time} <= drawn(impact.draw, path, path="-")
+    assert {force, energy, gap, time} <= drawn(compare.draw, run, run, "-")
+    assert compare.labelled("at time", "" if units == "none" else "s") in compare.table(compare.differences(run, run), run.units["time"])

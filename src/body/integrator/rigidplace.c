@@ -1,5 +1,6 @@
 /* Where a rigid body is and how it moves, from its nodes, and the nodes from that; momenta, resultants of forces, inertia. */
 #include "rigidimpl.h"
+#include <sys/units.h>
 
 /* What the integrator knows of the body */
 BodyRigid *BodyGetRigid(Body body)
@@ -262,15 +263,17 @@ PetscErrorCode BodyRigidMeasure(Body body, BodyMeasures *measures)
 PetscErrorCode BodyRigidView(Body body, PetscViewer viewer)
 {
   const PetscReal *J = BodyGetRigid(body)->inertia;
+  Units            units;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  rigid, centre of mass (%g, %g, %g) m\n", (double)body->mass.centre[0],
-                                   (double)body->mass.centre[1], (double)body->mass.centre[2]));
+  PetscCall(UnitsGet((PetscObject)body, &units));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  rigid, centre of mass (%g, %g, %g)%s\n", (double)body->mass.centre[0],
+                                   (double)body->mass.centre[1], (double)body->mass.centre[2], UnitsText(units, UNIT_LENGTH)));
   if (BodyGetRigid(body)->turns && body->mesh.dim == 2)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  moment of inertia %g kg m^2\n", (double)J[8]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  moment of inertia %g%s\n", (double)J[8], UnitsText(units, UNIT_INERTIA)));
   if (BodyGetRigid(body)->turns && body->mesh.dim == 3)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  inertia xx %g, yy %g, zz %g, xy %g, yz %g, xz %g kg m^2\n", (double)J[0], (double)J[4],
-                                     (double)J[8], (double)J[1], (double)J[5], (double)J[2]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  inertia xx %g, yy %g, zz %g, xy %g, yz %g, xz %g%s\n", (double)J[0], (double)J[4],
+                                     (double)J[8], (double)J[1], (double)J[5], (double)J[2], UnitsText(units, UNIT_INERTIA)));
   if (BodyIsLed(body)) PetscCall(PetscViewerASCIIPrintf(viewer, "  led by formulas\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

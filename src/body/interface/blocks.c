@@ -2,6 +2,7 @@
 #include <body/layout/bodyimpl.h>
 #include <impakt/mesh.h>
 #include <sys/names.h>
+#include <sys/units.h>
 
 /*@C
   BodySetBlockMaterial - gives a block of the mesh a material of its own
@@ -292,11 +293,13 @@ PetscErrorCode BodyComputeBlockMass(Body body)
 PetscErrorCode BodyViewBlocks(Body body, PetscViewer viewer)
 {
   const BodyBlocks *blocks = &body->model.blocks;
+  const char       *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)body, UNIT_MASS, &unit));
   for (PetscInt k = 0; k < blocks->n; k++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s%s: %s, mass %g kg\n", k < blocks->given ? "block " : "the rest", blocks->names[k],
-                                     ((PetscObject)blocks->materials[k])->type_name, (double)blocks->mass[k]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %s%s: %s, mass %g%s\n", k < blocks->given ? "block " : "the rest", blocks->names[k],
+                                     ((PetscObject)blocks->materials[k])->type_name, (double)blocks->mass[k], unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

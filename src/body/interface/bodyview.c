@@ -1,26 +1,31 @@
 /* What a body tells about itself. */
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
+#include <sys/units.h>
 
 /* Where the body is */
 static PetscErrorCode ViewBox(Body body, PetscViewer viewer)
 {
-  PetscReal box[6];
+  PetscReal   box[6];
+  const char *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)body, UNIT_LENGTH, &unit));
   PetscCall(BodyGetAllBoxes(1, &body, box));
   for (PetscInt d = 0; d < body->mesh.dim; d++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "%s %c from %.6g to %.6g", d ? "," : " ", "xyz"[d], (double)box[d], (double)-box[3 + d]));
-  PetscCall(PetscViewerASCIIPrintf(viewer, " m\n"));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%s\n", unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What there is to tell of bodies in two and three dimensions */
 static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 {
-  PetscInt count = body->model.element->count;
+  PetscInt    count = body->model.element->count;
+  const char *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)body, UNIT_TIME, &unit));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   if (body->model.element->composite)
     PetscCall(PetscViewerASCIIPrintf(
@@ -29,7 +34,7 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
   else PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->mesh.cell_shape]));
   if (body->integrator->ops.view) PetscCall((*body->integrator->ops.view)(body, viewer));
   if (body->integrator->needs_stable_step)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g s\n", (double)body->time.stable_step));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g%s\n", (double)body->time.stable_step, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,14 +42,16 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 static PetscErrorCode ViewLayer(Body body, PetscViewer viewer)
 {
   const BodyMass *mass = &body->mass;
+  const char     *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)body, UNIT_LENGTH, &unit));
   if (mass->least_factor == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: factor %g to %g on the masses that are left\n",
                                    (double)mass->least_factor, (double)mass->largest_factor));
   if (mass->shift[0] != 0 || mass->shift[1] != 0 || mass->shift[2] != 0)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g) m\n", (double)mass->shift[0],
-                                     (double)mass->shift[1], (double)mass->shift[2]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g)%s\n", (double)mass->shift[0],
+                                     (double)mass->shift[1], (double)mass->shift[2], unit));
   if (mass->inertia_error != 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: moments of inertia changed by up to %g %%\n",
                                      100 * (double)mass->inertia_error));
@@ -69,9 +76,11 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   TSType    type;
   PetscInt  dofs;
   PetscBool ascii;
+  Units     units;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(UnitsGet((PetscObject)body, &units));
   if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)body), &viewer));
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
@@ -80,12 +89,13 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   PetscCall(VecGetSize(body->mesh.positions, &dofs));
   PetscCall(TSGetType(body->time.ts, &type));
   PetscCall(PetscViewerASCIIPrintf(
-      viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g kg (%s%s), %s, %" PetscInt_FMT " substep%s of %g s\n", body->hdr.name,
-      dofs, (double)body->mass.total, BodyMassTypes[body->mass.type],
+      viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g%s (%s%s), %s, %" PetscInt_FMT " substep%s of %g%s\n", body->hdr.name,
+      dofs, (double)body->mass.total, UnitsText(units, UNIT_MASS), BodyMassTypes[body->mass.type],
       body->mass.redistribute && (body->rows.global || body->rows.expected)
           ? (body->rows.tied_mass ? ", tied nodes keep theirs" : ", contact layer massless")
           : "",
-      type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step));
+      type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step,
+      UnitsText(units, UNIT_TIME)));
   PetscCall(ViewBox(body, viewer));
   PetscCall(BodyViewRanks(body, viewer));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
@@ -94,9 +104,10 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   PetscCall(BodyViewDamping(body, viewer));
   if (body->springs.n)
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  floating, held by contact or ties alone: artificial springs of %g N/m on %" PetscInt_FMT
+                                     "  floating, held by contact or ties alone: artificial springs of %g%s on %" PetscInt_FMT
                                      " displacement%s, moved until they do not pull; motions that nothing drives stay as they are\n",
-                                     (double)body->springs.stiffness, body->springs.n, body->springs.n == 1 ? "" : "s"));
+                                     (double)body->springs.stiffness, UnitsText(units, UNIT_STIFFNESS), body->springs.n,
+                                     body->springs.n == 1 ? "" : "s"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

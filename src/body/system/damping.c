@@ -10,6 +10,7 @@
    and Lagrange's strain E. It is K v at small displacements, takes no energy from a body that turns, and never brings any.
 */
 #include <body/layout/bodyimpl.h>
+#include <sys/units.h>
 
 struct _BodyDamping {
   PetscReal mass, stiffness; /* alpha [1/s], beta [s] */
@@ -106,11 +107,13 @@ PetscBool BodyIsDamped(Body body)
 PetscErrorCode BodyViewDamping(Body body, PetscViewer viewer)
 {
   const struct _BodyDamping *damping = body->damping;
+  Units                      units;
 
   PetscFunctionBegin;
   if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  Rayleigh damping: %g 1/s of the mass, %g s of the stiffness", (double)damping->mass,
-                                   (double)damping->stiffness));
+  PetscCall(UnitsGet((PetscObject)body, &units));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  Rayleigh damping: %g%s of the mass, %g%s of the stiffness", (double)damping->mass,
+                                   UnitsText(units, UNIT_RATE), (double)damping->stiffness, UnitsText(units, UNIT_TIME)));
   if (damping->counts[0] < damping->counts[1])
     PetscCall(PetscViewerASCIIPrintf(viewer, " in %" PetscInt_FMT " elements, those at massless nodes left out", damping->counts[0]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));

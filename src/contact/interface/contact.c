@@ -2,6 +2,7 @@
 #include <contact/parts.h>
 #include <sys/names.h>
 #include <sys/stages.h>
+#include <sys/units.h>
 
 /* Pairs whose names are printed */
 #define MOST_NAMED 50
@@ -287,10 +288,11 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
 {
   const PetscInt    n       = PetscMin(contact->n_pairs, MOST_NAMED);
   PetscInt          nearest = 0;
-  const char       *between = "";
+  const char       *between = "", *unit;
   ContactPairState *states;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(PetscMalloc1(n, &states));
   PetscCall(ContactComputePairStates(contact, 0, n, states));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  smallest distance%s:", n > MOST_DISTANCES ? " (of chosen pairs that of the nearest)" : ""));
@@ -302,7 +304,7 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
     if (n > MOST_DISTANCES && pair->chosen && p != nearest) continue;
     PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s ", between, pair->name));
     between = ",";
-    if (states[p].gap < CONTACT_NO_GAP) PetscCall(PetscViewerASCIIPrintf(viewer, "%.4g m", (double)states[p].gap));
+    if (states[p].gap < CONTACT_NO_GAP) PetscCall(PetscViewerASCIIPrintf(viewer, "%.4g%s", (double)states[p].gap, unit));
     else PetscCall(PetscViewerASCIIPrintf(viewer, "nothing lies opposite"));
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));

@@ -1,6 +1,7 @@
 /* Coulomb's law: the force across the normal is at most a coefficient times the normal force. The coefficient may fall with the speed of
    sliding. */
 #include "friction.h"
+#include <sys/units.h>
 
 /* Of nodes of a pair that stick */
 static PetscReal GetStatic(Contact contact, const ContactPair *pair)
@@ -47,14 +48,17 @@ static void GetLimit(Contact contact, const void *data, PetscInt row, PetscReal 
 
 static PetscErrorCode View(Contact contact, const void *data, PetscViewer viewer)
 {
+  const char *unit;
+
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)contact, UNIT_SLOWNESS, &unit));
   (void)data;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  coefficient of friction of %s: %g\n", contact->pairs[p].name,
                                      (double)GetStatic(contact, &contact->pairs[p])));
   if (contact->options.friction_kinetic >= 0)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  falls to %g as exp(-%g s/m times the speed of sliding)\n",
-                                     (double)contact->options.friction_kinetic, (double)contact->options.friction_decay));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  falls to %g as exp(-%g%s times the speed of sliding)\n",
+                                     (double)contact->options.friction_kinetic, (double)contact->options.friction_decay, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

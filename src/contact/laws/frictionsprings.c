@@ -1,6 +1,7 @@
 /* Springs between both sides of each row, which penalty methods have: forces stretch them, along the normals and across. */
 #include "frictionstep.h"
 #include <checkpoint/checkpoint.h>
+#include <sys/units.h>
 
 /* Stiffness of springs from the areas of the rows as they are */
 PetscErrorCode FrictionSetUpSprings(Contact contact)
@@ -80,16 +81,19 @@ PetscErrorCode FrictionVisit(Contact contact, Checkpoint checkpoint)
 PetscErrorCode FrictionViewSprings(Contact contact, PetscViewer viewer)
 {
   const FrictionStep *step = (const FrictionStep *)contact->data;
+  Units               units;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGet((PetscObject)contact, &units));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscReal parameter, scale;
 
     PetscCall((*step->springs.getparameter)(contact, &contact->pairs[p], step->springs.penalty, step->springs.scale, &parameter, &scale));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g N/m^3, along the normals and across them\n",
-                                     contact->pairs[p].name, (double)parameter));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g%s, along the normals and across them\n", contact->pairs[p].name,
+                                     (double)parameter, UnitsText(units, UNIT_STIFFNESS_ON_AREA)));
   }
   if (step->springs.max_it)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until gaps and slips are within %g m\n", (double)step->springs.tolerance));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until gaps and slips are within %g%s\n", (double)step->springs.tolerance,
+                                     UnitsText(units, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,6 +6,7 @@
 */
 #include "frictionstep.h"
 #include <contact/compliance/augmentation.h>
+#include <sys/units.h>
 
 /* Rows up to which S is a matrix, and up to which it is so whatever products with it cost */
 #define DENSE_LIMIT 2000
@@ -239,10 +240,12 @@ static PetscErrorCode Step(Contact contact)
 static PetscErrorCode View(Contact contact, PetscViewer viewer)
 {
   const FrictionStep *step = (const FrictionStep *)contact->data;
+  const char         *unit;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  contact forces at the end of the step from the compliance of the interface, to %g m\n",
-                                   (double)step->atol));
+  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  contact forces at the end of the step from the compliance of the interface, to %g%s\n",
+                                   (double)step->atol, unit));
   if (step->has_springs) PetscCall(FrictionViewSprings(contact, viewer));
   if (contact->friction.law.view) PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);

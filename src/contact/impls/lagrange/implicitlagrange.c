@@ -9,6 +9,7 @@
 */
 #include "lagrangeimpl.h"
 #include <checkpoint/checkpoint.h>
+#include <sys/units.h>
 
 /* Whether impulses correct the velocities, beside the forces of the step */
 static PetscBool HasImpulses(const ImplicitLagrange *lagrange)
@@ -86,11 +87,13 @@ static PetscErrorCode ContactView_ImplicitLagrange(Contact contact, PetscViewer 
 {
   const ImplicitLagrange *lagrange = (const ImplicitLagrange *)contact->data;
   SNESType                type;
+  const char             *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(SNESGetType(lagrange->outer.snes, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s on the forces at the end of the step, tolerances %g m and %g relative\n",
-                                   type, (double)lagrange->atol, (double)lagrange->rtol));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s on the forces at the end of the step, tolerances %g%s and %g relative\n",
+                                   type, (double)lagrange->atol, unit, (double)lagrange->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,6 +6,7 @@
 */
 #include "penaltyimpl.h"
 #include <contact/compliance/augmentation.h>
+#include <sys/units.h>
 
 /* Each augmentation makes the gap smaller by 1 / (1 + tau A W): where a soft spring has tau A W = 1/10, 200 of them do by 2e8 */
 #define AUGMENTATION_MAX_IT 200
@@ -92,10 +93,12 @@ static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
 static PetscErrorCode ContactView_AugmentedLagrangian(Contact contact, PetscViewer viewer)
 {
   const Penalty *penalty = (const Penalty *)contact->data;
+  const char    *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(PenaltyViewParameter(contact, viewer));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until the gap is within %g m\n", (double)penalty->augmentation_tolerance));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until the gap is within %g%s\n", (double)penalty->augmentation_tolerance, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

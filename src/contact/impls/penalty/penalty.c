@@ -15,6 +15,7 @@
 #include <checkpoint/checkpoint.h>
 #include <sys/petsccompat.h>
 #include <stddef.h>
+#include <sys/units.h>
 
 /* Relative tolerance on contact forces, for which the method itself leaves 1e-3 and more of penetration */
 #define FORCE_RTOL 1e-9
@@ -347,11 +348,12 @@ static PetscErrorCode ContactStep_Penalty(Contact contact)
 static PetscErrorCode ContactView_Penalty(Contact contact, PetscViewer viewer)
 {
   const Penalty *penalty = (const Penalty *)contact->data;
+  const char    *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)contact, contact->dim == 1 ? UNIT_DASHPOT : UNIT_DASHPOT_ON_AREA, &unit));
   PetscCall(PenaltyViewParameter(contact, viewer));
-  if (penalty->damping > 0)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  damping %g %s\n", (double)penalty->damping, contact->dim == 1 ? "N s/m" : "N s/m^3"));
+  if (penalty->damping > 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  damping %g%s\n", (double)penalty->damping, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

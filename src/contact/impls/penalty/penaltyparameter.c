@@ -1,5 +1,6 @@
 /* How stiff the springs and dampers of the penalty method are, and whether explicit steps stand them. */
 #include "penaltyimpl.h"
+#include <sys/units.h>
 
 /* Penalty parameter relative to that of an element on each side, one behind the other. Two plane strain blocks that meet at 100 m/s
    (explicit at their stable steps, lumped mass), scale: largest penetration in elements, energy gained, contact force's scatter to mean:
@@ -151,18 +152,19 @@ PetscErrorCode PenaltySetUpSprings(Contact contact)
 PetscErrorCode PenaltyViewParameter(Contact contact, PetscViewer viewer)
 {
   const Penalty *penalty = (const Penalty *)contact->data;
-  const char    *unit    = contact->dim == 1 ? "N/m" : "N/m^3";
+  const char    *unit;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)contact, contact->dim == 1 ? UNIT_STIFFNESS : UNIT_STIFFNESS_ON_AREA, &unit));
   if (!penalty->springs || penalty->penalty > 0) {
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g %s\n", (double)penalty->penalty, unit));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g%s\n", (double)penalty->penalty, unit));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscReal parameter, scale;
 
     PetscCall(GetPairPenalty(contact, &contact->pairs[p], &parameter, &scale));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g %s, %g times the stiffness of the elements\n",
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g%s, %g times the stiffness of the elements\n",
                                      contact->pairs[p].name, (double)parameter, unit, (double)scale));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

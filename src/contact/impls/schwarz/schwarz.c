@@ -3,6 +3,7 @@
 #include <sys/citations.h>
 #include <sys/petsccompat.h>
 #include <stddef.h>
+#include <sys/units.h>
 
 /* Interface unknowns up to which matrices are dense: their factors take 32 MB on every rank then */
 #define DENSE_LIMIT 2000
@@ -185,16 +186,18 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
 static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
+  const char    *unit;
   SNESType       type;
 
   PetscFunctionBegin;
+  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(SNESGetType(schwarz->outer.snes, &type));
   PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  outer iteration %s%s%s, %s conditions, %s traction, %s predictor, tolerances %g m and %g relative\n", type,
+      viewer, "  outer iteration %s%s%s, %s conditions, %s traction, %s predictor, tolerances %g%s and %g relative\n", type,
       schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN ? " (Aitken)" : "",
       schwarz->sweep == SCHWARZ_SWEEP_ADDITIVE ? ", additive sweeps" : "", Transmissions[schwarz->transmission],
       schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole",
-      Predictors[schwarz->predictor], (double)schwarz->atol, (double)schwarz->rtol));
+      Predictors[schwarz->predictor], (double)schwarz->atol, unit, (double)schwarz->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

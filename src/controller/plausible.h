@@ -1,0 +1,7 @@
+/* Whether the numbers of a body fit the set of units. Private to src/controller and src/io. */
+#pragma once
+#include <impakt/body.h>
+
+#define DOUBT_SIZE 400
+
+PETSC_INTERN PetscErrorCode BodyDoubtUnits(Body, char[DOUBT_SIZE]);
