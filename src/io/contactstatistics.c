@@ -14,6 +14,7 @@ static void Initialize(ContactStatistics *contact)
   contact->force_mean         = NAN;
   contact->force_std          = NAN;
   contact->force_min          = NAN;
+  contact->resultant_mean     = NAN;
   contact->gap_final          = NAN;
   contact->gap_min            = PETSC_INFINITY;
 }
@@ -39,24 +40,31 @@ static void AddContact(ContactStatistics *contact, ContactMemory *memory, const 
   }
   /* the forces at both ends of a step do not tell what those inside have done, where it is cut or bodies have times in common there */
   contact->impulse += state->normal_impulse - memory->impulse;
-  memory->impulse        = state->normal_impulse;
-  contact->force_peak    = PetscMax(contact->force_peak, state->force);
-  contact->tension_max   = PetscMax(contact->tension_max, state->tension);
-  contact->gap_min       = PetscMin(contact->gap_min, state->gap);
-  contact->area_max      = PetscMax(contact->area_max, state->area);
-  contact->active_max    = PetscMax(contact->active_max, state->active);
-  contact->sliding_max   = PetscMax(contact->sliding_max, state->sliding);
-  contact->friction_loss = state->friction_loss;
-  contact->obstacle_work = state->obstacle_work;
-  for (PetscInt d = 0; d < 3; d++) contact->impulse_vector[d] = state->impulse[d];
+  memory->impulse = state->normal_impulse;
+  memory->steps   = touches ? memory->steps + 1 : 0;
+  if (state->force > contact->force_peak) contact->peak_step = memory->steps;
+  contact->force_peak     = PetscMax(contact->force_peak, state->force);
+  contact->force_final    = state->force;
+  contact->resultant_peak = PetscMax(contact->resultant_peak, StatisticsNorm(state->force_vector));
+  contact->tension_max    = PetscMax(contact->tension_max, state->tension);
+  contact->gap_min        = PetscMin(contact->gap_min, state->gap);
+  contact->area_max       = PetscMax(contact->area_max, state->area);
+  contact->active_max     = PetscMax(contact->active_max, state->active);
+  contact->sliding_max    = PetscMax(contact->sliding_max, state->sliding);
+  contact->friction_loss  = state->friction_loss;
+  contact->obstacle_work  = state->obstacle_work;
+  for (PetscInt d = 0; d < 3; d++) {
+    contact->resultant[d]      = state->force_vector[d];
+    contact->impulse_vector[d] = state->impulse[d];
+  }
   contact->gap_final = state->gap;
   memory->touches    = touches;
 }
 
-/* Appends time, forces and nodes in contact of a step to the series */
+/* Appends time, forces, resultants and nodes in contact of a step to the series */
 static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
 {
-  const PetscInt width = 1 + 2 * frame->n_pairs;
+  const PetscInt width = 1 + STATISTICS_SERIES * frame->n_pairs;
   PetscReal     *next;
 
   PetscFunctionBegin;
@@ -68,6 +76,7 @@ static PetscErrorCode AddToSeries(Statistics s, const ControllerFrame *frame)
   *next++ = frame->time;
   for (PetscInt i = 0; i < frame->n_pairs; i++) {
     *next++ = frame->pairs[i].force;
+    *next++ = StatisticsNorm(frame->pairs[i].force_vector);
     *next++ = (PetscReal)frame->pairs[i].active;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -101,28 +110,32 @@ PetscErrorCode StatisticsAddContact(Statistics s, const ControllerFrame *frame)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean, standard deviation and minimum of a pair's force over the middle three fifths of the time from first contact to release */
+/* Mean, standard deviation and minimum of a pair's force, and the mean of its resultant, over the middle three fifths of the time from
+ * first contact to release */
 void StatisticsComputeForces(Statistics s, PetscInt pair)
 {
   ContactStatistics *contact  = &s->results.pairs[pair];
-  const size_t       width    = 1 + 2 * (size_t)s->results.n_pairs;
+  const size_t       width    = 1 + STATISTICS_SERIES * (size_t)s->results.n_pairs;
   const PetscReal    duration = contact->release_time - contact->first_contact_time;
   const PetscReal    begin    = contact->first_contact_time + FORCE_MARGIN * duration - TIME_ROUND_OFF * duration;
   const PetscReal    end      = contact->first_contact_time + (1 - FORCE_MARGIN) * duration + TIME_ROUND_OFF * duration;
   PetscInt           n        = 0;
-  PetscReal          mean = 0, squares = 0, minimum = NAN;
+  PetscReal          mean = 0, squares = 0, resultant = 0, minimum = NAN;
 
   for (PetscInt i = 0; i < s->n_series; i++) {
-    const PetscReal *record = s->series + (size_t)i * width, force = record[1 + 2 * pair], change = force - mean;
+    const PetscReal *record = s->series + (size_t)i * width, *of_pair = record + 1 + STATISTICS_SERIES * pair;
+    const PetscReal  force = of_pair[0], change = force - mean;
 
     if (!(record[0] >= begin && record[0] <= end)) continue;
     n++;
     mean += change / (PetscReal)n; /* Welford's recurrence, which does not cancel if the scatter is small */
     squares += change * (force - mean);
-    if (record[2 + 2 * pair] > 0 && !(force >= minimum)) minimum = force;
+    resultant += (of_pair[1] - resultant) / (PetscReal)n;
+    if (of_pair[2] > 0 && !(force >= minimum)) minimum = force;
   }
   if (!n) return;
-  contact->force_mean = mean;
-  contact->force_std  = PetscSqrtReal(squares / (PetscReal)n);
-  contact->force_min  = minimum;
+  contact->force_mean     = mean;
+  contact->force_std      = PetscSqrtReal(squares / (PetscReal)n);
+  contact->force_min      = minimum;
+  contact->resultant_mean = resultant;
 }

@@ -223,7 +223,7 @@ PetscErrorCode OutputReport(Output output)
   PetscCall(VerdictMake(output->controller, results, &verdict));
   if (output->summary_path[0]) PetscCall(SummaryWrite(output->controller, results, output->exact, &verdict, output->summary_path));
   PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)output), &viewer));
-  PetscCall(ReportView(output->controller, results, output->exact, viewer));
+  PetscCall(ReportView(output->controller, results, output->exact, &verdict, viewer));
   PetscCall(OutputView(output, viewer));
   PetscCall(VerdictPrint(PetscObjectComm((PetscObject)output), &verdict));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -255,6 +255,9 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   if (output->history || output->summary_path[0] || output->fields || output->checkpoints.path[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "files\n"));
+  if (!output->history && !output->summary_path[0] && !output->fields)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "not written: history, summary and fields; -output_history h.h5 -output_summary s.json "
+                                             "-output_fields f.h5 write them\n"));
   if (output->history) {
     PetscCall(HistoryGetPath(output->history, &path));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", path));

@@ -3,138 +3,226 @@
 #include "ranks.h"
 #include <math.h>
 #include <sys/stages.h>
+#include <sys/units.h>
 
 /* Times of first contact below this part of the duration of contact are printed as 0: round-off of start + gap / speed */
 #define ROUND_OFF 1e-12
 
+/* Pairs whose forces are printed; the summary has those of all */
+#define MOST_PAIRS 8
+/* A force peak of so many times the mean, in one of the first steps in which bodies touch, is told of. The mean of fewer steps says little.
+ */
+#define PEAK_FACTOR 2
+#define PEAK_STEPS  3
+#define MEAN_STEPS  10
+
+typedef struct {
+  PetscViewer              viewer;
+  const StatisticsResults *results;
+  ControllerStatics        statics;
+  Units                    units;
+} Report;
+
 /* Prints a line with a value and, if there is one, the exact value beside it */
-static PetscErrorCode PrintValue(PetscViewer viewer, const char name[], PetscReal value, const char unit[], PetscReal exact)
+static PetscErrorCode PrintText(const Report *report, const char name[], PetscReal value, const char unit[], PetscReal exact)
 {
   PetscFunctionBegin;
-  if (PetscIsInfOrNanReal(value)) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13s\n", name, "none"));
-  else if (PetscIsInfOrNanReal(exact)) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13.6g %s\n", name, (double)value, unit));
-  else PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13.6g %-4s exact %.6g\n", name, (double)value, unit, (double)exact));
+  if (PetscIsInfOrNanReal(value)) PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32s %13s\n", name, "none"));
+  else if (PetscIsInfOrNanReal(exact)) PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32s %13.6g%s\n", name, (double)value, unit));
+  else PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32s %13.6g%-5s exact %.6g\n", name, (double)value, unit, (double)exact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PrintCount(PetscViewer viewer, const char name[], PetscInt count, PetscInt of)
+static PetscErrorCode PrintValue(const Report *report, const char name[], PetscReal value, UnitDimension dimension, PetscReal exact)
 {
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13" PetscInt_FMT, name, count));
-  if (of >= 0) PetscCall(PetscViewerASCIIPrintf(viewer, " of %" PetscInt_FMT, of));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+  PetscCall(PrintText(report, name, value, UnitsText(report->units, dimension), exact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PrintPercent(PetscViewer viewer, const char name[], PetscReal value)
+static PetscErrorCode PrintPercent(const Report *report, const char name[], PetscReal value)
 {
   PetscFunctionBegin;
-  PetscCall(PrintValue(viewer, name, 100 * value, "%", NAN));
+  PetscCall(PrintText(report, name, 100 * value, " %", NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether no body has inertia: then the time of the run means nothing, nor does the impulse of a force */
-static PetscErrorCode AllStatic(PetscInt n, const Body bodies[], PetscBool *all)
+static PetscErrorCode PrintCount(const Report *report, const char name[], PetscInt count, PetscInt of)
 {
   PetscFunctionBegin;
-  *all = PETSC_TRUE;
-  for (PetscInt i = 0; i < n && *all; i++) PetscCall(BodyIsStatic(bodies[i], all));
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32s %13" PetscInt_FMT, name, count));
+  if (of >= 0) PetscCall(PetscViewerASCIIPrintf(report->viewer, " of %" PetscInt_FMT, of));
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewContact(Contact contact, const Body bodies[], const StatisticsResults *results, Exact exact, PetscViewer viewer)
+/* When bodies touched. In statics, time only counts loads: that they touch from the first load step to the last is told by their number. */
+static PetscErrorCode ViewTimes(const Report *report, Exact exact)
 {
-  const ContactStatistics *c     = &results->contact;
-  PetscReal                onset = c->times.onset, impact = NAN, release = NAN, force = NAN, impulse = NAN;
-  ContactType              type;
-  ContactLaw               law;
-  PetscBool                all_static;
+  const ContactStatistics *c      = &report->results->contact;
+  const PetscBool          always = (PetscBool)(report->statics.all && c->steps_in_contact == report->results->steps);
+  PetscReal                onset = c->times.onset, impact = NAN, release = NAN;
 
   PetscFunctionBegin;
-  PetscCall(AllStatic(results->n_bodies, bodies, &all_static));
   if (exact) {
     PetscCall(ExactGetTimes(exact, &impact, &release));
-    PetscCall(ExactGetForce(exact, &force));
-    PetscCall(ExactGetImpulse(exact, &impulse));
     if (PetscAbsReal(impact) < ROUND_OFF * (release - impact)) impact = 0;
   }
-  PetscCall(ContactGetType(contact, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "contact (%s)\n", type));
   if (PetscAbsReal(onset) < ROUND_OFF * (c->release_time - onset)) onset = 0;
-  PetscCall(PrintValue(viewer, "first contact", onset, "s", impact));
-  if (c->times.in_contact_at_end) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s still in contact\n", "release"));
-  else PetscCall(PrintValue(viewer, "release", c->times.separation, "s", release));
-  PetscCall(PrintCount(viewer, "onsets", c->onsets, -1));
-  PetscCall(PrintCount(viewer, "steps in contact", c->steps_in_contact, results->steps));
-  PetscCall(PrintValue(viewer, "force, mean", c->force_mean, "N", force));
-  PetscCall(PrintValue(viewer, "force, standard deviation", c->force_std, "N", NAN));
-  PetscCall(PrintValue(viewer, "force, peak", c->force_peak, "N", NAN));
-  PetscCall(ContactGetLaw(contact, &law));
-  if (law != CONTACT_LAW_FRICTIONLESS) PetscCall(PrintValue(viewer, "tension of a node, peak", c->tension_max, "N", NAN));
-  if (!all_static) PetscCall(PrintValue(viewer, "impulse", c->impulse, "N s", impulse));
-  PetscCall(PrintValue(viewer, "largest penetration", PetscMax(0, -c->gap_min), "m", NAN));
-  if (law == CONTACT_LAW_FRICTION) PetscCall(PrintValue(viewer, "energy taken by friction", c->friction_loss, "J", NAN));
+  if (!always) PetscCall(PrintValue(report, "first contact", onset, UNIT_TIME, impact));
+  if (!always && c->times.in_contact_at_end) PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32s still in contact\n", "release"));
+  else if (!always) PetscCall(PrintValue(report, "release", c->times.separation, UNIT_TIME, release));
+  if (!always) PetscCall(PrintCount(report, "onsets", c->onsets, -1));
+  PetscCall(PrintCount(report, "steps in contact", c->steps_in_contact, report->results->steps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewSweeps(Controller controller, Contact contact, const StatisticsResults *results, PetscViewer viewer)
+static PetscErrorCode ViewContact(const Report *report, Contact contact, Exact exact)
 {
-  ContactCounts  counts;
-  ControllerCuts cuts;
+  const ContactStatistics *c       = &report->results->contact;
+  PetscReal                impulse = NAN;
+  ContactType              type;
+  ContactLaw               law;
+
+  PetscFunctionBegin;
+  if (exact) PetscCall(ExactGetImpulse(exact, &impulse));
+  PetscCall(ContactGetType(contact, &type));
+  PetscCall(ContactGetLaw(contact, &law));
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "contact (%s)\n", type));
+  PetscCall(ViewTimes(report, exact));
+  if (law != CONTACT_LAW_FRICTIONLESS) PetscCall(PrintValue(report, "tension of a node, peak", c->tension_max, UNIT_FORCE, NAN));
+  if (!report->statics.all) PetscCall(PrintValue(report, "impulse along the normals", c->impulse, UNIT_IMPULSE, impulse));
+  PetscCall(PrintValue(report, "largest penetration", PetscMax(0, -c->gap_min), UNIT_LENGTH, NAN));
+  if (law == CONTACT_LAW_FRICTION) PetscCall(PrintValue(report, "energy taken by friction", c->friction_loss, UNIT_ENERGY, NAN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A line with the sum of a pair's forces along the normals of the nodes, and the magnitude of their sum as vectors */
+static PetscErrorCode PrintForces(const Report *report, const char name[], PetscReal along, PetscReal resultant, PetscReal exact)
+{
+  const char *unit = UnitsText(report->units, UNIT_FORCE);
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "    %-30s %13.6g%s", name, (double)along, unit));
+  if (!PetscIsInfOrNanReal(resultant)) PetscCall(PetscViewerASCIIPrintf(report->viewer, " %14.6g%s", (double)resultant, unit));
+  if (!PetscIsInfOrNanReal(exact)) PetscCall(PetscViewerASCIIPrintf(report->viewer, "  exact %.6g", (double)exact));
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "\n"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* `exact`: the mean force, or not-a-number */
+static PetscErrorCode ViewPairForces(const Report *report, const char name[], const ContactStatistics *pair, PetscReal exact)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %s\n", name));
+  if (!report->statics.all && !PetscIsNanReal(pair->force_mean)) { /* over time, which statics have not */
+    PetscCall(PrintForces(report, "mean", pair->force_mean, pair->resultant_mean, exact));
+    PetscCall(PrintForces(report, "standard deviation", pair->force_std, NAN, NAN));
+  }
+  PetscCall(PrintForces(report, "peak", pair->force_peak, pair->resultant_peak, NAN));
+  PetscCall(PrintForces(report, "at the end", pair->force_final, StatisticsNorm(pair->resultant), NAN));
+  if (!report->statics.all && pair->steps_in_contact >= MEAN_STEPS && pair->peak_step >= 1 && pair->peak_step <= PEAK_STEPS &&
+      pair->force_mean > 0 && pair->force_peak > PEAK_FACTOR * pair->force_mean)
+    PetscCall(PetscViewerASCIIPrintf(
+        report->viewer,
+        "    the peak is that of step %" PetscInt_FMT " of a contact, %.3g times the mean of %.6g%s: it depends on "
+        "the step, in which contact stops what it meets; take mean and impulse\n",
+        pair->peak_step, (double)(pair->force_peak / pair->force_mean), (double)pair->force_mean, UnitsText(report->units, UNIT_FORCE)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forces of the pairs that touched */
+static PetscErrorCode ViewForces(const Report *report, Contact contact, Exact exact)
+{
+  const char *name;
+  PetscReal   force   = NAN;
+  PetscInt    touched = 0;
+
+  PetscFunctionBegin;
+  if (exact) PetscCall(ExactGetForce(exact, &force));
+  for (PetscInt p = 0; p < report->results->n_pairs; p++) {
+    const ContactStatistics *pair = &report->results->pairs[p];
+
+    if (!pair->steps_in_contact) continue;
+    if (!touched) PetscCall(PetscViewerASCIIPrintf(report->viewer, "contact forces %33s %16s\n", "sum along normals", "resultant"));
+    if (touched++ >= MOST_PAIRS) continue;
+    PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
+    PetscCall(ViewPairForces(report, name, pair, p ? NAN : force));
+  }
+  if (touched > MOST_PAIRS)
+    PetscCall(
+        PetscViewerASCIIPrintf(report->viewer, "  and of %" PetscInt_FMT " more pairs, which -output_summary has\n", touched - MOST_PAIRS));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ViewSweeps(const Report *report, Controller controller, Contact contact)
+{
+  const StatisticsResults *results = report->results;
+  ContactCounts            counts;
+  ControllerCuts           cuts;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetCuts(controller, &cuts));
   PetscCall(ContactGetCounts(contact, &counts));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "sweeps\n"));
-  PetscCall(PrintCount(viewer, "most in a step", results->max_sweeps, -1));
-  PetscCall(PrintValue(viewer, "mean over steps in contact", results->mean_sweeps_contact, "", NAN));
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "sweeps\n"));
+  PetscCall(PrintCount(report, "most in a step", results->max_sweeps, -1));
+  PetscCall(PrintText(report, "mean over steps in contact", results->mean_sweeps_contact, "", NAN));
   if (cuts.cuts) {
-    PetscCall(PrintCount(viewer, "steps made again in halves", cuts.cuts, -1));
-    PetscCall(PrintValue(viewer, "smallest step", cuts.smallest_step, "s", NAN));
+    PetscCall(PrintCount(report, "steps made again in halves", cuts.cuts, -1));
+    PetscCall(PrintValue(report, "smallest step", cuts.smallest_step, UNIT_TIME, NAN));
   }
-  if (counts.unconverged_steps) PetscCall(PrintCount(viewer, "steps that did not converge", counts.unconverged_steps, results->steps));
+  if (counts.unconverged_steps) PetscCall(PrintCount(report, "steps that did not converge", counts.unconverged_steps, results->steps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewEnergies(const Body bodies[], const StatisticsResults *results, PetscViewer viewer)
+static PetscErrorCode ViewEnergies(const Report *report, const Body bodies[])
 {
-  const PetscReal worst = -results->energy_error_min > results->energy_error_max ? results->energy_error_min : results->energy_error_max;
-  const char     *name;
-  PetscInt        dim;
+  const StatisticsResults *results = report->results;
+  const PetscBool          moves   = (PetscBool)!report->statics.some; /* momenta are kept by bodies that all have inertia */
+  const char              *name, *unit = UnitsText(report->units, UNIT_ENERGY);
+  PetscBool                is_static;
+  PetscInt                 dim;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "energy and momentum\n"));
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "energy%s\n", moves ? " and momentum" : ""));
   for (PetscInt i = 0; i < results->n_bodies; i++) {
     const BodyStatistics *body = &results->bodies[i];
 
     PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32.32s %13.6g J kinetic, %.6g J potential at the end\n", name, (double)body->kinetic,
-                                     (double)body->potential));
+    PetscCall(BodyIsStatic(bodies[i], &is_static));
+    if (is_static)
+      PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32.32s %13.6g%s potential at the end\n", name, (double)body->potential, unit));
+    else
+      PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32.32s %13.6g%s kinetic, %.6g%s potential at the end\n", name,
+                                       (double)body->kinetic, unit, (double)body->potential, unit));
     if (!PetscIsNanReal(body->displacement_error))
-      PetscCall(PrintPercent(viewer, "    error of the displacement", body->displacement_error));
+      PetscCall(PrintPercent(report, "    error of the displacement", body->displacement_error));
     if (body->rotation_max > STATISTICS_FAR_TURN)
-      PetscCall(PrintValue(viewer, "    rotation, far for linear", body->rotation_max, "rad", NAN));
-    if (body->external_work != 0) PetscCall(PrintValue(viewer, "    work of its loads", body->external_work, "J", NAN));
-    if (body->damping_work != 0) PetscCall(PrintValue(viewer, "    taken by its damping", body->damping_work, "J", NAN));
-    if (body->plastic_work != 0) PetscCall(PrintValue(viewer, "    taken by plastic flow", body->plastic_work, "J", NAN));
+      PetscCall(PrintValue(report, "    rotation, far for linear", body->rotation_max, UNIT_ANGLE, NAN));
+    if (body->external_work != 0) PetscCall(PrintValue(report, "    work of its loads", body->external_work, UNIT_ENERGY, NAN));
+    if (body->damping_work != 0) PetscCall(PrintValue(report, "    taken by its damping", body->damping_work, UNIT_ENERGY, NAN));
+    if (body->plastic_work != 0) PetscCall(PrintValue(report, "    taken by plastic flow", body->plastic_work, UNIT_ENERGY, NAN));
   }
-  PetscCall(PrintPercent(viewer, "system energy error, worst", worst));
-  PetscCall(PrintPercent(viewer, "system energy error, final", results->energy_error_final));
-  if (!PetscIsInfOrNanReal(results->momentum_error_max))
-    PetscCall(PrintPercent(viewer, "momentum error, worst", results->momentum_error_max));
+  if (report->statics.balanced) PetscCall(PrintPercent(report, "system energy error, worst", StatisticsGetWorstError(results)));
+  if (report->statics.balanced) PetscCall(PrintPercent(report, "system energy error, final", results->energy_error_final));
+  if (moves && !PetscIsInfOrNanReal(results->momentum_error_max))
+    PetscCall(PrintPercent(report, "momentum error, worst", results->momentum_error_max));
   PetscCall(BodyGetDimension(bodies[0], &dim));
-  if (dim > 1 && !PetscIsInfOrNanReal(results->angular_momentum_error_max))
-    PetscCall(PrintPercent(viewer, "angular momentum error, worst", results->angular_momentum_error_max));
+  if (moves && dim > 1 && !PetscIsInfOrNanReal(results->angular_momentum_error_max))
+    PetscCall(PrintPercent(report, "angular momentum error, worst", results->angular_momentum_error_max));
   if (results->penalty_energy_max > 0)
-    PetscCall(PrintValue(viewer, "energy in penalty springs, most", results->penalty_energy_max, "J", NAN));
+    PetscCall(PrintValue(report, "energy in penalty springs, most", results->penalty_energy_max, UNIT_ENERGY, NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What holds the bodies at the end */
-static PetscErrorCode ViewReactions(const Body bodies[], const StatisticsResults *results, PetscViewer viewer)
+static PetscErrorCode ViewReactions(const Report *report, const Body bodies[])
 {
+  const StatisticsResults *results = report->results;
+  const char              *unit    = UnitsText(report->units, UNIT_MOMENT);
+
   PetscFunctionBegin;
-  if (results->n_supports) PetscCall(PetscViewerASCIIPrintf(viewer, "reactions at the end\n"));
+  if (results->n_supports) PetscCall(PetscViewerASCIIPrintf(report->viewer, "reactions at the end\n"));
   for (PetscInt i = 0; i < results->n_supports; i++) {
     const SupportStatistics *support = &results->supports[i];
     const char              *owner   = "";
@@ -149,31 +237,31 @@ static PetscErrorCode ViewReactions(const Body bodies[], const StatisticsResults
     }
     if (support->body >= 0) PetscCall(PetscObjectGetName((PetscObject)bodies[support->body], &owner));
     PetscCall(PetscSNPrintf(name, sizeof(name), "%s%s%s", owner, owner[0] ? "." : "", support->name));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32.32s %13.6g", name, (double)support->force[0]));
-    for (PetscInt d = 1; d < dim; d++) PetscCall(PetscViewerASCIIPrintf(viewer, ", %.6g", (double)support->force[d]));
-    PetscCall(PetscViewerASCIIPrintf(viewer, " N"));
-    if (dim == 2) PetscCall(PetscViewerASCIIPrintf(viewer, "; moment %.6g N m", (double)support->moment[2]));
+    PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32.32s %13.6g", name, (double)support->force[0]));
+    for (PetscInt d = 1; d < dim; d++) PetscCall(PetscViewerASCIIPrintf(report->viewer, ", %.6g", (double)support->force[d]));
+    PetscCall(PetscViewerASCIIPrintf(report->viewer, "%s", UnitsText(report->units, UNIT_FORCE)));
+    if (dim == 2) PetscCall(PetscViewerASCIIPrintf(report->viewer, "; moment %.6g%s", (double)support->moment[2], unit));
     if (dim == 3)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "; moment %.6g, %.6g, %.6g N m", (double)support->moment[0], (double)support->moment[1],
-                                       (double)support->moment[2]));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
+      PetscCall(PetscViewerASCIIPrintf(report->viewer, "; moment %.6g, %.6g, %.6g%s", (double)support->moment[0],
+                                       (double)support->moment[1], (double)support->moment[2], unit));
+    PetscCall(PetscViewerASCIIPrintf(report->viewer, "\n"));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewErrors(Exact exact, PetscViewer viewer)
+static PetscErrorCode ViewErrors(const Report *report, Exact exact)
 {
   ExactErrors errors;
 
   PetscFunctionBegin;
   PetscCall(ExactGetErrors(exact, &errors));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "errors against the exact solution\n"));
-  PetscCall(PrintPercent(viewer, "contact position", errors.contact_position));
-  PetscCall(PrintPercent(viewer, "contact force", errors.contact_force));
-  PetscCall(PrintPercent(viewer, "kinetic energy", errors.kinetic));
-  PetscCall(PrintPercent(viewer, "mean velocity", errors.mean_velocity));
-  PetscCall(PrintPercent(viewer, "peak of the potential energy", errors.peak_potential));
-  PetscCall(PrintPercent(viewer, "release time", errors.release_time));
+  PetscCall(PetscViewerASCIIPrintf(report->viewer, "errors against the exact solution\n"));
+  PetscCall(PrintPercent(report, "contact position", errors.contact_position));
+  PetscCall(PrintPercent(report, "contact force", errors.contact_force));
+  PetscCall(PrintPercent(report, "kinetic energy", errors.kinetic));
+  PetscCall(PrintPercent(report, "mean velocity", errors.mean_velocity));
+  PetscCall(PrintPercent(report, "peak of the potential energy", errors.peak_potential));
+  PetscCall(PrintPercent(report, "release time", errors.release_time));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,28 +274,34 @@ static PetscErrorCode ViewErrors(Exact exact, PetscViewer viewer)
 + controller - the `Controller`, at its end
 . results    - figures of the run
 . exact      - what it was compared with, or `NULL`
+. verdict    - what is amiss with it
 - viewer     - an ASCII viewer
 */
-PetscErrorCode ReportView(Controller controller, const StatisticsResults *results, Exact exact, PetscViewer viewer)
+PetscErrorCode ReportView(Controller controller, const StatisticsResults *results, Exact exact, const Verdict *verdict, PetscViewer viewer)
 {
   Contact        contact;
   const Body    *bodies;
   PetscInt       n;
   PetscLogDouble setup, wall, cpu;
   RanksSummary   ranks;
+  Report         report = {.viewer = viewer, .results = results};
 
   PetscFunctionBegin;
+  PetscCall(UnitsGet((PetscObject)controller, &report.units));
+  PetscCall(ControllerGetStatics(controller, &report.statics));
   PetscCall(ControllerGetBodies(controller, &n, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
   PetscCall(RanksGather(controller, &ranks));
+  PetscCall(VerdictView(controller, results, verdict, viewer));
   if (results->n_pairs) {
-    PetscCall(ViewContact(contact, bodies, results, exact, viewer));
-    PetscCall(ViewSweeps(controller, contact, results, viewer));
+    PetscCall(ViewContact(&report, contact, exact));
+    PetscCall(ViewForces(&report, contact, exact));
+    PetscCall(ViewSweeps(&report, controller, contact));
   }
-  PetscCall(ViewEnergies(bodies, results, viewer));
-  PetscCall(ViewReactions(bodies, results, viewer));
-  if (exact) PetscCall(ViewErrors(exact, viewer));
+  PetscCall(ViewEnergies(&report, bodies));
+  PetscCall(ViewReactions(&report, bodies));
+  if (exact) PetscCall(ViewErrors(&report, exact));
   PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)wall, (double)cpu));
   PetscCall(StagesView(PetscObjectComm((PetscObject)controller), viewer));
   PetscCall(RanksView(&ranks, viewer));

@@ -1,6 +1,6 @@
 /* The results table of a run. */
 #pragma once
 #include <impakt/exact.h>
-#include "statistics.h"
+#include "verdict.h"
 
-PETSC_INTERN PetscErrorCode ReportView(Controller, const StatisticsResults *, Exact, PetscViewer);
+PETSC_INTERN PetscErrorCode ReportView(Controller, const StatisticsResults *, Exact, const Verdict *, PetscViewer);

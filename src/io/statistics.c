@@ -71,19 +71,14 @@ PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
     PetscCall(GetGyration(bodies[i], &s->gyration[i]));
   }
   StatisticsInitializeContact(s);
-  s->capacity = PetscMax(16, SERIES_BYTES / (PetscInt)sizeof(PetscReal) / (1 + 2 * s->results.n_pairs));
-  PetscCall(PetscMalloc1(s->capacity * (1 + 2 * s->results.n_pairs), &s->series));
+  s->capacity = PetscMax(16, SERIES_BYTES / (PetscInt)sizeof(PetscReal) / (1 + STATISTICS_SERIES * s->results.n_pairs));
+  PetscCall(PetscMalloc1(s->capacity * (1 + STATISTICS_SERIES * s->results.n_pairs), &s->series));
   *statistics = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Momentum of a body below this part of (2 m T)^(1/2), which it cannot exceed, is round-off of its parts, as where it only spins */
 #define NO_MOMENTUM 1e-9
-
-static PetscReal Norm(const PetscReal x[3])
-{
-  return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
-}
 
 /* Adds a x b times a factor to c */
 static void AddProduct(PetscReal factor, const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
@@ -132,7 +127,7 @@ static PetscReal FindAngularScale(Statistics s, const ControllerFrame *frame, co
       for (PetscInt d = 0; d < 3; d++) arm[d] = body->place[d] - frame->bodies[j].place[d];
       AddProduct(-1, frame->bodies[j].place, body->momentum, angular);
       AddProduct(-s->mass[i], arm, velocity, angular);
-      largest = PetscMax(largest, Norm(angular));
+      largest = PetscMax(largest, StatisticsNorm(angular));
     }
   }
   return largest;
@@ -144,7 +139,7 @@ static void NoteInitialState(Statistics s, const ControllerFrame *frame)
   PetscReal velocity[3];
 
   for (PetscInt i = 0; i < frame->n_bodies; i++) {
-    const PetscReal momentum = Norm(frame->bodies[i].momentum), most = PetscSqrtReal(2 * s->mass[i] * frame->bodies[i].kinetic);
+    const PetscReal momentum = StatisticsNorm(frame->bodies[i].momentum), most = PetscSqrtReal(2 * s->mass[i] * frame->bodies[i].kinetic);
 
     s->initial_energy[i] = BodyMeasuresGetBalance(&frame->bodies[i]);
     s->momentum_scale += momentum > NO_MOMENTUM * most ? momentum : most;
@@ -201,8 +196,9 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   }
   /* with loads momenta change, and there is nothing to compare them with */
   r->momentum_scale             = s->momentum_scale;
-  r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(Norm(momentum), s->momentum_scale));
-  r->angular_momentum_error_max = s->loaded ? NAN : PetscMax(r->angular_momentum_error_max, Relative(Norm(angular), s->angular_scale));
+  r->momentum_error_max         = s->loaded ? NAN : PetscMax(r->momentum_error_max, Relative(StatisticsNorm(momentum), s->momentum_scale));
+  r->angular_momentum_error_max = s->loaded ? NAN
+                                            : PetscMax(r->angular_momentum_error_max, Relative(StatisticsNorm(angular), s->angular_scale));
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
 }
 
@@ -215,7 +211,7 @@ static void AddSupports(Statistics s, const ControllerFrame *frame)
       support->force[d]  = frame->supports[i].force[d];
       support->moment[d] = frame->supports[i].moment[d];
     }
-    support->force_peak = PetscMax(support->force_peak, Norm(support->force));
+    support->force_peak = PetscMax(support->force_peak, StatisticsNorm(support->force));
   }
 }
 
@@ -315,10 +311,13 @@ PetscErrorCode StatisticsGetResults(Statistics statistics, const StatisticsResul
   }
   PetscCall(ContactTimesGetResults(statistics->times, -1, &r->contact.times));
   if (r->n_pairs) {
-    r->contact.force_mean = r->pairs[0].force_mean;
-    r->contact.force_std  = r->pairs[0].force_std;
-    r->contact.force_min  = r->pairs[0].force_min;
-    r->contact.force_peak = r->pairs[0].force_peak;
+    r->contact.force_mean     = r->pairs[0].force_mean;
+    r->contact.force_std      = r->pairs[0].force_std;
+    r->contact.force_min      = r->pairs[0].force_min;
+    r->contact.force_peak     = r->pairs[0].force_peak;
+    r->contact.force_final    = r->pairs[0].force_final;
+    r->contact.resultant_mean = r->pairs[0].resultant_mean;
+    r->contact.resultant_peak = r->pairs[0].resultant_peak;
   }
   r->mean_sweeps         = r->steps ? (PetscReal)statistics->total_sweeps / (PetscReal)r->steps : 0;
   r->mean_sweeps_contact = r->contact.steps_in_contact ? (PetscReal)statistics->contact_sweeps / (PetscReal)r->contact.steps_in_contact : 0;
@@ -356,7 +355,7 @@ static PetscErrorCode VisitResults(StatisticsResults *results, Checkpoint checkp
 PetscErrorCode StatisticsVisit(Statistics s, Checkpoint checkpoint)
 {
   const PetscInt sizes[] = {s->results.n_pairs, s->results.n_bodies, s->results.n_supports};
-  const PetscInt width   = 1 + 2 * s->results.n_pairs;
+  const PetscInt width   = 1 + STATISTICS_SERIES * s->results.n_pairs;
   PetscReal     *reals[] = {&s->momentum_scale, &s->angular_scale};
 
   PetscFunctionBegin;

@@ -7,7 +7,8 @@
 /* Mean rotation of a linear body from which on the user is warned [rad]: its material counts 1 - cos of the angle as strain, 0.1 % here */
 #define STATISTICS_FAR_TURN 0.05
 
-/* How one pair, or all pairs together, touched. Times and forces are not-a-number if there was no contact. */
+/* How one pair, or all pairs together, touched. Forces are sums over the nodes along their normals; where these differ, they are more than
+   the resultant. Times and forces are not-a-number if there was no contact. */
 typedef struct {
   PetscReal first_contact_time;               /* end of the first controller step in contact [s] */
   PetscReal release_time;                     /* end of the last controller step in contact [s] */
@@ -15,9 +16,13 @@ typedef struct {
   PetscInt  steps_in_contact;                 /* controller steps that end in contact, or have all of it inside */
   PetscReal force_mean, force_std, force_min; /* over the middle 3/5 from first contact to release; minimum: while in contact [N] */
   PetscReal force_peak, tension_max;          /* over the whole run [N] */
+  PetscInt  peak_step;                        /* of the steps in contact since bodies touched, the one with the peak, from 1 */
+  PetscReal force_final;                      /* at the end [N] */
+  PetscReal resultant_mean, resultant_peak;   /* magnitude of the sum of the pair's forces as vectors; as the force's [N] */
   PetscReal impulse;                          /* integral of the force over time, trapezoidal [N s] */
   PetscReal gap_min;                          /* smallest gap at the end of a step; those of rows are means around nodes [m] */
   ContactTimesResults times;                  /* inside controller steps, by interpolation */
+  PetscReal           resultant[3];      /* of the forces on the second body of the pair, at the end; of all pairs together: none [N] */
   PetscReal           impulse_vector[3]; /* of the forces on the second body of the pair, at the end; of all pairs together: none [N s] */
   PetscReal           area_max;          /* in contact at the same time [m^2] */
   PetscInt            active_max;        /* nodes in contact at the same time */
@@ -54,7 +59,7 @@ typedef struct {
 typedef struct {
   PetscInt           steps;
   PetscInt           n_pairs, n_bodies;
-  ContactStatistics  contact; /* of any pair; the force's mean, scatter, minimum and peak are the first pair's */
+  ContactStatistics  contact; /* of any pair; forces but for tension are the first pair's */
   ContactStatistics *pairs;
   BodyStatistics    *bodies;
   PetscInt           n_supports;
@@ -73,6 +78,17 @@ typedef struct {
 } StatisticsResults;
 
 typedef struct _n_Statistics *Statistics;
+
+static inline PetscReal StatisticsNorm(const PetscReal x[3])
+{
+  return PetscSqrtReal(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]);
+}
+
+/* The energy error that is farthest from zero, with its sign */
+static inline PetscReal StatisticsGetWorstError(const StatisticsResults *results)
+{
+  return -results->energy_error_min > results->energy_error_max ? results->energy_error_min : results->energy_error_max;
+}
 
 PETSC_INTERN PetscErrorCode      StatisticsCreate(Controller, Statistics *);
 PETSC_INTERN ControllerMonitorFn StatisticsMonitor;

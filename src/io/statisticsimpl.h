@@ -5,8 +5,12 @@
 /* What is remembered of the last step, for each pair and for all pairs together */
 typedef struct {
   PetscBool touches;
+  PetscInt  steps;   /* in contact since bodies touched */
   PetscReal impulse; /* until then [N s] */
 } ContactMemory;
+
+/* Numbers of a record of the series for each pair */
+#define STATISTICS_SERIES 3
 
 struct _n_Statistics {
   StatisticsResults results;
@@ -29,7 +33,7 @@ struct _n_Statistics {
   PetscReal         angular[3];     /* angular momentum of the system at the start, about its centre of mass [kg m^2/s] */
   PetscReal         angular_scale;  /* the largest of any body about the centre of any at the start, without common motion [kg m^2/s] */
   PetscInt          n_series, capacity;
-  PetscReal        *series; /* from first contact on: time, and for each pair force and nodes in contact */
+  PetscReal        *series; /* from first contact on: time, and for each pair force, resultant and nodes in contact */
 };
 
 PETSC_INTERN void           StatisticsInitializeContact(Statistics);

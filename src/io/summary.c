@@ -4,6 +4,7 @@
 #include "ranks.h"
 #include "summaryimpl.h"
 #include <math.h>
+#include <sys/units.h>
 
 static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatistics *contact, PetscBool friction)
 {
@@ -19,6 +20,9 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscCall(SummarySetReal(object, "force_std", contact->force_std));
   PetscCall(SummarySetReal(object, "force_min", contact->force_min));
   PetscCall(SummarySetReal(object, "force_peak", contact->force_peak));
+  PetscCall(SummarySetReal(object, "force_final", contact->force_final));
+  PetscCall(SummarySetReal(object, "resultant_mean", contact->resultant_mean));
+  PetscCall(SummarySetReal(object, "resultant_peak", contact->resultant_peak));
   PetscCall(SummarySetReal(object, "tension_max", contact->tension_max));
   PetscCall(SummarySetReal(object, "impulse", contact->impulse));
   PetscCall(SummarySetReal(object, "max_penetration", PetscMax(0, -contact->gap_min)));
@@ -93,6 +97,7 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
     PetscCall(SummarySetObject(object, name, &pair));
     PetscCall(SetContactStatistics(pair, &results->pairs[i], friction));
+    PetscCall(SummarySetVector(pair, "resultant", results->pairs[i].resultant));
     PetscCall(SummarySetVector(pair, "impulse_vector", results->pairs[i].impulse_vector));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -312,6 +317,7 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   const Body    *bodies;
   PetscInt       n;
   PetscMPIInt    rank;
+  Units          units;
 
   PetscFunctionBegin;
   PetscCall(RanksGather(controller, &ranks));
@@ -320,7 +326,9 @@ PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *resu
   PetscCall(ControllerGetBodies(controller, &n, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   root = json_object();
+  PetscCall(UnitsGet((PetscObject)controller, &units));
   PetscCall(SummarySetMember(root, "version", json_string(IMPAKT_VERSION)));
+  PetscCall(SummarySetMember(root, "units", json_string(UnitsNames[units])));
   PetscCall(AddRun(root, controller));
   PetscCall(AddContact(root, controller, contact, results));
   PetscCall(AddSchwarz(root, contact, results));

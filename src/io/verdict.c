@@ -3,6 +3,7 @@
    amiss, by how much, and what to do.
 */
 #include "verdict.h"
+#include <controller/plausible.h>
 #include <stdarg.h>
 
 /* Parts of its largest energy or work from which on a run says that it has lost them, or gained: nothing makes energy */
@@ -69,6 +70,7 @@ static PetscErrorCode AddOfKind(Verdict *verdict, VerdictKind kind, const char f
 static PetscErrorCode AddNumbers(Verdict *verdict)
 {
   static const char *const kinds[][3] = {
+      [VERDICT_UNITS]    = {"body", "bodies", "with numbers that are implausible in the units of -units"},
       [VERDICT_CENTRE]   = {"body", "bodies", "whose centre of mass massless contact nodes move"},
       [VERDICT_INERTIA]  = {"body", "bodies", "whose moments of inertia massless contact nodes change"},
       [VERDICT_TURNED]   = {"linear body", "linear bodies", "that turned too far"},
@@ -98,6 +100,15 @@ static PetscErrorCode LookAtEnergy(Controller controller, const char *always, Pe
 
   PetscFunctionBegin;
   if (gain <= ENERGY_GAIN && loss <= ENERGY_LOSS) PetscFunctionReturn(PETSC_SUCCESS);
+  if (verdict->statics.all) { /* masses and waves are no matter there */
+    if (verdict->statics.balanced)
+      PetscCall(
+          Add(verdict,
+              "the energy error is %+.3g %% at its worst: forces change too much within a load step for its work to be told from those "
+              "at its ends; a smaller -time_step makes it less, where surfaces slide together with a smaller -contact_slip_bound",
+              percent));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ControllerGetTimes(controller, NULL, &step, NULL));
   PetscCall(ControllerGetResolvedStep(controller, &resolved));
   if (always)
@@ -169,8 +180,9 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   if (cuts.lossy_steps && !(gain <= tolerance && loss <= tolerance))
     PetscCall(Add(verdict,
                   "%" PetscInt_FMT " step%s accepted although contact took or brought more energy than -contact_energy_tolerance after "
-                  "the last cut, to %.3g s",
-                  cuts.lossy_steps, cuts.lossy_steps == 1 ? " was" : "s were", (double)cuts.smallest_step));
+                  "the last cut, to %.3g%s",
+                  cuts.lossy_steps, cuts.lossy_steps == 1 ? " was" : "s were", (double)cuts.smallest_step,
+                  UnitsText(verdict->units, UNIT_TIME)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,10 +203,10 @@ static PetscErrorCode LookAtMass(Body body, const char name[], Verdict *verdict)
     thickness = PetscMin(thickness, upper[d] - lower[d]);
   }
   if (PetscSqrtReal(square) > CENTRE_SHIFT * thickness)
-    PetscCall(
-        AddOfKind(verdict, VERDICT_CENTRE,
-                  "massless contact nodes move the centre of mass of body '%s' by %.3g m, %.3g %% of its least extent: refine it across",
-                  name, (double)PetscSqrtReal(square), (double)(100 * PetscSqrtReal(square) / thickness)));
+    PetscCall(AddOfKind(
+        verdict, VERDICT_CENTRE,
+        "massless contact nodes move the centre of mass of body '%s' by %.3g%s, %.3g %% of its least extent: refine it across", name,
+        (double)PetscSqrtReal(square), UnitsText(verdict->units, UNIT_LENGTH), (double)(100 * PetscSqrtReal(square) / thickness)));
   else if (inertia > INERTIA_CHANGE)
     PetscCall(AddOfKind(
         verdict, VERDICT_INERTIA,
@@ -207,10 +219,13 @@ static PetscErrorCode LookAtMass(Body body, const char name[], Verdict *verdict)
 static PetscErrorCode LookAtBody(Body body, const BodyStatistics *statistics, Verdict *verdict)
 {
   const char *name;
+  char        doubt[DOUBT_SIZE];
   PetscBool   linear;
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
+  PetscCall(BodyDoubtUnits(body, doubt));
+  if (doubt[0]) PetscCall(AddOfKind(verdict, VERDICT_UNITS, "%s", doubt));
   PetscCall(LookAtMass(body, name, verdict));
   PetscCall(BodyIsLinear(body, &linear));
   if (linear && statistics->rotation_max > STATISTICS_FAR_TURN)
@@ -238,10 +253,10 @@ static PetscErrorCode LookAtOverlap(Contact contact, Body body, const BodyStatis
   if (overlap->pair && penalty) advice = "set a larger -contact_penalty";
   else if (overlap->pair)
     advice = "refine them there, give the rows to the one with the sharper corners (-contact_rows), or take a smaller -time_step";
-  PetscCall(AddOfKind(verdict, VERDICT_INSIDE,
-                      "'%s' and '%s' were %.3g m inside each other, %.3g %% of an element, at (%.4g, %.4g, %.4g) and %.4g s: %s", name,
-                      other, (double)overlap->depth, (double)(100 * overlap->part), (double)overlap->x[0], (double)overlap->x[1],
-                      (double)overlap->x[2], (double)statistics->overlap_time, advice));
+  PetscCall(AddOfKind(
+      verdict, VERDICT_INSIDE, "'%s' and '%s' were %.3g%s inside each other, %.3g %% of an element, at (%.4g, %.4g, %.4g) and %.4g%s: %s",
+      name, other, (double)overlap->depth, UnitsText(verdict->units, UNIT_LENGTH), (double)(100 * overlap->part), (double)overlap->x[0],
+      (double)overlap->x[1], (double)overlap->x[2], (double)statistics->overlap_time, UnitsText(verdict->units, UNIT_TIME), advice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -262,7 +277,8 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   PetscCall(ContactPairIsNamed(contact, p, &named));
   if (named && law != CONTACT_LAW_TIED && !results->pairs[p].steps_in_contact) {
     if (results->pairs[p].gap_min < CONTACT_NO_GAP)
-      PetscCall(PetscSNPrintf(nearest, sizeof(nearest), "its smallest gap was %.3g m", (double)results->pairs[p].gap_min));
+      PetscCall(PetscSNPrintf(nearest, sizeof(nearest), "its smallest gap was %.3g%s", (double)results->pairs[p].gap_min,
+                              UnitsText(verdict->units, UNIT_LENGTH)));
     else PetscCall(PetscSNPrintf(nearest, sizeof(nearest), "no node of one surface ever lay opposite the other"));
     PetscCall(
         AddOfKind(verdict, VERDICT_APART,
@@ -300,6 +316,8 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(verdict, sizeof(*verdict)));
+  PetscCall(UnitsGet((PetscObject)controller, &verdict->units));
+  PetscCall(ControllerGetStatics(controller, &verdict->statics));
   PetscCall(ControllerGetBodies(controller, NULL, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(LookAtSteps(controller, contact, results, verdict));
@@ -314,6 +332,29 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
     PetscCall(PetscFree(states));
   }
   PetscCall(AddNumbers(verdict));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The first line of the table: how far the run came, its energy error, and how much there is to warn of */
+PetscErrorCode VerdictView(Controller controller, const StatisticsResults *results, const Verdict *verdict, PetscViewer viewer)
+{
+  char     energy[64] = "", warnings[64] = "";
+  PetscInt step, steps;
+
+  PetscFunctionBegin;
+  PetscCall(ControllerGetStep(controller, &step));
+  PetscCall(ControllerGetTimes(controller, NULL, NULL, &steps));
+  if (verdict->statics.balanced)
+    PetscCall(PetscSNPrintf(energy, sizeof(energy), ", energy error %.2g %%", (double)(100 * StatisticsGetWorstError(results))));
+  if (verdict->n)
+    PetscCall(
+        PetscSNPrintf(warnings, sizeof(warnings), " with %" PetscInt_FMT " warning%s, see below", verdict->n, verdict->n == 1 ? "" : "s"));
+  if (step == steps)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "finished%s: %" PetscInt_FMT " step%s%s%s\n", warnings, steps, steps == 1 ? "" : "s", energy,
+                                     verdict->n ? "" : ", nothing to warn of in its figures"));
+  else
+    PetscCall(PetscViewerASCIIPrintf(viewer, "stopped%s: %" PetscInt_FMT " of %" PetscInt_FMT " steps%s%s\n", warnings, step, steps, energy,
+                                     verdict->n ? "" : ", nothing to warn of in its figures"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

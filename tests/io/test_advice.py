@@ -47,6 +47,13 @@ CRUSHED = (
 )
 
 
+# A bar that is stretched by a third of its length in one load step, over which its force bends from a straight line
+STRETCHED = (
+    "-bodies a -a_dm_plex_box_faces 4,2 -a_dm_plex_box_upper 2,1 -a_density 1000 -a_youngs_modulus 1e9 -a_material_type neo_hookean -a_ts_type static "
+    "-a_boundary_displacement xmin -a_boundary_displacement_xmin 0,0 -a_boundary_traction xmax -a_boundary_traction_xmax 4e8*t,0 -time_step 1 -time_end 1"
+)
+
+
 def energy(run):
     return worst_energy_error(run.summary)
 
@@ -87,6 +94,7 @@ CASES = {
     "tilt of linear bodies": (TILTED, "take materials that are not linear", f"{NONLINEAR} -contact_angle_bound 1e-4", contact("friction_tilt"), 1.9 * ANGLE / FRICTION, 1.001 * ANGLE / STEPS / FRICTION),
     "centre of mass": (PLATE, "refine it across", "-a_dm_plex_box_faces 16,4", centre_shift, 5e-3, 1e-12),  # 6.4e-3 m, 0
     "never touched": (f"{PLATE} -time_end 1e-5", "pair a:b never touched: its smallest gap was 5e-05 m", "-time_end 1e-4", lambda run: run.summary["pairs"]["a:b"]["gap_min"], 4.99e-5, 1e-10),
+    "stretched in a load step": (STRETCHED, "a smaller -time_step makes it less", "-time_step 0.1", energy, 0.04, 6e-4),  # 5.0e-2, 4.9e-4: the square of the step
     "alpha": (ALPHA, "give both bodies the same parameters", "-right_ts_alpha_radius 0.6", system("momentum"), 4e-4, 1e-12),  # 5.4e-4, 1.2e-15
     "inside out": (CRUSHED, "set -b_material_type neo_hookean", "-b_material_type neo_hookean", lambda run: run.summary["bodies"]["b"]["inverted_max"], 8, 0),
     "divisions of a ball": (BALL, "take more -a_ball_divisions", "-a_ball_divisions 12", missing, 0.8, 1e-12),  # 0.89, 0

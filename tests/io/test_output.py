@@ -24,6 +24,9 @@ CONTACT = {
     "force_std": float,
     "force_min": float,
     "force_peak": float,
+    "force_final": float,
+    "resultant_mean": float,
+    "resultant_peak": float,
     "tension_max": float,
     "impulse": float,
     "max_penetration": float,
@@ -32,9 +35,10 @@ CONTACT = {
     "gap_min": float,
     "gap_final": float,
 }
-PAIR = {**CONTACT, "impulse_vector": list}
+PAIR = {**CONTACT, "impulse_vector": list, "resultant": list}
 SUMMARY = {
     "version": str,
+    "units": str,
     "run": {"complete": bool, "controller_steps": int, "time": float},
     "contact": {"type": str, "overlap": {"bodies": list, "depth": float, "part": float, "time": type(None), "position": list}, **CONTACT},
     "pairs": {"left:right": PAIR},
