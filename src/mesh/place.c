@@ -155,3 +155,35 @@ PetscErrorCode MeshPlace(DM dm, const char prefix[], const char name[])
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@C
+  MeshGetPlaceOption - the option by which a user moves the mesh of a body, for messages
+
+  Not Collective
+
+  Input Parameter:
+. prefix - of the body's options, such as "left_"
+
+  Output Parameter:
+. option - without dash and prefix: `translate` of a mesh from a file, of a rod, and of any mesh that has been scaled, rotated or
+translated; `ball_centre` of a ball; `dm_plex_box_lower` of a box
+
+  Level: developer
+
+.seealso: `MeshCreate()`
+@*/
+PetscErrorCode MeshGetPlaceOption(const char prefix[], const char *option[])
+{
+  const char *const placed[] = {"-dm_plex_filename", "-scale", "-rotate", "-translate"};
+  PetscBool         is       = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscAssertPointer(option, 2);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(placed) && !is; i++) PetscCall(PetscOptionsHasName(NULL, prefix, placed[i], &is));
+  if (!is) PetscCall(MeshIsRod(prefix, &is));
+  *option = is ? "translate" : "dm_plex_box_lower";
+  if (is) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MeshIsBall(prefix, &is));
+  if (is) *option = "ball_centre";
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

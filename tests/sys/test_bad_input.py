@@ -38,7 +38,17 @@ CASES = {
     "no-density": ("-bodies a -a_dm_plex_dim 1 -a_youngs_modulus 1", ["-a_density"]),
     "negative-modulus": (f"{BASE} -right_youngs_modulus -1e9", ["-right_youngs_modulus", "-1e+09", "positive"]),
     "no-section": (f"{BASE} -left_cross_section 0", ["-left_cross_section", "positive"]),
-    "overlapping": (f"{BASE} -right_dm_plex_box_lower -0.05", ["left", "right", "overlap", "0.03 m"]),
+    "overlapping": (f"{BASE} -right_dm_plex_box_lower -0.05", ["left", "right", "overlap", "0.03 m", "-left_dm_plex_box_lower", "-right_dm_plex_box_lower"]),
+    "overlapping-translated": (f"{BASE} -right_translate -0.05", ["overlap", "-left_dm_plex_box_lower", "-right_translate, -right_initial_displacement"]),
+    "overlapping-file": (
+        "-options_file options/peer-bars.opts -right_initial_displacement -1e-3,0,0",
+        ["overlap", "-left_translate, -left_initial_displacement", "-right_translate, -right_initial_displacement"],
+    ),
+    "overlapping-ball": (
+        "-options_file options/oblique-impact-balls.opts -other_ball_centre 0,0,-2e-3 -ball_ball_divisions 4 -other_ball_divisions 4",
+        ["overlap", "-ball_ball_centre, -ball_initial_displacement", "-other_ball_centre, -other_initial_displacement"],
+    ),
+    "inside-obstacle": ("-options_file options/hertz-impact.opts -ball_ball_centre 0,0,0.9", ["inside the obstacle", "-ball_ball_centre, -ball_initial_displacement"]),
     "displaced-into": (f"{BASE} -left_initial_displacement 0.1", ["left", "right", "overlap", "0.06 m"]),
     "pair-body": (f"{BASE} -contact_pairs left:rihgt", ["-contact_pairs", "rihgt", "left, right"]),
     "pair-surface": (f"{BASE} -contact_pairs left.xmax:right.top", ["right", "top"]),

@@ -1,5 +1,6 @@
 /* Bodies that are inside each other, or inside obstacles. */
 #include <contact/parts.h>
+#include <impakt/mesh.h>
 
 /* Depth of rows that bodies in contact leave behind at the end of a run, in parts of a contact element */
 #define INSIDE 0.02
@@ -110,16 +111,28 @@ static PetscErrorCode FindDepths(Contact contact, PetscInt *n, SurfaceDepth *dep
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RefuseOverlap(Contact contact, const SurfaceDepth *overlap)
+/* The options by which a user moves a body at the start */
+PetscErrorCode ContactDescribeMoves(Contact contact, PetscInt body, char text[CONTACT_MOVES])
 {
-  const char *name = ((PetscObject)contact->bodies[overlap->surfaces[0]])->name;
+  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *option;
 
   PetscFunctionBegin;
+  PetscCall(MeshGetPlaceOption(prefix, &option));
+  PetscCall(PetscSNPrintf(text, CONTACT_MOVES, "-%s%s, -%sinitial_displacement", prefix, option, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RefuseOverlap(Contact contact, const SurfaceDepth *overlap)
+{
+  const PetscInt *of = overlap->surfaces;
+  char            moves[2][CONTACT_MOVES];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2; k++) PetscCall(ContactDescribeMoves(contact, of[k], moves[k]));
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-          "Bodies '%s' and '%s' overlap by %g m at the start, at (%g, %g, %g); move one of them (-%s_dm_plex_box_lower, "
-          "-%s_initial_displacement, ...)",
-          name, ((PetscObject)contact->bodies[overlap->surfaces[1]])->name, (double)overlap->depth, (double)overlap->x[0],
-          (double)overlap->x[1], (double)overlap->x[2], name, name);
+          "Bodies '%s' and '%s' overlap by %g m at the start, at (%g, %g, %g); move one of them: %s, or %s",
+          ((PetscObject)contact->bodies[of[0]])->name, ((PetscObject)contact->bodies[of[1]])->name, (double)overlap->depth,
+          (double)overlap->x[0], (double)overlap->x[1], (double)overlap->x[2], moves[0], moves[1]);
 }
 
 /* The deepest of the overlaps of a pair; NULL: none */

@@ -173,21 +173,23 @@ static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, c
 {
   MPI_Comm    comm  = PetscObjectComm((PetscObject)contact);
   const char *first = ((PetscObject)contact->bodies[pair->body[0]])->name;
+  char        moves[CONTACT_MOVES];
 
   PetscFunctionBegin;
   for (TieState state = TIE_OVERLAPS; state <= TIE_TOO_FAR; state = (TieState)(state + 1)) {
     const PetscReal *x = summary->position + 3 * (state - 1), gap = summary->gap[state], size = summary->size[state - 1];
 
     if (!summary->n[state]) continue;
+    PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
     SETERRQ(
         comm, PETSC_ERR_USER_INPUT,
         "-contact_pairs %s: at the start %" PetscInt_FMT " of %" PetscInt_FMT " nodes of body '%s' opposite to the partner %s, and "
         "-contact_law tied ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g m, which "
-        "is %.3g of its face. Move one of the bodies (its mesh, or -%s_initial_displacement), name smaller surfaces in -contact_pairs, "
+        "is %.3g of its face. Move one of the bodies (%s), name smaller surfaces in -contact_pairs, "
         "or set -contact_tie_distance, now %g of a face, above that number to tie them as they are",
         pair->name, summary->n[state], summary->n[TIE_HOLDS] + summary->n[TIE_OVERLAPS] + summary->n[TIE_TOO_FAR] + summary->n[TIE_APART],
         first, state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", (double)x[0], (double)x[1], (double)x[2],
-        state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, (double)(gap / size), first, (double)contact->options.tie_distance);
+        state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, (double)(gap / size), moves, (double)contact->options.tie_distance);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -210,20 +212,21 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
     const ContactPair *pair    = &contact->pairs[nearest];
     const TieSummary  *summary = &summaries[nearest];
     const PetscReal   *x       = summary->position + 3 * (TIE_APART - 1);
+    char               moves[CONTACT_MOVES];
 
+    PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
     PetscCheck(summary->n[TIE_APART], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_pairs %s: -contact_law tied ties nothing, since at the start no node of body '%s' lies opposite to the partner; "
                "place the bodies so that their surfaces lie on each other, or leave the pair out of -contact_pairs",
                pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
-    SETERRQ(
-        PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-        "-contact_pairs %s: -contact_law tied ties nothing: at the start the node of body '%s' that is nearest to the partner, at "
-        "(%g, %g, %g) before any displacement, has a gap of %g m, which is %.3g of its face, and nodes are tied within "
-        "-contact_tie_distance, now %g of a face; move one of the bodies (its mesh, or -%s_initial_displacement), or leave the pair out "
-        "of -contact_pairs",
-        pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1], (double)x[2],
-        (double)summary->gap[TIE_APART], (double)(summary->gap[TIE_APART] / summary->size[TIE_APART - 1]),
-        (double)contact->options.tie_distance, ((PetscObject)contact->bodies[pair->body[0]])->name);
+    SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+            "-contact_pairs %s: -contact_law tied ties nothing: at the start the node of body '%s' that is nearest to the partner, at "
+            "(%g, %g, %g) before any displacement, has a gap of %g m, which is %.3g of its face, and nodes are tied within "
+            "-contact_tie_distance, now %g of a face; move one of the bodies (%s), or leave the pair out "
+            "of -contact_pairs",
+            pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1], (double)x[2],
+            (double)summary->gap[TIE_APART], (double)(summary->gap[TIE_APART] / summary->size[TIE_APART - 1]),
+            (double)contact->options.tie_distance, moves);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
