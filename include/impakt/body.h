@@ -92,6 +92,27 @@ E*/
 typedef enum { BODY_TRACTION_INTERNAL, BODY_TRACTION_REACTION } BodyTractionType;
 PETSC_EXTERN const char *const BodyTractionTypes[];
 
+/* At most so many elements are told of */
+#define BODY_STEP_BOUNDS 10
+
+/*S
+   BodyStepBounds - the elements that bound the stable step of a body, those with the shortest steps first, and the median of all
+
+   Level: intermediate
+
+   Note:
+   Elements all of whose nodes are massless have no step, and do not count.
+
+.seealso: `BodyGetStepBounds()`, `BodyGetStableStep()`
+S*/
+typedef struct {
+  PetscReal median; /* of the stable steps of all elements [s] */
+  PetscInt  n;
+  PetscInt  number[BODY_STEP_BOUNDS];    /* of the element, rank after rank, from 0 */
+  PetscReal step[BODY_STEP_BOUNDS];      /* s */
+  PetscReal centre[BODY_STEP_BOUNDS][3]; /* in the undeformed mesh; zeros beyond the space dimension [m] */
+} BodyStepBounds;
+
 PETSC_EXTERN PetscErrorCode BodyInitializePackage(void);
 PETSC_EXTERN PetscErrorCode BodyFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode BodyCreate(MPI_Comm, const char[], Body *);
@@ -147,7 +168,10 @@ PETSC_EXTERN PetscErrorCode BodyGetTS(Body, TS *);
 PETSC_EXTERN PetscErrorCode BodyGetMaterial(Body, Material *);
 PETSC_EXTERN PetscErrorCode BodyGetSubsteps(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetStableStep(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetStepBounds(Body, const BodyStepBounds **);
+PETSC_EXTERN PetscErrorCode BodyMeasureSubstep(Body, PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode BodyGetMass(Body, PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetInertia(Body, PetscReal[3], PetscReal[9]);
 PETSC_EXTERN PetscErrorCode BodySetMassRedistributeNear(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyGetMassRedistributeNear(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetForceOnMass(Body, const PetscReal[], PetscReal *, PetscReal *);

@@ -382,6 +382,7 @@ PETSC_EXTERN PetscErrorCode ContactStepBack(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetStepLevel(Contact, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactGetNearInertiaChange(Contact, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetOverlaps(Contact, ContactOverlap[]);
 PETSC_EXTERN PetscErrorCode ContactGetOverlapName(Contact, const ContactOverlap *, const char *[]);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);

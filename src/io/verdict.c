@@ -4,6 +4,7 @@
 */
 #include "verdict.h"
 #include <controller/plausible.h>
+#include <impakt/private/bodyrows.h>
 #include <stdarg.h>
 
 /* Parts of its largest energy or work from which on a run says that it has lost them, or gained: nothing makes energy */
@@ -28,6 +29,8 @@
 #define CENTRE_SHIFT 0.01
 /* The same of a moment of inertia, relative: 71 % in a plate that is two elements thick and may touch on both sides */
 #define INERTIA_CHANGE 0.2
+/* -<body>_mass_redistribute near is worth a word where it leaves less of that than this part */
+#define NEAR_LEAVES 0.9
 
 static PetscErrorCode Append(Verdict *verdict, const char format[], va_list arguments)
 {
@@ -187,14 +190,15 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
 }
 
 /* Where the mass that is left to a body with massless contact nodes cannot have the body's centre of mass */
-static PetscErrorCode LookAtMass(Body body, const char name[], Verdict *verdict)
+static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const char name[], Verdict *verdict)
 {
-  PetscReal shift[3] = {0}, lower[3], upper[3], thickness = PETSC_MAX_REAL, square = 0, inertia;
+  PetscReal shift[3] = {0}, lower[3], upper[3], thickness = PETSC_MAX_REAL, square = 0, inertia, near;
   PetscInt  dim;
   DM        dm;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetMassRedistribution(body, NULL, NULL, shift, &inertia));
+  PetscCall(BodyGetMassRedistribution(body, NULL, NULL, shift, NULL));
+  PetscCall(BodyGetInertiaChange(body, 0, NULL, &inertia));
   PetscCall(BodyGetDM(body, &dm));
   PetscCall(DMGetCoordinateDim(dm, &dim));
   PetscCall(DMGetBoundingBox(dm, lower, upper));
@@ -207,16 +211,22 @@ static PetscErrorCode LookAtMass(Body body, const char name[], Verdict *verdict)
         verdict, VERDICT_CENTRE,
         "massless contact nodes move the centre of mass of body '%s' by %.3g%s, %.3g %% of its least extent: refine it across", name,
         (double)PetscSqrtReal(square), UnitsText(verdict->units, UNIT_LENGTH), (double)(100 * PetscSqrtReal(square) / thickness)));
-  else if (inertia > INERTIA_CHANGE)
-    PetscCall(AddOfKind(
-        verdict, VERDICT_INERTIA,
-        "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; refine it "
-        "across, or set -%s_mass_redistribute near",
-        name, (double)(100 * inertia), name));
+  else if (inertia > INERTIA_CHANGE) {
+    char advice[256] = "";
+
+    PetscCall(ContactGetNearInertiaChange(contact, b, &near));
+    if (near < NEAR_LEAVES * inertia)
+      PetscCall(
+          PetscSNPrintf(advice, sizeof(advice), ", or set -%s_mass_redistribute near, which leaves %.3g %%", name, (double)(100 * near)));
+    PetscCall(AddOfKind(verdict, VERDICT_INERTIA,
+                        "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; "
+                        "refine it across%s",
+                        name, (double)(100 * inertia), advice));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LookAtBody(Body body, const BodyStatistics *statistics, Verdict *verdict)
+static PetscErrorCode LookAtBody(Contact contact, PetscInt b, Body body, const BodyStatistics *statistics, Verdict *verdict)
 {
   const char *name;
   char        doubt[DOUBT_SIZE];
@@ -226,7 +236,7 @@ static PetscErrorCode LookAtBody(Body body, const BodyStatistics *statistics, Ve
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
   PetscCall(BodyDoubtUnits(body, doubt));
   if (doubt[0]) PetscCall(AddOfKind(verdict, VERDICT_UNITS, "%s", doubt));
-  PetscCall(LookAtMass(body, name, verdict));
+  PetscCall(LookAtMass(contact, b, body, name, verdict));
   PetscCall(BodyIsLinear(body, &linear));
   if (linear && statistics->rotation_max > STATISTICS_FAR_TURN)
     PetscCall(AddOfKind(verdict, VERDICT_TURNED, "linear body '%s' has turned by %.3g rad: set a nonlinear -%s_material_type", name,
@@ -322,7 +332,7 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(LookAtSteps(controller, contact, results, verdict));
   for (PetscInt b = 0; b < results->n_bodies; b++) {
-    PetscCall(LookAtBody(bodies[b], &results->bodies[b], verdict));
+    PetscCall(LookAtBody(contact, b, bodies[b], &results->bodies[b], verdict));
     PetscCall(LookAtOverlap(contact, bodies[b], &results->bodies[b], verdict));
   }
   if (results->steps && results->n_pairs) {

@@ -90,6 +90,46 @@ def test_thin_plates_say_what_they_lose(impakt, layers, more, words):
     assert all(words in text and "refine it across" in text for text in texts)
 
 
+# Faces that see the floor are one side of a plate; those that see one of three planes, three
+THREE = "-obstacles floor,roof,wall -roof_obstacle_type plane -roof_point 0,20,0 -roof_normal 0,-1,0 -wall_obstacle_type plane -wall_point -9,0 -wall_normal 1,0 -contact_pairs b:floor,b:roof,b:wall"
+FOUR = THREE.replace("roof,wall", "roof,wall,other").replace("b:wall", "b:wall,b:other") + " -other_obstacle_type plane -other_point 9,0 -other_normal -1,0"
+
+
+@pytest.mark.parametrize(("planes", "ranks"), [("", 1), (THREE, 1), (THREE, 2), (FOUR, 1)])
+def test_near_is_advised_where_it_helps(impakt, planes, ranks):
+    """With what it leaves, which the run that follows has; not where all nodes face a plane, so that it changes nothing, nor where it is set already."""
+    options = f"{COMMON} {box(2, 1, 2)} -contact_facing false {planes}"
+    run, near = (impakt(f"{options} {more}", ranks) for more in ("", "-b_mass_redistribute near"))
+    before, after = (case.summary["bodies"]["b"]["mass"]["inertia_error"] for case in (run, near))
+    texts = [text for text in run.summary["warnings"] if "moments of inertia" in text]
+    assert len(texts) == 1
+    advice = f", or set -b_mass_redistribute near, which leaves {100 * after:.3g} %"
+    assert texts[0].endswith(f"refine it across{'' if planes == FOUR else advice}")
+    assert after == before if planes == FOUR else after < 0.5 * before
+    assert "redistribute near" not in near.stderr
+
+
+@pytest.mark.parametrize(
+    ("held", "warns"),
+    [
+        ("-ball_boundary_displacement cut_x,cut_y -ball_boundary_displacement_cut_x 0,free,free -ball_boundary_displacement_cut_y free,0,free", False),
+        ("-ball_boundary_displacement cut_x -ball_boundary_displacement_cut_x 0,free,free", True),
+        ("", True),
+    ],
+)
+def test_planes_of_symmetry(impakt, held, warns):
+    """A quarter of a ball between its planes of symmetry cannot turn, so that nothing is wrong with its moments of inertia; it can if nothing holds it, and about
+    the normal of one plane, as halves of balls that roll do. Measured: 0.51, and 0.49 about that normal."""
+    options = (
+        "-bodies ball -obstacles floor -floor_obstacle_type plane -floor_point 0,0,0 -floor_normal 0,0,1 -contact_pairs ball.surface:floor -time_step 1e-4 "
+        "-time_end 1e-4 -ball_dm_plex_dim 3 -ball_dm_plex_shape ball -ball_ball_centre 0,0,1.1 -ball_ball_part quarter -ball_ball_divisions 12 -ball_ball_grading 64 -ball_density 1000 "
+        f"-ball_youngs_modulus 1e9 {held}"
+    )
+    run = impakt(options)
+    assert run.summary["bodies"]["ball"]["mass"]["inertia_error"] > 0.2
+    assert any("moments of inertia" in text for text in run.summary["warnings"]) == warns
+
+
 def test_ranks_have_the_same_masses(impakt):
     """A coarse block of triangles between two others keeps neither its centre nor its moments of inertia. Whether the conditions for as much of them as can
     be had are satisfied was a matter of round-off: on two ranks masses stayed as they were, with a centre that is three times as far off."""

@@ -36,6 +36,8 @@ typedef struct {
   Trace reaction;                                      /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
 } BodyTraces;
 
+#define BODY_SUDDEN_LENGTH 512 /* of the text of BodyDescribeSuddenLoad() */
+
 #define BODY_MAX_SPRINGS 6 /* as many as a body has motions as if it were rigid */
 
 /*S
@@ -137,6 +139,8 @@ PETSC_EXTERN PetscErrorCode BodySetSpringStiffness(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodyMeasureSprings(Body, BodySpringState *);
 PETSC_EXTERN PetscErrorCode BodyMoveSprings(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
+PETSC_EXTERN PetscErrorCode BodyGetInertiaChange(Body, PetscInt, const PetscInt[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyDescribeSuddenLoad(Body, char[BODY_SUDDEN_LENGTH]);
 
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);

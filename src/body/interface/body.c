@@ -68,6 +68,38 @@ PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Marks the nodes at some vertices of this rank, and what other ranks have of them: a rank may hold a node of a surface without holding a
+   face of it */
+PetscErrorCode BodyMarkNodes(Body body, PetscInt n, const PetscInt vertices[], PetscBool marked[])
+{
+  const PetscBool    ghosted = body->mesh.ghosted;
+  PetscScalar       *mark;
+  const PetscScalar *all;
+  Vec                marks, local;
+
+  PetscFunctionBegin;
+  PetscCall(BodyCreateVec(body, &marks));
+  local = marks;
+  if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
+  PetscCall(VecSet(local, 0));
+  PetscCall(VecGetArray(local, &mark));
+  for (PetscInt i = 0; i < n; i++) mark[body->mesh.node_of_vertex[vertices[i] - body->mesh.vertex_start] * body->mesh.dim] = 1;
+  PetscCall(VecRestoreArray(local, &mark));
+  if (ghosted) {
+    PetscCall(VecGhostUpdateBegin(marks, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecGhostUpdateEnd(marks, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecGhostUpdateBegin(marks, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostUpdateEnd(marks, INSERT_VALUES, SCATTER_FORWARD));
+  }
+  PetscCall(VecGetArrayRead(local, &all));
+  for (PetscInt node = 0; node < body->mesh.local_nodes; node++)
+    if (PetscRealPart(all[node * body->mesh.dim]) > 0) marked[node] = PETSC_TRUE;
+  PetscCall(VecRestoreArrayRead(local, &all));
+  if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
+  PetscCall(VecDestroy(&marks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodySetContactNodes - says which nodes lie on surfaces that may touch something
 
@@ -87,38 +119,13 @@ PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
 @*/
 PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertices[])
 {
-  PetscScalar       *mark;
-  const PetscScalar *all;
-  Vec                marks, local;
-  PetscBool          ghosted;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
   if (n) PetscAssertPointer(vertices, 3);
   PetscCall(BodySetUpDiscretization(body));
-  ghosted = body->mesh.ghosted;
-  PetscCall(BodyCreateVec(body, &marks));
-  local = marks;
-  if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
-  PetscCall(VecSet(local, 0));
-  PetscCall(VecGetArray(local, &mark));
-  for (PetscInt i = 0; i < n; i++) mark[body->mesh.node_of_vertex[vertices[i] - body->mesh.vertex_start] * body->mesh.dim] = 1;
-  PetscCall(VecRestoreArray(local, &mark));
-  /* a rank may hold a node of the surface without holding a face of it */
-  if (ghosted) {
-    PetscCall(VecGhostUpdateBegin(marks, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateEnd(marks, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateBegin(marks, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostUpdateEnd(marks, INSERT_VALUES, SCATTER_FORWARD));
-  }
-  PetscCall(VecGetArrayRead(local, &all));
-  for (PetscInt node = 0; node < body->mesh.local_nodes; node++)
-    if (PetscRealPart(all[node * body->mesh.dim]) > 0) body->layer.contains[node] = PETSC_TRUE;
+  PetscCall(BodyMarkNodes(body, n, vertices, body->layer.contains));
   body->layer.edge = 0;
-  PetscCall(VecRestoreArrayRead(local, &all));
-  if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
-  PetscCall(VecDestroy(&marks));
   PetscCall(BodyNoteSurfaceMaterial(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

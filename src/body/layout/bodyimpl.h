@@ -86,6 +86,7 @@ typedef struct {
   PetscReal       least_factor, largest_factor; /* on nodes with mass; 0 without a factor */
   PetscReal       shift[3];                     /* how far the centre of mass is off that of the full mass; 0: it is kept [m] */
   PetscReal       inertia_error; /* largest relative change of a moment of inertia about an axis through the centre; 0: they are kept */
+  PetscReal       turn_error;    /* the same of axes about which nothing that is held keeps the body from turning */
 } BodyMass;
 
 /* The contact nodes, and those of their dofs that are massless */
@@ -102,12 +103,13 @@ typedef struct {
 } BodyLayer;
 
 typedef struct {
-  TS        ts;
-  PetscReal start, controller_step, step; /* of the simulation; one part of the controller step; substep [s] */
-  PetscReal whole_step;                   /* the controller step before any cut [s] */
-  PetscInt  level, accepted_level;        /* how often the controller step is cut in halves; how often that was which was accepted last */
-  PetscReal requested_step;               /* 0: the controller step; < 0: automatic */
-  PetscReal stable_step;                  /* of the undeformed body; 0 until BodyComputeStableStep() */
+  TS             ts;
+  PetscReal      start, controller_step, step; /* of the simulation; one part of the controller step; substep [s] */
+  PetscReal      whole_step;                   /* the controller step before any cut [s] */
+  PetscInt       level, accepted_level; /* how often the controller step is cut in halves; how often that was which was accepted last */
+  PetscReal      requested_step;        /* 0: the controller step; < 0: automatic */
+  PetscReal      stable_step;           /* of the undeformed body; 0 until BodyComputeStableStep() */
+  BodyStepBounds bounds;                /* the elements that it is that of, known with it */
   /* of a nonlinear explicit body, see deformedstep.c: stable step as it is deformed, 0: not known; where and when it was found last */
   PetscReal stable_now, stable_found, thinness;
   PetscInt  shared;   /* parts of the controller step, at whose ends all bodies have a time in common */
@@ -333,7 +335,13 @@ PETSC_INTERN PetscErrorCode BodyStateCreate(Body, PetscBool, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateCopy(Body, const BodyState *, BodyState *);
 PETSC_INTERN PetscErrorCode BodyStateDestroy(BodyState *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
+PETSC_INTERN PetscErrorCode BodyGetElementEigenvalue(Body, PetscInt, const PetscScalar[], PetscReal *);
+PETSC_INTERN PetscErrorCode BodyGetStepOfEigenvalue(Body, PetscReal, PetscReal *);
+PETSC_INTERN PetscErrorCode BodyNoteStepBounds(Body, const PetscScalar[], PetscReal[]);
+PETSC_INTERN void           BodyGetElementCentre(Body, PetscInt, PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodySetUpInertia(Body);
+PETSC_INTERN PetscErrorCode BodyMarkNodes(Body, PetscInt, const PetscInt[], PetscBool[]);
+PETSC_INTERN PetscErrorCode BodyFindTurns(Body, PetscInt *, PetscReal[9]);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
 PETSC_INTERN PetscErrorCode BodySumNodes(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal[3], PetscReal[3], PetscReal[3],
                                          PetscReal[3]);

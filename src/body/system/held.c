@@ -70,6 +70,34 @@ static PetscErrorCode FindFreeMotions(Body body, PetscInt n_fixed, const PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Unit vectors, orthogonal to each other, that span the axes about which held displacements let the body turn: three numbers each */
+PetscErrorCode BodyFindTurns(Body body, PetscInt *n, PetscReal axes[9])
+{
+  const PetscInt dim = body->mesh.dim, n_rigid = dim == 1 ? 1 : 3 * (dim - 1);
+  PetscReal      free[BODY_MAX_RIGID * BODY_MAX_RIGID];
+  PetscInt       n_free;
+
+  PetscFunctionBegin;
+  *n = 0;
+  PetscCall(PetscArrayzero(axes, 9));
+  PetscCall(FindFreeMotions(body, body->held.n, body->held.dofs, PETSC_FALSE, &n_free, free));
+  for (PetscInt k = 0; k < n_free && *n < 2 * dim - 3; k++) { /* by Gram and Schmidt */
+    PetscReal *axis = axes + 3 * *n, square = 0;
+
+    for (PetscInt d = 0; d < 3; d++) axis[d] = dim == 3 ? free[k * n_rigid + 3 + d] : d == 2 ? free[k * n_rigid + 2] : 0;
+    for (PetscInt other = 0; other < *n; other++) {
+      PetscReal dot = 0;
+
+      for (PetscInt d = 0; d < 3; d++) dot += axis[d] * axes[3 * other + d];
+      for (PetscInt d = 0; d < 3; d++) axis[d] -= dot * axes[3 * other + d];
+    }
+    for (PetscInt d = 0; d < 3; d++) square += PetscSqr(axis[d]);
+    for (PetscInt d = 0; d < 3 && square > FREE; d++) axis[d] /= PetscSqrtReal(square);
+    if (square > FREE) (*n)++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Names a motion by how much it has of each rigid motion: "move along x and turn about z" */
 PetscErrorCode BodyDescribeMotions(PetscInt dim, const PetscReal parts[], size_t size, char text[])
 {

@@ -209,17 +209,19 @@ static void SetConditions(MomentsProblem *problem, Order order, PetscReal centre
   }
 }
 
-/* Largest change of a moment of inertia about any axis through the centre, relative to it. With the inertia tensors I = tr(J) 1 - J, these
-   are the eigenvalues of I_full^-1 (I - I_full). In two dimensions there is one axis. */
-static PetscErrorCode CompareInertia(const MomentsProblem *problem, const PetscReal moments[], PetscReal *error)
+/* Largest change of a moment of inertia about some axes through the centre, relative to it: those spanned by n orthonormal vectors, three
+   numbers each along the principal axes. With the inertia tensors I = tr(J) 1 - J in these vectors, the changes are the eigenvalues of
+   I_full^-1 (I - I_full). */
+static PetscErrorCode CompareInertia(const MomentsProblem *problem, const PetscReal moments[], PetscInt n, const PetscReal axes[],
+                                     PetscReal *error)
 {
   const PetscInt dim     = problem->body->mesh.dim;
   PetscReal      J[2][9] = {{0}}, inertia[2][9] = {{0}}, values[3], work[12];
-  PetscBLASInt   one = 1, order = 3, lwork = 12, info;
+  PetscBLASInt   one = 1, order = (PetscBLASInt)n, lwork = 12, info;
 
   PetscFunctionBegin;
   *error = 0;
-  if (dim == 1 || problem->body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt m = dim + 1; m < problem->n_moments; m++) {
     const PetscInt  a = problem->pair[m][0] - 1, b = problem->pair[m][1] - 1;
     const PetscReal unit = problem->size[a] * problem->size[b];
@@ -230,14 +232,42 @@ static PetscErrorCode CompareInertia(const MomentsProblem *problem, const PetscR
     J[1][3 * a + b] = J[1][3 * b + a] = (now - problem->target[m]) * unit;
   }
   for (PetscInt k = 0; k < 2; k++)
-    for (PetscInt i = 0; i < 9; i++) inertia[k][i] = (i % 4 ? 0 : J[k][0] + J[k][4] + J[k][8]) - J[k][i];
-  if (dim == 2) {
-    *error = PetscAbsReal(inertia[1][8] / inertia[0][8]);
+    for (PetscInt p = 0; p < n; p++)
+      for (PetscInt q = 0; q < n; q++)
+        for (PetscInt i = 0; i < 9; i++)
+          inertia[k][p * n + q] += axes[3 * p + i / 3] * axes[3 * q + i % 3] * ((i % 4 ? 0 : J[k][0] + J[k][4] + J[k][8]) - J[k][i]);
+  if (n == 1) {
+    *error = PetscAbsReal(inertia[1][0] / inertia[0][0]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCallBLAS("LAPACKsygv", LAPACKsygv_(&one, "N", "L", &order, inertia[1], &order, inertia[0], &order, values, work, &lwork, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK sygv info %d", (int)info);
-  *error = PetscMax(PetscAbsReal(values[0]), PetscAbsReal(values[2]));
+  *error = PetscMax(PetscAbsReal(values[0]), PetscAbsReal(values[n - 1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the mass that is left makes of moments of inertia: about all axes, and about those that the body can turn about. In one dimension
+   nothing turns, and no ring does; in two, there is one axis. */
+static PetscErrorCode NoteInertia(const MomentsProblem *problem, const PetscReal moments[])
+{
+  static const PetscReal all[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
+  Body                   body   = problem->body;
+  const PetscInt         dim    = body->mesh.dim;
+  PetscReal              turns[9], axes[9] = {0}, *errors[] = {&body->mass.inertia_error, &body->mass.turn_error};
+  PetscInt               n;
+
+  PetscFunctionBegin;
+  if (dim == 1 || body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CompareInertia(problem, moments, 2 * dim - 3, dim == 3 ? all : all + 6, errors[0]));
+  PetscCall(BodyFindTurns(body, &n, turns));
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt a = 0; a < 3; a++) {
+      axes[3 * k + a] = dim == 2 && a == 2 ? turns[3 * k + 2] : 0;
+      for (PetscInt d = 0; d < dim && a < dim; d++) axes[3 * k + a] += problem->axes[a][d] * turns[3 * k + d];
+    }
+  PetscCall(CompareInertia(problem, moments, n, axes, errors[1]));
+  for (PetscInt k = 0; k < 2; k++)
+    if (*errors[k] <= KEPT) *errors[k] = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -310,8 +340,7 @@ static PetscErrorCode FindFactor(MomentsProblem *problem)
   for (PetscInt a = 0; a < dim; a++)
     for (PetscInt d = 0; d < dim && PetscAbsReal(moments[1 + a]) > KEPT; d++)
       problem->body->mass.shift[d] += problem->axes[a][d] * problem->size[a] * moments[1 + a];
-  PetscCall(CompareInertia(problem, moments, &problem->body->mass.inertia_error));
-  if (problem->body->mass.inertia_error <= KEPT) problem->body->mass.inertia_error = 0;
+  PetscCall(NoteInertia(problem, moments));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -329,5 +358,50 @@ PetscErrorCode BodyFindMassFactor(Body body)
   PetscCall(ComputeWeights(&problem));
   PetscCall(FindFactor(&problem));
   PetscCall(PetscFree(problem.weights));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetInertiaChange - what a massless contact layer changes of the moments of inertia that the body turns with
+
+  Collective where vertices are given
+
+  Input Parameters:
++ body     - the `Body`, set up
+. n        - number of vertices
+- vertices - points of the mesh of this rank that would be massless in place of those that are; `NULL`: as it is
+
+  Output Parameter:
+. change - largest change of a moment of inertia about an axis through the centre of mass, relative to it; 0 where all are kept. Axes about
+           which held displacements keep the body from turning, as planes of symmetry do, do not count.
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetMassRedistribution()`, `BodySetContactNodes()`
+@*/
+PetscErrorCode BodyGetInertiaChange(Body body, PetscInt n, const PetscInt vertices[], PetscReal *change)
+{
+  const BodyMass mass     = body->mass;
+  PetscBool     *contains = body->layer.contains;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(change, 4);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  *change = body->mass.turn_error;
+  if (!vertices) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc1(body->mesh.local_nodes, &body->layer.contains));
+  PetscCall(BodyMarkNodes(body, n, vertices, body->layer.contains));
+  body->mass.orphans    = NULL;
+  body->mass.factor     = NULL;
+  body->mass.turn_error = 0;
+  PetscCall(BodyFindOrphans(body));
+  PetscCall(BodyFindMassFactor(body));
+  *change = body->mass.turn_error;
+  PetscCall(VecDestroy(&body->mass.orphans));
+  PetscCall(PetscFree(body->mass.factor));
+  PetscCall(PetscFree(body->layer.contains));
+  body->mass           = mass;
+  body->layer.contains = contains;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

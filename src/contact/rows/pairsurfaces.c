@@ -1,9 +1,6 @@
 /* The surfaces of a pair, which of their nodes may touch, and the transfer between them. */
 #include <contact/parts.h>
 
-/* Forces on nodes with mass that are smaller, in parts of the largest nodal force, are round-off of the weights */
-#define FORCE_ROUND_OFF 1e-9
-
 /* A surface of a body; `name` NULL: the whole of it */
 PetscErrorCode ContactCreateSurface(Contact contact, PetscInt body, const char name[], Surface *surface)
 {
@@ -15,54 +12,6 @@ PetscErrorCode ContactCreateSurface(Contact contact, PetscInt body, const char n
   PetscCall(SurfaceCreate(dm, name, surface));
   PetscCall(BodyGetAxisymmetric(contact->bodies[body], &axisymmetric));
   if (axisymmetric) PetscCall(SurfaceSetAxisymmetric(*surface));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A surface of a pair, and that of its partner, with the faces alone that face the partner at the start; the partner's is NULL for an
- * obstacle */
-static PetscErrorCode CreateFacing(Contact contact, const ContactPair *pair, Surface surfaces[2])
-{
-  PetscFunctionBegin;
-  surfaces[0] = surfaces[1] = NULL;
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-    PetscCall(ContactCreateSurface(contact, pair->body[side], pair->surface[side], &surfaces[side]));
-  PetscCall(SurfaceKeepFacing(surfaces[0], surfaces[1], pair->obstacle, PETSC_TRUE, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Tells a body whose far nodes keep their mass which of the nodes of a pair may touch: those that face the partner at the start */
-static PetscErrorCode MarkNearNodes(Contact contact, const ContactPair *pair, PetscInt side)
-{
-  const PetscInt *vertices;
-  PetscInt        n;
-  Surface         surfaces[2];
-
-  PetscFunctionBegin;
-  PetscCall(CreateFacing(contact, pair, surfaces));
-  PetscCall(SurfaceGetVertices(surfaces[side], &n, &vertices));
-  PetscCall(BodySetContactNodes(contact->bodies[pair->body[side]], n, vertices));
-  for (PetscInt s = 0; s < 2; s++) PetscCall(SurfaceDestroy(&surfaces[s]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Ends with an error if contact forces act on nodes that keep their mass since they faced nothing at the start: the methods count on
-   massless nodes, and such nodes would chatter without a word */
-PetscErrorCode ContactCheckNear(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool near;
-    PetscReal on_mass, largest;
-
-    PetscCall(BodyGetMassRedistributeNear(contact->bodies[b], &near));
-    if (!near) continue;
-    PetscCall(BodyGetForceOnMass(contact->bodies[b], contact->end.force, &on_mass, &largest));
-    PetscCheck(on_mass <= FORCE_ROUND_OFF * largest, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "Contact has come to nodes of body '%s' that faced nothing at the start, where -%s_mass_redistribute near leaves mass (%g "
-               "N); set it "
-               "to true",
-               ((PetscObject)contact->bodies[b])->name, ((PetscObject)contact->bodies[b])->name, (double)on_mass);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,7 +47,7 @@ PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
     PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
     PetscCall(BodyGetMassRedistributeNear(contact->bodies[body], &near));
     if (!pair->keeps_mass) {
-      if (near) PetscCall(MarkNearNodes(contact, pair, side));
+      if (near) PetscCall(ContactMarkNearNodes(contact, pair, side));
       else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
     }
     PetscCall(NoteNodes(contact, body, pair->surfaces[side]));
@@ -134,7 +83,7 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 
   PetscFunctionBegin;
   if (pair->chosen || !contact->options.facing) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CreateFacing(contact, pair, surfaces));
+  PetscCall(ContactCreateFacing(contact, pair, surfaces));
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     const SurfaceData *data;
 
