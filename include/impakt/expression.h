@@ -29,6 +29,7 @@ PETSC_EXTERN PetscErrorCode ExpressionIsConstant(Expression, PetscBool *, PetscR
 PETSC_EXTERN PetscErrorCode ExpressionIsSteady(Expression, PetscBool *);
 PETSC_EXTERN PetscErrorCode ExpressionIsUniform(Expression, PetscBool *);
 PETSC_EXTERN PetscErrorCode ExpressionUsesNormal(Expression, PetscBool *);
+PETSC_EXTERN PetscErrorCode ExpressionGetOption(Expression, const char *[]);
 PETSC_EXTERN PetscErrorCode ExpressionGetText(Expression, const char *[]);
 PETSC_EXTERN PetscErrorCode ExpressionView(Expression, PetscViewer);
 PETSC_EXTERN PetscErrorCode ExpressionDestroy(Expression *);

@@ -264,6 +264,30 @@ PetscErrorCode ExpressionGetText(Expression expression, const char *text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@C
+  ExpressionGetOption - the option that the expression comes from
+
+  Not Collective
+
+  Input Parameter:
+. expression - the `Expression`
+
+  Output Parameter:
+. option - without its dash; owned by the expression
+
+  Level: intermediate
+
+.seealso: `Expression`, `ExpressionCreate()`
+@*/
+PetscErrorCode ExpressionGetOption(Expression expression, const char *option[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
+  PetscAssertPointer(option, 2);
+  *option = expression->option;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ExpressionView - prints an expression
 

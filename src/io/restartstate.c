@@ -98,7 +98,9 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
   const Body    *bodies;
   Contact        contact;
   Tables         tables;
+  PetscReal      start;
   PetscInt       n, found = 0;
+  char           again[256] = "";
 
   PetscFunctionBegin;
   PetscCall(CheckpointFileOpen(comm, "-restart_state", path, &file));
@@ -129,8 +131,14 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
   PetscCheck(found, comm, PETSC_ERR_USER_INPUT, "-restart_state %s has none of the bodies of this run", path);
   PetscCall(ControllerGetContact(output->controller, &contact));
   PetscCall(ContactTakeState(contact));
-  PetscCall(PetscFPrintf(comm, stderr, "impakt: begun with the state of %s, after its controller step %" PetscInt_FMT " at time %g s\n",
-                         path, file.info.step, (double)file.info.time));
+  PetscCall(ControllerGetTimes(output->controller, &start, NULL, NULL));
+  if (start != file.info.time)
+    PetscCall(PetscSNPrintf(again, sizeof(again),
+                            "; time starts again at %g s, and so do formulas in t of loads and displacements: a load that is to stay needs "
+                            "its value there, or -time_start %.9g, with which formulas go on",
+                            (double)start, (double)file.info.time));
+  PetscCall(PetscFPrintf(comm, stderr, "impakt: begun with the state of %s, after its controller step %" PetscInt_FMT " at time %g s%s\n",
+                         path, file.info.step, (double)file.info.time, again));
   PetscCall(CheckpointFileClose(&file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -328,7 +328,8 @@ def test_static_preloads_dynamic(run_in, folder):
     options += ["-time_step", "1e-4", "-time_end", "5e-3", "-restart_state", where / "c.h5"]
     for ranks in (1, 2):
         told = run_in(STATIC, dynamic, ranks, *options, fields=False).stderr
-        assert "begun with the state of" in told
+        assert "at time 1. s; time starts again at 0. s, and so do formulas in t" in told
+        assert "or -time_start 1, with which formulas go on" in told
         with h5py.File(dynamic / "h.h5") as history:
             for body in bodies:
                 assert history[f"body/{body}/kinetic"][()].max() < 1e-12

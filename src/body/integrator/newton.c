@@ -309,6 +309,7 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   PetscBool           unsolved;
   SNES                snes;
   Vec                 residual;
+  char                sudden[BODY_SUDDEN_LENGTH];
 
   PetscFunctionBegin;
   PetscCall(CheckLinearSolver(body, &unsolved));
@@ -320,14 +321,16 @@ PetscErrorCode BodyImplicitCheckSubstep(Body body)
   if (reason >= 0 && !unsolved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyNoteInverted(body, implicit->alone));
   PetscCall(SNESGetFunction(snes, &residual, NULL, NULL));
+  PetscCall(BodyDescribeSuddenLoad(body, sudden));
   PetscCall(BodyLocateLargest(body, implicit->alone, residual, &element, centre, &largest));
-  PetscCall(StepFailureSet(
-      &body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
-      "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT "): %s after %" PetscInt_FMT
-      " iterations; the force that is farthest from balance, by %g N, is that of a node of "
-      "element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh; choose a "
-      "smaller -%sts_time_step, or look with -%ssnes_monitor",
-      body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations, (double)largest, element,
-      (double)centre[0], (double)centre[1], (double)centre[2], ((PetscObject)body)->prefix, ((PetscObject)body)->prefix));
+  PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_NEWTON, PETSC_ERR_NOT_CONVERGED,
+                           "Newton's method for body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
+                           "): %s after %" PetscInt_FMT
+                           " iterations; the force that is farthest from balance, by %g N, is that of a node of "
+                           "element %" PetscInt_FMT " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh; choose a "
+                           "smaller -%sts_time_step, or look with -%ssnes_monitor%s%s",
+                           body->hdr.name, (double)body->state.time, body->state.step, SNESConvergedReasons[reason], iterations,
+                           (double)largest, element, (double)centre[0], (double)centre[1], (double)centre[2], ((PetscObject)body)->prefix,
+                           ((PetscObject)body)->prefix, sudden[0] ? ". " : "", sudden));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

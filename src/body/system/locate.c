@@ -2,7 +2,7 @@
 #include <body/layout/bodyimpl.h>
 
 /* Where an element of this rank lies in the undeformed mesh, three numbers [m] */
-static void GetCentre(Body body, PetscInt e, PetscReal centre[3])
+void BodyGetElementCentre(Body body, PetscInt e, PetscReal centre[3])
 {
   const PetscInt n = body->model.element->nodes;
 
@@ -24,7 +24,7 @@ PetscErrorCode BodyFindFirstElement(Body body, PetscInt e, PetscMPIInt *first, P
   *first = e < 0 ? body->rows.size : rank;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, first, 1, MPI_INT, MPI_MIN, comm));
   if (*first == body->rows.size) PetscFunctionReturn(PETSC_SUCCESS);
-  if (rank == *first) GetCentre(body, e, centre);
+  if (rank == *first) BodyGetElementCentre(body, e, centre);
   PetscCallMPI(MPI_Bcast(centre, 3, MPIU_REAL, *first, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,7 +40,7 @@ static PetscErrorCode Locate(Body body, PetscBool alone, PetscInt e, PetscInt *n
   PetscFunctionBegin;
   *number = e;
   if (alone) {
-    if (e >= 0) GetCentre(body, e, centre);
+    if (e >= 0) BodyGetElementCentre(body, e, centre);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(BodyFindFirstElement(body, e, &first, centre));
@@ -58,18 +58,21 @@ PetscErrorCode BodyNoteInverted(Body body, PetscBool alone)
   PetscReal centre[3] = {0};
   PetscInt  number;
   Element   element;
+  char      sudden[BODY_SUDDEN_LENGTH];
 
   PetscFunctionBegin;
   PetscCall(BodyGetElement(body, &element));
   PetscCall(Locate(body, alone, element->inverted, &number, centre));
   if (number < 0) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyDescribeSuddenLoad(body, sudden));
   PetscCall(StepFailureSet(&body->failure, STEP_DIVERGED_INVERTED, PETSC_ERR_FP,
                            "Body '%s': element %" PetscInt_FMT
                            " (rank after rank, from 0), around (%g, %g, %g) m of the undeformed mesh, is inverted, or "
                            "not a number%s, at time %.9g s (step %" PetscInt_FMT
-                           " of the body); is a time step too large, a load too strong, or the mesh too coarse there?",
+                           " of the body); is a time step too large, a load too strong, or the mesh too coarse there?%s%s",
                            body->hdr.name, number, (double)centre[0], (double)centre[1], (double)centre[2],
-                           element->history.n ? ", or how much it flows was not found" : "", (double)body->state.time, body->state.step));
+                           element->history.n ? ", or how much it flows was not found" : "", (double)body->state.time, body->state.step,
+                           sudden[0] ? " " : "", sudden));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -349,6 +349,19 @@ static PetscErrorCode IsNeeded(Contact contact, PetscBool *needed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The error of a first state that is not found */
+static PetscErrorCode RefuseStart(Contact contact)
+{
+  char sudden[BODY_SUDDEN_LENGTH] = "";
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies && !sudden[0]; b++) PetscCall(BodyDescribeSuddenLoad(contact->bodies[b], sudden));
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
+          "The massless nodes found no balance in %d rounds at the start, from the initial displacements and loads of the bodies; give "
+          "these smaller values, or set -contact_balanced_start false to start from the displacements as they are%s%s",
+          MAX_ROUNDS, sudden[0] ? ". " : "", sudden);
+}
+
 /* Moves the massless nodes of all bodies into balance in their first states, with the rows as they are. Call with the bodies set up, when
    ties and rows are known. */
 PetscErrorCode ContactBalanceStart(Contact contact)
@@ -372,11 +385,7 @@ PetscErrorCode ContactBalanceStart(Contact contact)
   }
   PetscCall(Create(contact, &start));
   for (PetscInt round = 0;; round++) {
-    PetscCheck(
-        round < MAX_ROUNDS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-        "The massless nodes found no balance in %d rounds at the start, from the initial displacements and loads of the bodies; give "
-        "these smaller values, or set -contact_balanced_start false to start from the displacements as they are",
-        MAX_ROUNDS);
+    if (round == MAX_ROUNDS) PetscCall(RefuseStart(contact));
     PetscCall(Relax(&start));
     if (round == 0 && start.change == 0) break;
     out = PETSC_TRUE;
