@@ -26,6 +26,7 @@ static PetscErrorCode Run(PetscBool *stopped)
 {
   Controller     controller;
   Output         output;
+  PetscBool      checks;
   PetscErrorCode error;
 
   PetscFunctionBegin;
@@ -38,8 +39,9 @@ static PetscErrorCode Run(PetscBool *stopped)
   PetscCall(CheckOptions(controller));
   PetscCall(OutputRestart(output));
   PetscCall(ControllerView(controller, PETSC_VIEWER_STDOUT_WORLD));
-  error = ControllerSolve(controller);
-  if (!error) error = OutputReport(output);
+  PetscCall(OutputGetCheck(output, &checks));
+  error = checks ? OutputCheck(output) : ControllerSolve(controller);
+  if (!error && !checks) error = OutputReport(output);
   if (error) (void)OutputDestroy(&output); /* what was recorded until then helps to find out why */
   PetscCall(error);
   PetscCall(OutputIsStopped(output, stopped));

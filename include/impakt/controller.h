@@ -136,6 +136,7 @@ PETSC_EXTERN PetscErrorCode ControllerSetAfterStep(Controller, ControllerAfterSt
 PETSC_EXTERN PetscErrorCode ControllerGetStep(Controller, PetscInt *);
 PETSC_EXTERN PetscErrorCode ControllerSetMonitorInterval(Controller, PetscInt);
 PETSC_EXTERN PetscErrorCode ControllerSetProgress(Controller);
+PETSC_EXTERN PetscErrorCode ControllerCheck(Controller, PetscViewer);
 PETSC_EXTERN PetscErrorCode ControllerSolve(Controller);
 PETSC_EXTERN PetscErrorCode ControllerView(Controller, PetscViewer);
 PETSC_EXTERN PetscErrorCode ControllerViewFromOptions(Controller, PetscObject, const char[]);

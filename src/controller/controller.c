@@ -77,6 +77,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(BodyRefuseNewtonOptions(n, controller->bodies));
   PetscCall(ControllerSetUpStepControl(controller));
   PetscCall(ControllerWarnOfStep(controller));
+  PetscCall(ControllerWarnOfElements(controller));
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
   PetscCall(PetscCalloc5(n, &controller->measures, n, &controller->has_obstacle, 3 * n, &controller->contact_positions, 3 * n,
                          &controller->contact_velocities, n_pairs, &controller->pair_states));

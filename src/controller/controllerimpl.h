@@ -85,6 +85,8 @@ PETSC_INTERN PetscErrorCode ControllerChooseStep(Controller);
 PETSC_INTERN PetscErrorCode ControllerWarnOfStep(Controller);
 /* plausible.c */
 PETSC_INTERN PetscErrorCode ControllerWarnOfUnits(Controller);
+/* forecast.c */
+PETSC_INTERN PetscErrorCode ControllerWarnOfElements(Controller);
 /* stepcontrol.c */
 PETSC_INTERN PetscErrorCode ControllerReadStepControl(Controller);
 PETSC_INTERN PetscErrorCode ControllerSetUpStepControl(Controller);

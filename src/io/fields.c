@@ -139,6 +139,12 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FieldsKeepFirst - the file has room for the frame of the start alone; before it is written */
+void FieldsKeepFirst(Fields fields)
+{
+  fields->n_frames = 1;
+}
+
 PetscErrorCode FieldsShareError(Fields fields, PetscErrorCode error)
 {
   PetscFunctionBegin;

@@ -132,7 +132,8 @@ static PetscErrorCode ReadExactDisplacements(Output output)
 . output - the `Output`
 
   Options Database Keys:
-+ -output_history path - HDF5 file with every controller step
++ -check (true|false) - the set-up alone, and what to expect of the run: see `OutputCheck()`
+. -output_history path - HDF5 file with every controller step
 . -output_summary path - JSON file with the figures of the run
 . -output_fields path  - HDF5 file with fields of all bodies over time; an XDMF file is written beside it
 . -output_fields_interval n - a frame every n controller steps; default: as often as makes at most 100 frames
@@ -160,11 +161,12 @@ PetscErrorCode OutputSetFromOptions(Output output)
   char            exact[64] = "none", history[PETSC_MAX_PATH_LEN] = "", summary[PETSC_MAX_PATH_LEN] = "", fields[PETSC_MAX_PATH_LEN] = "";
   PetscInt        interval  = 0;
   OutputPrecision precision = OUTPUT_SINGLE;
-  PetscBool       has_history, has_summary, has_fields, none;
+  PetscBool       has_history, has_summary, has_fields, none, checks = output->checks;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
   PetscObjectOptionsBegin((PetscObject)output);
+  PetscCall(PetscOptionsBool("-check", "The set-up alone, and what to expect of the run", "OutputSetCheck", checks, &checks, NULL));
   PetscCall(PetscOptionsString("-exact", "Exact solution to compare with (none|impact|characteristics)", "OutputSetExact", exact, exact,
                                sizeof(exact), NULL));
   PetscCall(PetscOptionsString("-output_history", "HDF5 file with every controller step", "OutputSetHistory", history, history,
@@ -184,6 +186,8 @@ PetscErrorCode OutputSetFromOptions(Output output)
   PetscCall(OutputPathDrop(summary, &has_summary));
   PetscCall(OutputPathDrop(fields, &has_fields));
   PetscCall(OutputCheckPaths(PetscObjectComm((PetscObject)output), summary, history, fields, ""));
+  PetscCall(OutputSetCheck(output, checks));
+  if (checks) has_summary = has_history = PETSC_FALSE;
   PetscCall(PetscStrcmp(exact, "none", &none));
   if (!none) PetscCall(OutputSetExact(output, exact));
   PetscCall(ReadExactDisplacements(output));
@@ -226,6 +230,38 @@ PetscErrorCode OutputReport(Output output)
   PetscCall(ReportView(output->controller, results, output->exact, &verdict, viewer));
   PetscCall(OutputView(output, viewer));
   PetscCall(VerdictPrint(PetscObjectComm((PetscObject)output), &verdict));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OutputCheck - the start of a run and what to expect of it, in place of `ControllerSolve()` and `OutputReport()`
+
+  Collective
+
+  Input Parameter:
+. output - the `Output`, after `OutputSetCheck()` and all that says what is to be written
+
+  Options Database Key:
+. -check - this in place of a run
+
+  Level: beginner
+
+  Note:
+  Of all files the fields alone are written, with the frame of the start.
+
+.seealso: `Output`, `OutputSetCheck()`, `ControllerCheck()`
+@*/
+PetscErrorCode OutputCheck(Output output)
+{
+  PetscViewer viewer;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  PetscCheck(output->checks, PetscObjectComm((PetscObject)output), PETSC_ERR_ARG_WRONGSTATE, "Call OutputSetCheck() first");
+  PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)output), &viewer));
+  PetscCall(ControllerCheck(output->controller, viewer));
+  if (output->fields) PetscCall(FieldsFinish(output->fields));
+  PetscCall(OutputView(output, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -21,6 +21,7 @@ struct _p_Output {
   char        history_path[PETSC_MAX_PATH_LEN], fields_path[PETSC_MAX_PATH_LEN];
   OutputLocks locks;
   PetscBool   locked;
+  PetscBool   checks; /* -check: the start alone is looked at, and of files the fields alone are written */
   Checkpoints checkpoints;
 };
 

@@ -97,6 +97,57 @@ PetscErrorCode OutputSetExactDisplacement(Output output, Body body, const char c
 }
 
 /*@
+  OutputSetCheck - looks at the start of a run alone
+
+  Logically Collective
+
+  Input Parameters:
++ output - the `Output`, before it has been told what to write
+- checks - `PETSC_TRUE`: of all files the fields alone are to be written, with one frame; the program calls `OutputCheck()`
+
+  Options Database Key:
+. -check (true|false) - whether
+
+  Level: beginner
+
+.seealso: `Output`, `OutputCheck()`, `OutputGetCheck()`
+@*/
+PetscErrorCode OutputSetCheck(Output output, PetscBool checks)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(output, checks, 2);
+  PetscCheck(!checks || (!output->history && !output->summary_path[0] && !output->fields), PetscObjectComm((PetscObject)output),
+             PETSC_ERR_ARG_WRONGSTATE, "Call OutputSetCheck() before functions that say what is to be written");
+  output->checks = checks;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  OutputGetCheck - whether the start of the run is looked at alone
+
+  Not Collective
+
+  Input Parameter:
+. output - the `Output`
+
+  Output Parameter:
+. checks - as given to `OutputSetCheck()`
+
+  Level: beginner
+
+.seealso: `Output`, `OutputSetCheck()`
+@*/
+PetscErrorCode OutputGetCheck(Output output, PetscBool *checks)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
+  PetscAssertPointer(checks, 2);
+  *checks = output->checks;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   OutputSetSummary - writes the figures of the run to a file
 
   Collective
@@ -194,6 +245,7 @@ PetscErrorCode OutputSetFields(Output output, const char path[], PetscInt interv
   PetscCheck(!output->fields, comm, PETSC_ERR_ARG_WRONGSTATE, "The fields are written to %s already", output->fields_path);
   PetscCall(OutputCheckPaths(comm, output->summary_path, output->history_path, path, output->checkpoints.path));
   PetscCall(FieldsCreate(output->controller, path, interval, precision, &output->fields));
+  if (output->checks) FieldsKeepFirst(output->fields);
   PetscCall(ControllerMonitorSet(output->controller, FieldsMonitor, output->fields, NULL));
   PetscCall(FieldsGetInterval(output->fields, &interval));
   PetscCall(StatisticsSetFrames(output->statistics, interval));

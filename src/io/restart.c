@@ -279,6 +279,9 @@ PetscErrorCode OutputReadCheckpoints(Output output)
                                sizeof(limit), &has_limit));
   PetscOptionsEnd();
   PetscCall(OutputPathDrop(path, &has));
+  if (output->checks && has_restart)
+    PetscCall(PetscFPrintf(comm, stderr, "impakt: -check looks at the start of the run, and not at the checkpoint -restart %s\n", restart));
+  if (output->checks) has = has_restart = PETSC_FALSE;
   PetscCheck(!has_interval || interval > 0, comm, PETSC_ERR_USER_INPUT,
              "-checkpoint_interval %" PetscInt_FMT " must be a number of controller steps, 1 or more", interval);
   PetscCheck(!has_minutes || minutes > 0, comm, PETSC_ERR_USER_INPUT, "-checkpoint_wall_interval %.6g must be a positive number of minutes",

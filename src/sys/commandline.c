@@ -73,16 +73,19 @@ static PetscErrorCode CheckAlone(CommandLine *line, const char option[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `option` at words[i], whose value, if it has any, is the next word */
+/* `option` at words[i], whose value, if it has any, is the next word; an options file is none of a switch: -check case.opts */
 static PetscErrorCode TakeOption(CommandLine *line, int argc, char **argv, int *i, PetscBool *has_value)
 {
-  PetscBool reads, key = PETSC_TRUE;
+  PetscBool reads, key = PETSC_TRUE, file = PETSC_FALSE;
+  char      text[900] = "";
 
   PetscFunctionBegin;
   line->words[line->n++] = argv[*i];
   PetscCall(ReadsFile(argv[*i], &reads));
   if (*i + 1 < argc) PetscCall(PetscOptionsValidKey(argv[*i + 1], &key));
-  *has_value = (PetscBool)!key;
+  if (!key && !reads) PetscCall(IsOptionsFile(argv[*i + 1], &file));
+  if (file) PetscCall(OptionsDescribeMissing(argv[*i] + 1, text, sizeof(text)));
+  *has_value = (PetscBool)(!key && !(file && !text[0]));
   if (*has_value && !argv[*i + 1][0])
     PetscCall(
         PetscSNPrintf(line->error, sizeof(line->error), "The value of %s is empty: is a variable of a script without content?", argv[*i]));

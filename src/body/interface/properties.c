@@ -51,6 +51,61 @@ PetscErrorCode BodyGetMass(Body body, PetscReal *mass)
 }
 
 /*@
+  BodyGetInertia - centre of mass and inertia tensor of the undeformed body, with all mass where the mesh has it
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ centre  - centre of mass, zeros beyond the space dimension [m]
+- inertia - tensor about it, rows along x, y, z; of plane bodies about the third axis alone, zero of bars and of rings, which do not turn
+            [kg m^2]
+
+  Level: intermediate
+
+  Note:
+  The consistent mass of the mesh whatever the mass matrix of the body is, so that a brick has the moments of a brick.
+
+.seealso: `Body`, `BodyGetMass()`, `BodyGetMassRedistribution()`
+@*/
+PetscErrorCode BodyGetInertia(Body body, PetscReal centre[3], PetscReal inertia[9])
+{
+  const PetscInt nodes = body->model.element->nodes, dim = body->mesh.dim;
+  PetscScalar    M[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
+  PetscReal      sums[9] = {0}, trace;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(centre, 2);
+  PetscAssertPointer(inertia, 3);
+  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
+  PetscCall(PetscArraycpy(centre, body->mass.centre, 3));
+  PetscCall(PetscArrayzero(inertia, 9));
+  if (dim == 1 || body->model.element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt pass = 0; pass < 2; pass++) { /* first moments give the centre, second moments about it the tensor */
+    PetscCall(PetscArrayzero(sums, 9));
+    for (PetscInt e = 0; e < body->model.element->count; e++) {
+      PetscReal r[ELEMENT_MAX_NODES][3] = {{0}};
+
+      PetscCall((*body->model.element->ops->mass)(body->model.element, e, M));
+      for (PetscInt a = 0; a < nodes; a++)
+        for (PetscInt d = 0; d < dim; d++) r[a][d] = body->mesh.coordinates[body->mesh.connectivity[e * nodes + a] * dim + d] - centre[d];
+      for (PetscInt i = 0; i < nodes * nodes; i++)
+        for (PetscInt k = 0; k < (pass ? 9 : dim); k++)
+          sums[k] += M[i] * (pass ? r[i / nodes][k / 3] * r[i % nodes][k % 3] : r[i / nodes][k]);
+    }
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 9, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+    for (PetscInt d = 0; d < dim && !pass; d++) centre[d] += sums[d] / body->mass.total;
+  }
+  trace = sums[0] + sums[4] + sums[8];
+  for (PetscInt k = 0; k < 9; k++) inertia[k] = (k % 4 ? 0 : trace) - sums[k];
+  for (PetscInt k = 0; k < 8 && dim == 2; k++) inertia[k] = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyGetMassRedistribution - what a massless contact layer has changed
 
   Not Collective

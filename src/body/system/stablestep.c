@@ -38,7 +38,7 @@ static PetscBool IsStill(Body body, PetscInt node, PetscInt component)
 
 /* Largest eigenvalue of one element with its massless nodes held, which is a bound whether they are free or prescribed; u: displacement of
    this rank's nodes */
-static PetscErrorCode GetElementEigenvalue(Body body, PetscInt e, const PetscScalar u[], PetscReal *largest)
+PetscErrorCode BodyGetElementEigenvalue(Body body, PetscInt e, const PetscScalar u[], PetscReal *largest)
 {
   const PetscInt *nodes   = body->mesh.connectivity + e * body->model.element->nodes;
   const PetscInt  n_nodes = body->model.element->nodes, dim = body->mesh.dim, n = n_nodes * dim;
@@ -185,14 +185,14 @@ static PetscErrorCode EstimateEigenvalues(Body body, const PetscScalar u[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LargestOfLumped(Body body, const PetscScalar u[], PetscBool deformed, PetscReal *largest)
+/* The largest eigenvalue, from estimates for all elements, which `eigenvalues` becomes */
+static PetscErrorCode LargestOfLumped(Body body, const PetscScalar u[], PetscBool deformed, PetscReal eigenvalues[], PetscReal *largest)
 {
   const PetscInt count = body->model.element->count;
-  PetscReal     *eigenvalues, top = 0, above = PETSC_MAX_REAL, exact, last = -1;
+  PetscReal      top = 0, above = PETSC_MAX_REAL, exact, last = -1;
   PetscInt       n_exact = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(count, &eigenvalues));
   PetscCall(EstimateEigenvalues(body, u, deformed, eigenvalues));
   for (PetscInt e = 0; e < count; e++) top = PetscMax(top, eigenvalues[e]);
   /* from the top down, band by band */
@@ -202,21 +202,34 @@ static PetscErrorCode LargestOfLumped(Body body, const PetscScalar u[], PetscBoo
     for (PetscInt e = 0; e < count && n_exact < MAX_EXACT; e++) {
       if (eigenvalues[e] < bound || eigenvalues[e] >= above || eigenvalues[e] == last) continue; /* of equal neighbours, one */
       last = eigenvalues[e];
-      PetscCall(GetElementEigenvalue(body, e, u, &exact));
+      PetscCall(BodyGetElementEigenvalue(body, e, u, &exact));
       *largest = PetscMax(*largest, exact);
       n_exact++;
     }
     above = bound;
   }
-  PetscCall(PetscFree(eigenvalues));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* 2 / omega_max, from below; less with dashpots. u: displacement of this rank's nodes; NULL: none. Collective; or `alone`: of the rank that
-   has the body. */
+/* 2 / omega, less with dashpots that feel the velocity at mid-step: (2 / omega) (sqrt(1 + zeta^2) - zeta), twice zeta omega being
+   alpha + beta omega^2 */
+PetscErrorCode BodyGetStepOfEigenvalue(Body body, PetscReal eigenvalue, PetscReal *step)
+{
+  PetscReal alpha, beta, rate;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDamping(body, &alpha, &beta));
+  rate  = alpha + beta * eigenvalue;
+  *step = 4 / (rate + PetscSqrtReal(PetscSqr(rate) + 4 * eigenvalue));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* 2 / omega_max, from below; less with dashpots. u: displacement of this rank's nodes; NULL: none, and the elements that bound the step are
+   noted. Collective; or `alone`: of the rank that has the body. */
 PetscErrorCode BodyComputeStableStepAt(Body body, const PetscScalar u[], PetscBool alone, PetscReal *step)
 {
-  PetscReal          largest = 0, alpha, beta, rate;
+  const PetscInt     count   = body->model.element->count;
+  PetscReal          largest = 0, *eigenvalues;
   PetscScalar       *zero    = NULL;
   const PetscScalar *at      = u;
   ElementHistory     before;
@@ -228,21 +241,20 @@ PetscErrorCode BodyComputeStableStepAt(Body body, const PetscScalar u[], PetscBo
   }
   if (u) BodyHistoryLook(body, &before);
   else BodyHistoryForget(body, &before);
-  if (body->mass.type == BODY_MASS_LUMPED && body->mesh.dim > 1) PetscCall(LargestOfLumped(body, at, (PetscBool)(u != NULL), &largest));
+  PetscCall(PetscMalloc1(count, &eigenvalues));
+  if (body->mass.type == BODY_MASS_LUMPED && body->mesh.dim > 1)
+    PetscCall(LargestOfLumped(body, at, (PetscBool)(u != NULL), eigenvalues, &largest));
   else
-    for (PetscInt e = 0; e < body->model.element->count; e++) {
-      PetscReal eigenvalue;
-
-      PetscCall(GetElementEigenvalue(body, e, at, &eigenvalue));
-      largest = PetscMax(largest, eigenvalue);
+    for (PetscInt e = 0; e < count; e++) {
+      PetscCall(BodyGetElementEigenvalue(body, e, at, &eigenvalues[e]));
+      largest = PetscMax(largest, eigenvalues[e]);
     }
+  if (!u) PetscCall(BodyNoteStepBounds(body, at, eigenvalues));
   BodyHistoryLookBack(body, &before);
+  PetscCall(PetscFree(eigenvalues));
   PetscCall(PetscFree(zero));
   if (!alone) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)body)));
-  PetscCall(BodyGetDamping(body, &alpha, &beta));
-  /* of dashpots that feel the velocity at mid-step: (2 / omega) (sqrt(1 + zeta^2) - zeta), twice zeta omega being alpha + beta omega^2 */
-  rate  = alpha + beta * largest;
-  *step = 4 / (rate + PetscSqrtReal(PetscSqr(rate) + 4 * largest));
+  PetscCall(BodyGetStepOfEigenvalue(body, largest, step));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
