@@ -3,6 +3,7 @@
    names the one that fits best. Nothing is changed by it, and the run goes on.
 */
 #include "plausible.h"
+#include <impakt/private/bodyrows.h>
 #include "controllerimpl.h"
 #include <sys/units.h>
 
@@ -95,34 +96,19 @@ static PetscErrorCode FindSizeOption(Body body, const char prefix[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest extent of a body's mesh */
-static PetscErrorCode GetExtent(Body body, PetscReal *size)
-{
-  PetscReal lower[3], upper[3];
-  PetscInt  dim;
-  DM        dm;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetDM(body, &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
-  PetscCall(DMGetBoundingBox(dm, lower, upper));
-  *size = 0;
-  for (PetscInt d = 0; d < dim; d++) *size = PetscMax(*size, upper[d] - lower[d]);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*
   BodyDoubtUnits - which of a body's density, Young's modulus and size are implausible in the units of -units
 
-  Collective
+  Not Collective
 
-  Input Parameter:
-. body - the `Body`, with its mesh and material
+  Input Parameters:
++ body - the `Body`, with its mesh and material
+- box  - see `BodyGetAllBoxes()`
 
   Output Parameter:
 . text - names option, value and the unit that it would fit; empty where all is plausible
 */
-PetscErrorCode BodyDoubtUnits(Body body, char text[DOUBT_SIZE])
+PetscErrorCode BodyDoubtUnits(Body body, const PetscReal box[6], char text[DOUBT_SIZE])
 {
   const Material *of_blocks;
   const char     *prefix, *option;
@@ -141,7 +127,7 @@ PetscErrorCode BodyDoubtUnits(Body body, char text[DOUBT_SIZE])
   PetscCall(BodyGetMaterial(body, &material));
   if (!n) PetscCall(DoubtMaterial(material, rigid, units, text));
   for (PetscInt k = 0; k < n; k++) PetscCall(DoubtMaterial(of_blocks[k], rigid, units, text));
-  PetscCall(GetExtent(body, &size));
+  for (PetscInt d = 0; d < 3; d++) size = PetscMax(size, -box[3 + d] - box[d]);
   PetscCall(FindSizeOption(body, prefix, &option));
   PetscCall(Doubt(&extent, units, prefix ? prefix : "", option, size, text));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -150,15 +136,19 @@ PetscErrorCode BodyDoubtUnits(Body body, char text[DOUBT_SIZE])
 /* ControllerWarnOfUnits - a line on standard error for each of the first bodies that numbers in other units make implausible; collective */
 PetscErrorCode ControllerWarnOfUnits(Controller controller)
 {
-  char     text[DOUBT_SIZE];
-  PetscInt told = 0;
+  char       text[DOUBT_SIZE];
+  PetscReal *boxes;
+  PetscInt   told = 0;
 
   PetscFunctionBegin;
+  PetscCall(PetscMalloc1(6 * controller->n_bodies, &boxes));
+  PetscCall(BodyGetAllBoxes(controller->n_bodies, controller->bodies, boxes));
   for (PetscInt b = 0; b < controller->n_bodies && told < MOST_DOUBTS; b++) {
-    PetscCall(BodyDoubtUnits(controller->bodies[b], text));
+    PetscCall(BodyDoubtUnits(controller->bodies[b], boxes + 6 * b, text));
     if (!text[0]) continue;
     PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)controller), stderr, "impakt: warning: %s (-units)\n", text));
     told++;
   }
+  PetscCall(PetscFree(boxes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

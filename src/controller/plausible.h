@@ -4,4 +4,4 @@
 
 #define DOUBT_SIZE 400
 
-PETSC_INTERN PetscErrorCode BodyDoubtUnits(Body, char[DOUBT_SIZE]);
+PETSC_INTERN PetscErrorCode BodyDoubtUnits(Body, const PetscReal[6], char[DOUBT_SIZE]);

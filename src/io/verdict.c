@@ -226,7 +226,8 @@ static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LookAtBody(Contact contact, PetscInt b, Body body, const BodyStatistics *statistics, Verdict *verdict)
+static PetscErrorCode LookAtBody(Contact contact, PetscInt b, Body body, const PetscReal box[6], const BodyStatistics *statistics,
+                                 Verdict *verdict)
 {
   const char *name;
   char        doubt[DOUBT_SIZE];
@@ -234,7 +235,7 @@ static PetscErrorCode LookAtBody(Contact contact, PetscInt b, Body body, const B
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
-  PetscCall(BodyDoubtUnits(body, doubt));
+  PetscCall(BodyDoubtUnits(body, box, doubt));
   if (doubt[0]) PetscCall(AddOfKind(verdict, VERDICT_UNITS, "%s", doubt));
   PetscCall(LookAtMass(contact, b, body, name, verdict));
   PetscCall(BodyIsLinear(body, &linear));
@@ -323,6 +324,7 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
   Contact           contact;
   ContactPairState *states;
   const Body       *bodies;
+  PetscReal        *boxes;
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(verdict, sizeof(*verdict)));
@@ -330,11 +332,14 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
   PetscCall(ControllerGetStatics(controller, &verdict->statics));
   PetscCall(ControllerGetBodies(controller, NULL, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
+  PetscCall(PetscMalloc1(6 * results->n_bodies, &boxes));
+  PetscCall(BodyGetAllBoxes(results->n_bodies, bodies, boxes));
   PetscCall(LookAtSteps(controller, contact, results, verdict));
   for (PetscInt b = 0; b < results->n_bodies; b++) {
-    PetscCall(LookAtBody(contact, b, bodies[b], &results->bodies[b], verdict));
+    PetscCall(LookAtBody(contact, b, bodies[b], boxes + 6 * b, &results->bodies[b], verdict));
     PetscCall(LookAtOverlap(contact, bodies[b], &results->bodies[b], verdict));
   }
+  PetscCall(PetscFree(boxes));
   if (results->steps && results->n_pairs) {
     PetscCall(PetscMalloc1(results->n_pairs, &states));
     PetscCall(ContactGetPairStates(contact, states));

@@ -143,8 +143,8 @@ PetscErrorCode OptionsFindMaterial(const char option[], char material[], size_t 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error for the name of a material that has no options, with those that have */
-static PetscErrorCode CheckMaterial(MPI_Comm comm, const Sharers *sharers, PetscInt b, PetscInt n, const char *const names[])
+/* What is wrong with the name of a material that has no options, with those that have; nothing where it has some */
+static PetscErrorCode CheckMaterial(const Sharers *sharers, PetscInt b, PetscInt n, const char *const names[], char error[], size_t size)
 {
   char       *material, option[PETSC_MAX_OPTION_NAME], name[128], list[1024] = "", last[128] = "";
   const char *wanted = sharers->materials[b];
@@ -159,9 +159,11 @@ static PetscErrorCode CheckMaterial(MPI_Comm comm, const Sharers *sharers, Petsc
   }
   PetscCall(ReadMaterial(sharers->bodies[b], &material, option, sizeof(option)));
   PetscCall(PetscFree(material));
-  SETERRQ(comm, PETSC_ERR_USER_INPUT,
-          "-%s %s: there is no material '%s', since no option begins with -material_%s_, as in -material_%s_density 7800; there are: %s",
-          option, wanted, wanted, wanted, wanted, list[0] ? list : "none");
+  PetscCall(
+      PetscSNPrintf(error, size,
+                    "-%s %s: there is no material '%s', since no option begins with -material_%s_, as in -material_%s_density 7800; there are: %s",
+                    option, wanted, wanted, wanted, wanted, list[0] ? list : "none"));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A shared option becomes one of a body, unless the body has its own, or a material comes first */
@@ -198,19 +200,20 @@ PetscErrorCode OptionsExpandShared(MPI_Comm comm, PetscInt n, char *const bodies
 {
   Sharers      sharers;
   const char **names;
-  char        *text;
+  char        *text, error[2048] = "";
   PetscInt     n_names;
 
   PetscFunctionBegin;
   PetscCall(SharersCreate(n, bodies, &sharers));
   PetscCall(PetscOptionsGetAll(NULL, &text));
   PetscCall(CollectNames(text, &n_names, &names));
-  for (PetscInt b = 0; b < n; b++) PetscCall(CheckMaterial(comm, &sharers, b, n_names, names));
-  for (PetscInt i = 0; i < n_names; i++)
+  for (PetscInt b = 0; b < n && !error[0]; b++) PetscCall(CheckMaterial(&sharers, b, n_names, names, error, sizeof(error)));
+  for (PetscInt i = 0; i < n_names && !error[0]; i++)
     for (PetscInt b = 0; b < n && OptionsIsShared(names[i]); b++) PetscCall(Expand(&sharers, b, names[i], n_names, names));
   PetscCall(PetscFree(names));
   PetscCall(PetscFree(text));
   PetscCall(SharersDestroy(&sharers));
+  PetscCheck(!error[0], comm, PETSC_ERR_USER_INPUT, "%s", error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -356,7 +356,7 @@ static PetscErrorCode PassInStep(Controller controller, const ControllerFrame *f
 static const char *Run(const char progress[], double seconds)
 {
   Simulation   simulation = {.controller = NULL};
-  PetscOptions options    = options_begin("%s", progress);
+  PetscOptions options    = options_begin("-units none %s", progress);
 
   AddCollision(4, 3, 0);
   ok(SimulationCreate(&simulation));

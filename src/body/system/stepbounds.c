@@ -3,8 +3,8 @@
 
 /* The median is looked for in an interval that becomes one of so many parts of it, again and again, until it is as short as this part of
    its place */
-#define PARTS  256
-#define FOUND  1e-9
+#define PARTS  1024
+#define FOUND  1e-4
 #define ROUNDS 24
 
 /* One of the elements with the largest eigenvalues */
@@ -73,10 +73,8 @@ static PetscErrorCode FindMedian(MPI_Comm comm, PetscInt n, PetscReal list[], Pe
     range[1]     = PetscMin(range[1], -list[i]);
     list[left++] = list[i];
   }
-  total = left;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &total, 1, MPIU_INT64, MPI_SUM, comm));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, range, 2, MPIU_REAL, MPIU_MIN, comm));
-  if (!total) PetscFunctionReturn(PETSC_SUCCESS);
+  if (range[0] == PETSC_MAX_REAL) PetscFunctionReturn(PETSC_SUCCESS);
   lower = range[0];
   upper = -range[1];
   for (PetscInt round = 0; round < ROUNDS && upper - lower > FOUND * lower; round++) {
@@ -86,6 +84,7 @@ static PetscErrorCode FindMedian(MPI_Comm comm, PetscInt n, PetscReal list[], Pe
     PetscCall(PetscArrayzero(counts, PARTS));
     for (PetscInt i = 0; i < left; i++) counts[PetscClipInterval((PetscInt)((list[i] - lower) / width), 0, PARTS - 1)]++;
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, PARTS, MPIU_INT64, MPI_SUM, comm));
+    for (PetscInt k = 0; k < PARTS && !round; k++) total += counts[k];
     while (2 * (before + counts[part]) < total) before += counts[part++];
     left = 0;
     for (PetscInt i = 0; i < n_left; i++)

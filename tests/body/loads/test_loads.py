@@ -121,27 +121,29 @@ def test_load_that_ends(load, ranks, impakt):
         assert word in run.stderr
 
 
-# A beam under a shear that turns its elements inside out in the first step
+# A beam, in one step, under a shear that turns its elements inside out, or that it cannot bear
 BEAM = (
     "-bodies beam -beam_dm_plex_dim 2 -beam_dm_plex_box_faces 8,2 -beam_dm_plex_box_upper 2,1 -beam_density 1000 -beam_youngs_modulus 1e9 -beam_material_type neo_hookean "
     "-beam_boundary_displacement xmin -beam_boundary_displacement_xmin 0,0 -controller_step_cuts 0 -time_step 0.5 -time_end 1"
 )
 SHEAR = "-beam_boundary_traction xmax -beam_boundary_traction_xmax"
+# Statics find where rubber hangs under any load, but not what metal cannot bear
+FLOWS = "-beam_ts_type static -beam_material_type j2 -beam_yield_stress 1e6"
 
 
 @pytest.mark.parametrize(
     ("load", "remedy"),
     [
-        (f"-beam_ts_type static {SHEAR} 0,-1e10", "by -beam_boundary_traction_xmax 0,-1e10*min(1,t/5)"),
+        (f"{FLOWS} {SHEAR} 0,-1e10", "by -beam_boundary_traction_xmax 0,-1e10*min(1,t/5)"),
         (f"{SHEAR} 0,-1e10+1e6*y -time_step 0.01", "by -beam_boundary_traction_xmax 0,(-1e10+1e6*y)*min(1,t/0.1)"),
-        ("-beam_ts_type static -beam_gravity 0,-1e9 -time_start 1 -time_end 2", "by -beam_body_force 0,-1e+12*min(1,(t-1)/5) in place of -beam_gravity"),
-        (f"-beam_ts_type static {SHEAR} 0,-1e11*t", None),  # it grows already
+        (f"{FLOWS} -beam_gravity 0,-1e9 -time_start 1 -time_end 2", "by -beam_body_force 0,-1e+12*min(1,(t-1)/5) in place of -beam_gravity"),
+        (f"{FLOWS} {SHEAR} 0,-1e11*t", None),  # it grows already
     ],
 )
 def test_sudden_load(load, remedy, impakt):
     """A step that fails soon after a load has come at once says how to let that grow, in the words of its option."""
     told = impakt(f"{BEAM} {load}", expect_failure=True).stderr
-    assert "is inverted, or not a number" in told
+    assert "is inverted, or not a number" in told or "did not converge" in told
     assert (f"A load comes suddenly: let it grow, as over 10 controller steps {remedy}" in told) if remedy else "suddenly" not in told
 
 

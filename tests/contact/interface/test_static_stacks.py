@@ -47,7 +47,8 @@ def test_weights(seed, impakt):
     run = impakt(options)
     for pair, weight in zip(pairs, borne, strict=True):
         assert abs(run.history[f"contact/{pair}/force_vector"][-1][-1 if "z" in pair else 1]) == pytest.approx(weight, abs=1e-8 * borne[0])
-    assert "impakt: warning" not in run.stderr
+    assert "inside each other" not in run.stderr
+    assert "energy error" not in run.stderr  # which says nothing where blocks fall through their gaps
 
 
 @pytest.mark.parametrize("ranks", [*long(3)])
