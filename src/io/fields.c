@@ -121,6 +121,8 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscCall(ControllerGetBodies(controller, &n_bodies, &bodies));
   PetscCall(FieldsMeshCreate(n_bodies, bodies, &f->mesh));
   PetscCall(ControllerGetContact(controller, &contact));
+  f->problem = contact;
+  PetscCall(FieldsObstaclesCheckPath(contact, path));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
   PetscCall(ContactGetLaw(contact, &law));
   f->set = (1u << (!n_pairs ? FIELDS_FIRST_OF_CONTACT : law == CONTACT_LAW_FRICTION ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_FRICTION)) - 1;
@@ -152,7 +154,7 @@ PetscErrorCode FieldsShareError(Fields fields, PetscErrorCode error)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the file its final name; the XDMF file of an earlier run, which does not fit it, is removed */
+/* Gives the file its final name, with the XDMF file of the obstacles beside it; that of the frames of an earlier run is removed */
 static PetscErrorCode TakePlace(Fields fields)
 {
   PetscBool placed = PETSC_TRUE;
@@ -163,6 +165,7 @@ static PetscErrorCode TakePlace(Fields fields)
     PetscCall(OutputPathResolve(fields->xdmf, sizeof(xdmf), xdmf)); /* a link stays, and is written through */
     (void)remove(xdmf);
     PetscCall(OutputFilePlace(fields->part, fields->path, &fields->held, &placed));
+    if (placed) PetscCall(XdmfWriteObstacles(fields->path, fields->n_obstacles, fields->obstacles, fields->times[0]));
   }
   PetscCheck(placed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s has vanished while it was written", fields->part);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -383,6 +386,7 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   PetscCall(OutputFileRelease(&f->held));
   PetscCall(ContactFieldsDestroy(&f->contact));
   PetscCall(FieldsMeshDestroy(&f->mesh));
+  PetscCall(PetscFree(f->obstacles));
   PetscCall(PetscFree(f->times));
   PetscCall(PetscFree(f->stress));
   PetscCall(PetscFree(f->nodal));

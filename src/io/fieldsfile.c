@@ -105,7 +105,8 @@ static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, h
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateGroup(hid_t file, const char name[], const char path[])
+/* FieldsFileCreateGroup - makes a group; one rank calls it */
+PetscErrorCode FieldsFileCreateGroup(hid_t file, const char name[], const char path[])
 {
   hid_t group;
 
@@ -116,18 +117,30 @@ static PetscErrorCode CreateGroup(hid_t file, const char name[], const char path
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FieldsFileAdd - makes a dataset with its numbers, of a type that is the same in memory and in the file; one rank calls it */
+PetscErrorCode FieldsFileAdd(hid_t file, const char name[], hid_t type, hsize_t rows, PetscInt components, UnitDimension dimension,
+                             const void *values, const char path[])
+{
+  hid_t dataset;
+  Units units;
+
+  PetscFunctionBegin;
+  PetscCall(UnitsGet(NULL, &units));
+  PetscCall(CreateDataset(file, name, type, rows, components, dimension, units, path, &dataset));
+  PetscCall(HDF5Check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write a dataset", path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "write a dataset", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Makes the dataset of times, which are not-a-number until their frames are in the file */
-static PetscErrorCode CreateTimes(hid_t file, PetscInt n_frames, Units units, const char path[])
+static PetscErrorCode CreateTimes(hid_t file, PetscInt n_frames, const char path[])
 {
   double *times;
-  hid_t   dataset;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n_frames, &times));
   for (PetscInt i = 0; i < n_frames; i++) times[i] = NAN;
-  PetscCall(CreateDataset(file, "time", H5T_IEEE_F64LE, (hsize_t)n_frames, 1, UNIT_TIME, units, path, &dataset));
-  PetscCall(HDF5Check(H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, times), "write times", path));
-  PetscCall(HDF5Check(H5Dclose(dataset), "write times", path));
+  PetscCall(FieldsFileAdd(file, "time", H5T_NATIVE_DOUBLE, (hsize_t)n_frames, 1, UNIT_TIME, times, path));
   PetscCall(PetscFree(times));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -140,7 +153,7 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, Units units
   hid_t       dataset;
 
   PetscFunctionBegin;
-  PetscCall(CreateGroup(file, "mesh", path));
+  PetscCall(FieldsFileCreateGroup(file, "mesh", path));
   PetscCall(CreateDataset(file, "mesh/positions", H5T_IEEE_F64LE, mesh->nodes.total, 3, UNIT_LENGTH, units, path, NULL));
   PetscCall(CreateDataset(file, "mesh/cells", H5T_STD_I32LE, mesh->topology.total, mesh->cell_nodes, UNIT_ONE, units, path, NULL));
   PetscCall(CreateDataset(file, "mesh/rank", H5T_STD_I32LE, mesh->cells.total, 1, UNIT_ONE, units, path, NULL));
@@ -192,12 +205,12 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Field
   PetscCall(HDF5Create(path, &file));
   PetscCall(HDF5WriteRun(file, options, path));
   PetscCall(CreateMesh(file, mesh, units, path));
-  PetscCall(CreateTimes(file, n_frames, units, path));
+  PetscCall(CreateTimes(file, n_frames, path));
   for (FieldsKind i = 0; i < FIELDS_PER_FRAME; i++) {
     const FieldsField *field = &fields_of_a_frame[i];
 
     if (!FieldsSetHas(set, i)) continue;
-    PetscCall(CreateGroup(file, field->name, path));
+    PetscCall(FieldsFileCreateGroup(file, field->name, path));
     for (PetscInt k = 0; k < n_frames; k++) {
       PetscCall(FieldsFileGetDataset(i, k, sizeof(name), name));
       PetscCall(CreateDataset(file, name, type, (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, field->dimension,

@@ -13,10 +13,12 @@ PetscErrorCode FieldsWriteMesh(Fields fields)
   int              *numbers;
 
   PetscFunctionBegin;
+  PetscCall(FieldsObstaclesFind(fields->problem, mesh->n_bodies, mesh->bodies, &fields->n_obstacles, &fields->obstacles));
   if (fields->first_rank) {
     PetscCall(PetscOptionsGetAll(NULL, &options));
     error = OutputFileMakeParents(fields->part); /* which may be gone since they were checked */
     if (!error) error = FieldsFileCreate(fields->part, mesh, fields->set, fields->n_frames, fields->precision, options);
+    if (!error) error = FieldsObstaclesWrite(fields->part, fields->n_obstacles, fields->obstacles);
     PetscCall(PetscFree(options));
   }
   PetscCall(FieldsShareError(fields, error));

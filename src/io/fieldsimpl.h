@@ -1,6 +1,7 @@
 /* What the sources of the fields share. Private to src/io. */
 #pragma once
 #include "fields.h"
+#include "fieldsobstacles.h"
 #include "hdf5file.h"
 
 struct _n_Fields {
@@ -12,6 +13,9 @@ struct _n_Fields {
   FieldsMesh      mesh;
   FieldsSet       set;                      /* fields of each frame */
   ContactFields   contact;                  /* NULL if no bodies can touch */
+  Contact         problem;                  /* has the obstacles; borrowed */
+  PetscInt        n_obstacles;              /* that are shown */
+  ObstacleGrid   *obstacles;                /* their surfaces; NULL until the file is begun */
   PetscInt        written;                  /* frames in the file */
   PetscInt        goes_on;                  /* frames of the run that is continued, see FieldsTakeUp() */
   PetscReal      *times;                    /* their times [s] */

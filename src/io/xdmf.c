@@ -47,6 +47,21 @@ PetscErrorCode XdmfGetPath(const char fields[], size_t size, char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* XdmfGetObstaclesPath - where the XDMF file of the obstacles is: -obstacles.xdmf in place of .xdmf */
+PetscErrorCode XdmfGetObstaclesPath(const char fields[], size_t size, char path[])
+{
+  const char ending[] = "-obstacles.xdmf";
+  size_t     length;
+
+  PetscFunctionBegin;
+  PetscCall(XdmfGetPath(fields, size, path));
+  length = strlen(path) - strlen(".xdmf");
+  PetscCheck(length + sizeof(ending) <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "The output path '%s' is too long: %zu characters at most", fields, size - sizeof(ending));
+  PetscCall(PetscStrncpy(path + length, ending, size - length));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* XdmfCheckPath - makes sure that XDMF can name the HDF5 file `path` */
 PetscErrorCode XdmfCheckPath(MPI_Comm comm, const char path[])
 {
@@ -129,24 +144,42 @@ typedef struct {
   const PetscReal  *times;
 } List;
 
+/* Opens the file, with a collection of grids */
+static PetscErrorCode BeginFile(const char part[], const char name[], const char type[], FILE **out)
+{
+  PetscFunctionBegin;
+  *out = fopen(part, "w");
+  PetscCheck(*out, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(errno));
+  fprintf(*out,
+          "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"%s\" GridType=\"Collection\" "
+          "CollectionType=\"%s\">\n",
+          name, type);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode EndFile(const char part[], FILE *out)
+{
+  int failed;
+
+  PetscFunctionBegin;
+  fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
+  failed = ferror(out);
+  failed = fclose(out) || failed;
+  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written; is the disk full?", part);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* See OutputFileWrite() */
 static PetscErrorCode WriteList(const char part[], void *ctx)
 {
   List *list = (List *)ctx;
   FILE *out;
-  int   failed;
 
   PetscFunctionBegin;
-  out = fopen(part, "w");
-  PetscCheck(out, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written: %s", part, strerror(errno));
-  fprintf(out, "<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n  <Domain>\n    <Grid Name=\"frames\" GridType=\"Collection\" "
-               "CollectionType=\"Temporal\">\n");
+  PetscCall(BeginFile(part, "frames", "Temporal", &out));
   for (PetscInt k = 0; k < list->n_frames; k++)
     PetscCall(WriteFrame(out, list->mesh, list->set, list->precision, k, list->times[k], list->file));
-  fprintf(out, "    </Grid>\n  </Domain>\n</Xdmf>\n");
-  failed = ferror(out);
-  failed = fclose(out) || failed;
-  PetscCheck(!failed, PETSC_COMM_SELF, PETSC_ERR_FILE_WRITE, "%s cannot be written; is the disk full?", part);
+  PetscCall(EndFile(part, out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,5 +205,65 @@ PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, FieldsSet 
   PetscFunctionBegin;
   PetscCall(XdmfGetPath(fields, sizeof(path), path));
   PetscCall(OutputFileWrite(path, WriteList, &list, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the file of the obstacles lists, see XdmfWriteObstacles() */
+typedef struct {
+  const char         *file; /* name of the HDF5 file */
+  PetscInt            n;
+  const ObstacleGrid *grids;
+  PetscReal           time;
+} ObstacleList;
+
+/* See OutputFileWrite() */
+static PetscErrorCode WriteObstacles(const char part[], void *ctx)
+{
+  const ObstacleList *list = (const ObstacleList *)ctx;
+  char                dataset[PETSC_MAX_PATH_LEN];
+  FILE               *out;
+
+  PetscFunctionBegin;
+  PetscCall(BeginFile(part, "obstacles", "Spatial", &out));
+  for (PetscInt i = 0; i < list->n; i++) {
+    const ObstacleGrid *grid    = &list->grids[i];
+    const hsize_t       n_cells = (hsize_t)ObstacleGridCountCells(grid), n_points = (hsize_t)ObstacleGridCountPoints(grid);
+
+    fprintf(out,
+            "      <Grid Name=\"%s\" GridType=\"Uniform\">\n        <Time Value=\"%.17g\"/>\n        <Topology TopologyType=\"%s\" "
+            "NumberOfElements=\"%llu\" NodesPerElement=\"%d\">",
+            grid->name, (double)list->time, grid->corners == 4 ? "Quadrilateral" : "Polyline", (unsigned long long)n_cells,
+            (int)grid->corners);
+    PetscCall(PetscSNPrintf(dataset, sizeof(dataset), "/mesh/obstacles/%s/cells", grid->name));
+    WriteItem(out, "Int", sizeof(int), n_cells, grid->corners, list->file, dataset);
+    fprintf(out, "</Topology>\n        <Geometry GeometryType=\"XYZ\">");
+    PetscCall(PetscSNPrintf(dataset, sizeof(dataset), "/mesh/obstacles/%s/points", grid->name));
+    WriteItem(out, "Float", sizeof(double), n_points, 3, list->file, dataset);
+    fprintf(out, "</Geometry>\n      </Grid>\n");
+  }
+  PetscCall(EndFile(part, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
+  XdmfWriteObstacles - writes the XDMF file of the obstacles, replacing what is there as a whole
+
+  Not Collective; one rank calls it
+
+  Input Parameters:
++ fields - path of the HDF5 file
+. n      - number of grids; nothing is written if there are none
+. grids  - surfaces of the obstacles, as FieldsObstaclesWrite() has added them to the HDF5 file
+- time   - of the first frame: readers want one, and another would be a frame of its own in ParaView [s]
+*/
+PetscErrorCode XdmfWriteObstacles(const char fields[], PetscInt n, const ObstacleGrid grids[], PetscReal time)
+{
+  ObstacleList list = {FileName(fields), n, grids, time};
+  char         path[PETSC_MAX_PATH_LEN];
+
+  PetscFunctionBegin;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(XdmfGetObstaclesPath(fields, sizeof(path), path));
+  PetscCall(OutputFileWrite(path, WriteObstacles, &list, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -314,7 +314,7 @@ static const KnownOption options[] = {
     {"files", OPTION_OF_BODY, "probe", "x,y[,z];x,y[,z]",
      "points of the undeformed body [m] whose position, displacement, velocity and stress are in the history"},
     {"files", OPTION_OF_RUN, "output_fields", "file.h5|none",
-     "displacement, velocity, stress, ... of all bodies over time, with file.xdmf for ParaView"},
+     "displacement, velocity, stress, ... of all bodies over time, with file.xdmf for ParaView; obstacles in file-obstacles.xdmf"},
     {"files", OPTION_OF_RUN, "output_fields_interval", "n",
      "a frame of fields every n controller steps, default: at most 100 frames in all"},
     {"files", OPTION_OF_RUN, "output_fields_precision", "single|double", "precision of the numbers in the frames, default single"},
