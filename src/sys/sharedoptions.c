@@ -159,10 +159,10 @@ static PetscErrorCode CheckMaterial(const Sharers *sharers, PetscInt b, PetscInt
   }
   PetscCall(ReadMaterial(sharers->bodies[b], &material, option, sizeof(option)));
   PetscCall(PetscFree(material));
-  PetscCall(
-      PetscSNPrintf(error, size,
-                    "-%s %s: there is no material '%s', since no option begins with -material_%s_, as in -material_%s_density 7800; there are: %s",
-                    option, wanted, wanted, wanted, wanted, list[0] ? list : "none"));
+  PetscCall(PetscSNPrintf(
+      error, size,
+      "-%s %s: there is no material '%s', since no option begins with -material_%s_, as in -material_%s_density 7800; there are: %s",
+      option, wanted, wanted, wanted, wanted, list[0] ? list : "none"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
