@@ -54,7 +54,7 @@ PetscErrorCode ControllerWarnOfElements(Controller controller)
     worst    = controller->bodies[b];
     of_worst = bounds;
   }
-  if (!worst) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!of_worst) PetscFunctionReturn(PETSC_SUCCESS);
   if (n > 1)
     PetscCall(PetscSNPrintf(more, sizeof(more), "; %" PetscInt_FMT " more bod%s", n - 1,
                             n == 2 ? "y has such an element" : "ies have such elements"));
