@@ -28,7 +28,7 @@ static const char *After(const char option[], const char owner[])
 {
   const size_t length = strlen(owner);
 
-  return strncasecmp(option, owner, length) || option[length] != '_' || !option[length + 1] ? NULL : option + length + 1;
+  return strncasecmp(option, owner, length) != 0 || option[length] != '_' || !option[length + 1] ? NULL : option + length + 1;
 }
 
 /* Whether an option (without its dash) is one of all bodies, or of a material */
