@@ -63,9 +63,8 @@ static PetscErrorCode CheckAsked(int argc, PetscBool *asked)
 /* Starts PETSc with the words of the command line, or with none where these are wrong */
 static PetscErrorCode Start(CommandLine *line)
 {
-  int         required = MPI_THREAD_FUNNELED, provided, n = line->n;
-  char      **words = line->words;
-  PetscMPIInt rank, size;
+  int    required = MPI_THREAD_FUNNELED, provided, n = line->n;
+  char **words = line->words;
 
   /* PetscFunctionBegin would need PETSc */
   if (MPI_Init_thread(&n, &words, required, &provided)) return PETSC_ERR_MPI;
@@ -73,9 +72,7 @@ static PetscErrorCode Start(CommandLine *line)
   if (line->error[0]) n = 1;
   PetscCall(ImpaktInitialize(&n, &words));
   PetscCheck(!line->error[0], PETSC_COMM_WORLD, PETSC_ERR_USER_INPUT, "%s", line->error);
-  PetscCallMPI(MPI_Comm_rank(PETSC_COMM_WORLD, &rank));
-  PetscCallMPI(MPI_Comm_size(PETSC_COMM_WORLD, &size));
-  StopSignalsBegin(rank, size);
+  StopSignalsBegin(PetscGlobalRank, PetscGlobalSize);
   PetscCall(CommandLineInsert(line));
   PetscCall(OptionsCheckValues());
   return PETSC_SUCCESS;
