@@ -141,17 +141,13 @@ static PetscErrorCode IsNearInstability(Body body, PetscBool *near)
 /* After the contact problem has been set up */
 PetscErrorCode ControllerSetUpStepControl(Controller controller)
 {
-  PetscBool can;
+  ControllerStatics statics;
+  PetscBool         can;
 
   PetscFunctionBegin;
   PetscCall(ContactCanCut(controller->contact, &can));
-  for (PetscInt b = 0; b < controller->n_bodies && controller->most_cuts == PETSC_DECIDE; b++) {
-    PetscBool is_static;
-
-    PetscCall(BodyIsStatic(controller->bodies[b], &is_static));
-    if (is_static) controller->most_cuts = STATIC_CUTS;
-  }
-  if (controller->most_cuts == PETSC_DECIDE) controller->most_cuts = STEP_CUTS;
+  PetscCall(ControllerGetStatics(controller, &statics));
+  if (controller->most_cuts == PETSC_DECIDE) controller->most_cuts = statics.some ? STATIC_CUTS : STEP_CUTS;
   if (!can && controller->most_cuts) controller->whole = "the method changes the state that its steps start from";
   for (PetscInt b = 0; b < controller->n_bodies && controller->most_cuts && can; b++) {
     PetscBool near;
