@@ -50,6 +50,12 @@ def read_until(leader, found):
     return text
 
 
+def empty(pipe):
+    """Takes what a pipe holds, which is nothing where steps take long."""
+    with contextlib.suppress(BlockingIOError):
+        os.read(pipe, resource.getpagesize())
+
+
 def last(text):
     return text.split("\r")[-1]
 
@@ -93,15 +99,15 @@ def test_messages_have_lines_of_their_own(ranks, take_cores, tmp_path):
         try:
             for _ in range(4):
                 text += read_until(leader, lambda more: "energy error" in more and "to go" in more.split("energy error")[-1])
-                with contextlib.suppress(BlockingIOError):  # there may be nothing in it where steps take long
-                    os.read(pipe, resource.getpagesize())
+                empty(pipe)
         finally:
-            os.close(pipe)
             process.terminate()
-            # mpiexec heeds the signal only while somebody reads what it writes: a full terminal that is waited beside keeps it for ever
+            # The run ends after its step, for which somebody reads the pipe: a writer that opens one without a reader waits for ever.
+            # mpiexec heeds the signal only while somebody reads what it writes: a full terminal that is waited beside keeps it for ever.
             try:
-                read_until(leader, lambda _: process.poll() is not None)
+                read_until(leader, lambda _: empty(pipe) or process.poll() is not None)
             finally:
+                os.close(pipe)
                 process.kill()
                 process.wait()
     lines = screen(text)
