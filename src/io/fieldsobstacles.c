@@ -7,6 +7,7 @@
 #include "hdf5file.h"
 #include "outputfile.h"
 #include "xdmf.h"
+#include <impakt/private/bodyrows.h>
 
 #define SIZE        1.5  /* of a plane, and length of a cylinder, in diagonals of the box of all bodies */
 #define FLAT_CELLS  8    /* along each side of a plane, and along a cylinder */
@@ -134,41 +135,21 @@ static PetscErrorCode WriteGrid(hid_t file, const ObstacleGrid *grid, const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The centre and the diagonal of the box of all bodies where they are now, and the largest of their dimensions */
-static PetscErrorCode FindBox(PetscInt n_bodies, const Body bodies[], PetscInt *dim, PetscReal centre[], PetscReal *diagonal)
+/* The centre and the diagonal of the box of all bodies where they are now */
+static PetscErrorCode FindBox(PetscInt n_bodies, const Body bodies[], PetscReal centre[], PetscReal *diagonal)
 {
-  PetscReal ends[6] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL}; /* -lower, upper */
+  PetscReal *box, squares = 0;
 
   PetscFunctionBegin;
-  *dim = 0;
-  for (PetscInt b = 0; b < n_bodies; b++) {
-    const PetscScalar *x, *u;
-    PetscInt           n, components;
-    Vec                positions, displacements;
-
-    PetscCall(BodyGetDimension(bodies[b], &components));
-    PetscCall(BodyGetReferencePositions(bodies[b], &positions));
-    PetscCall(BodyGetSolution(bodies[b], &displacements, NULL, NULL));
-    PetscCall(VecGetLocalSize(positions, &n));
-    PetscCall(VecGetArrayRead(positions, &x));
-    PetscCall(VecGetArrayRead(displacements, &u));
-    for (PetscInt i = 0; i < n; i++) {
-      const PetscReal at = PetscRealPart(x[i] + u[i]);
-
-      ends[i % components]     = PetscMax(ends[i % components], -at);
-      ends[3 + i % components] = PetscMax(ends[3 + i % components], at);
-    }
-    PetscCall(VecRestoreArrayRead(displacements, &u));
-    PetscCall(VecRestoreArrayRead(positions, &x));
-    *dim = PetscMax(*dim, components);
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, ends, 6, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)bodies[0])));
-  *diagonal = 0;
+  PetscCall(PetscMalloc1(6 * n_bodies, &box));
+  PetscCall(BodyGetAllBoxes(n_bodies, bodies, box));
+  for (PetscInt k = 6; k < 6 * n_bodies; k++) box[k % 6] = PetscMin(box[k % 6], box[k]);
   for (PetscInt d = 0; d < 3; d++) {
-    centre[d] = d < *dim ? (ends[3 + d] - ends[d]) / 2 : 0;
-    *diagonal += d < *dim ? PetscSqr(ends[3 + d] + ends[d]) : 0;
+    centre[d] = (box[d] - box[3 + d]) / 2;
+    squares += PetscSqr(box[d] + box[3 + d]);
   }
-  *diagonal = PetscSqrtReal(*diagonal);
+  *diagonal = PetscSqrtReal(squares);
+  PetscCall(PetscFree(box));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -202,7 +183,7 @@ PetscErrorCode FieldsObstaclesCheckPath(Contact contact, const char fields[])
 */
 PetscErrorCode FieldsObstaclesFind(Contact contact, PetscInt n_bodies, const Body bodies[], PetscInt *n, ObstacleGrid *grids[])
 {
-  PetscReal centre[3], diagonal;
+  PetscReal centre[3], diagonal = 0;
   PetscInt  n_obstacles, dim;
 
   PetscFunctionBegin;
@@ -210,7 +191,8 @@ PetscErrorCode FieldsObstaclesFind(Contact contact, PetscInt n_bodies, const Bod
   *grids = NULL;
   PetscCall(ContactGetNumObstacles(contact, &n_obstacles));
   if (!n_obstacles) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FindBox(n_bodies, bodies, &dim, centre, &diagonal));
+  PetscCall(BodyGetDimension(bodies[0], &dim));
+  PetscCall(FindBox(n_bodies, bodies, centre, &diagonal));
   PetscCall(PetscMalloc1(n_obstacles, grids));
   for (PetscInt o = 0; o < n_obstacles; o++) {
     ObstacleGrid *grid = *grids + *n;
