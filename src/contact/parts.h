@@ -1,5 +1,6 @@
 /* What the folders of src/contact have of each other. Implementations of methods by others need <impakt/private/contactimpl.h> alone. */
 #pragma once
+#include <impakt/private/box.h>
 #include <impakt/private/contactimpl.h>
 
 /* For setters */

@@ -20,12 +20,7 @@ static PetscErrorCode FindPairs(ProbeSearch *search)
   PetscFunctionBegin;
   PetscCall(PetscMalloc3(6 * search->n, &mine, search->n, &order, search->n, &lower));
   PetscCall(PetscMalloc2(6 * search->n * search->n_ranks, &search->boxes, 6 * search->n, &search->whole));
-  for (PetscInt s = 0; s < search->n; s++) {
-    const SurfaceData *data = &search->surfaces[s]->data;
-
-    BoxEmpty(mine + 6 * s);
-    for (PetscInt i = 0; i < data->n_nodes; i++) BoxGrow(data->positions + 3 * i, mine + 6 * s);
-  }
+  for (PetscInt s = 0; s < search->n; s++) BoxFind(search->surfaces[s]->data.n_nodes, search->surfaces[s]->data.positions, mine + 6 * s);
   PetscCallMPI(
       MPI_Allgather(mine, (PetscMPIInt)(6 * search->n), MPIU_REAL, search->boxes, (PetscMPIInt)(6 * search->n), MPIU_REAL, search->comm));
   for (PetscInt k = 0; k < 6 * search->n; k++) {
@@ -116,13 +111,10 @@ static PetscErrorCode AddEdges(ProbeSearch *search, PetscInt pair, Probes *edges
       PetscReal      box[6];
 
       if (n > 2 && data->dofs[i] > data->dofs[j]) continue;
-      BoxEmpty(box);
-      BoxGrow(data->positions + 3 * i, box);
-      BoxGrow(data->positions + 3 * j, box);
-      if (!BoxesMeet(box, whole)) continue;
       PetscCall(PetscArraycpy(edge.x[0], data->positions + 3 * i, 3));
       PetscCall(PetscArraycpy(edge.x[1], data->positions + 3 * j, 3));
-      PetscCall(ProbesAdd(edges, &edge, -1));
+      BoxFind(2, edge.x[0], box);
+      if (BoxesMeet(box, whole)) PetscCall(ProbesAdd(edges, &edge, -1));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -46,19 +46,15 @@ static void Centroid(const SurfaceData *data, PetscInt f, PetscReal x[])
 static PetscErrorCode GetDirections(MPI_Comm comm, Surface surface, Directions *directions)
 {
   const SurfaceData *data = &surface->data;
-  PetscReal          box[2][3];
+  PetscReal          box[6];
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < 6; i++) box[i / 3][i % 3] = PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * data->n_nodes; i++) {
-    box[0][i % 3] = PetscMin(box[0][i % 3], data->positions[i]);
-    box[1][i % 3] = PetscMin(box[1][i % 3], -data->positions[i]);
-  }
+  BoxFind(data->n_nodes, data->positions, box);
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPIU_MIN, comm));
   directions->extent = 0;
   for (PetscInt d = 0; d < 3; d++) {
-    directions->centre[d] = (box[0][d] - box[1][d]) / 2;
-    directions->extent    = PetscMax(directions->extent, -box[1][d] - box[0][d]);
+    directions->centre[d] = (box[d] - box[3 + d]) / 2;
+    directions->extent    = PetscMax(directions->extent, -box[3 + d] - box[d]);
   }
   for (PetscInt i = 0; i < GROUPS * GROUP_VALUES; i++) ((PetscReal *)directions->groups)[i] = PETSC_MAX_REAL;
   for (PetscInt f = 0; f < data->n_faces; f++) {

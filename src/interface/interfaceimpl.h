@@ -2,6 +2,7 @@
 #pragma once
 #include <petscsf.h>
 #include <petsc/private/petscimpl.h>
+#include <impakt/private/box.h>
 #include <impakt/transfer.h>
 
 /* Two faces count as facing each other if the cosine of the angle between their outward normals is below this, which means an angle of more

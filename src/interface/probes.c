@@ -25,19 +25,6 @@ PetscErrorCode ProbesDestroy(Probes *probes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-void BoxEmpty(PetscReal box[6])
-{
-  for (PetscInt d = 0; d < 6; d++) box[d] = PETSC_MAX_REAL;
-}
-
-void BoxGrow(const PetscReal x[], PetscReal box[6])
-{
-  for (PetscInt d = 0; d < 3; d++) {
-    box[d]     = PetscMin(box[d], x[d]);
-    box[3 + d] = PetscMin(box[3 + d], -x[d]);
-  }
-}
-
 /* Whether two boxes have a point in common, which an empty one has with none */
 PetscBool BoxesMeet(const PetscReal a[6], const PetscReal b[6])
 {
@@ -74,8 +61,7 @@ static PetscErrorCode AnswerEdge(ProbeSearch *search, const Probe *edge, Probes 
 
   PetscFunctionBegin;
   PetscCall(GetTree(search, s, &tree));
-  BoxEmpty(box);
-  for (PetscInt k = 0; k < 2; k++) BoxGrow(edge->x[k], box);
+  BoxFind(2, edge->x[0], box);
   for (PetscInt d = 0; d < 3; d++) upper[d] = -box[3 + d];
   PetscCall(TreeQuery(tree, &axes, box, upper, &n, &found));
   for (PetscInt i = 0; i < n; i++) {
@@ -144,8 +130,7 @@ PetscErrorCode ProbesFindCrossings(ProbeSearch *search, const Probes *edges, Pet
 
     edge.rank   = search->rank;
     edge.source = i;
-    BoxEmpty(box);
-    for (PetscInt k = 0; k < 2; k++) BoxGrow(edge.x[k], box);
+    BoxFind(2, edge.x[0], box);
     for (PetscMPIInt r = 0; r < search->n_ranks; r++)
       if (BoxesMeet(box, search->boxes + 6 * (search->n * r + search->pairs[edge.pair].surfaces[1])))
         PetscCall(ProbesAdd(&questions, &edge, r));

@@ -13,22 +13,15 @@
 /* Boxes of all surfaces where they are, of all ranks */
 static PetscErrorCode GetBoxes(Contact contact)
 {
-  PetscReal *boxes;
+  PetscReal         *boxes;
+  const SurfaceData *data;
 
   PetscFunctionBegin;
   if (!contact->work.boxes) PetscCall(PetscMalloc1(6 * contact->n_surfaces, &contact->work.boxes));
   boxes = contact->work.boxes;
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
-    PetscReal         *box = boxes + 6 * s;
-    const SurfaceData *data;
-
     PetscCall(SurfaceGetData(contact->surfaces[s].surface, &data));
-    for (PetscInt k = 0; k < 6; k++) box[k] = PETSC_MAX_REAL;
-    for (PetscInt i = 0; i < data->n_owned; i++)
-      for (PetscInt d = 0; d < 3; d++) {
-        box[d]     = PetscMin(box[d], data->positions[3 * i + d]);
-        box[3 + d] = PetscMin(box[3 + d], -data->positions[3 * i + d]);
-      }
+    BoxFind(data->n_owned, data->positions, boxes + 6 * s);
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, boxes, (PetscMPIInt)(6 * contact->n_surfaces), MPIU_REAL, MPIU_MIN,

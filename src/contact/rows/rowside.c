@@ -140,30 +140,20 @@ PetscErrorCode ContactGetPairRowSide(Contact contact, PetscInt pair, PetscInt *b
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bounds of the nodes of a surface on all ranks [m] */
-static PetscErrorCode GetBox(Contact contact, Surface surface, PetscReal lower[3], PetscReal upper[3])
+/* The box about the nodes of a surface on all ranks */
+static PetscErrorCode GetBox(Contact contact, Surface surface, PetscReal box[6])
 {
   const SurfaceData *data;
-  PetscReal          box[6];
 
   PetscFunctionBegin;
   PetscCall(SurfaceGetData(surface, &data));
-  for (PetscInt i = 0; i < 6; i++) box[i] = PETSC_MAX_REAL;
-  for (PetscInt i = 0; i < 3 * data->n_nodes; i++) {
-    box[i % 3]     = PetscMin(box[i % 3], data->reference[i]);
-    box[3 + i % 3] = PetscMin(box[3 + i % 3], -data->reference[i]);
-  }
+  BoxFind(data->n_nodes, data->reference, box);
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt d = 0; d < 3; d++) {
-    lower[d] = box[d];
-    upper[d] = -box[3 + d];
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether a face reaches into a box; axes that do not count are passed over */
-static PetscBool IsWithin(const SurfaceData *data, PetscInt f, const PetscBool counts[3], const PetscReal lower[3],
-                          const PetscReal upper[3])
+static PetscBool IsWithin(const SurfaceData *data, PetscInt f, const PetscBool counts[3], const PetscReal box[6])
 {
   for (PetscInt d = 0; d < 3; d++) {
     PetscReal least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
@@ -174,15 +164,14 @@ static PetscBool IsWithin(const SurfaceData *data, PetscInt f, const PetscBool c
       least = PetscMin(least, x);
       most  = PetscMax(most, x);
     }
-    if (counts[d] && (most < lower[d] || least > upper[d])) return PETSC_FALSE;
+    if (counts[d] && (most < box[d] || least > -box[3 + d])) return PETSC_FALSE;
   }
   return PETSC_TRUE;
 }
 
 /* Mean distance of the nodes of a surface, on the faces that reach into a box [m], zero if none does: the root of the area for each node,
    of which triangles have half as many as quadrilaterals */
-static PetscErrorCode GetSpacing(Contact contact, Surface surface, const PetscBool counts[3], const PetscReal lower[3],
-                                 const PetscReal upper[3], PetscReal *spacing)
+static PetscErrorCode GetSpacing(Contact contact, Surface surface, const PetscBool counts[3], const PetscReal box[6], PetscReal *spacing)
 {
   const SurfaceData *data;
   PetscReal          sums[2] = {0, 0}; /* area, and nodes on it */
@@ -190,7 +179,7 @@ static PetscErrorCode GetSpacing(Contact contact, Surface surface, const PetscBo
   PetscFunctionBegin;
   PetscCall(SurfaceGetData(surface, &data));
   for (PetscInt f = 0; f < data->n_faces; f++) {
-    if (!IsWithin(data, f, counts, lower, upper)) continue;
+    if (!IsWithin(data, f, counts, box)) continue;
     sums[0] += data->face_areas[f];
     sums[1] += data->face_nodes == 3 ? 0.5 : 1;
   }
@@ -204,16 +193,15 @@ static PetscErrorCode GetSpacing(Contact contact, Surface surface, const PetscBo
 static PetscErrorCode SecondIsFiner(Contact contact, const ContactPair *pair, PetscBool *finer)
 {
   const PetscBool everywhere[3] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
-  PetscReal       lower[2][3], upper[2][3], spacing[2];
+  PetscReal       boxes[2][6], spacing[2];
   PetscBool       counts[3];
 
   PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) PetscCall(GetBox(contact, pair->surfaces[side], lower[side], upper[side]));
-  for (PetscInt d = 0; d < 3; d++) counts[d] = (PetscBool)(lower[0][d] <= upper[1][d] && lower[1][d] <= upper[0][d]);
-  for (PetscInt side = 0; side < 2; side++)
-    PetscCall(GetSpacing(contact, pair->surfaces[side], counts, lower[1 - side], upper[1 - side], &spacing[side]));
+  for (PetscInt side = 0; side < 2; side++) PetscCall(GetBox(contact, pair->surfaces[side], boxes[side]));
+  for (PetscInt d = 0; d < 3; d++) counts[d] = (PetscBool)(boxes[0][d] <= -boxes[1][3 + d] && boxes[1][d] <= -boxes[0][3 + d]);
+  for (PetscInt side = 0; side < 2; side++) PetscCall(GetSpacing(contact, pair->surfaces[side], counts, boxes[1 - side], &spacing[side]));
   for (PetscInt side = 0; side < 2; side++) /* curved surfaces may pass by the place where the boxes meet */
-    if (spacing[side] == 0) PetscCall(GetSpacing(contact, pair->surfaces[side], everywhere, lower[side], upper[side], &spacing[side]));
+    if (spacing[side] == 0) PetscCall(GetSpacing(contact, pair->surfaces[side], everywhere, boxes[side], &spacing[side]));
   *finer = (PetscBool)(spacing[1] < ALIKE * spacing[0]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,14 @@
+/* Boxes about points: the lower corner, then the upper one with its sign changed, so that one minimum over the ranks finds both. */
+#pragma once
+#include <petscsys.h>
+
+/* The box about n points, three numbers each [m]; without points its lower corner is beyond the upper one */
+static inline void BoxFind(PetscInt n, const PetscReal x[], PetscReal box[6])
+{
+  for (PetscInt k = 0; k < 6; k++) box[k] = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt d = 0; d < 3; d++) {
+      box[d]     = PetscMin(box[d], x[3 * i + d]);
+      box[3 + d] = PetscMin(box[3 + d], -x[3 * i + d]);
+    }
+}
