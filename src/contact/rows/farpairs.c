@@ -29,37 +29,19 @@ static PetscErrorCode GetBoxes(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where pairs come and go, there are those alone whose bodies are near; but some are not yet so near that they need rows with partners */
-static PetscErrorCode FindFarNeighbours(Contact contact, PetscReal near)
-{
-  const PetscReal *edge = contact->neighbours.edge;
-
-  PetscFunctionBegin;
-  PetscCall(GetBoxes(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    if (pair->obstacle) continue;
-    pair->distance = ContactBoxDistance(contact->work.boxes + 6 * pair->place[0], contact->work.boxes + 6 * pair->place[1]);
-    pair->far      = (PetscBool)(pair->distance > near + PetscMax(edge[pair->body[0]], edge[pair->body[1]]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Which pairs are far. `near`: surfaces that far apart may touch in the next controller step [m]. Call with the surfaces where they are. */
+/* Which pairs are far. `near`: surfaces that far apart may touch in the next controller step [m]. Call with the surfaces where they are.
+   Where pairs come and go, all pairs are of bodies that are near; those with an edge between them still need no partners. */
 PetscErrorCode ContactFindFarPairs(Contact contact, PetscReal near)
 {
-  PetscReal largest = 0;
-  PetscInt  chosen  = 0;
+  const PetscBool  come_and_go = contact->neighbours.come_and_go;
+  const PetscReal *edge        = contact->neighbours.edge;
+  PetscReal        largest     = 0;
+  PetscInt         chosen      = 0;
 
   PetscFunctionBegin;
-  if (contact->neighbours.come_and_go) {
-    PetscCall(FindFarNeighbours(contact, near));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   for (PetscInt p = 0; p < contact->n_pairs && chosen <= FEW_PAIRS; p++) chosen += contact->pairs[p].chosen && !contact->pairs[p].obstacle;
-  if (chosen <= FEW_PAIRS) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+  if (!come_and_go && chosen <= FEW_PAIRS) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies && !come_and_go; b++) {
     PetscReal size;
 
     PetscCall(BodyGetContactElementSize(contact->bodies[b], &size));
@@ -71,7 +53,7 @@ PetscErrorCode ContactFindFarPairs(Contact contact, PetscReal near)
 
     if (!pair->chosen || pair->obstacle || pair->bonded) continue;
     pair->distance = ContactBoxDistance(contact->work.boxes + 6 * pair->place[0], contact->work.boxes + 6 * pair->place[1]);
-    pair->far      = (PetscBool)(pair->distance > near + FAR * largest);
+    pair->far = (PetscBool)(pair->distance > near + (come_and_go ? PetscMax(edge[pair->body[0]], edge[pair->body[1]]) : FAR * largest));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
