@@ -1,8 +1,8 @@
 /*
    Rows that are laid where the step ends. A row is a plane that touches the partner where the node was when the row was laid; as the node
-   slides on, the plane leaves a partner that is curved. So a step whose nodes in contact end off a curved obstacle is made again, with rows
-   laid at the places where they ended, until they end on it; and so is one between bodies without inertia
-   that have large displacements.
+   slides on, the plane leaves a partner that is curved. So a step whose nodes in contact end off the partner is made again, with rows laid
+   at the places where the nodes ended, until they end on it. This holds for curved obstacles, and between bodies without inertia that have
+   large displacements.
 */
 #include <contact/parts.h>
 
@@ -56,6 +56,8 @@ static PetscErrorCode MeasureOff(Contact contact, const ContactPair *pair, Petsc
 /* For each pair, how far its planes are off in parts of what is allowed; 0: none of its nodes is in contact */
 static PetscErrorCode MeasurePairs(Contact contact, PetscReal off[])
 {
+  PetscBool any = PETSC_FALSE;
+
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscBool ahead;
@@ -63,8 +65,9 @@ static PetscErrorCode MeasurePairs(Contact contact, PetscReal off[])
     off[p] = 0;
     PetscCall(LaysAhead(contact, &contact->pairs[p], &ahead));
     if (ahead) PetscCall(MeasureOff(contact, &contact->pairs[p], &off[p]));
+    any = (PetscBool)(any || ahead);
   }
-  if (contact->ranks.size > 1)
+  if (any && contact->ranks.size > 1)
     PetscCallMPI(
         MPI_Allreduce(MPI_IN_PLACE, off, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -80,15 +83,12 @@ void ContactForgetAhead(Contact contact)
    been done; `last`: by how much it was too much then, in parts of what is allowed, becomes that of now. */
 PetscErrorCode ContactLayAhead(Contact contact, PetscInt pass, PetscReal *last, PetscBool *again)
 {
-  PetscBool  any = PETSC_FALSE;
   PetscReal *off = contact->work.off, most = 0;
 
   PetscFunctionBegin;
   *again = PETSC_FALSE;
   /* what changes the start of the step cannot be made again */
   if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || contact->attempt.moves_start) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < contact->n_pairs && !any; p++) PetscCall(LaysAhead(contact, &contact->pairs[p], &any));
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MeasurePairs(contact, off));
   for (PetscInt p = 0; p < contact->n_pairs; p++) most = PetscMax(most, off[p]);
   *again = (PetscBool)(most > 1 && pass < MOST_PASSES && (!pass || most < LESS * *last));

@@ -124,7 +124,6 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt
 {
   const PetscReal   *largest = contact->work.motion + 2 * CONTACT_SUMS * contact->n_pairs + TRANSFER_LARGEST * p;
   const ContactPair *pair    = &contact->pairs[p];
-  const PetscInt     sides   = pair->obstacle ? 1 : 2;
   Vec                u[2], at[2];
 
   PetscFunctionBegin;
@@ -135,10 +134,10 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt
   }
   PetscCall(GetDisplacements(contact, pair, u));
   for (PetscInt side = 0; side < 2; side++) at[side] = pair->ahead && u[side] ? contact->ends[pair->body[side]] : u[side];
-  for (PetscInt side = 0; side < sides && pair->ahead; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
+  for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
   PetscCall(TransferEndUpdate(pair->transfer, at[0], at[1], ContactPairReach(contact, pair), largest, rebuilt));
   /* other pairs may have these surfaces too */
-  for (PetscInt side = 0; side < sides && pair->ahead; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], u[side]));
+  for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], u[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
