@@ -17,10 +17,11 @@
 
 static const char all[] = "all", materials[] = "material";
 
-/* The bodies, and the material of each: NULL where it names none */
+/* The bodies, and the material of each, in the text of the options database: NULL where it names none */
 typedef struct {
-  PetscInt n;
-  char   **bodies, **materials;
+  PetscInt     n;
+  char *const *bodies;
+  const char **materials;
 } Sharers;
 
 /* What follows an owner's name and an underscore at the beginning of an option; NULL if it does not begin so */
@@ -48,36 +49,28 @@ static PetscErrorCode FindValue(const char option[], const char **value, PetscBo
 }
 
 /* The material that a body names, or that all bodies do; and by which option */
-static PetscErrorCode ReadMaterial(const char body[], char **material, char option[], size_t size)
+static PetscErrorCode ReadMaterial(const char body[], const char **material, char option[], size_t size)
 {
-  const char *value, *const owners[] = {body, all};
-  PetscBool set = PETSC_FALSE;
+  const char *const owners[] = {body, all};
+  PetscBool         set      = PETSC_FALSE;
 
   PetscFunctionBegin;
   *material = NULL;
   for (int o = 0; o < 2 && !set; o++) {
     PetscCall(PetscSNPrintf(option, size, "%s_material", owners[o]));
-    PetscCall(FindValue(option, &value, &set));
-    if (set && value) PetscCall(PetscStrallocpy(value, material));
+    PetscCall(FindValue(option, material, &set));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SharersDestroy(Sharers *sharers)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < sharers->n; b++) PetscCall(PetscFree(sharers->materials[b]));
-  PetscCall(PetscFree(sharers->materials));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
+/* `materials` is to be freed */
 static PetscErrorCode SharersCreate(PetscInt n, char *const bodies[], Sharers *sharers)
 {
   char option[PETSC_MAX_OPTION_NAME];
 
   PetscFunctionBegin;
   sharers->n      = n;
-  sharers->bodies = (char **)bodies;
+  sharers->bodies = bodies;
   PetscCall(PetscCalloc1(n, &sharers->materials));
   for (PetscInt b = 0; b < n; b++) PetscCall(ReadMaterial(bodies[b], &sharers->materials[b], option, sizeof(option)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -146,7 +139,7 @@ PetscErrorCode OptionsFindMaterial(const char option[], char material[], size_t 
 /* What is wrong with the name of a material that has no options, with those that have; nothing where it has some */
 static PetscErrorCode CheckMaterial(const Sharers *sharers, PetscInt b, PetscInt n, const char *const names[], char error[], size_t size)
 {
-  char       *material, option[PETSC_MAX_OPTION_NAME], name[128], list[1024] = "", last[128] = "";
+  char        option[PETSC_MAX_OPTION_NAME], name[128], list[1024] = "", last[128] = "";
   const char *wanted = sharers->materials[b];
 
   PetscFunctionBegin;
@@ -157,8 +150,7 @@ static PetscErrorCode CheckMaterial(const Sharers *sharers, PetscInt b, PetscInt
     if (name[0] && strcasecmp(name, last) != 0) PetscCall(NamesAppend(list, sizeof(list), ", ", name));
     if (name[0]) PetscCall(PetscStrncpy(last, name, sizeof(last)));
   }
-  PetscCall(ReadMaterial(sharers->bodies[b], &material, option, sizeof(option)));
-  PetscCall(PetscFree(material));
+  PetscCall(ReadMaterial(sharers->bodies[b], &wanted, option, sizeof(option)));
   PetscCall(PetscSNPrintf(
       error, size,
       "-%s %s: there is no material '%s', since no option begins with -material_%s_, as in -material_%s_density 7800; there are: %s",
@@ -212,7 +204,7 @@ PetscErrorCode OptionsExpandShared(MPI_Comm comm, PetscInt n, char *const bodies
     for (PetscInt b = 0; b < n && OptionsIsShared(names[i]); b++) PetscCall(Expand(&sharers, b, names[i], n_names, names));
   PetscCall(PetscFree(names));
   PetscCall(PetscFree(text));
-  PetscCall(SharersDestroy(&sharers));
+  PetscCall(PetscFree(sharers.materials));
   PetscCheck(!error[0], comm, PETSC_ERR_USER_INPUT, "%s", error);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -227,7 +219,7 @@ PetscErrorCode OptionsMaterialIsNamed(const char material[], PetscInt n, const c
   PetscCall(SharersCreate(n, (char *const *)bodies, &sharers));
   for (PetscInt b = 0; b < n; b++)
     if (sharers.materials[b] && !strcasecmp(sharers.materials[b], material)) *named = PETSC_TRUE;
-  PetscCall(SharersDestroy(&sharers));
+  PetscCall(PetscFree(sharers.materials));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -277,7 +269,7 @@ PetscErrorCode OptionsFindShared(const char option[], const char value[], char s
     }
     if (!same) found[0] = 0;
   }
-  PetscCall(SharersDestroy(&sharers));
+  PetscCall(PetscFree(sharers.materials));
   PetscCall(NamesDestroy(n, &bodies));
   if (!found[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OptionsFindOrigin(option, origin, sizeof(origin)));
@@ -304,7 +296,7 @@ PetscErrorCode OptionsSharedIsUnread(const char option[], PetscInt n, const char
     PetscCall(PetscOptionsUsed(NULL, full, &used));
     if (used) *unread = PETSC_FALSE;
   }
-  PetscCall(SharersDestroy(&sharers));
+  PetscCall(PetscFree(sharers.materials));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
