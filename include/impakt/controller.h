@@ -102,10 +102,9 @@ typedef struct {
 .seealso: `ControllerGetStatics()`, `BodyIsStatic()`
 S*/
 typedef struct {
-  PetscBool some, all; /* of the bodies: then the time of the run is a number for loads alone, and there are no momenta */
-  PetscBool floating;  /* contact or ties alone hold one of them, in one direction at least */
-  PetscBool balanced; /* energies balance, but for errors. Not where all bodies are static and one floats: on its way through a gap to where
-                         contact holds it, nothing stores the work of its loads. */
+  PetscBool some, all; /* some bodies, or all, are static: momenta are kept without any alone; with all, time only counts loads */
+  PetscBool balanced;  /* energies balance, but for errors. They do not where all bodies are static and contact or ties alone hold one of
+                          them: while that one crosses a gap, nothing stores the work of its loads. */
 } ControllerStatics;
 
 typedef PetscErrorCode ControllerMonitorFn(Controller, const ControllerFrame *, void *);

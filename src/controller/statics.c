@@ -19,7 +19,7 @@
 @*/
 PetscErrorCode ControllerGetStatics(Controller controller, ControllerStatics *statics)
 {
-  PetscBool is_static, floating;
+  PetscBool is_static, floating, any = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
@@ -28,10 +28,10 @@ PetscErrorCode ControllerGetStatics(Controller controller, ControllerStatics *st
   for (PetscInt b = 0; b < controller->n_bodies; b++) {
     PetscCall(BodyIsStatic(controller->bodies[b], &is_static));
     PetscCall(BodyIsFloating(controller->bodies[b], &floating));
-    statics->some     = (PetscBool)(statics->some || is_static);
-    statics->all      = (PetscBool)(statics->all && is_static);
-    statics->floating = (PetscBool)(statics->floating || floating);
+    statics->some = (PetscBool)(statics->some || is_static);
+    statics->all  = (PetscBool)(statics->all && is_static);
+    any           = (PetscBool)(any || floating);
   }
-  statics->balanced = (PetscBool) !(statics->all && statics->floating);
+  statics->balanced = (PetscBool) !(statics->all && any);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
