@@ -54,12 +54,11 @@ typedef struct {
   PetscReal momentum[3];         /* kg m/s */
   PetscReal angular_momentum[3]; /* about the origin, kg m^2/s */
   PetscReal mean_velocity[3];    /* mass-averaged, m/s */
-  PetscReal rotation[3]; /* mean rotation of a linear body since its undeformed state, about each axis, as long as it is small: zero for
-                            bodies that are nonlinear, whose rotation is not limited [rad] */
-  PetscReal place[3];    /* its centre of mass, m */
-  PetscReal
-      orientation[3]; /* of a rigid body, zeros for others as is the next: how it has turned: axis times angle between 0 and pi, rad */
-  PetscReal angular_velocity[3]; /* rad/s */
+  PetscReal rotation[3];    /* mean rotation of a linear body since its undeformed state, about each axis, as long as it is small: zero for
+                               bodies that are nonlinear, whose rotation is not limited [rad] */
+  PetscReal place[3];       /* its centre of mass, m */
+  PetscReal orientation[3]; /* how a rigid body has turned: axis times angle between 0 and pi; zeros for others [rad] */
+  PetscReal angular_velocity[3]; /* of a rigid body; zeros for others [rad/s] */
   PetscBool loaded;              /* whether forces from outside, held displacements, obstacles or damping by the mass act at all */
 } BodyMeasures;
 

@@ -5,8 +5,6 @@
 #include "energyscale.h"
 
 #define MAX_MONITORS 16
-/* How often a controller step may be cut in halves, by default */
-
 /* Most controller steps in a run: they are counted in PetscInt, which has 32 bits */
 #define MOST_STEPS 2e9
 /* Times whose squares, times the largest modulus or density, are numbers [s] */

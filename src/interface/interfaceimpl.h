@@ -37,8 +37,8 @@ typedef struct {
   PetscReal   x[4][3], normal[3], size;
 } Face;
 
-/* The closest point of some faces: the square of its distance, how high above that face the point is that looks, and the edge of the face;
-   negative heights are inside */
+/* What is known of the point of some faces that is closest to a given point: the square of their distance, the height of the given point
+   above the face, which is negative inside, and the edge of the face */
 typedef struct {
   PetscReal square, height, size;
 } Closest;

@@ -10,8 +10,8 @@
 
 /* Pairs whose forces are printed; the summary has those of all */
 #define MOST_PAIRS 8
-/* A force peak of so many times the mean, in one of the first steps in which bodies touch, is told of. The mean of fewer steps says little.
- */
+/* A peak of the force is explained if it is more than PEAK_FACTOR times the mean over MEAN_STEPS steps or more, and comes in one of the
+   first PEAK_STEPS steps of a contact */
 #define PEAK_FACTOR 2
 #define PEAK_STEPS  3
 #define MEAN_STEPS  10
@@ -56,7 +56,7 @@ static PetscErrorCode PrintCount(const Report *report, const char name[], PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* When bodies touched. In statics, time only counts loads: that they touch from the first load step to the last is told by their number. */
+/* When bodies touched. In statics, time only counts loads: bodies that touch in all load steps have the number of these alone. */
 static PetscErrorCode ViewTimes(const Report *report, Exact exact)
 {
   const ContactStatistics *c      = &report->results->contact;

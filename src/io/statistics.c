@@ -86,8 +86,8 @@ static void AddProduct(PetscReal factor, const PetscReal a[3], const PetscReal b
   for (PetscInt d = 0; d < 3; d++) c[d] += factor * (a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]);
 }
 
-/* Momentum of all bodies, and their angular momentum about the centre of mass of all: where the origin lies, and how it moves, is nothing
-   to it. And the velocity of that centre. */
+/* Momentum of all bodies, their angular momentum about the centre of mass of all, which does not depend on the origin or its motion, and
+   the velocity of that centre */
 static void FindMomenta(Statistics s, const ControllerFrame *frame, PetscReal momentum[3], PetscReal angular[3], PetscReal velocity[3])
 {
   PetscReal centre[3] = {0}, mass = 0;

@@ -42,7 +42,7 @@ typedef struct {
   PetscInt       inverted_max;                           /* most elements of a linear body that were inside out at a time, 0 for others */
   PetscBool      plastic;                                /* its material flows */
   PetscReal      plastic_work;                           /* at the end, with what hardening stores of it [J] */
-  ContactOverlap overlap;                                /* the deepest one in the frames that were looked at, */
+  ContactOverlap overlap;                                /* the deepest one that was found, */
   PetscReal      overlap_time;                           /* and when that was [s] */
   PetscReal      energy_error_min,
       energy_error_max; /* of kinetic + potential - external work, relative to its start, or to the system's if that is 0 */

@@ -16,9 +16,9 @@ struct _n_Statistics {
   StatisticsResults results;
   Contact           contact;  /* the controller's */
   ContactOverlap   *overlaps; /* work space, per body */
-  PetscInt          frames;   /* controller steps between two at whose ends overlaps are looked for */
+  PetscInt          frames;   /* controller steps from one search for overlaps to the next */
   PetscReal         time;     /* at the end of the last step [s] */
-  PetscBool         looked;   /* they have been looked for there */
+  PetscBool         looked;   /* overlaps have been searched for then */
   ContactMemory     any, *pair;
   ContactTimes      times;
   PetscInt          total_sweeps, contact_sweeps;

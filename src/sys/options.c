@@ -137,7 +137,7 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
   Unread   unread = {.n = 0};
 
   PetscFunctionBegin;
-  PetscCall(AddShared(&unread, n, bodies)); /* first, since the others count as read below */
+  PetscCall(AddShared(&unread, n, bodies)); /* before PetscOptionsHasName() below counts options of bodies as read */
   PetscCall(PetscOptionsLeftGet(NULL, &n_left, &names, &values));
   for (PetscInt i = 0; i < n_left; i++) {
     PetscBool late = PETSC_FALSE;

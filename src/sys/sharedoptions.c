@@ -277,7 +277,7 @@ PetscErrorCode OptionsFindShared(const char option[], const char value[], char s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a shared option has been given to bodies none of which has read it; of one that no body has the database says so itself */
+/* Whether a shared option has been given to bodies none of which has read it. One that no body has got is unread in the database itself. */
 PetscErrorCode OptionsSharedIsUnread(const char option[], PetscInt n, const char *const bodies[], PetscBool *unread)
 {
   Sharers sharers;

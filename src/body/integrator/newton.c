@@ -13,12 +13,12 @@
 /* Where the line search finds no smaller residual, Newton's method has converged if its step is below this part of the displacement: that
    is a few units in the last place; option -<body>_snes_stol */
 #define NEWTON_STEP 1e-15
-/* A slender static body turns by its bending, and a first step that is right in that stretches it: the residual grows a thousandfold, and
-   is gone a few steps later, where one that has to fall stays where it is. So steps are whole unless they invert elements, or make the
-   residual grow by the root of BODY_STATIC_WHOLE (option -<body>_snes_linesearch_alpha). One that is still larger than the first one then
-   is not going to fall: the substep is made again with steps that have to make it less, by which rubber converges. Of 53 strips of
-   slenderness 10 to 500, bent by half of their length, in materials and elements of all kinds, none converged by the line searches bt, cp
-   and l2, 51 by none, all by this. */
+/* A slender static body turns as it bends. The first step of Newton's method, which is right but for the rotations, stretches it: the
+   residual grows a thousandfold, and vanishes a few steps later. Steps that must reduce the residual get nowhere. So steps are whole unless
+   they invert elements, or multiply the residual by the root of -BODY_STATIC_WHOLE (option -<body>_snes_linesearch_alpha). If the residual
+   exceeds the first one after PATIENCE steps, the substep is made again with steps that must reduce it, by which rubber converges. Of 53
+   strips of slenderness 10 to 500, bent by half of their length, in materials and elements of all kinds, none converged by the line
+   searches bt, cp and l2, 51 by none, all by this. */
 #define PATIENCE 8
 /* Absolute tolerance [N]; option -<body>_snes_atol. Not a force in anyone's units: the square of a smaller number underflows. */
 #define NEWTON_UNDERFLOW 1e-150

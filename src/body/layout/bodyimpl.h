@@ -109,7 +109,7 @@ typedef struct {
   PetscInt       level, accepted_level; /* how often the controller step is cut in halves; how often that was which was accepted last */
   PetscReal      requested_step;        /* 0: the controller step; < 0: automatic */
   PetscReal      stable_step;           /* of the undeformed body; 0 until BodyComputeStableStep() */
-  BodyStepBounds bounds;                /* the elements that it is that of, known with it */
+  BodyStepBounds bounds;                /* the elements that bound `stable_step`, found with it */
   /* of a nonlinear explicit body, see deformedstep.c: stable step as it is deformed, 0: not known; where and when it was found last */
   PetscReal stable_now, stable_found, thinness;
   PetscInt  shared;   /* parts of the controller step, at whose ends all bodies have a time in common */

@@ -6,7 +6,7 @@
 
 /* Pairs whose names are printed */
 #define MOST_NAMED 50
-/* Up to so many pairs have their distances there, named by the user or not */
+/* Up to so many pairs are printed with their distances; of more, those that the user has named, and the nearest one */
 #define MOST_DISTANCES 10
 /* Slip [parts of the face] and turn [rad] after which rows are built again by default. Smaller bounds follow curved surfaces better, larger
    ones lose less energy: a half disc that is led round another one has ripples of 1.5 % in its normal force with these, and 0.2 % with

@@ -10,8 +10,9 @@
 #define MAX_TIMES 200
 /* Springs do not pull where their stretch is below this part of the displacements that they pull at */
 #define STRETCH_RTOL 1e-12
-/* or, where their forces are below this part of those of contact on any body, and it has not fallen for so many times below so many times
-   the tolerance on positions, or for more times: that is the round-off of contact forces */
+/* Nor do they where all that is left is the round-off of contact forces: their forces are below REST_FORCE of the contact forces on a body,
+   and their stretch has not fallen for MAX_STALLS times and is below STRETCH_ATOL times the tolerance on positions, or has not fallen for
+   LONG_STALLS times */
 #define STRETCH_ATOL 10
 #define REST_FORCE   3e-9
 #define MAX_STALLS   3

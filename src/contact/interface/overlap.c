@@ -2,10 +2,10 @@
 #include <contact/parts.h>
 #include <impakt/mesh.h>
 
-/* Depth of rows that bodies in contact leave behind at the end of a run, in parts of a contact element */
+/* Rows at the start are at most this deep where bodies have the state of another run, in contact there [parts of a contact element] */
 #define INSIDE 0.02
-/* Overlap with which no run starts, whatever its rows say, in parts of an element: it is more than edges make of two circles that touch all
-   round, 0.2 for four edges. A smaller one that rows do not have is told at the end. */
+/* Bodies that overlap by more do not start, whatever the gaps of their rows are [parts of an element]. Two circles of four edges each that
+   touch all round overlap by 0.2. A run warns of smaller overlaps at its end. */
 #define NO_START 0.25
 
 /* Size of the smallest contact element of both bodies [m] */
@@ -147,8 +147,8 @@ static const SurfaceDepth *FindDeepest(const ContactPair *pair, PetscInt n, cons
   return deepest;
 }
 
-/* Ends with an error if a pair overlaps at the start: by more than the tolerance where rows have it, which may have faces on the far sides
-   of both bodies for partners, and by more than any mesh makes of surfaces that touch where they do not */
+/* Ends with an error if a pair overlaps at the start: by more than the tolerance, both by its rows, whose partners may be faces on the far
+   sides of the bodies, and by its surfaces; or by more than NO_START by its surfaces alone */
 static PetscErrorCode RefuseOverlaps(Contact contact, PetscBool of_state, PetscInt n, const SurfaceDepth depths[])
 {
   const SurfaceDepth *refused = NULL;
@@ -179,8 +179,8 @@ static PetscErrorCode RefuseOverlaps(Contact contact, PetscBool of_state, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuses bodies that overlap at the start, and notes what overlaps on purpose: tied bodies, of which more counts later, and what is no
-   pair, of which nothing does */
+/* Refuses bodies that overlap at the start, and notes overlaps that are there on purpose: later, those of tied bodies count by what they
+   have grown, and those of bodies that are no pair never count */
 PetscErrorCode ContactStartOverlaps(Contact contact, PetscBool of_state)
 {
   ContactOverlaps *overlaps = &contact->overlaps;

@@ -102,8 +102,9 @@ static PetscErrorCode MarkUnshared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the forces of a pair are to be unknowns: a side is static, not linear and held by contact alone; or there are many rows, and both
-   sides answer by massless layers alone, or are linear bodies of one substep, for whose rows dense matrices are too large */
+/* Whether the forces of a pair are to be unknowns. They are where a side is static, not linear and held by contact alone. With many rows
+   they also are where each side moves by its massless layer alone, or is a linear body of one substep with too many rows for a dense
+   matrix. */
 static PetscErrorCode PairPrefersForces(Contact contact, const ContactPair *pair, PetscBool *prefers)
 {
   const Schwarz  *schwarz = (const Schwarz *)contact->data;

@@ -2,13 +2,13 @@
 #include "schwarzimpl.h"
 #include <sys/petsccompat.h>
 
-/* Sweeps of an iteration before it may end as round-off has it; forces that change by less than this part of them are steady; so many
-   sweeps in a row with steady forces and no smaller change of position than before: an iteration that converges, however slowly, has none
- */
+/* An iteration has come to round-off if, after STALL_FROM sweeps, STEADY_SWEEPS sweeps in a row change forces by at most STEADY_FORCE of
+   them, and positions by no less than an earlier sweep. An iteration that converges, however slowly, has no such sweeps. */
 #define STALL_FROM    3
 #define STEADY_FORCE  1e-6
 #define STEADY_SWEEPS 4
-/* Forces found on the compliance that are steady to this part of them are near enough to count from the bodies under them, so often */
+/* Sweeps on the compliance whose forces are steady to this part of them begin anew, with the bodies under these forces as their base: at
+   most so many times in a step */
 #define NEAR_FORCE 1e-2
 #define MOST_BASES 3
 
@@ -103,10 +103,9 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the change of position is what round-off leaves, and no sweep makes it less: it does not fall, and forces stay as they are. Where
-   a body that is hardly held, by a soft spring or its inertia in a long step, touches a stiff one, the round-off of forces moves it by more
-   than any tolerance in parts of its size. Sweeps on the compliance have that of how far bodies would go without contact too, and are made
-   again from where they are with it. */
+/* Whether the change of position is round-off, which no sweep makes smaller. Where a body that is hardly held, by a soft spring or its
+   inertia in a long step, touches a stiff one, the round-off of forces moves it by more than the tolerance. Sweeps on the compliance also
+   have the round-off of how far bodies would go without contact, and are made again from where the bodies are with it. */
 static PetscErrorCode FindStall(Contact contact)
 {
   Schwarz     *schwarz = (Schwarz *)contact->data;

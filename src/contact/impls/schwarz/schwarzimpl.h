@@ -178,9 +178,9 @@ typedef struct {
   PetscReal   change, position; /* of the last sweep: the body with the worst ratio */
   PetscReal   growth;           /* of the change over that of the sweep before */
   struct {
-    PetscInt     sweeps, steady; /* of this iteration; the last of them in which neither forces nor the change of position got better */
-    PetscInt     bases;          /* how often the compliance has been counted from other forces in this step */
-    PetscBool    rebase;         /* it is to be once more */
+    PetscInt     sweeps, steady; /* of this iteration; of these the last ones with steady forces and no smaller change of position */
+    PetscInt     bases;          /* how often sweeps on the compliance have got a new base in this step, see BodySetBase() */
+    PetscBool    rebase;         /* they need another one */
     PetscReal    least;          /* change of position in this iteration [m] */
     PetscScalar *force;          /* of the rows after the last sweep, and room for those of this one [N] */
   } stall;
