@@ -106,7 +106,7 @@ PetscErrorCode ControllerWarnOfStep(Controller controller)
   const char     *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)controller, UNIT_TIME, &unit));
+  unit = UnitsOf((PetscObject)controller, UNIT_TIME);
   if (ratio <= MUCH_LARGER) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFPrintf(
       comm, stderr,

@@ -170,7 +170,6 @@ PetscErrorCode ControllerSolve(Controller controller)
 PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
 {
   PetscBool ascii;
-  Units     units;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
@@ -179,11 +178,10 @@ PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(controller->setup, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_WRONGSTATE, "Call ControllerSetUp() first");
-  PetscCall(UnitsGet((PetscObject)controller, &units));
   PetscCall(PetscViewerASCIIPrintf(viewer, "time %g to %g%s, %" PetscInt_FMT " controller steps of %g%s\n", (double)controller->time_start,
                                    (double)(controller->time_start + controller->steps * controller->time_step),
-                                   UnitsText(units, UNIT_TIME), controller->steps, (double)controller->time_step,
-                                   UnitsText(units, UNIT_TIME)));
+                                   UnitsOf((PetscObject)controller, UNIT_TIME), controller->steps, (double)controller->time_step,
+                                   UnitsOf((PetscObject)controller, UNIT_TIME)));
   if (controller->whole) PetscCall(PetscViewerASCIIPrintf(viewer, "  steps that fail are not cut in halves: %s\n", controller->whole));
   if (controller->chooses_step)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  the largest step that resolves contact: %s\n", controller->step_reason));

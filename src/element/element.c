@@ -268,7 +268,7 @@ PetscErrorCode ElementView(Element element, PetscViewer viewer)
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)element, viewer));
-  PetscCall(UnitsGetText((PetscObject)element, element->dim == 1 ? UNIT_AREA : UNIT_LENGTH, &unit));
+  unit = UnitsOf((PetscObject)element, element->dim == 1 ? UNIT_AREA : UNIT_LENGTH);
   if (element->dim == 1) PetscCall(PetscViewerASCIIPrintf(viewer, "  cross-section %g%s\n", (double)element->cross_section, unit));
   if (element->dim == 2)
     PetscCall(element->axisymmetric ? PetscViewerASCIIPrintf(viewer, "  rings about x = 0\n")

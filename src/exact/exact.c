@@ -275,19 +275,17 @@ PetscErrorCode ExactGetBodies(Exact exact, const char *names[])
 PetscErrorCode ExactView(Exact exact, PetscViewer viewer)
 {
   PetscBool ascii;
-  Units     units;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
-  PetscCall(UnitsGet((PetscObject)exact, &units));
   if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)exact), &viewer));
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "exact solution (%s): contact of %s and %s from %g to %g%s, mean force %g%s, impulse %g%s\n",
                                    exact->type, exact->bars[0].name, exact->bars[1].name, (double)exact->impact, (double)exact->release,
-                                   UnitsText(units, UNIT_TIME), (double)exact->force, UnitsText(units, UNIT_FORCE), (double)exact->impulse,
-                                   UnitsText(units, UNIT_IMPULSE)));
+                                   UnitsOf((PetscObject)exact, UNIT_TIME), (double)exact->force, UnitsOf((PetscObject)exact, UNIT_FORCE),
+                                   (double)exact->impulse, UnitsOf((PetscObject)exact, UNIT_IMPULSE)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

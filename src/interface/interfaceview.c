@@ -38,7 +38,7 @@ PetscErrorCode SurfaceView(Surface surface, PetscViewer viewer)
   PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
   PetscCall(IsPrinted((PetscObject)surface, &viewer, &printed));
   if (!printed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(UnitsGetText((PetscObject)surface, UNIT_LENGTH, &unit));
+  unit      = UnitsOf((PetscObject)surface, UNIT_LENGTH);
   data      = &surface->data;
   counts[0] = data->n_faces;
   counts[1] = data->n_owned;

@@ -327,7 +327,7 @@ PetscErrorCode ObstacleView(Obstacle obstacle, PetscViewer viewer)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
-  PetscCall(UnitsGetText((PetscObject)obstacle, UNIT_LENGTH, &unit));
+  unit = UnitsOf((PetscObject)obstacle, UNIT_LENGTH);
   if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)obstacle), &viewer));
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));

@@ -27,7 +27,6 @@ static PetscErrorCode CheckRotation(Body body, const ControllerFrame *frame, con
   const PetscReal before = statistics->rotation_max;
   const char     *name;
   PetscBool       tells;
-  Units           units;
 
   PetscFunctionBegin;
   statistics->rotation_max = PetscMax(before, angle);
@@ -35,12 +34,11 @@ static PetscErrorCode CheckRotation(Body body, const ControllerFrame *frame, con
   PetscCall(Tells(body, (*far)++, &tells));
   if (!tells) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
-  PetscCall(UnitsGet((PetscObject)body, &units));
   PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)body), stderr,
                          "impakt: warning: body '%s' has turned by %.3g rad at time %g%s: its linear material counts rotations as strains, "
                          "so that energy and angular momentum are wrong by terms of the angle squared; set -%s_material_type "
                          "saint_venant_kirchhoff or neo_hookean\n",
-                         name, (double)angle, (double)frame->time, UnitsText(units, UNIT_TIME), name));
+                         name, (double)angle, (double)frame->time, UnitsOf((PetscObject)body, UNIT_TIME), name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -52,7 +50,6 @@ static PetscErrorCode CheckElements(Body body, const ControllerFrame *frame, Pet
   PetscInt    number, before;
   const char *name;
   PetscBool   tells;
-  Units       units;
 
   PetscFunctionBegin;
   if (frame->step % LOOK_EVERY && frame->step != frame->steps) PetscFunctionReturn(PETSC_SUCCESS);
@@ -63,13 +60,12 @@ static PetscErrorCode CheckElements(Body body, const ControllerFrame *frame, Pet
   PetscCall(Tells(body, (*torn)++, &tells));
   if (!tells) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
-  PetscCall(UnitsGet((PetscObject)body, &units));
   PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)body), stderr,
                          "impakt: warning: body '%s' has %" PetscInt_FMT " element%s inside out at time %g%s, around (%g, %g, %g)%s of the "
                          "undeformed mesh: its strains are far beyond those of its linear material; check units, loads and speeds, or set "
                          "-%s_material_type neo_hookean\n",
-                         name, number, number == 1 ? "" : "s", (double)frame->time, UnitsText(units, UNIT_TIME), (double)centre[0],
-                         (double)centre[1], (double)centre[2], UnitsText(units, UNIT_LENGTH), name));
+                         name, number, number == 1 ? "" : "s", (double)frame->time, UnitsOf((PetscObject)body, UNIT_TIME),
+                         (double)centre[0], (double)centre[1], (double)centre[2], UnitsOf((PetscObject)body, UNIT_LENGTH), name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

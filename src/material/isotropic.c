@@ -87,12 +87,10 @@ static PetscErrorCode MaterialSetUp_Isotropic(Material material)
 static PetscErrorCode MaterialView_Isotropic(Material material, PetscViewer viewer)
 {
   const Isotropic *constants = (const Isotropic *)material->data;
-  const char      *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)material, UNIT_STRESS, &unit));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g\n", (double)constants->youngs_modulus, unit,
-                                   (double)constants->poissons_ratio));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g\n", (double)constants->youngs_modulus,
+                                   UnitsOf((PetscObject)material, UNIT_STRESS), (double)constants->poissons_ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -208,8 +208,7 @@ PetscErrorCode MaterialSetUp(Material material)
 @*/
 PetscErrorCode MaterialView(Material material, PetscViewer viewer)
 {
-  const char *unit;
-  PetscBool   ascii;
+  PetscBool ascii;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
@@ -218,8 +217,7 @@ PetscErrorCode MaterialView(Material material, PetscViewer viewer)
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectPrintClassNamePrefixType((PetscObject)material, viewer));
-  PetscCall(UnitsGetText((PetscObject)material, UNIT_DENSITY, &unit));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  density %g%s%s\n", (double)material->density, unit,
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  density %g%s%s\n", (double)material->density, UnitsOf((PetscObject)material, UNIT_DENSITY),
                                    material->plane_stress ? ", plane stress" : ""));
   PetscTryTypeMethod(material, view, viewer);
   PetscFunctionReturn(PETSC_SUCCESS);

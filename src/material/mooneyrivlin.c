@@ -343,13 +343,11 @@ static PetscErrorCode MaterialSetFromOptions_MooneyRivlin(Material material)
 static PetscErrorCode MaterialView_MooneyRivlin(Material material, PetscViewer viewer)
 {
   const MooneyRivlin *model = (const MooneyRivlin *)material->data;
-  const char         *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)material, UNIT_STRESS, &unit));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g, share of c01 %g\n",
-                                   (double)model->constants.youngs_modulus, unit, (double)model->constants.poissons_ratio,
-                                   (double)model->share));
+                                   (double)model->constants.youngs_modulus, UnitsOf((PetscObject)material, UNIT_STRESS),
+                                   (double)model->constants.poissons_ratio, (double)model->share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

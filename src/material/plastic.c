@@ -289,11 +289,9 @@ static PetscErrorCode View(Material material, PetscViewer viewer)
 {
   const Plastic *plastic = GetPlastic(material);
   const char    *unit;
-  Units          units;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGet((PetscObject)material, &units));
-  unit = UnitsText(units, UNIT_STRESS);
+  unit = UnitsOf((PetscObject)material, UNIT_STRESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g\n", (double)plastic->elastic.youngs_modulus, unit,
                                    (double)plastic->elastic.poissons_ratio));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  yield stress %g%s, hardening %s, modulus %g%s, kinematic %g%s\n", (double)plastic->yield,
@@ -307,10 +305,10 @@ static PetscErrorCode View(Material material, PetscViewer viewer)
                                      "  exponent %g, rate coefficient %g above %g%s, softening exponent %g from %g to %g%s\n"
                                      "  initial temperature %g%s, heat fraction %g, specific heat %g%s\n",
                                      (double)plastic->exponent, (double)plastic->rate, (double)plastic->reference_rate,
-                                     UnitsText(units, UNIT_RATE), (double)plastic->softening, (double)plastic->room,
-                                     (double)plastic->melting, UnitsText(units, UNIT_TEMPERATURE), (double)plastic->initial,
-                                     UnitsText(units, UNIT_TEMPERATURE), (double)plastic->heat_fraction, (double)plastic->specific_heat,
-                                     UnitsText(units, UNIT_SPECIFIC_HEAT)));
+                                     UnitsOf((PetscObject)material, UNIT_RATE), (double)plastic->softening, (double)plastic->room,
+                                     (double)plastic->melting, UnitsOf((PetscObject)material, UNIT_TEMPERATURE), (double)plastic->initial,
+                                     UnitsOf((PetscObject)material, UNIT_TEMPERATURE), (double)plastic->heat_fraction,
+                                     (double)plastic->specific_heat, UnitsOf((PetscObject)material, UNIT_SPECIFIC_HEAT)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -74,13 +74,11 @@ const char *UnitsLabel(Units units, UnitDimension dimension)
   return text[0] ? text + 1 : text;
 }
 
-/* UnitsGetText - `UnitsText()` in the units of an object's options */
-PetscErrorCode UnitsGetText(PetscObject object, UnitDimension dimension, const char *text[])
+/* UnitsOf - `UnitsText()` in the units of an object's options; a wrong value there, which no set-up has reported, ends the program */
+const char *UnitsOf(PetscObject object, UnitDimension dimension)
 {
   Units units = UNITS_SI;
 
-  PetscFunctionBegin;
-  PetscCall(UnitsGet(object, &units));
-  *text = UnitsText(units, dimension);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallAbort(PetscObjectComm(object), UnitsGet(object, &units));
+  return UnitsText(units, dimension);
 }

@@ -263,17 +263,15 @@ PetscErrorCode BodyRigidMeasure(Body body, BodyMeasures *measures)
 PetscErrorCode BodyRigidView(Body body, PetscViewer viewer)
 {
   const PetscReal *J = BodyGetRigid(body)->inertia;
-  Units            units;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGet((PetscObject)body, &units));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  rigid, centre of mass (%g, %g, %g)%s\n", (double)body->mass.centre[0],
-                                   (double)body->mass.centre[1], (double)body->mass.centre[2], UnitsText(units, UNIT_LENGTH)));
+                                   (double)body->mass.centre[1], (double)body->mass.centre[2], UnitsOf((PetscObject)body, UNIT_LENGTH)));
   if (BodyGetRigid(body)->turns && body->mesh.dim == 2)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  moment of inertia %g%s\n", (double)J[8], UnitsText(units, UNIT_INERTIA)));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  moment of inertia %g%s\n", (double)J[8], UnitsOf((PetscObject)body, UNIT_INERTIA)));
   if (BodyGetRigid(body)->turns && body->mesh.dim == 3)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  inertia xx %g, yy %g, zz %g, xy %g, yz %g, xz %g%s\n", (double)J[0], (double)J[4],
-                                     (double)J[8], (double)J[1], (double)J[5], (double)J[2], UnitsText(units, UNIT_INERTIA)));
+                                     (double)J[8], (double)J[1], (double)J[5], (double)J[2], UnitsOf((PetscObject)body, UNIT_INERTIA)));
   if (BodyIsLed(body)) PetscCall(PetscViewerASCIIPrintf(viewer, "  led by formulas\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -293,13 +293,12 @@ PetscErrorCode BodyComputeBlockMass(Body body)
 PetscErrorCode BodyViewBlocks(Body body, PetscViewer viewer)
 {
   const BodyBlocks *blocks = &body->model.blocks;
-  const char       *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)body, UNIT_MASS, &unit));
   for (PetscInt k = 0; k < blocks->n; k++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %s%s: %s, mass %g%s\n", k < blocks->given ? "block " : "the rest", blocks->names[k],
-                                     ((PetscObject)blocks->materials[k])->type_name, (double)blocks->mass[k], unit));
+                                     ((PetscObject)blocks->materials[k])->type_name, (double)blocks->mass[k],
+                                     UnitsOf((PetscObject)body, UNIT_MASS)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,26 +6,22 @@
 /* Where the body is */
 static PetscErrorCode ViewBox(Body body, PetscViewer viewer)
 {
-  PetscReal   box[6];
-  const char *unit;
+  PetscReal box[6];
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)body, UNIT_LENGTH, &unit));
   PetscCall(BodyGetAllBoxes(1, &body, box));
   for (PetscInt d = 0; d < body->mesh.dim; d++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "%s %c from %.6g to %.6g", d ? "," : " ", "xyz"[d], (double)box[d], (double)-box[3 + d]));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "%s\n", unit));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%s\n", UnitsOf((PetscObject)body, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What there is to tell of bodies in two and three dimensions */
 static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 {
-  PetscInt    count = body->model.element->count;
-  const char *unit;
+  PetscInt count = body->model.element->count;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)body, UNIT_TIME, &unit));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &count, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   if (body->model.element->composite)
     PetscCall(PetscViewerASCIIPrintf(
@@ -34,7 +30,8 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
   else PetscCall(PetscViewerASCIIPrintf(viewer, "  %" PetscInt_FMT " cells of shape %s\n", count, DMPolytopeTypes[body->mesh.cell_shape]));
   if (body->integrator->ops.view) PetscCall((*body->integrator->ops.view)(body, viewer));
   if (body->integrator->needs_stable_step)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  stable step %g%s\n", (double)body->time.stable_step, unit));
+    PetscCall(
+        PetscViewerASCIIPrintf(viewer, "  stable step %g%s\n", (double)body->time.stable_step, UnitsOf((PetscObject)body, UNIT_TIME)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -42,16 +39,14 @@ static PetscErrorCode ViewSolid(Body body, PetscViewer viewer)
 static PetscErrorCode ViewLayer(Body body, PetscViewer viewer)
 {
   const BodyMass *mass = &body->mass;
-  const char     *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)body, UNIT_LENGTH, &unit));
   if (mass->least_factor == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: factor %g to %g on the masses that are left\n",
                                    (double)mass->least_factor, (double)mass->largest_factor));
   if (mass->shift[0] != 0 || mass->shift[1] != 0 || mass->shift[2] != 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: centre of mass moved by (%g, %g, %g)%s\n", (double)mass->shift[0],
-                                     (double)mass->shift[1], (double)mass->shift[2], unit));
+                                     (double)mass->shift[1], (double)mass->shift[2], UnitsOf((PetscObject)body, UNIT_LENGTH)));
   if (mass->inertia_error != 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  massless contact layer: moments of inertia changed by up to %g %%\n",
                                      100 * (double)mass->inertia_error));
@@ -76,11 +71,9 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   TSType    type;
   PetscInt  dofs;
   PetscBool ascii;
-  Units     units;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(UnitsGet((PetscObject)body, &units));
   if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)body), &viewer));
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
   PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
@@ -90,12 +83,12 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
   PetscCall(TSGetType(body->time.ts, &type));
   PetscCall(PetscViewerASCIIPrintf(
       viewer, "body %s: %" PetscInt_FMT " degrees of freedom, mass %g%s (%s%s), %s, %" PetscInt_FMT " substep%s of %g%s\n", body->hdr.name,
-      dofs, (double)body->mass.total, UnitsText(units, UNIT_MASS), BodyMassTypes[body->mass.type],
+      dofs, (double)body->mass.total, UnitsOf((PetscObject)body, UNIT_MASS), BodyMassTypes[body->mass.type],
       body->mass.redistribute && (body->rows.global || body->rows.expected)
           ? (body->rows.tied_mass ? ", tied nodes keep theirs" : ", contact layer massless")
           : "",
       type, body->time.shared * body->time.substeps, body->time.shared * body->time.substeps == 1 ? "" : "s", (double)body->time.step,
-      UnitsText(units, UNIT_TIME)));
+      UnitsOf((PetscObject)body, UNIT_TIME)));
   PetscCall(ViewBox(body, viewer));
   PetscCall(BodyViewRanks(body, viewer));
   if (body->mesh.dim > 1) PetscCall(ViewSolid(body, viewer));
@@ -106,7 +99,7 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "  floating, held by contact or ties alone: artificial springs of %g%s on %" PetscInt_FMT
                                      " displacement%s, moved until they do not pull; motions that nothing drives stay as they are\n",
-                                     (double)body->springs.stiffness, UnitsText(units, UNIT_STIFFNESS), body->springs.n,
+                                     (double)body->springs.stiffness, UnitsOf((PetscObject)body, UNIT_STIFFNESS), body->springs.n,
                                      body->springs.n == 1 ? "" : "s"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -107,13 +107,12 @@ PetscBool BodyIsDamped(Body body)
 PetscErrorCode BodyViewDamping(Body body, PetscViewer viewer)
 {
   const struct _BodyDamping *damping = body->damping;
-  Units                      units;
 
   PetscFunctionBegin;
   if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(UnitsGet((PetscObject)body, &units));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  Rayleigh damping: %g%s of the mass, %g%s of the stiffness", (double)damping->mass,
-                                   UnitsText(units, UNIT_RATE), (double)damping->stiffness, UnitsText(units, UNIT_TIME)));
+                                   UnitsOf((PetscObject)body, UNIT_RATE), (double)damping->stiffness,
+                                   UnitsOf((PetscObject)body, UNIT_TIME)));
   if (damping->counts[0] < damping->counts[1])
     PetscCall(PetscViewerASCIIPrintf(viewer, " in %" PetscInt_FMT " elements, those at massless nodes left out", damping->counts[0]));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));

@@ -288,11 +288,10 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
 {
   const PetscInt    n       = PetscMin(contact->n_pairs, MOST_NAMED);
   PetscInt          nearest = 0;
-  const char       *between = "", *unit;
+  const char       *between = "";
   ContactPairState *states;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(PetscMalloc1(n, &states));
   PetscCall(ContactComputePairStates(contact, 0, n, states));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  smallest distance%s:", n > MOST_DISTANCES ? " (of chosen pairs that of the nearest)" : ""));
@@ -304,7 +303,8 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
     if (n > MOST_DISTANCES && pair->chosen && p != nearest) continue;
     PetscCall(PetscViewerASCIIPrintf(viewer, "%s %s ", between, pair->name));
     between = ",";
-    if (states[p].gap < CONTACT_NO_GAP) PetscCall(PetscViewerASCIIPrintf(viewer, "%.4g%s", (double)states[p].gap, unit));
+    if (states[p].gap < CONTACT_NO_GAP)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "%.4g%s", (double)states[p].gap, UnitsOf((PetscObject)contact, UNIT_LENGTH)));
     else PetscCall(PetscViewerASCIIPrintf(viewer, "nothing lies opposite"));
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));

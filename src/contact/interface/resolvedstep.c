@@ -43,10 +43,8 @@ static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, Pets
   Side      sides[2];
   PetscReal flexibility = 0, mobility = 0, speed = 0, smallest = PETSC_MAX_REAL;
   PetscInt  deforms = -1;
-  Units     units;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGet((PetscObject)contact, &units));
   *step          = PETSC_INFINITY;
   sides[1].size  = 0;
   sides[1].rigid = PETSC_FALSE;
@@ -65,14 +63,14 @@ static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, Pets
   *step = PetscSqrtReal(flexibility / mobility);
   if (pair->obstacle || sides[0].rigid || sides[1].rigid)
     PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g%s", pair->name, (double)sides[deforms].transit,
-                            UnitsText(units, UNIT_TIME)));
+                            UnitsOf((PetscObject)contact, UNIT_TIME)));
   else
     PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g and %.3g%s", pair->name, (double)sides[0].transit,
-                            (double)sides[1].transit, UnitsText(units, UNIT_TIME)));
+                            (double)sides[1].transit, UnitsOf((PetscObject)contact, UNIT_TIME)));
   if (!(speed * *step > CLOSING * smallest)) PetscFunctionReturn(PETSC_SUCCESS);
   *step = CLOSING * smallest / speed;
   PetscCall(PetscSNPrintf(reason, size, "%s close at %.3g%s, by %g of a contact element in it", pair->name, (double)speed,
-                          UnitsText(units, UNIT_VELOCITY), CLOSING));
+                          UnitsOf((PetscObject)contact, UNIT_VELOCITY), CLOSING));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,10 +80,8 @@ static PetscErrorCode GetNeighboursStep(Contact contact, PetscReal *step, size_t
 {
   PetscReal   first = 0, second = 0, smallest = PETSC_MAX_REAL;
   const char *name = "";
-  Units       units;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGet((PetscObject)contact, &units));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal speed = 0;
     Side      side;
@@ -100,12 +96,12 @@ static PetscErrorCode GetNeighboursStep(Contact contact, PetscReal *step, size_t
     *step = side.transit;
     name  = ((PetscObject)contact->bodies[b])->name;
   }
-  PetscCall(
-      PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g%s", name, (double)*step, UnitsText(units, UNIT_TIME)));
+  PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g%s", name, (double)*step,
+                          UnitsOf((PetscObject)contact, UNIT_TIME)));
   if (!((first + second) * *step > CLOSING * smallest)) PetscFunctionReturn(PETSC_SUCCESS);
   *step = CLOSING * smallest / (first + second);
   PetscCall(PetscSNPrintf(reason, size, "the two fastest bodies close at %.3g%s at most, by %g of a contact element in it",
-                          (double)(first + second), UnitsText(units, UNIT_VELOCITY), CLOSING));
+                          (double)(first + second), UnitsOf((PetscObject)contact, UNIT_VELOCITY), CLOSING));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

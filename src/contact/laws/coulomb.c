@@ -48,17 +48,16 @@ static void GetLimit(Contact contact, const void *data, PetscInt row, PetscReal 
 
 static PetscErrorCode View(Contact contact, const void *data, PetscViewer viewer)
 {
-  const char *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)contact, UNIT_SLOWNESS, &unit));
   (void)data;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  coefficient of friction of %s: %g\n", contact->pairs[p].name,
                                      (double)GetStatic(contact, &contact->pairs[p])));
   if (contact->options.friction_kinetic >= 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  falls to %g as exp(-%g%s times the speed of sliding)\n",
-                                     (double)contact->options.friction_kinetic, (double)contact->options.friction_decay, unit));
+                                     (double)contact->options.friction_kinetic, (double)contact->options.friction_decay,
+                                     UnitsOf((PetscObject)contact, UNIT_SLOWNESS)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

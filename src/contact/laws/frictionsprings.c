@@ -81,19 +81,17 @@ PetscErrorCode FrictionVisit(Contact contact, Checkpoint checkpoint)
 PetscErrorCode FrictionViewSprings(Contact contact, PetscViewer viewer)
 {
   const FrictionStep *step = (const FrictionStep *)contact->data;
-  Units               units;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGet((PetscObject)contact, &units));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscReal parameter, scale;
 
     PetscCall((*step->springs.getparameter)(contact, &contact->pairs[p], step->springs.penalty, step->springs.scale, &parameter, &scale));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g%s, along the normals and across them\n", contact->pairs[p].name,
-                                     (double)parameter, UnitsText(units, UNIT_STIFFNESS_ON_AREA)));
+                                     (double)parameter, UnitsOf((PetscObject)contact, UNIT_STIFFNESS_ON_AREA)));
   }
   if (step->springs.max_it)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until gaps and slips are within %g%s\n", (double)step->springs.tolerance,
-                                     UnitsText(units, UNIT_LENGTH)));
+                                     UnitsOf((PetscObject)contact, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -240,12 +240,10 @@ static PetscErrorCode Step(Contact contact)
 static PetscErrorCode View(Contact contact, PetscViewer viewer)
 {
   const FrictionStep *step = (const FrictionStep *)contact->data;
-  const char         *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  contact forces at the end of the step from the compliance of the interface, to %g%s\n",
-                                   (double)step->atol, unit));
+                                   (double)step->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH)));
   if (step->has_springs) PetscCall(FrictionViewSprings(contact, viewer));
   if (contact->friction.law.view) PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -87,13 +87,11 @@ static PetscErrorCode ContactView_ImplicitLagrange(Contact contact, PetscViewer 
 {
   const ImplicitLagrange *lagrange = (const ImplicitLagrange *)contact->data;
   SNESType                type;
-  const char             *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(SNESGetType(lagrange->outer.snes, &type));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s on the forces at the end of the step, tolerances %g%s and %g relative\n",
-                                   type, (double)lagrange->atol, unit, (double)lagrange->rtol));
+                                   type, (double)lagrange->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)lagrange->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

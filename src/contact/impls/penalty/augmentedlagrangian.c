@@ -93,12 +93,11 @@ static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
 static PetscErrorCode ContactView_AugmentedLagrangian(Contact contact, PetscViewer viewer)
 {
   const Penalty *penalty = (const Penalty *)contact->data;
-  const char    *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(PenaltyViewParameter(contact, viewer));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until the gap is within %g%s\n", (double)penalty->augmentation_tolerance, unit));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until the gap is within %g%s\n", (double)penalty->augmentation_tolerance,
+                                   UnitsOf((PetscObject)contact, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

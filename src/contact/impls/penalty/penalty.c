@@ -348,12 +348,12 @@ static PetscErrorCode ContactStep_Penalty(Contact contact)
 static PetscErrorCode ContactView_Penalty(Contact contact, PetscViewer viewer)
 {
   const Penalty *penalty = (const Penalty *)contact->data;
-  const char    *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)contact, contact->dim == 1 ? UNIT_DASHPOT : UNIT_DASHPOT_ON_AREA, &unit));
   PetscCall(PenaltyViewParameter(contact, viewer));
-  if (penalty->damping > 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  damping %g%s\n", (double)penalty->damping, unit));
+  if (penalty->damping > 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  damping %g%s\n", (double)penalty->damping,
+                                     UnitsOf((PetscObject)contact, contact->dim == 1 ? UNIT_DASHPOT : UNIT_DASHPOT_ON_AREA)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -155,7 +155,7 @@ PetscErrorCode PenaltyViewParameter(Contact contact, PetscViewer viewer)
   const char    *unit;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)contact, contact->dim == 1 ? UNIT_STIFFNESS : UNIT_STIFFNESS_ON_AREA, &unit));
+  unit = UnitsOf((PetscObject)contact, contact->dim == 1 ? UNIT_STIFFNESS : UNIT_STIFFNESS_ON_AREA);
   if (!penalty->springs || penalty->penalty > 0) {
     PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g%s\n", (double)penalty->penalty, unit));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -186,18 +186,16 @@ static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
 static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
-  const char    *unit;
   SNESType       type;
 
   PetscFunctionBegin;
-  PetscCall(UnitsGetText((PetscObject)contact, UNIT_LENGTH, &unit));
   PetscCall(SNESGetType(schwarz->outer.snes, &type));
   PetscCall(PetscViewerASCIIPrintf(
       viewer, "  outer iteration %s%s%s, %s conditions, %s traction, %s predictor, tolerances %g%s and %g relative\n", type,
       schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN ? " (Aitken)" : "",
       schwarz->sweep == SCHWARZ_SWEEP_ADDITIVE ? ", additive sweeps" : "", Transmissions[schwarz->transmission],
       schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole",
-      Predictors[schwarz->predictor], (double)schwarz->atol, unit, (double)schwarz->rtol));
+      Predictors[schwarz->predictor], (double)schwarz->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)schwarz->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
