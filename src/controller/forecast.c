@@ -1,5 +1,6 @@
 /* What a run is to be expected to do, before it is made: bodies, elements that bound steps, steps and cost. */
 #include "controllerimpl.h"
+#include <sys/units.h>
 
 /* An element whose stable step is so many times shorter than the median of its body is worth a warning; it is 2.5 times in
    hertz-impact.opts, graded on purpose by 64 */
@@ -63,12 +64,13 @@ PetscErrorCode ControllerWarnOfElements(Controller controller)
   PetscCall(PetscFPrintf(
       PetscObjectComm((PetscObject)controller), stderr,
       "impakt: warning: element %" PetscInt_FMT
-      " (rank after rank, from 0) of the explicit body '%s', around (%.6g, %.6g, %.6g) m, has a stable step "
-      "of %.3g s, %.3g times shorter than the median of its elements, %.3g s, and all make as many substeps as it needs, %" PetscInt_FMT
+      " (rank after rank, from 0) of the explicit body '%s', around (%.6g, %.6g, %.6g)%s, has a stable step "
+      "of %.3g%s, %.3g times shorter than the median of its elements, %.3g%s, and all make as many substeps as it needs, %" PetscInt_FMT
       " to each controller step: mend the mesh there, or let the body be implicit (-%sts_type alpha2); -check lists the elements that "
       "bound the step%s\n",
       of_worst->number[0], name, (double)of_worst->centre[0][0], (double)of_worst->centre[0][1], (double)of_worst->centre[0][2],
-      (double)of_worst->step[0], (double)largest, (double)of_worst->median, substeps, ((PetscObject)worst)->prefix, more));
+      UnitsOf((PetscObject)worst, UNIT_LENGTH), (double)of_worst->step[0], UnitsOf((PetscObject)worst, UNIT_TIME), (double)largest,
+      (double)of_worst->median, UnitsOf((PetscObject)worst, UNIT_TIME), substeps, ((PetscObject)worst)->prefix, more));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,13 +87,16 @@ static PetscErrorCode ViewInertia(Body body, PetscViewer viewer)
   for (PetscInt k = 0; k < 9; k++) largest = PetscMax(largest, PetscAbsReal(inertia[k]));
   for (PetscInt k = 0; k < 9; k++)
     if (PetscAbsReal(inertia[k]) <= ROUND_OFF * largest) inertia[k] = 0;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  mass                 %.6g kg, centre (%.6g, %.6g, %.6g) m\n", (double)mass, (double)centre[0],
-                                   (double)centre[1], (double)centre[2]));
-  if (dim == 2 && largest > 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  moment of inertia    %.6g kg m^2\n", (double)inertia[8]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  mass                 %.6g%s, centre (%.6g, %.6g, %.6g)%s\n", (double)mass,
+                                   UnitsOf((PetscObject)body, UNIT_MASS), (double)centre[0], (double)centre[1], (double)centre[2],
+                                   UnitsOf((PetscObject)body, UNIT_LENGTH)));
+  if (dim == 2 && largest > 0)
+    PetscCall(
+        PetscViewerASCIIPrintf(viewer, "  moment of inertia    %.6g%s\n", (double)inertia[8], UnitsOf((PetscObject)body, UNIT_INERTIA)));
   if (dim == 3)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  moments of inertia   xx %.6g, yy %.6g, zz %.6g, xy %.6g, yz %.6g, xz %.6g kg m^2\n",
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  moments of inertia   xx %.6g, yy %.6g, zz %.6g, xy %.6g, yz %.6g, xz %.6g%s\n",
                                      (double)inertia[0], (double)inertia[4], (double)inertia[8], (double)inertia[1], (double)inertia[5],
-                                     (double)inertia[2]));
+                                     (double)inertia[2], UnitsOf((PetscObject)body, UNIT_INERTIA)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -104,12 +109,13 @@ static PetscErrorCode ViewBounds(Body body, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCall(GetRatio(body, &bounds, &ratio));
   if (!bounds || !bounds->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  stable steps         median of all elements %.4g s; the shortest are those of\n",
-                                   (double)bounds->median));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  stable steps         median of all elements %.4g%s; the shortest are those of\n",
+                                   (double)bounds->median, UnitsOf((PetscObject)body, UNIT_TIME)));
   for (PetscInt k = 0; k < bounds->n; k++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "    element %" PetscInt_FMT ": %.4g s, %.3g of the median, around (%.6g, %.6g, %.6g) m\n",
-                                     bounds->number[k], (double)bounds->step[k], (double)(bounds->step[k] / bounds->median),
-                                     (double)bounds->centre[k][0], (double)bounds->centre[k][1], (double)bounds->centre[k][2]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "    element %" PetscInt_FMT ": %.4g%s, %.3g of the median, around (%.6g, %.6g, %.6g)%s\n",
+                                     bounds->number[k], (double)bounds->step[k], UnitsOf((PetscObject)body, UNIT_TIME),
+                                     (double)(bounds->step[k] / bounds->median), (double)bounds->centre[k][0], (double)bounds->centre[k][1],
+                                     (double)bounds->centre[k][2], UnitsOf((PetscObject)body, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -41,6 +41,14 @@ def test_labels_follow(shared_run):
     assert not found[2]
 
 
+@pytest.mark.parametrize(("units", "expected"), [("SI", {"kg", "m", "s", "kg m^2"}), ("mm-t-s", {"t", "mm", "s", "t mm^2"}), ("none", set())])
+def test_labels_of_a_check_follow(units, expected, impakt):
+    """Of what -check adds to the start, for an explicit body, but for the seconds that the run itself takes."""
+    text = impakt(f"{MM} -block_ts_type centraldifference -block_ts_time_step auto -check -units {units}").stdout
+    text = re.sub(r"^  wall time .*", "", text[text.index("check of body") :], flags=re.MULTILINE)
+    assert set(re.findall(r"[\d)] (kg m\^2|t mm\^2|kg|t|mm|m|s)\b", text)) == expected
+
+
 def test_nothing_is_read_by_the_way(impakt):
     """A size that the mesh does not take is an option that nobody reads, as ever."""
     check_message(impakt(f"{BLOCK} -block_density 7850 -block_youngs_modulus 2.1e11 -block_ball_radius 1", expect_failure=True), ["-block_ball_radius"])
