@@ -196,7 +196,7 @@ static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, Pet
   else if (fnorm <= atol) *reason = SNES_CONVERGED_FNORM_ABS;
   else if (fnorm <= implicit->round_off || (it && fnorm <= rtol * implicit->terms + implicit->round_off))
     *reason = SNES_CONVERGED_FNORM_RELATIVE;
-  else if (!body->integrator->has_inertia && !body->history && it >= PATIENCE && fnorm > implicit->first) *reason = SNES_DIVERGED_DTOL;
+  else if (!body->integrator->has_inertia && it >= PATIENCE && fnorm > implicit->first) *reason = SNES_DIVERGED_DTOL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -236,7 +236,7 @@ PetscErrorCode BodyImplicitSetUpNewton(Body body, TS ts, Mat J, BodyPredictorFn 
   PetscCall(SNESGetLineSearch(snes, &line_search));
   PetscCall(SNESSetTolerances(snes, NEWTON_UNDERFLOW, NEWTON_TOLERANCE, NEWTON_STEP, NEWTON_ITERATIONS, PETSC_CURRENT));
   PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHBT));
-  if (!body->integrator->has_inertia && !body->history) PetscCall(SNESLineSearchBTSetAlpha(line_search, BODY_STATIC_WHOLE));
+  if (!body->integrator->has_inertia) PetscCall(SNESLineSearchBTSetAlpha(line_search, BODY_STATIC_WHOLE));
   PetscCall(SNESSetFromOptions(snes));
   PetscCall(SNESSetConvergenceTest(snes, StopInBalance, body, NULL));
   /* BodyImplicitCheckSubstep() tells, with body and time */

@@ -53,6 +53,7 @@ static PetscErrorCode MakeSubstep(Body body)
   (void)ConstrainedSolverTakeFailure(body->solver);
   StepFailureClear(&body->failure);
   PetscCall(BodyRestore(body));
+  PetscCall(BodyHistoryBegin(body));
   PetscCall(SNESLineSearchBTGetAlpha(line_search, &whole));
   PetscCall(SNESLineSearchBTSetAlpha(line_search, BODY_STATIC_DESCENT));
   PetscCall(TSStep(body->time.ts));
@@ -80,7 +81,7 @@ static PetscErrorCode SetUp(Body body)
              "course of %" PetscInt_FMT " substeps; set -%sts_time_step to -time_step, or prescribe displacements",
              body->hdr.name, body->time.substeps, ((PetscObject)body)->prefix);
   PetscCall(BodyImplicitSetUp(body, ComputeResidual, Predict));
-  if (!body->model.linear && !body->history) body->integrator->ops.step = MakeSubstep;
+  if (!body->model.linear) body->integrator->ops.step = MakeSubstep;
   for (PetscInt k = 0; k < 4 && !body->model.linear; k++)
     PetscCall(BodyCreateVec(body, &((BodyImplicit *)body->integrator->data)->lead[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
