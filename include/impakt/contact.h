@@ -20,7 +20,8 @@ typedef struct _p_Contact *Contact;
 + `CONTACT_SCHWARZ`              - Schwarz alternating method
 . `CONTACT_PENALTY`              - penalty method
 . `CONTACT_LAGRANGE`             - Lagrange multipliers, implicit or forward-increment
-- `CONTACT_AUGMENTED_LAGRANGIAN` - penalty method whose forces are added up until the gap is closed
+. `CONTACT_AUGMENTED_LAGRANGIAN` - penalty method whose forces are added up until the gap is closed
+- `CONTACT_FORCE`                - forces of rows by a rule and a law, also on nodes with mass
 
    Level: beginner
 
@@ -31,6 +32,7 @@ typedef const char *ContactType;
 #define CONTACT_PENALTY              "penalty"
 #define CONTACT_LAGRANGE             "lagrange"
 #define CONTACT_AUGMENTED_LAGRANGIAN "augmented_lagrangian"
+#define CONTACT_FORCE                "force"
 
 /*E
    ContactLaw - what contact surfaces do to each other

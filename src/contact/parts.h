@@ -241,3 +241,4 @@ PETSC_INTERN PetscErrorCode ContactCreate_Schwarz(Contact);
 PETSC_INTERN PetscErrorCode ContactCreate_Penalty(Contact);
 PETSC_INTERN PetscErrorCode ContactCreate_Lagrange(Contact);
 PETSC_INTERN PetscErrorCode ContactCreate_AugmentedLagrangian(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);

@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* Members of ExactSolution in their order */
-enum { CONTACT_POSITION, CONTACT_VELOCITY, CONTACT_FORCE, KINETIC, POTENTIAL, MEAN_VELOCITY };
+enum { CONTACT_POSITION, CONTACT_VELOCITY, CONTACT_FORCE_VALUE, KINETIC, POTENTIAL, MEAN_VELOCITY };
 
 _Static_assert(sizeof(ExactSolution) == EXACT_QUANTITIES * sizeof(PetscReal), "ExactSolution is read as an array here");
 
@@ -104,7 +104,7 @@ PetscErrorCode ExactGetErrors(Exact exact, ExactErrors *errors)
   PetscAssertPointer(errors, 2);
   errors->contact_position = RelativeNorm(&distance[CONTACT_POSITION]);
   errors->contact_velocity = RelativeNorm(&distance[CONTACT_VELOCITY]);
-  errors->contact_force    = RelativeNorm(&distance[CONTACT_FORCE]);
+  errors->contact_force    = RelativeNorm(&distance[CONTACT_FORCE_VALUE]);
   errors->kinetic          = RelativeNorm(&distance[KINETIC]);
   errors->potential        = RelativeNorm(&distance[POTENTIAL]);
   errors->mean_velocity    = RelativeNorm(&distance[MEAN_VELOCITY]);

@@ -142,6 +142,11 @@ PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 PETSC_EXTERN PetscErrorCode BodyGetInertiaChange(Body, PetscInt, const PetscInt[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyDescribeSuddenLoad(Body, char[BODY_SUDDEN_LENGTH]);
 
+/* Forces that are the same throughout a controller step */
+PETSC_EXTERN PetscErrorCode BodySetConstantForces(Body, const PetscReal[], const PetscReal[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyGetConstantCompliance(Body, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *,
+                                                      const PetscScalar *[]);
+
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);
 PETSC_EXTERN PetscErrorCode BodyGetComplianceMatrices(Body, Mat *, Mat *);

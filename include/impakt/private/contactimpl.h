@@ -11,6 +11,7 @@ typedef struct _n_Tables     *Tables;     /* src/checkpoint/tables.h */
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
   PetscErrorCode (*setup)(Contact);
+  PetscErrorCode (*layrows)(Contact);     /* (NULL) before rows are laid again, as a step begins: where */
   PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
   PetscErrorCode (*rowschanged)(Contact); /* called after rows have been built again: those marked as changed have new entries */
   /* (NULL) energy that the method's springs store on a row at a gap [J]; without it nobody knows what contact gains, and it is not limited

@@ -1,12 +1,14 @@
-/* A body is put to rest, without loads, to see what a unit force on a row brings about; afterwards it is as it was. */
+/* A body is put to rest, without loads, to see what a unit force on a row brings about, in the course of a substep or throughout a controller
+   step; afterwards it is as it was. */
 #include "explicitimpl.h"
 
 #define N_BACKUP 7
 
 /* What probing overwrites: present and saved state, internal force; forces from outside and of dashpots, NULL without any; all traces;
-   where the body is in time */
+   where the body is in time; a force on
+   nodes */
 struct _BodyProbe {
-  Vec          vecs[N_BACKUP], applied, damping;
+  Vec          vecs[N_BACKUP], applied, damping, force;
   PetscScalar *traces;
   PetscScalar *column; /* displacement of this rank's rows, for each substep */
   PetscReal    time, saved_time, work, damping_work;
@@ -20,6 +22,7 @@ PetscErrorCode BodyDestroyProbe(Body body)
   for (PetscInt k = 0; k < N_BACKUP; k++) PetscCall(VecDestroy(&body->probe->vecs[k]));
   PetscCall(VecDestroy(&body->probe->applied));
   PetscCall(VecDestroy(&body->probe->damping));
+  PetscCall(VecDestroy(&body->probe->force));
   PetscCall(PetscFree2(body->probe->traces, body->probe->column));
   PetscCall(PetscFree(body->probe));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -76,15 +79,29 @@ static PetscErrorCode BeginProbe(Body body)
 /* A force of 1 N at the end of the first substep, on one row alone; zero at the start and from the second substep on */
 static PetscErrorCode SetUnitForce(Body body, PetscInt row)
 {
-  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
-  const PetscInt local    = row - body->rows.begin;
+  const PetscInt local = row - body->rows.begin;
   PetscScalar   *values;
 
   PetscFunctionBegin;
-  for (PetscInt t = 0; t < 4; t++) PetscCall(TraceZero(traces[t]));
   if (local < 0 || local >= body->rows.local) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TraceGetLevel(body->traces.force_in, 1, &values));
   values[local] = 1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A force of 1 N throughout the controller step along one displacement, from which the step starts too */
+static PetscErrorCode SetUnitNodalForce(Body body, PetscInt dof)
+{
+  PetscInt begin, end;
+
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(body->probe->force));
+  PetscCall(VecGetOwnershipRange(body->probe->force, &begin, &end));
+  if (dof >= begin && dof < end) PetscCall(VecSetValue(body->probe->force, dof, 1, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(body->probe->force));
+  PetscCall(VecAssemblyEnd(body->probe->force));
+  PetscCall(VecCopy(body->probe->force, body->work.nodes[0]));
+  PetscCall(BodyAnswerAtStart(body, body->saved.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,20 +126,30 @@ static PetscErrorCode EndProbe(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Column of a row at all levels, into the work space `column`, by making the substeps of a controller step */
-static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
+/* The substeps of a controller step */
+static PetscErrorCode Integrate(Body body)
 {
-  const PetscInt local = row - body->rows.begin;
-  PetscScalar   *values;
-
   PetscFunctionBegin;
-  PetscCall(SetUnitForce(body, row));
-  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FORCED;
   PetscCall(BodyRestore(body));
   StepFailureClear(&body->failure);
   PetscCall(BodyMakeSubsteps(body));
   PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
   body->statistics.substeps -= body->time.substeps;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Column of a row at all levels, into the work space `column`, by making the substeps of a controller step */
+static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
+{
+  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
+  const PetscInt local    = row - body->rows.begin;
+  PetscScalar   *values;
+
+  PetscFunctionBegin;
+  for (PetscInt t = 0; t < 4; t++) PetscCall(TraceZero(traces[t]));
+  PetscCall(SetUnitForce(body, row));
+  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FORCED;
+  PetscCall(Integrate(body));
   if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FREE;
   for (PetscInt k = 0; k < body->time.substeps; k++) {
     PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &values));
@@ -131,8 +158,9 @@ static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Columns of the interface compliance by making substeps: of a body at rest, with all rows free but the one in hand */
-PetscErrorCode BodyProbeBySubsteps(Body body, PetscInt n, const PetscInt rows[], Compliance matrices)
+/* Columns of a compliance by making substeps: of a body at rest, with all rows free but the one in hand. `nodal`: not rows are meant but
+   displacements, of all ranks, at the end of the controller step under forces that are the same throughout it. */
+static PetscErrorCode Probe(Body body, PetscBool nodal, PetscInt n, const PetscInt rows[], Compliance matrices)
 {
   const PetscInt counts[3] = {body->rows.n_prescribed, body->rows.n_forced, body->rows.n_robin};
   BodyCondition *kept;
@@ -147,11 +175,24 @@ PetscErrorCode BodyProbeBySubsteps(Body body, PetscInt n, const PetscInt rows[],
   PetscCall(BodySetConstraints(body));
   PetscCall(BodyPrepareLinearized(body));
   body->model.linearized = (PetscBool)!body->model.linear;
+  if (nodal && !body->probe->force) PetscCall(VecDuplicate(body->state.u, &body->probe->force));
+  if (nodal) body->rows.nodal_force = body->probe->force;
   for (PetscInt i = 0; i < n; i++) {
+    const PetscScalar *u;
+
     if (ComplianceKnows(matrices, rows[i])) continue;
-    PetscCall(IntegrateUnderUnitForce(body, rows[i]));
-    PetscCall(ComplianceSetColumn(matrices, rows[i], body->time.substeps, body->probe->column));
+    if (!nodal) {
+      PetscCall(IntegrateUnderUnitForce(body, rows[i]));
+      PetscCall(ComplianceSetColumn(matrices, rows[i], body->time.substeps, body->probe->column));
+      continue;
+    }
+    PetscCall(SetUnitNodalForce(body, rows[i]));
+    PetscCall(Integrate(body));
+    PetscCall(VecGetArrayRead(body->state.u, &u));
+    PetscCall(ComplianceSetColumn(matrices, rows[i], 1, u));
+    PetscCall(VecRestoreArrayRead(body->state.u, &u));
   }
+  body->rows.nodal_force = NULL;
   body->model.linearized = PETSC_FALSE;
   PetscCall(EndProbe(body));
   PetscCall(PetscArraycpy(body->rows.conditions, kept, body->rows.local));
@@ -160,5 +201,21 @@ PetscErrorCode BodyProbeBySubsteps(Body body, PetscInt n, const PetscInt rows[],
   body->rows.n_robin      = counts[2];
   PetscCall(BodySetConstraints(body));
   PetscCall(PetscFree(kept));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyProbeBySubsteps - columns of the interface compliance, under hats of force on rows */
+PetscErrorCode BodyProbeBySubsteps(Body body, PetscInt n, const PetscInt rows[], Compliance matrices)
+{
+  PetscFunctionBegin;
+  PetscCall(Probe(body, PETSC_FALSE, n, rows, matrices));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyProbeConstant - columns of displacements, by their numbers on all ranks, under forces that are the same throughout a controller step */
+PetscErrorCode BodyProbeConstant(Body body, PetscInt n, const PetscInt dofs[], Compliance matrices)
+{
+  PetscFunctionBegin;
+  PetscCall(Probe(body, PETSC_TRUE, n, dofs, matrices));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -296,6 +296,10 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
   PetscFunctionBegin;
   PetscCall(BodyAddHandover(body, position, scale, f));
   if (!body->rows.n_forced) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->rows.nodal_force) {
+    PetscCall(VecAXPY(f, scale, body->rows.nodal_force));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (body->rows.exchange.open) {
     PetscCall(VecAXPY(f, scale, body->rows.exchange.force));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -6,18 +6,13 @@
 */
 #include <body/layout/bodyimpl.h>
 
-/* The acceleration that forces on the rows, and those that go over from the rows of the last step, bring to the nodes that have mass */
-static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec change)
+/* BodyAnswerAtStart - the acceleration that forces on nodes, in work.nodes[0], bring to the nodes that have mass */
+PetscErrorCode BodyAnswerAtStart(Body body, Vec change)
 {
   Vec          f = body->work.nodes[0], du = body->work.nodes[1], pull = body->work.nodes[2];
-  PetscScalar *row, *values;
+  PetscScalar *values;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, force, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], f));
-  PetscCall(BodyAddStoppedHandover(body, f));
   PetscCall(BodyZeroHeld(body, f));
   if (body->layer.exists) {
     PetscCall(BodySolveLayer(body, body->saved.u, f, du, pull));
@@ -28,6 +23,21 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   }
   PetscCall(BodyZeroHeld(body, f));
   PetscCall(BodySolveMass(body, f, change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of forces on the rows, and of those that go over from the rows of the last step */
+static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec change)
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  PetscCall(PetscArraycpy(row, force, body->rows.local));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], body->work.nodes[0]));
+  PetscCall(BodyAddStoppedHandover(body, body->work.nodes[0]));
+  PetscCall(BodyAnswerAtStart(body, change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -336,10 +336,10 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
 
   PetscFunctionBegin;
   energy->known       = (PetscBool)!energy->unlimited;
-  energy->changed     = PETSC_FALSE;
   energy->step_work   = 0;
   energy->stays_whole = PETSC_FALSE;
   if (energy->unlimited) PetscFunctionReturn(PETSC_SUCCESS);
+  energy->changed = PETSC_FALSE;
   PetscCall(PetscArraycpy(energy->last_force, contact->start.force, contact->rows.n));
   PetscCall(ContactComputeWork(contact));
   PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));

@@ -172,6 +172,7 @@ static PetscErrorCode MakeOnce(Contact contact, PetscInt pass, PetscReal *off, P
   PetscCall(ContactNoteLevel(contact));
   PetscCall(StageBegin(STAGE_ROWS, &logged));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
+  PetscTryTypeMethod(contact, layrows);
   PetscCall(ContactBond(contact));
   PetscCall(ContactUpdateRows(contact));
   ContactHoldTogether(contact);

@@ -47,6 +47,7 @@ PetscErrorCode ContactRegisterAll(void)
   PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
   PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
   PetscCall(ContactRegister(CONTACT_AUGMENTED_LAGRANGIAN, ContactCreate_AugmentedLagrangian));
+  PetscCall(ContactRegister(CONTACT_FORCE, ContactCreate_Force));
   PetscCall(ContactLawRegisterAll());
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,0 +1,97 @@
+/*
+   Forces on the rows that are the same throughout a controller step, and what they bring about at its end. Integrators take the force at both
+   ends of a substep; what a step begins with is in the acceleration there, which has that of the last step: so the acceleration is changed.
+*/
+#include "complianceimpl.h"
+
+/*@
+  BodySetConstantForces - has forces act along the rows throughout the controller step, in place of those that the last one ended with
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, saved, whose rows are forced
+. force - along each row of this rank [N]
+. last  - the same at the end of the last step, along the rows as they are now [N]
+- none  - zero for each row of this rank
+
+  Level: developer
+
+  Note:
+  Holds until the next call, `BodySave()`, or `BodyDropStartForce()`. Forces that act along rows as they were, see `BodyHandOver()`, are gone.
+
+.seealso: `Body`, `BodySetStartForce()`, `BodyGetConstantCompliance()`
+@*/
+PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const PetscReal last[], const PetscReal none[])
+{
+  PetscReal   *change;
+  PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->rows.local) {
+    PetscAssertPointer(force, 2);
+    PetscAssertPointer(last, 3);
+  }
+  for (PetscInt level = 0; level <= body->time.substeps; level++) {
+    PetscCall(TraceGetLevel(body->traces.force_in, level, &values));
+    PetscCall(PetscArraycpy(values, force, body->rows.local));
+  }
+  change = body->compliance->mine;
+  for (PetscInt i = 0; i < body->rows.local; i++) change[i] = force[i] - last[i];
+  PetscCall(BodySetStartForce(body, change, none));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetConstantCompliance - displacements at the end of the controller step under unit forces on nodes throughout it
+
+  Collective
+
+  Input Parameters:
++ body - the `Body`, set up
+. n    - number of displacements
+- dofs - their numbers among those of all ranks, the same on every rank; those that are known already cost nothing
+
+  Output Parameters:
++ place   - for each displacement of all ranks its place among the known ones, or -1
+. leading - distance between columns
+- matrix  - known displacements by known ones, by columns [m/N], owned by the body
+
+  Level: developer
+
+  Note:
+  Each new one costs a controller step of the body, linearized about its undeformed state.
+
+.seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`
+@*/
+PetscErrorCode BodyGetConstantCompliance(Body body, PetscInt n, const PetscInt dofs[], const PetscInt *place[], PetscInt *leading,
+                                         const PetscScalar *matrix[])
+{
+  Compliance *constant = &body->compliance->constant;
+  PetscInt    unknown  = 0, local, begin, all;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(place, 4);
+  PetscAssertPointer(leading, 5);
+  PetscAssertPointer(matrix, 6);
+  if (*constant && body->compliance->constant_step != body->time.step) PetscCall(ComplianceDestroy(constant));
+  if (!*constant) {
+    body->compliance->constant_step = body->time.step;
+    PetscCall(VecGetLocalSize(body->state.u, &local));
+    PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
+    PetscCall(VecGetSize(body->state.u, &all));
+    PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, constant));
+  }
+  for (PetscInt i = 0; i < n; i++) unknown += !ComplianceKnows(*constant, dofs[i]);
+  if (unknown) {
+    PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
+    PetscCall(ComplianceReserve(*constant, unknown));
+    PetscCall(BodyProbeConstant(body, n, dofs, *constant));
+    PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
+  }
+  ComplianceGetRows(*constant, NULL, NULL, place);
+  ComplianceGetMatrix(*constant, 0, leading, matrix);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,13 @@
+/* Ties: what holds the rows of a node where they are. */
+#include "rowlaw.h"
+
+static void Project(PetscInt n, const PetscReal limit[2], const PetscReal p[], PetscReal force[], PetscReal derivative[])
+{
+  (void)limit;
+  for (PetscInt i = 0; i < n; i++) {
+    force[i] = p[i];
+    for (PetscInt j = 0; j < n; j++) derivative[i * n + j] = i == j;
+  }
+}
+
+const RowLaw RowLawTie = {.reads = ROW_LAW_READS_END, .project = Project};

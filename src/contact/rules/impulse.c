@@ -1,0 +1,99 @@
+/*
+   The rule `impulse`, for contact nodes with mass. The force of a row is the same throughout the step. A row whose node carried a force in
+   the step before is closed where its gap does not change; one that joins, whose gap would be closed in the middle of the step, where its
+   gap changes by half of the way that its closing rate would make. So what closed rows do to the bodies, force times change of the gap, is
+   never positive, whatever the bodies do inside the step: DESIGN, one_step. Rows are laid where bodies will be in the middle of the step.
+
+   Velocity-level contact: V. Acary, ZAMM 96 (2016) 585-603; here on increments of gaps, so that substeps of any integrator may lie between.
+*/
+#include <contact/step/stepimpl.h>
+
+/* Where bodies will be in the middle of the step, if their nodes go on as they do */
+static PetscErrorCode Place(Contact contact, ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  (void)stepper;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    Vec u, v;
+
+    PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
+    if (!contact->ends[b]) PetscCall(VecDuplicate(u, &contact->ends[b]));
+    PetscCall(VecWAXPY(contact->ends[b], 0.5 * contact->step, v, u));
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].ahead = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rates of rows as the step begins */
+static PetscErrorCode ComputeRates(Contact contact, PetscReal rate[])
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *v[2];
+
+    for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].velocity, 0, &v[side]));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      rate[i] = PetscRealPart(v[1][i - pair->shift[1]] - v[0][i - pair->shift[0]]);
+      if (contact->friction.drive) rate[i] += contact->friction.drive[i] / contact->step;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Begin(Contact contact, ContactStepper *stepper)
+{
+  const PetscReal half = 0.5 * contact->step;
+
+  PetscFunctionBegin;
+  PetscCall(ComputeRates(contact, stepper->rate));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+      const PetscBool tied    = contact->rows.tied[first];
+      const PetscBool carried = (PetscBool)(tied || (contact->start.active[first] && contact->start.force[first] > 0));
+      const PetscReal middle  = contact->start.gap[first] + half * stepper->rate[first];
+      const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && middle <= 0));
+
+      for (PetscInt i = first; i < first + pair->components; i++) {
+        const PetscReal way = half * (i == first ? PetscMin(stepper->rate[i], 0) : stepper->rate[i]);
+
+        stepper->touches[i]     = touches;
+        stepper->joins[i]       = (PetscBool)(touches && !carried);
+        stepper->lets[i]        = carried ? 0 : way;
+        contact->end.force[i]   = carried && (tied || !stepper->joined[i]) ? contact->start.force[i] : 0;
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
+{
+  const ContactBodyRows *of = &contact->body_rows[b];
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < of->n; k++) {
+    const PetscInt  i    = of->rows[k];
+    const PetscReal sign = ContactSign(&contact->pairs[contact->rows.pair[i]], b);
+
+    stepper->mine[k]   = sign * contact->end.force[i];
+    stepper->before[k] = sign * stepper->last[i];
+  }
+  PetscCall(BodySetConstantForces(contact->bodies[b], stepper->mine, stepper->before, stepper->none));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the step begins with is what it ends with, for all that takes the mean of both */
+static PetscErrorCode End(Contact contact, ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(contact->energy.last_force, stepper->last, contact->rows.n));
+  PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
+  contact->energy.changed = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+const ContactRule ContactRuleImpulse = {
+    .name = "impulse", .place = Place, .begin = Begin, .load = Load, .compliance = BodyGetConstantCompliance, .end = End};

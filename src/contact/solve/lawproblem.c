@@ -1,0 +1,307 @@
+/*
+   The equations of the laws of all rows that may touch: lambda = P(lambda - r y), y = y_0 + S (lambda - lambda_0), r = 1 / S_ii. P is not
+   smooth but piecewise so: Newton's method with one of its derivatives (Qi, Sun 1993) finds the solution in a few iterations, or goes round
+   in a circle; then Gauss and Seidel's, node by node, which does not. Both are SNES of PETSc (prefixes law_ and law_nodes_). Each rank
+   solves the equations of all, which are the same to the last bit.
+
+   S is singular where rows depend on each other, as those of a corner may. So y has the term eps diag(S) (lambda - c) beside it, whose c is
+   the last solution, until the term is nothing: single forces are not unique then, what bodies get of them is (proximal point iteration,
+   Rockafellar 1976).
+
+   Sources: L. Qi, J. Sun, A nonsmooth version of Newton's method, Mathematical Programming 58 (1993); R. T. Rockafellar, Monotone operators
+   and the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976).
+*/
+#include "lawproblem.h"
+#include <sys/petsccompat.h>
+
+#define PROXIMAL        1e-10 /* of the diagonal of S */
+#define MOST_PROXIMAL   20
+#define TOLERANCE       1e-13 /* of the largest force, and of the largest force that would close what is read */
+#define MOST_NEWTON     40
+#define MOST_SWEEPS     20000
+#define NODE_ITERATIONS 10 /* for the rows of one node in a sweep */
+
+/* What rows read, without the proximal term */
+static void Read(const LawProblem *problem, const PetscScalar force[], PetscScalar y[])
+{
+  const PetscInt n = problem->n;
+
+  for (PetscInt i = 0; i < n; i++) y[i] = problem->read[i];
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscScalar change = force[j] - problem->base[j];
+
+    for (PetscInt i = 0; i < n && change != 0; i++) y[i] += problem->S[j * n + i] * change;
+  }
+}
+
+static PetscReal Diagonal(const LawProblem *problem, PetscInt i)
+{
+  return PetscMax(PetscRealPart(problem->S[i * (problem->n + 1)]), PETSC_SMALL * problem->largest); /* of a row that is held all of it is zero */
+}
+
+/* The trial forces lambda - r y of a node's rows */
+static void GetTrial(const LawProblem *problem, PetscInt node, const PetscScalar force[], const PetscScalar y[], PetscReal p[])
+{
+  for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++)
+    p[i - problem->begin[node]] = PetscRealPart(force[i] - y[i] / Diagonal(problem, i) - PROXIMAL * (force[i] - problem->centre[i]));
+}
+
+static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
+{
+  const LawProblem  *problem = (const LawProblem *)ctx;
+  const PetscScalar *x;
+  PetscScalar       *f, *y = problem->work;
+
+  PetscFunctionBegin;
+  (void)snes;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(F, &f));
+  Read(problem, x, y);
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
+    PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
+
+    GetTrial(problem, node, x, y, p);
+    (*problem->law->project)(rows, problem->limit + 2 * node, p, force, derivative);
+    for (PetscInt k = 0; k < rows; k++) f[first + k] = x[first + k] - force[k];
+  }
+  PetscCall(VecRestoreArrayWrite(F, &f));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* I - D (I - r (S + eps diag S)), D the derivative of P */
+static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
+{
+  const LawProblem  *problem = (const LawProblem *)ctx;
+  const PetscInt     n       = problem->n;
+  const PetscScalar *x;
+  PetscScalar       *matrix, *y = problem->work;
+
+  PetscFunctionBegin;
+  (void)snes;
+  (void)P;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(MatDenseGetArrayWrite(J, &matrix));
+  Read(problem, x, y);
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
+    PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
+
+    GetTrial(problem, node, x, y, p);
+    (*problem->law->project)(rows, problem->limit + 2 * node, p, force, derivative);
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt k = 0; k < rows; k++) {
+        PetscScalar sum = first + k == j;
+
+        for (PetscInt l = 0; l < rows; l++) {
+          const PetscInt i = first + l;
+
+          sum -= derivative[k * rows + l] * ((i == j) * (1 - PROXIMAL) - problem->S[j * n + i] / Diagonal(problem, i));
+        }
+        matrix[j * n + first + k] = sum;
+      }
+  }
+  PetscCall(MatDenseRestoreArrayWrite(J, &matrix));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Largest force, and largest force that would by itself close what a row reads without any [N] */
+static PetscReal ForceScale(const LawProblem *problem, const PetscScalar force[])
+{
+  PetscReal scale = 0;
+
+  for (PetscInt i = 0; i < problem->n; i++) {
+    scale = PetscMax(scale, PetscAbsScalar(force[i]));
+    scale = PetscMax(scale, PetscAbsScalar(problem->base[i]));
+    scale = PetscMax(scale, PetscAbsScalar(problem->read[i]) / Diagonal(problem, i));
+  }
+  return scale;
+}
+
+static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                      SNESConvergedReason *reason, void *ctx)
+{
+  const LawProblem  *problem = (const LawProblem *)ctx;
+  const PetscScalar *x;
+  PetscReal          largest;
+  PetscInt           most;
+  Vec                X, F;
+
+  PetscFunctionBegin;
+  (void)xnorm;
+  (void)gnorm;
+  *reason = SNES_CONVERGED_ITERATING;
+  PetscCall(SNESGetSolution(snes, &X));
+  PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
+  PetscCall(VecNorm(F, NORM_INFINITY, &largest));
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(SNESGetTolerances(snes, NULL, NULL, NULL, &most, NULL));
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
+  else if (largest <= TOLERANCE * ForceScale(problem, x)) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  PetscCall(VecRestoreArrayRead(X, &x));
+  (void)it;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One sweep: the rows of each node, one node after the other */
+static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
+{
+  LawProblem    *problem = (LawProblem *)ctx;
+  const PetscInt n       = problem->n;
+  PetscScalar   *x, *y = problem->work;
+
+  PetscFunctionBegin;
+  (void)snes;
+  (void)B;
+  PetscCall(VecGetArray(X, &x));
+  Read(problem, x, y);
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
+
+    for (PetscInt it = 0; it < (rows > 1 ? NODE_ITERATIONS : 1); it++) {
+      PetscReal p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
+
+      GetTrial(problem, node, x, y, p);
+      (*problem->law->project)(rows, problem->limit + 2 * node, p, force, derivative);
+      for (PetscInt k = 0; k < rows; k++) {
+        const PetscScalar change = force[k] - x[first + k];
+
+        x[first + k] += change;
+        for (PetscInt i = 0; i < n && change != 0; i++) y[i] += problem->S[(first + k) * n + i] * change;
+      }
+    }
+  }
+  PetscCall(VecRestoreArray(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroySolvers(LawProblem *problem)
+{
+  PetscFunctionBegin;
+  PetscCall(SNESDestroy(&problem->newton));
+  PetscCall(SNESDestroy(&problem->nodes));
+  PetscCall(MatDestroy(&problem->jacobian));
+  PetscCall(VecDestroy(&problem->x));
+  PetscCall(VecDestroy(&problem->f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNESType type, PetscInt most, SNES *snes)
+{
+  PetscFunctionBegin;
+  PetscCall(SNESCreate(PETSC_COMM_SELF, snes));
+  PetscCall(SNESSetOptionsPrefix(*snes, prefix));
+  PetscCall(SNESSetFunction(*snes, problem->f, ComputeResidual, problem));
+  PetscCall(SNESSetType(*snes, type));
+  PetscCall(SNESSetTolerances(*snes, 0, 0, 0, most, PETSC_INT_MAX));
+  PetscCall(SNESSetConvergenceTest(*snes, TestConvergence, problem, NULL));
+  PetscCall(SNESSetErrorIfNotConverged(*snes, PETSC_FALSE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateSolvers(LawProblem *problem)
+{
+  SNESLineSearch line_search;
+  KSP            ksp;
+  PC             pc;
+
+  PetscFunctionBegin;
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->x));
+  PetscCall(VecDuplicate(problem->x, &problem->f));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, problem->n, problem->n, NULL, &problem->jacobian));
+  PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->newton));
+  PetscCall(SNESSetJacobian(problem->newton, problem->jacobian, problem->jacobian, ComputeJacobian, problem));
+  PetscCall(SNESGetLineSearch(problem->newton, &line_search));
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
+  PetscCall(SNESGetKSP(problem->newton, &ksp));
+  PetscCall(KSPSetType(ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(ksp, &pc));
+  PetscCall(PCSetType(pc, PCLU));
+  PetscCall(SNESSetFromOptions(problem->newton));
+  PetscCall(CreateSNES(problem, "law_nodes_", SNESNGS, MOST_SWEEPS, &problem->nodes));
+  PetscCall(SNESSetNGS(problem->nodes, SweepNodes, problem));
+  PetscCall(SNESSetFromOptions(problem->nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for the equations of n rows */
+PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
+{
+  PetscFunctionBegin;
+  problem->n = n;
+  if (n > problem->room) {
+    PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
+    PetscCall(PetscFree(problem->S));
+    problem->room = PetscMax(n, 2 * problem->room);
+    PetscCall(PetscMalloc7(problem->room + 1, &problem->begin, 2 * problem->room, &problem->limit, problem->room, &problem->base,
+                           problem->room, &problem->read, problem->room, &problem->centre, problem->room, &problem->force, problem->room,
+                           &problem->work));
+    PetscCall(PetscMalloc1(problem->room * problem->room, &problem->S));
+  }
+  if (n == problem->rows || !n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(DestroySolvers(problem));
+  PetscCall(CreateSolvers(problem));
+  problem->rows = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By Newton's method, or else node by node, from `force` on */
+static PetscErrorCode SolveOnce(LawProblem *problem, PetscBool *solved)
+{
+  SNESConvergedReason reason;
+  PetscScalar        *x;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2; k++) {
+    SNES     snes = k ? problem->nodes : problem->newton;
+    PetscInt iterations;
+
+    PetscCall(VecGetArrayWrite(problem->x, &x));
+    PetscCall(PetscArraycpy(x, problem->force, problem->n));
+    PetscCall(VecRestoreArrayWrite(problem->x, &x));
+    PetscCall(SNESSolve(snes, NULL, problem->x));
+    PetscCall(SNESGetConvergedReason(snes, &reason));
+    PetscCall(SNESGetIterationNumber(snes, &iterations));
+    problem->iterations += iterations;
+    problem->by_nodes = (PetscBool)(problem->by_nodes || k);
+    if (reason > 0) break;
+  }
+  *solved = (PetscBool)(reason > 0);
+  PetscCall(VecGetArray(problem->x, &x));
+  PetscCall(PetscArraycpy(problem->force, x, problem->n));
+  PetscCall(VecRestoreArray(problem->x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces of all rows, from `force` on; `solved`: they have been found */
+PetscErrorCode LawProblemSolve(LawProblem *problem, PetscBool *solved)
+{
+  PetscFunctionBegin;
+  problem->iterations = 0;
+  problem->by_nodes   = PETSC_FALSE;
+  problem->largest    = 0;
+  for (PetscInt i = 0; i < problem->n; i++) problem->largest = PetscMax(problem->largest, PetscRealPart(problem->S[i * (problem->n + 1)]));
+  for (PetscInt k = 0; k < MOST_PROXIMAL; k++) {
+    PetscReal pull = 0;
+
+    PetscCall(PetscArraycpy(problem->centre, problem->force, problem->n));
+    PetscCall(SolveOnce(problem, solved));
+    if (!*solved) break;
+    for (PetscInt i = 0; i < problem->n; i++) pull = PetscMax(pull, PetscAbsScalar(problem->force[i] - problem->centre[i]));
+    if (PROXIMAL * pull <= TOLERANCE * ForceScale(problem, problem->force)) break;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LawProblemDestroy(LawProblem *problem)
+{
+  PetscFunctionBegin;
+  PetscCall(DestroySolvers(problem));
+  PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
+  PetscCall(PetscFree(problem->S));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,202 @@
+/* The contact type `force`: the one contact step, its rule and law. */
+#include "stepimpl.h"
+#include <checkpoint/checkpoint.h>
+
+#define RTOL 1e-6 /* of the largest way of a touching row in the step; linear bodies are right to round-off all the same */
+
+static ContactStepper *Stepper(Contact contact)
+{
+  return (ContactStepper *)contact->data;
+}
+
+static PetscErrorCode SetFromOptions(Contact contact)
+{
+  const char *const rules[] = {"impulse"};
+  PetscInt          rule    = 0;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsEList("-contact_rule", "How forces run within a step", "ContactSetType", rules, 1, rules[0], &rule, NULL));
+  PetscOptionsEnd();
+  Stepper(contact)->rule = &ContactRuleImpulse;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the step cannot do yet is refused, rather than done wrong */
+static PetscErrorCode Check(Contact contact)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+
+  PetscFunctionBegin;
+  PetscCheck(contact->options.law != CONTACT_LAW_BONDED, comm, PETSC_ERR_SUP,
+             "-contact_type force knows no bonding yet; choose -contact_type schwarz, or -contact_law tied");
+  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP && contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm,
+             PETSC_ERR_USER_INPUT, "-contact_type force needs neither -contact_constraint nor -contact_stabilization: leave them out");
+  PetscCheck(contact->options.separation, comm, PETSC_ERR_SUP,
+             "-contact_separation false is not there with -contact_type force yet; choose -contact_type schwarz");
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const Body  body = contact->bodies[b];
+    const char *name = ((PetscObject)body)->name;
+    PetscBool   is_static, is_rigid, is_explicit, massless;
+    PetscReal   alpha_m, alpha_f;
+    TS          ts;
+
+    if (!contact->body_rows[b].n_all) continue;
+    PetscCall(BodyIsStatic(body, &is_static));
+    PetscCall(BodyIsRigid(body, &is_rigid));
+    PetscCall(BodyIsExplicit(body, &is_explicit));
+    PetscCall(BodyIsRedistributed(body, &massless));
+    PetscCheck(!is_static, comm, PETSC_ERR_SUP, "-contact_type force: body '%s' is static, and has no velocities; choose -contact_type schwarz",
+               name);
+    PetscCheck(!is_rigid, comm, PETSC_ERR_SUP, "-contact_type force: body '%s' is rigid, which it does not know yet; choose -contact_type schwarz",
+               name);
+    PetscCheck(!massless || !is_explicit, comm, PETSC_ERR_SUP,
+               "-contact_type force keeps the mass of the contact nodes of explicit bodies; set -%s_mass_redistribute false", name);
+    if (is_explicit) continue;
+    PetscCall(BodyGetTS(body, &ts));
+    PetscCall(TSAlpha2GetParams(ts, &alpha_m, &alpha_f, NULL, NULL));
+    PetscCheck(alpha_m == 1 && alpha_f == 1, comm, PETSC_ERR_SUP,
+               "-contact_type force needs forces at the ends of steps, and body '%s' has alpha_m %g and alpha_f %g; leave "
+               "-%s_ts_alpha_... at their defaults",
+               name, (double)alpha_m, (double)alpha_f, name);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode SetUp(Contact contact)
+{
+  ContactStepper *stepper = Stepper(contact);
+  const PetscInt  n       = PetscMax(contact->rows.n, 1);
+
+  PetscFunctionBegin;
+  PetscCall(Check(contact));
+  if (!stepper->rule) stepper->rule = &ContactRuleImpulse;
+  contact->attempt.moves_start = PETSC_FALSE;
+  contact->energy.unlimited    = "its rule lets contact gain none";
+  stepper->problem.law         = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
+  contact->friction.steps      = PETSC_TRUE;
+  stepper->rtol                = RTOL;
+  stepper->atol                = CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  stepper->assembled           = -1;
+  if (contact->friction.law.setup && contact->options.law == CONTACT_LAW_FRICTION)
+    PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
+  PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
+  PetscCall(PetscCalloc6(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LayRows(Contact contact)
+{
+  PetscFunctionBegin;
+  if (Stepper(contact)->rule->place) PetscCall((*Stepper(contact)->rule->place)(contact, Stepper(contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RowsChanged(Contact contact)
+{
+  PetscFunctionBegin;
+  Stepper(contact)->state++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The bodies answer otherwise */
+static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+{
+  PetscFunctionBegin;
+  (void)level;
+  (void)goes_on;
+  Stepper(contact)->state++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Accept(Contact contact)
+{
+  ContactStepper *stepper = Stepper(contact);
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(stepper->joined, stepper->joins, contact->rows.n));
+  stepper->loss += stepper->step_loss;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
+{
+  ContactStepper *stepper = Stepper(contact);
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "joined", contact->rows.n, stepper->joined));
+  PetscCall(CheckpointVisitReals(checkpoint, "loss", 1, &stepper->loss));
+  if (CheckpointLoads(checkpoint)) stepper->state++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode View(Contact contact, PetscViewer viewer)
+{
+  const ContactStepper *stepper = Stepper(contact);
+
+  PetscFunctionBegin;
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  rule %s, tolerance %g of the largest way of a row in the step\n", stepper->rule->name,
+                                   (double)stepper->rtol));
+  if (contact->options.law == CONTACT_LAW_FRICTION && contact->friction.law.view)
+    PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(Contact contact)
+{
+  ContactStepper *stepper = Stepper(contact);
+
+  PetscFunctionBegin;
+  PetscCall(SNESDestroy(&stepper->outer));
+  PetscCall(VecDestroy(&stepper->x));
+  PetscCall(VecDestroy(&stepper->f));
+  PetscCall(LawProblemDestroy(&stepper->problem));
+  PetscCall(PetscFree5(stepper->rows, stepper->of_body, stepper->places, stepper->gathered, stepper->of_assembled));
+  PetscCall(PetscFree(stepper->told));
+  PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
+  PetscCall(PetscFree6(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before));
+  PetscCall(PetscFree(contact->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*MC
+   CONTACT_FORCE - the one contact step: forces of rows by a rule and a law
+
+   Options Database Keys:
++  -contact_rule impulse                - how forces run within a step, and when a row counts as closed
+.  -schwarz_snes_rtol, -schwarz_snes_max_it - tolerance of the outer iteration [parts of the largest way of a row in the step], its limit
+.  -law_snes_type, -law_ksp_type, ...   - how the law of all rows is solved: Newton's method
+-  -law_nodes_snes_max_it               - sweeps node by node, where that goes round in a circle
+
+   Level: beginner
+
+   Notes:
+   Contact nodes may have mass: sheets and plates, which `CONTACT_SCHWARZ` would take the mass of. Contact takes no more energy than the
+   kinetic energy of the contact nodes in the direction of the hit, and never brings any.
+
+   References:
+.  * - V. Acary, Energy conservation and dissipation properties of time-integration methods for nonsmooth elastodynamics with contact, ZAMM
+       96 (2016) 585-603
+
+.seealso: `ContactSetType()`, `CONTACT_SCHWARZ`
+M*/
+PetscErrorCode ContactCreate_Force(Contact contact)
+{
+  ContactStepper *stepper;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&stepper));
+  contact->data                = stepper;
+  contact->ops->setfromoptions = SetFromOptions;
+  contact->ops->setup          = SetUp;
+  contact->ops->layrows        = LayRows;
+  contact->ops->step           = ContactStepperStep;
+  contact->ops->rowschanged    = RowsChanged;
+  contact->ops->stored         = ContactStoresNothing;
+  contact->ops->steplevel      = SetStepLevel;
+  contact->ops->accept         = Accept;
+  contact->ops->visit          = Visit;
+  contact->ops->view           = View;
+  contact->ops->destroy        = Destroy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

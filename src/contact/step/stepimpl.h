@@ -1,0 +1,53 @@
+/* The one contact step: rows under forces, a rule for how these run within the step, a law for what they are. */
+#pragma once
+#include <contact/parts.h>
+#include <contact/solve/lawproblem.h>
+
+typedef struct _ContactStepper ContactStepper;
+
+/* How forces run within a step, where rows lie, when a row counts as closed */
+typedef struct {
+  const char *name;
+  PetscErrorCode (*place)(Contact, ContactStepper *);             /* (NULL) where rows are to be laid, before they are */
+  PetscErrorCode (*begin)(Contact, ContactStepper *);             /* which rows may touch, the guess, what closed rows may still move */
+  PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);    /* the forces `contact->end.force` on the rows of a body */
+  PetscErrorCode (*compliance)(Body, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *, const PetscScalar *[]);
+  PetscErrorCode (*end)(Contact, ContactStepper *);               /* (NULL) after the step has been made */
+} ContactRule;
+
+struct _ContactStepper {
+  const ContactRule *rule;
+  LawProblem         problem;
+  SNES               outer; /* its unknowns are the forces of this rank's touching rows */
+  Vec                x, f;
+  PetscReal          rtol, atol;      /* tolerances of the outer iteration on what rows read [parts of the largest way; m] */
+  PetscReal          scale;           /* the largest way of a touching row in the step [m] */
+  PetscReal          off;             /* by how much rows still miss, after the last pass [m] */
+  PetscInt           passes, n_local; /* of this step; touching rows of this rank */
+  PetscInt          *rows;            /* touching rows of all ranks, by their numbers, ascending */
+  PetscInt           room;
+  PetscInt          *of_body, *places; /* work space: touching rows of a body, and their places in the list */
+  PetscScalar       *gathered;         /* work space: three numbers per touching row */
+  PetscScalar       *told;             /* work space: forces and readings of the last pass */
+  PetscBool          has_told;
+  PetscInt64         state; /* counts changes of rows, for which S is another */
+  PetscInt64         assembled;
+  PetscInt           n_assembled, *of_assembled; /* the rows that S has */
+  /* per row of this rank */
+  PetscBool *touches, *joined; /* it may touch in this step; its node has touched first in the last accepted step */
+  PetscBool *joins;            /* the same of this step */
+  PetscReal *last;             /* force at the end of the last step [N] */
+  PetscReal *rate;             /* of what it reads, as the step begins [m/s] */
+  PetscReal *lets;             /* how far a closed row moves in the step [m] */
+  PetscReal *none;             /* zeros */
+  PetscReal *mine, *before;    /* work space */
+  PetscReal  loss;             /* what contact has taken in accepted steps, friction apart [J] */
+  PetscReal  step_loss;        /* the same in this step [J] */
+};
+
+PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
+PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
+PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
+
+extern const ContactRule ContactRuleImpulse;
