@@ -168,7 +168,7 @@ test test-all: $(BUILD)/impakt $(units) $(replays)
 
 validate: $(BUILD)/impakt $(units) ## theory, peers and the paper at full length, random variants: before an issue about physics is called done
 	@status=0; $(if $(filter file,$(origin TESTS)),$(report) || status=$$?;) \
-	$(pytest) $(TESTS) $(if $(filter file,$(origin TESTS)),tests/paper/golden.py) -m validate || status=$$?; exit $$status
+	$(pytest) $(TESTS) $(if $(filter file,$(origin TESTS)),-o "python_files=test_*.py golden.py") -m validate || status=$$?; exit $$status
 
 # Each fault of tests/mutants/faults.json: MUTANTS="name other-name" names some of them
 mutants: $(BUILD)/impakt $(units) ## deliberate faults in src, one after the other: does a test find each of them?

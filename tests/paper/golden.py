@@ -1,5 +1,5 @@
-"""All golden figures of the report's tables, on what `make paper` has run. Only `make paper` and `make validate` name this file, which pytest does not
-find by itself; tests/plots/test_golden.py runs a few again."""
+"""All golden figures of the report's tables, on what `make paper` has run. pytest does not find this file by itself: `make paper` names it, `make validate`
+gives its name as one of `python_files`, since pytest 9 drops a file that is named beside its folder. tests/plots/test_golden.py runs a few again."""
 
 import os
 from pathlib import Path
