@@ -1,5 +1,6 @@
 /* What a run is to be expected to do, before it is made: bodies, elements that bound steps, steps and cost. */
 #include "controllerimpl.h"
+#include <sys/units.h>
 
 /* An element whose stable step is so many times shorter than the median of its body is worth a warning; it is 2.5 times in
    hertz-impact.opts, graded on purpose by 64 */
@@ -44,6 +45,7 @@ PetscErrorCode ControllerWarnOfElements(Controller controller)
   Body                  worst     = NULL;
   char                  more[128] = "";
   const char           *name;
+  Units                 units;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < controller->n_bodies; b++) {
@@ -59,21 +61,23 @@ PetscErrorCode ControllerWarnOfElements(Controller controller)
     PetscCall(PetscSNPrintf(more, sizeof(more), "; %" PetscInt_FMT " more bod%s", n - 1,
                             n == 2 ? "y has such an element" : "ies have such elements"));
   PetscCall(CountSubsteps(controller, worst, &substeps));
+  PetscCall(UnitsGet((PetscObject)controller, &units));
   PetscCall(PetscObjectGetName((PetscObject)worst, &name));
   PetscCall(PetscFPrintf(
       PetscObjectComm((PetscObject)controller), stderr,
       "impakt: warning: element %" PetscInt_FMT
-      " (rank after rank, from 0) of the explicit body '%s', around (%.6g, %.6g, %.6g) m, has a stable step "
-      "of %.3g s, %.3g times shorter than the median of its elements, %.3g s, and all make as many substeps as it needs, %" PetscInt_FMT
+      " (rank after rank, from 0) of the explicit body '%s', around (%.6g, %.6g, %.6g)%s, has a stable step "
+      "of %.3g%s, %.3g times shorter than the median of its elements, %.3g%s, and all make as many substeps as it needs, %" PetscInt_FMT
       " to each controller step: mend the mesh there, or let the body be implicit (-%sts_type alpha2); -check lists the elements that "
       "bound the step%s\n",
       of_worst->number[0], name, (double)of_worst->centre[0][0], (double)of_worst->centre[0][1], (double)of_worst->centre[0][2],
-      (double)of_worst->step[0], (double)largest, (double)of_worst->median, substeps, ((PetscObject)worst)->prefix, more));
+      UnitsText(units, UNIT_LENGTH), (double)of_worst->step[0], UnitsText(units, UNIT_TIME), (double)largest, (double)of_worst->median,
+      UnitsText(units, UNIT_TIME), substeps, ((PetscObject)worst)->prefix, more));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Centre of mass and moments of inertia of a body that can turn */
-static PetscErrorCode ViewInertia(Body body, PetscViewer viewer)
+static PetscErrorCode ViewInertia(Body body, Units units, PetscViewer viewer)
 {
   PetscReal centre[3], inertia[9], largest = 0, mass;
   PetscInt  dim;
@@ -85,18 +89,20 @@ static PetscErrorCode ViewInertia(Body body, PetscViewer viewer)
   for (PetscInt k = 0; k < 9; k++) largest = PetscMax(largest, PetscAbsReal(inertia[k]));
   for (PetscInt k = 0; k < 9; k++)
     if (PetscAbsReal(inertia[k]) <= ROUND_OFF * largest) inertia[k] = 0;
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  mass                 %.6g kg, centre (%.6g, %.6g, %.6g) m\n", (double)mass, (double)centre[0],
-                                   (double)centre[1], (double)centre[2]));
-  if (dim == 2 && largest > 0) PetscCall(PetscViewerASCIIPrintf(viewer, "  moment of inertia    %.6g kg m^2\n", (double)inertia[8]));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  mass                 %.6g%s, centre (%.6g, %.6g, %.6g)%s\n", (double)mass,
+                                   UnitsText(units, UNIT_MASS), (double)centre[0], (double)centre[1], (double)centre[2],
+                                   UnitsText(units, UNIT_LENGTH)));
+  if (dim == 2 && largest > 0)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  moment of inertia    %.6g%s\n", (double)inertia[8], UnitsText(units, UNIT_INERTIA)));
   if (dim == 3)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  moments of inertia   xx %.6g, yy %.6g, zz %.6g, xy %.6g, yz %.6g, xz %.6g kg m^2\n",
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  moments of inertia   xx %.6g, yy %.6g, zz %.6g, xy %.6g, yz %.6g, xz %.6g%s\n",
                                      (double)inertia[0], (double)inertia[4], (double)inertia[8], (double)inertia[1], (double)inertia[5],
-                                     (double)inertia[2]));
+                                     (double)inertia[2], UnitsText(units, UNIT_INERTIA)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The elements that bound the stable step of an explicit body */
-static PetscErrorCode ViewBounds(Body body, PetscViewer viewer)
+static PetscErrorCode ViewBounds(Body body, Units units, PetscViewer viewer)
 {
   const BodyStepBounds *bounds;
   PetscReal             ratio;
@@ -104,12 +110,13 @@ static PetscErrorCode ViewBounds(Body body, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCall(GetRatio(body, &bounds, &ratio));
   if (!bounds || !bounds->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  stable steps         median of all elements %.4g s; the shortest are those of\n",
-                                   (double)bounds->median));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  stable steps         median of all elements %.4g%s; the shortest are those of\n",
+                                   (double)bounds->median, UnitsText(units, UNIT_TIME)));
   for (PetscInt k = 0; k < bounds->n; k++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "    element %" PetscInt_FMT ": %.4g s, %.3g of the median, around (%.6g, %.6g, %.6g) m\n",
-                                     bounds->number[k], (double)bounds->step[k], (double)(bounds->step[k] / bounds->median),
-                                     (double)bounds->centre[k][0], (double)bounds->centre[k][1], (double)bounds->centre[k][2]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "    element %" PetscInt_FMT ": %.4g%s, %.3g of the median, around (%.6g, %.6g, %.6g)%s\n",
+                                     bounds->number[k], (double)bounds->step[k], UnitsText(units, UNIT_TIME),
+                                     (double)(bounds->step[k] / bounds->median), (double)bounds->centre[k][0], (double)bounds->centre[k][1],
+                                     (double)bounds->centre[k][2], UnitsText(units, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,6 +146,7 @@ PetscErrorCode ControllerCheck(Controller controller, PetscViewer viewer)
   MPI_Comm    comm = PetscObjectComm((PetscObject)controller);
   PetscReal   wall = 0;
   PetscMPIInt size;
+  Units       units;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
@@ -146,6 +154,7 @@ PetscErrorCode ControllerCheck(Controller controller, PetscViewer viewer)
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
   PetscCall(ControllerSetUp(controller));
   PetscCall(ControllerNotify(controller, 0));
+  PetscCall(UnitsGet((PetscObject)controller, &units));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(PetscViewerASCIIPrintf(viewer, "check: the set-up alone, no step is made\n"));
   for (PetscInt b = 0; b < controller->n_bodies; b++) {
@@ -157,8 +166,8 @@ PetscErrorCode ControllerCheck(Controller controller, PetscViewer viewer)
     PetscCall(PetscObjectGetName((PetscObject)body, &name));
     PetscCall(CountSubsteps(controller, body, &substeps));
     PetscCall(PetscViewerASCIIPrintf(viewer, "check of body %s\n", name));
-    PetscCall(ViewInertia(body, viewer));
-    PetscCall(ViewBounds(body, viewer));
+    PetscCall(ViewInertia(body, units, viewer));
+    PetscCall(ViewBounds(body, units, viewer));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  substeps expected    %" PetscInt_FMT " to a controller step, %.0f in the run\n", substeps,
                                      (double)controller->steps * (double)substeps));
     PetscCall(BodyMeasureSubstep(body, &seconds));

@@ -1,5 +1,6 @@
 /* Where a body's mesh lies: scale, rotation and translation from options. */
 #include "meshimpl.h"
+#include <sys/units.h>
 
 /* A mesh that is smaller than this part of its distance from the origin has lost the digits that its coordinates need */
 #define SMALLEST_EXTENT 1e-9
@@ -97,15 +98,16 @@ static PetscErrorCode CheckPlace(DM dm, const char prefix[], const char name[], 
   }
   PetscCheck(
       size >= SMALLEST_EXTENT * distance, comm, PETSC_ERR_USER_INPUT,
-      "Body '%s' is %g m large and lies %g m from the origin, also by -%stranslate and -%srotate_centre: so far away its coordinates do "
+      "Body '%s' is %g%s large and lies %g%s from the origin, also by -%stranslate and -%srotate_centre: so far away its coordinates do "
       "not have the digits that its elements need",
-      name, (double)size, (double)distance, prefix, prefix);
+      name, (double)size, UnitsOf((PetscObject)dm, UNIT_LENGTH), (double)distance, UnitsOf((PetscObject)dm, UNIT_LENGTH), prefix, prefix);
   PetscCheck((size >= SMALLEST_SIZE && size <= LARGEST_SIZE) || motion->scale == 1, comm, PETSC_ERR_USER_INPUT,
-             "Body '%s' is %g m large after -%sscale %g: choose a factor that leaves it between %g and %g m", name, (double)size, prefix,
-             (double)motion->scale, SMALLEST_SIZE, LARGEST_SIZE);
+             "Body '%s' is %g%s large after -%sscale %g: choose a factor that leaves it between %g and %g%s", name, (double)size,
+             UnitsOf((PetscObject)dm, UNIT_LENGTH), prefix, (double)motion->scale, SMALLEST_SIZE, LARGEST_SIZE,
+             UnitsOf((PetscObject)dm, UNIT_LENGTH));
   PetscCheck(size >= SMALLEST_SIZE && size <= LARGEST_SIZE, comm, PETSC_ERR_USER_INPUT,
-             "Body '%s' is %g m large: its mesh must be between %g and %g m, also by -%sscale", name, (double)size, SMALLEST_SIZE,
-             LARGEST_SIZE, prefix);
+             "Body '%s' is %g%s large: its mesh must be between %g and %g%s, also by -%sscale", name, (double)size,
+             UnitsOf((PetscObject)dm, UNIT_LENGTH), SMALLEST_SIZE, LARGEST_SIZE, UnitsOf((PetscObject)dm, UNIT_LENGTH), prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -84,3 +84,11 @@ PetscErrorCode UnitsGetText(PetscObject object, UnitDimension dimension, const c
   *text = UnitsText(units, dimension);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* UnitsOf - `UnitsGetText()` among the arguments of an error, which are computed where there is one alone */
+const char *UnitsOf(PetscObject object, UnitDimension dimension)
+{
+  const char *text = "";
+
+  return UnitsGetText(object, dimension, &text) ? "" : text;
+}

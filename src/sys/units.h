@@ -40,4 +40,5 @@ typedef enum {
 PETSC_INTERN PetscErrorCode UnitsGet(PetscObject, Units *);
 PETSC_INTERN PetscErrorCode UnitsGetText(PetscObject, UnitDimension, const char *[]);
 PETSC_INTERN const char    *UnitsLabel(Units, UnitDimension);
+PETSC_INTERN const char    *UnitsOf(PetscObject, UnitDimension);
 PETSC_INTERN const char    *UnitsText(Units, UnitDimension);

@@ -1,5 +1,6 @@
 /* Obstacles of a contact problem. */
 #include <contact/parts.h>
+#include <sys/units.h>
 
 /* Pairs find bodies and obstacles by their names */
 PetscErrorCode ContactCheckObstacleName(Contact contact, const char name[])
@@ -165,9 +166,9 @@ PetscErrorCode ContactRefuseInside(Contact contact, const ContactPair *pair, Pet
   PetscCall(AdviseObstacle(pair, sizeof(advice), advice));
   PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-          "-contact_pairs %s: the body is %g m inside the obstacle at the start; move the body (%s) or the obstacle, or look whether it is "
+          "-contact_pairs %s: the body is %g%s inside the obstacle at the start; move the body (%s) or the obstacle, or look whether it is "
           "on the wrong side: %s",
-          pair->name, (double)depth, moves, advice);
+          pair->name, (double)depth, UnitsOf((PetscObject)contact, UNIT_LENGTH), moves, advice);
 }
 
 /* The error of a surface that looks away from the obstacle it is to touch */

@@ -1,6 +1,7 @@
 /* Bodies that are inside each other, or inside obstacles. */
 #include <contact/parts.h>
 #include <impakt/mesh.h>
+#include <sys/units.h>
 
 /* Depth of rows that bodies in contact leave behind at the end of a run, in parts of a contact element */
 #define INSIDE 0.02
@@ -130,9 +131,10 @@ static PetscErrorCode RefuseOverlap(Contact contact, const SurfaceDepth *overlap
   PetscFunctionBegin;
   for (PetscInt k = 0; k < 2; k++) PetscCall(ContactDescribeMoves(contact, of[k], moves[k]));
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-          "Bodies '%s' and '%s' overlap by %g m at the start, at (%g, %g, %g); move one of them: %s, or %s",
+          "Bodies '%s' and '%s' overlap by %g%s at the start, at (%g, %g, %g); move one of them: %s, or %s",
           ((PetscObject)contact->bodies[of[0]])->name, ((PetscObject)contact->bodies[of[1]])->name, (double)overlap->depth,
-          (double)overlap->x[0], (double)overlap->x[1], (double)overlap->x[2], moves[0], moves[1]);
+          UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)overlap->x[0], (double)overlap->x[1], (double)overlap->x[2], moves[0],
+          moves[1]);
 }
 
 /* The deepest of the overlaps of a pair; NULL: none */

@@ -1,6 +1,7 @@
 /* When the outer iteration has converged. */
 #include "schwarzimpl.h"
 #include <sys/petsccompat.h>
+#include <sys/units.h>
 
 /* Sweeps of an iteration before it may end as round-off has it; forces that change by less than this part of them are steady; so many
    sweeps in a row with steady forces and no smaller change of position than before: an iteration that converges, however slowly, has none
@@ -242,9 +243,9 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
   PetscCall(StepFailureSet(
       &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
       "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-      " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). %sRaise -schwarz_snes_max_it, loosen "
+      " sweeps the change of position is %g%s (%s; absolute tolerance %g%s, relative %g). %sRaise -schwarz_snes_max_it, loosen "
       "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
-      (double)time, contact->counts.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol,
-      (double)schwarz->rtol, advice));
+      (double)time, contact->counts.sweeps, (double)schwarz->change, UnitsOf((PetscObject)contact, UNIT_LENGTH),
+      SNESConvergedReasons[reason], (double)schwarz->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)schwarz->rtol, advice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
