@@ -1,6 +1,7 @@
 /* Options by their meaning: for -help WORD, and for what the message about an unknown option suggests. */
 #define _POSIX_C_SOURCE 200809L /* strncasecmp() */
 #include <petscsys.h>
+#include <ctype.h>
 #include <string.h>
 #include <strings.h>
 #include "names.h"
@@ -31,15 +32,15 @@ static const struct {
     {"youngs_modulus", "E young modulus elastic_modulus stiffness"},
     {"poissons_ratio", "nu poisson"},
     {"yield_stress", "yield sigma_y plastic"},
-    {"boundary_displacement", "displacement fix fixed clamp support dirichlet boundary bc"},
-    {"boundary_traction", "traction pressure load force neumann"},
+    {"boundary_displacement", "displacement fix fixed clamp support roller symmetry dirichlet boundary bc"},
+    {"boundary_traction", "traction pressure shear load force neumann"},
     {"body_force", "force load"},
     {"gravity", "g weight acceleration"},
     {"time_start", "start begin t_start t0"},
     {"time_end", "end stop duration end_time final_time t_end tend"},
     {"time_step", "dt step timestep delta_t"},
     {"ts_time_step", "dt step timestep time_step substep substeps"},
-    {"ts_type", "integrator explicit implicit static newmark time_integrator"},
+    {"ts_type", "integrator explicit implicit static quasistatic newmark time_integrator preload"},
     {"contact_pairs", "pairs contact_surfaces"},
     {"contact_type", "contact_method"},
     {"contact_law", "tie glue bond coulomb"},
@@ -55,6 +56,8 @@ static const struct {
     {"monitor_interval", "monitor verbose print"},
     {"checkpoint", "save"},
     {"restart", "resume"},
+    {"restart_state", "preload prestress"},
+    {"units", "mm millimetre tonne MPa"},
 };
 
 /* What an option needs beside itself: an option that begins so wants that other one to have this value; `standard`: what it has where it
@@ -92,13 +95,13 @@ static PetscBool Means(const char word[], const char option[])
   return PETSC_FALSE;
 }
 
-/* Whether a text has another in it, in whichever case */
+/* Whether a word of a text begins with another, in whichever case: "roller" is not in "controller" */
 static PetscBool Contains(const char text[], const char part[])
 {
   const size_t length = strlen(part);
 
   for (const char *at = text; *at; at++)
-    if (!strncasecmp(at, part, length)) return PETSC_TRUE;
+    if ((at == text || !isalnum((unsigned char)at[-1])) && !strncasecmp(at, part, length)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
