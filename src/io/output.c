@@ -291,9 +291,6 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   if (output->history || output->summary_path[0] || output->fields || output->checkpoints.path[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "files\n"));
-  if (!output->history && !output->summary_path[0] && !output->fields)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "not written: history, summary and fields; -output_history h.h5 -output_summary s.json "
-                                             "-output_fields f.h5 write them\n"));
   if (output->history) {
     PetscCall(HistoryGetPath(output->history, &path));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", path));
@@ -304,6 +301,9 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "fields", path));
   }
   if (output->checkpoints.path[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "checkpoint", output->checkpoints.path));
+  if (!output->history && !output->summary_path[0] && !output->fields)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "not written: history, summary and fields; -output_history h.h5 -output_summary s.json "
+                                             "-output_fields f.h5 write them\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
