@@ -60,17 +60,28 @@ static const struct {
     {"units", "mm millimetre tonne MPa"},
 };
 
-/* What an option needs beside itself: an option that begins so wants that other one to have this value; `standard`: what it has where it
-   is not given */
+/* What an option needs beside itself: an option that begins so, behind the name of its owner, wants that other one of the owner to have one
+   of these values; `standard`: what it has where it is not given. The first line for an option counts */
 static const struct {
-  const char *begin, *other, *value, *standard;
+  OptionOwner owner;
+  const char *begin, *other, *values, *standard;
 } needs[] = {
-    {"contact_friction", "contact_law", "coulomb", "frictionless"},
-    {"contact_penalty", "contact_type", "penalty", "schwarz"},
-    {"penalty_", "contact_type", "penalty", "schwarz"},
-    {"lagrange_", "contact_type", "lagrange", "schwarz"},
-    {"contact_augmentation_", "contact_type", "augmented_lagrangian", "schwarz"},
-    {"schwarz_", "contact_type", "schwarz", "schwarz"},
+    {OPTION_OF_RUN, "contact_friction", "contact_law", "coulomb", "frictionless"},
+    {OPTION_OF_RUN, "contact_penalty", "contact_type", "penalty", "schwarz"},
+    {OPTION_OF_RUN, "penalty_", "contact_type", "penalty", "schwarz"},
+    {OPTION_OF_RUN, "lagrange_", "contact_type", "lagrange", "schwarz"},
+    {OPTION_OF_RUN, "contact_augmentation_", "contact_type", "augmented_lagrangian", "schwarz"},
+    {OPTION_OF_RUN, "schwarz_", "contact_type", "schwarz", "schwarz"},
+    {OPTION_OF_BODY, "yield_stress", "material_type", "j2|j2_small|johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "hardening_exponent", "material_type", "johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "hardening_modulus", "material_type", "j2|j2_small|johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "hardening", "material_type", "j2|j2_small", "linear_elastic"},
+    {OPTION_OF_BODY, "kinematic_modulus", "material_type", "j2|j2_small", "linear_elastic"},
+    {OPTION_OF_BODY, "saturation_", "hardening", "voce", "linear"},
+    {OPTION_OF_BODY, "rate_coefficient", "material_type", "johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "melting_temperature", "material_type", "johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "mooney_rivlin_share", "material_type", "mooney_rivlin", "linear_elastic"},
+    {OPTION_OF_BODY, "ball_", "dm_plex_shape", "ball", "box"},
 };
 
 /* Whether a text is one of the words of a list with blanks between them */
@@ -240,21 +251,34 @@ static PetscErrorCode FindMeant(const Unknown *unknown, char text[], size_t size
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where the name that begins so is in an option: at its start, or, of a body or a material, somewhere behind their name; NULL: nowhere */
+static const char *FindName(const char option[], OptionOwner owner, const char begin[])
+{
+  const char *at = option;
+
+  if (owner == OPTION_OF_RUN) return strncasecmp(at, begin, strlen(begin)) ? NULL : at;
+  while ((at = strchr(at, '_')))
+    if (!strncasecmp(++at, begin, strlen(begin))) return at;
+  return NULL;
+}
+
 /* What an option (without its dash) needs that the run has not chosen, as "-contact_law coulomb"; or nothing */
 PetscErrorCode OptionsFindNeed(const char option[], char need[], size_t size)
 {
   PetscFunctionBegin;
   need[0] = 0;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(needs) && !need[0]; i++) {
-    char      other[64], value[64];
-    PetscBool same;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(needs); i++) {
+    const char *at = FindName(option, needs[i].owner, needs[i].begin);
+    char        other[128], value[64];
+    PetscBool   fits;
 
-    if (strncasecmp(option, needs[i].begin, strlen(needs[i].begin)) != 0) continue;
-    PetscCall(PetscSNPrintf(other, sizeof(other), "-%s", needs[i].other));
+    if (!at) continue;
+    PetscCall(PetscSNPrintf(other, sizeof(other), "-%.*s%s", (int)(at - option), option, needs[i].other));
     PetscCall(PetscStrncpy(value, needs[i].standard, sizeof(value)));
     PetscCall(PetscOptionsGetString(NULL, NULL, other, value, sizeof(value), NULL));
-    PetscCall(PetscStrcmp(value, needs[i].value, &same));
-    if (!same) PetscCall(PetscSNPrintf(need, size, "%s %s", other, needs[i].value));
+    PetscCall(PetscStrInList(value, needs[i].values, '|', &fits));
+    if (!fits) PetscCall(PetscSNPrintf(need, size, "%s %s", other, needs[i].values));
+    break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
