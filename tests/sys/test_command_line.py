@@ -11,7 +11,7 @@ from messages import check_message
 
 BLOCKS = "options/blocks.opts"
 SHORT = ["-time_end", "1e-6"]
-FLOOR = "-obstacles floor -floor_obstacle_type plane -floor_point 0,-9,0 -floor_normal 0,1,0".split()
+FLOOR = ["-obstacles", "floor", "-floor_obstacle_type", "plane", "-floor_point", "0,-9,0", "-floor_normal", "0,1,0"]
 
 
 @pytest.fixture

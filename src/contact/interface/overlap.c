@@ -133,7 +133,7 @@ PetscErrorCode ContactDescribeRound(Contact contact, PetscInt body, char text[CO
   PetscCall(MeshGetPlaceOption(prefix, NULL, &keeps));
   if (keeps)
     PetscCall(PetscSNPrintf(text, CONTACT_MOVES,
-                            "; the nodes of '%s' lie outside its radius, so that its mesh has its volume, or at it with -%s%s false",
+                            "; nodes of '%s' lie outside its radius, for the mesh to have its volume: with -%s%s false they lie at it",
                             ((PetscObject)contact->bodies[body])->name, prefix, keeps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
