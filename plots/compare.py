@@ -110,6 +110,8 @@ def main(arguments):
         for run in (a, b):
             if not run.bodies:
                 raise CannotDraw(f"{run.path} holds fields; give the history of the run")
+        if a.unit_system != b.unit_system:
+            raise CannotDraw(f"{a.path} has the units {a.unit_system}, and {b.path} {b.unit_system}: numbers of different units cannot be compared")
         rows, other = differences(a, b), settings(a, b)
         if len(arguments) == 3:
             Path(arguments[2]).parent.mkdir(parents=True, exist_ok=True)

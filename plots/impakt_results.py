@@ -24,6 +24,7 @@ that of the frames, and which have neither bodies nor pairs. The summary is look
 under its name with `.json`; `read(path, summary=..., fields=...)` names them. What cannot be read is a `CannotRead`, whose message says why.
 """
 
+import difflib
 import json
 from functools import cached_property
 from pathlib import Path
@@ -213,7 +214,9 @@ class Results:
             raise CannotRead(f"{self.path}: there is no summary beside it; make the run with -output_summary")
         for key in name.split("/"):
             if not isinstance(at, dict) or key not in at:
-                raise CannotRead(f"{self.path}: its summary has no {name}; it has {', '.join(figures(self.summary))}")
+                known = list(figures(self.summary))
+                near = difflib.get_close_matches(name, known)
+                raise CannotRead(f"{self.path}: its summary has no {name}; {'the nearest are' if near else 'it has'} {', '.join(near or known)}")
             at = at[key]
         if at is not None and (isinstance(at, bool) or not isinstance(at, (int, float))):
             raise CannotRead(f"{self.path}: {name} in its summary is not a number")

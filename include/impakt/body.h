@@ -151,6 +151,7 @@ PETSC_EXTERN PetscErrorCode BodyDestroy(Body *);
 PETSC_EXTERN PetscErrorCode BodyAddDisplacement(Body, const char[], const char[]);
 PETSC_EXTERN PetscErrorCode BodyAddTraction(Body, const char[], const char[]);
 PETSC_EXTERN PetscErrorCode BodyAddBodyForce(Body, const char[]);
+PETSC_EXTERN PetscErrorCode BodyGetGravity(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetGravity(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyHasForces(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodySetInitialDisplacement(Body, const PetscReal[]);

@@ -23,7 +23,7 @@ typedef struct ContactPreference {
    normal forces, one number each; the impulse of nodes beyond the end of the partner */
 #define CONTACT_IMPULSES 9
 
-/* Length of the text of ContactDescribeMoves() */
+/* Length of the texts of ContactDescribeMoves() and ContactDescribeRound() */
 #define CONTACT_MOVES 256
 
 /* What checkpoints have of a row; the last number is that of the row among those of all ranks */
@@ -120,6 +120,7 @@ PETSC_INTERN PetscErrorCode ContactGetBoundary(Contact, PetscInt, Surface *);
 PETSC_INTERN PetscErrorCode ContactStartOverlaps(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode ContactCreateFacing(Contact, const ContactPair *, Surface[2]);
 PETSC_INTERN PetscErrorCode ContactMarkNearNodes(Contact, const ContactPair *, PetscInt);
+PETSC_INTERN PetscErrorCode ContactDescribeRound(Contact, PetscInt, char[CONTACT_MOVES]);
 PETSC_INTERN PetscErrorCode ContactDescribeMoves(Contact, PetscInt, char[CONTACT_MOVES]);
 PETSC_INTERN PetscErrorCode ContactDestroyOverlaps(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckAxisymmetric(Contact, const ContactPair *);

@@ -60,16 +60,17 @@ PetscErrorCode ControllerChooseStep(Controller controller)
   if (controller->chooses_step) {
     PetscCheck(resolved < PETSC_INFINITY, comm, PETSC_ERR_USER_INPUT,
                "-time_step auto takes the largest step that resolves contact, and here no bodies with inertia can come into contact; give "
-               "-time_step in s");
+               "-time_step a number");
     PetscCall(RoundStep(controller, resolved));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCheck(
       !(resolved > 0) || controller->time_step <= TOO_LARGE * resolved, comm, PETSC_ERR_USER_INPUT,
-      "-time_step %g s is %.3g times the %.3g s that resolve contact (%s): so large a step loses the masses of bodies in the round-off "
-      "of their stiffness. Check units, or take a smaller one; -time_step auto takes %.3g s",
-      (double)controller->time_step, (double)(controller->time_step / resolved), (double)resolved, controller->step_reason,
-      (double)resolved);
+      "-time_step %g%s is %.3g times the %.3g%s that resolve contact (%s): so large a step loses the masses of bodies in the round-off "
+      "of their stiffness. Check units, or take a smaller one; -time_step auto takes %.3g%s",
+      (double)controller->time_step, UnitsOf((PetscObject)controller, UNIT_TIME), (double)(controller->time_step / resolved),
+      (double)resolved, UnitsOf((PetscObject)controller, UNIT_TIME), controller->step_reason, (double)resolved,
+      UnitsOf((PetscObject)controller, UNIT_TIME));
   controller->resolved_step = resolved;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

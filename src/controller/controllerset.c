@@ -119,19 +119,22 @@ static PetscErrorCode ReadBodies(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckTimes(MPI_Comm comm, PetscErrorCode code, PetscReal start, PetscReal end, PetscReal step)
+static PetscErrorCode CheckTimes(Controller controller, PetscErrorCode code, PetscReal start, PetscReal end, PetscReal step)
 {
+  MPI_Comm    comm = PetscObjectComm((PetscObject)controller);
+  const char *unit = UnitsOf((PetscObject)controller, UNIT_TIME);
+
   PetscFunctionBegin;
-  PetscCheck(step > 0 || step == (PetscReal)PETSC_DETERMINE, comm, code, "-time_step %g s must be positive", (double)step);
-  PetscCheck(end > start, comm, code, "-time_end %g s must be later than -time_start %g s", (double)end, (double)start);
+  PetscCheck(step > 0 || step == (PetscReal)PETSC_DETERMINE, comm, code, "-time_step %g%s must be positive", (double)step, unit);
+  PetscCheck(end > start, comm, code, "-time_end %g%s must be later than -time_start %g%s", (double)end, unit, (double)start, unit);
   PetscCheck(PetscAbsReal(start) <= LONGEST_TIME && end <= LONGEST_TIME, comm, code,
-             "-time_start %g s and -time_end %g s must lie between -%g and %g s: beyond them, squares of times are not numbers",
-             (double)start, (double)end, LONGEST_TIME, LONGEST_TIME);
+             "-time_start %g%s and -time_end %g%s must lie between -%g and %g%s: beyond them, squares of times are not numbers",
+             (double)start, unit, (double)end, unit, LONGEST_TIME, LONGEST_TIME, unit);
   PetscCheck(step < 0 || (step >= SHORTEST_STEP && step <= LONGEST_TIME), comm, code,
-             "-time_step %g s must lie between %g and %g s: beyond them, its square divides by zero or by infinity", (double)step,
-             SHORTEST_STEP, LONGEST_TIME);
-  PetscCheck(step < 0 || (end - start) / step < MOST_STEPS, comm, code, "-time_step %g s is too small for %g s of simulated time",
-             (double)step, (double)(end - start));
+             "-time_step %g%s must lie between %g and %g%s: beyond them, its square divides by zero or by infinity", (double)step, unit,
+             SHORTEST_STEP, LONGEST_TIME, unit);
+  PetscCheck(step < 0 || (end - start) / step < MOST_STEPS, comm, code, "-time_step %g%s is too small for %g%s of simulated time",
+             (double)step, unit, (double)(end - start), unit);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,7 +171,7 @@ PetscErrorCode ControllerSetTimes(Controller controller, PetscReal start, PetscR
   PetscValidLogicalCollectiveReal(controller, step, 4);
   comm = PetscObjectComm((PetscObject)controller);
   PetscCheck(!controller->setup, comm, PETSC_ERR_ARG_WRONGSTATE, "Call before ControllerSetUp()");
-  PetscCall(CheckTimes(comm, PETSC_ERR_ARG_OUTOFRANGE, start, end, step));
+  PetscCall(CheckTimes(controller, PETSC_ERR_ARG_OUTOFRANGE, start, end, step));
   controller->time_start = start;
   controller->time_end   = end;
   if (step < 0) {
@@ -194,8 +197,8 @@ static PetscErrorCode ReadTimeStep(Controller controller, PetscReal *step, Petsc
   PetscCall(PetscStrcasecmp(text, "auto", &is_auto));
   if (is_auto) *step = PETSC_DETERMINE;
   else PetscCall(PetscOptionsGetReal(NULL, ((PetscObject)controller)->prefix, "-time_step", step, NULL));
-  PetscCheck(is_auto || *step > 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT, "-time_step %g s must be positive",
-             (double)*step);
+  PetscCheck(is_auto || *step > 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT, "-time_step %g%s must be positive",
+             (double)*step, UnitsOf((PetscObject)controller, UNIT_TIME));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,8 +216,10 @@ static PetscErrorCode ReadTimes(Controller controller)
   PetscCall(PetscOptionsReal("-time_end", "End time [s]", "ControllerSetTimes", end, &end, &set_end));
   PetscOptionsEnd();
   PetscCall(ReadTimeStep(controller, &step, &set_step));
-  PetscCheck((set_end && set_step) || known, comm, PETSC_ERR_USER_INPUT, "-time_end and -time_step are needed, in s");
-  PetscCall(CheckTimes(comm, PETSC_ERR_USER_INPUT, start, end, step));
+  PetscCheck(set_end || known, comm, PETSC_ERR_USER_INPUT, "-time_end is missing; give the time at which the run ends");
+  PetscCheck(set_step || known, comm, PETSC_ERR_USER_INPUT,
+             "-time_step is missing; give the controller step, or -time_step auto, which takes the largest that resolves contact");
+  PetscCall(CheckTimes(controller, PETSC_ERR_USER_INPUT, start, end, step));
   controller->chooses_step = PETSC_FALSE;
   PetscCall(ControllerSetTimes(controller, start, end, step));
   PetscCall(ControllerReadEnergyGuard(controller));

@@ -1,6 +1,6 @@
 /*
-   Densities, Young's moduli and sizes that no body has in the units of -units: most often they are in other units, of which the message
-   names the one that fits best. Nothing is changed by it, and the run goes on.
+   Densities, Young's moduli, gravity and sizes that no body has in the units of -units: most often they are in other units, of which the
+   message names the one that fits best. Nothing is changed by it, and the run goes on.
 */
 #include "plausible.h"
 #include <impakt/private/bodyrows.h>
@@ -25,13 +25,14 @@ typedef struct {
   Unit          candidates[5]; /* up to one without a name */
 } Quantity;
 
-/* From foams to osmium, from gels to diamond, each with room above for anvils that are made stiff and heavy on purpose; from grains to
-   bridges. Numbers in wrong units are off by a thousand or more. */
+/* From foams to osmium, from gels to diamond, each with room above for anvils that are made stiff and heavy on purpose; from a hundredth
+   of the gravity of the Earth to 500 times it; from grains to bridges. Numbers in wrong units are off by a thousand or more. */
 static const Quantity density = {
     UNIT_DENSITY, "density", 1, 1e6, 3e3, 1e12, {{"kg/m^3", 1}, {"g/cm^3", 1e3}, {"kg/mm^3", 1e9}, {"t/mm^3", 1e12}}};
 static const Quantity modulus = {
     UNIT_STRESS, "youngs_modulus", 1e3, 2e13, 1e10, 1e6, {{"Pa", 1}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}};
-static const Quantity extent = {UNIT_LENGTH, NULL, 1e-7, 1e3, 1, 1e-3, {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}}};
+static const Quantity gravity = {UNIT_ACCELERATION, "gravity", 0.1, 5e3, 9.81, 1e-3, {{"m/s^2", 1}, {"mm/s^2", 1e-3}}};
+static const Quantity extent  = {UNIT_LENGTH, NULL, 1e-7, 1e3, 1, 1e-3, {{"m", 1}, {"mm", 1e-3}, {"um", 1e-6}}};
 
 static PetscReal Distance(PetscReal a, PetscReal b)
 {
@@ -97,7 +98,7 @@ static PetscErrorCode FindSizeOption(Body body, const char prefix[], const char 
 }
 
 /*
-  BodyDoubtUnits - which of a body's density, Young's modulus and size are implausible in the units of -units
+  BodyDoubtUnits - which of a body's density, Young's modulus, gravity and size are implausible in the units of -units
 
   Not Collective
 
@@ -114,7 +115,7 @@ PetscErrorCode BodyDoubtUnits(Body body, const PetscReal box[6], char text[DOUBT
   const char     *prefix, *option;
   Material        material;
   PetscBool       rigid;
-  PetscReal       size = 0;
+  PetscReal       size = 0, vector[3] = {0}, pull;
   PetscInt        n;
   Units           units;
 
@@ -127,6 +128,9 @@ PetscErrorCode BodyDoubtUnits(Body body, const PetscReal box[6], char text[DOUBT
   PetscCall(BodyGetMaterial(body, &material));
   if (!n) PetscCall(DoubtMaterial(material, rigid, units, text));
   for (PetscInt k = 0; k < n; k++) PetscCall(DoubtMaterial(of_blocks[k], rigid, units, text));
+  PetscCall(BodyGetGravity(body, vector));
+  pull = PetscSqrtReal(PetscSqr(vector[0]) + PetscSqr(vector[1]) + PetscSqr(vector[2]));
+  if (pull > 0) PetscCall(Doubt(&gravity, units, prefix ? prefix : "", gravity.option, pull, text));
   for (PetscInt d = 0; d < 3; d++) size = PetscMax(size, -box[3 + d] - box[d]);
   PetscCall(FindSizeOption(body, prefix, &option));
   PetscCall(Doubt(&extent, units, prefix ? prefix : "", option, size, text));

@@ -2,6 +2,7 @@
 #include <impakt/private/elementimpl.h>
 #include <impakt/private/materialimpl.h>
 #include <impakt/private/simd.h>
+#include <sys/units.h>
 
 /* Elements one after the other from a node to the next: nearly all of a mesh. Others are runs of one element, whose nodes may be any. */
 typedef struct {
@@ -32,11 +33,12 @@ static PetscErrorCode ElementSetFromOptions_Bar2(Element element)
   PetscObjectOptionsBegin((PetscObject)element);
   PetscCall(PetscOptionsReal("-cross_section", "Cross-sectional area [m^2]", "ElementSetCrossSection", area, &area, &set));
   PetscOptionsEnd();
-  PetscCheck(area > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%scross_section is %g m^2; it must be positive",
-             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area);
+  PetscCheck(area > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%scross_section is %g%s; it must be positive",
+             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area, UnitsOf((PetscObject)element, UNIT_AREA));
   PetscCheck(area >= SECTION_SMALLEST && area <= SECTION_LARGEST, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
-             "-%scross_section is %g m^2; it must lie between %g and %g m^2",
-             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area, SECTION_SMALLEST, SECTION_LARGEST);
+             "-%scross_section is %g%s; it must lie between %g and %g%s",
+             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area, UnitsOf((PetscObject)element, UNIT_AREA),
+             SECTION_SMALLEST, SECTION_LARGEST, UnitsOf((PetscObject)element, UNIT_AREA));
   if (set) PetscCall(ElementSetCrossSection(element, area));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

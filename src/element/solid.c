@@ -1,5 +1,6 @@
 /* Solid elements: set-up, and what is found of one element at a time. */
 #include <impakt/private/solid.h>
+#include <sys/units.h>
 
 /* Below this, times the largest extent of an element to the power of the dimension, a determinant is round-off */
 #define DEGENERATE 1e-14
@@ -123,11 +124,13 @@ static PetscErrorCode ElementSetFromOptions_Solid(Element element)
   PetscCall(
       PetscOptionsBool("-plane_stress", "Plane stress, else plane strain", "ElementSetPlaneStress", plane_stress, &plane_stress, NULL));
   PetscOptionsEnd();
-  PetscCheck(thickness > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%sthickness is %g m; it must be positive",
-             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)thickness);
+  PetscCheck(thickness > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%sthickness is %g%s; it must be positive",
+             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)thickness,
+             UnitsOf((PetscObject)element, UNIT_LENGTH));
   PetscCheck(thickness >= SECTION_SMALLEST && thickness <= SECTION_LARGEST, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
-             "-%sthickness is %g m; it must lie between %g and %g m", ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "",
-             (double)thickness, SECTION_SMALLEST, SECTION_LARGEST);
+             "-%sthickness is %g%s; it must lie between %g and %g%s", ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "",
+             (double)thickness, UnitsOf((PetscObject)element, UNIT_LENGTH), SECTION_SMALLEST, SECTION_LARGEST,
+             UnitsOf((PetscObject)element, UNIT_LENGTH));
   if (set) PetscCall(ElementSetThickness(element, thickness));
   PetscCall(ElementSetPlaneStress(element, plane_stress));
   PetscFunctionReturn(PETSC_SUCCESS);

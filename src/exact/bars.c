@@ -1,5 +1,6 @@
 /* The two bars of an exact solution, from the initial state of the bodies. */
 #include "exactimpl.h"
+#include <sys/units.h>
 
 /* Bars move as a whole and undeformed if their energies are those of their mean velocity but for this part: round-off of sums over all
    nodes */
@@ -96,15 +97,16 @@ static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar,
 }
 
 /* Ends with an error unless the two bars are undeformed and fly towards each other along the normal without turning */
-static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar bars[2], const BodyMeasures measures[2])
+static PetscErrorCode CheckBars(MPI_Comm comm, Exact exact, const ExactBar bars[2], const BodyMeasures measures[2])
 {
   const PetscReal small = VELOCITY_ROUND_OFF * (PetscAbsReal(bars[0].velocity) + PetscAbsReal(bars[1].velocity));
 
   PetscFunctionBegin;
   PetscCheck(bars[0].velocity - bars[1].velocity > small, comm, PETSC_ERR_USER_INPUT,
-             "-exact %s needs bars that approach each other, but along the contact normal '%s' moves at %g m/s and '%s' at %g m/s; change "
+             "-exact %s needs bars that approach each other, but along the contact normal '%s' moves at %g%s and '%s' at %g%s; change "
              "an initial velocity, or leave -exact out",
-             type, bars[0].name, (double)bars[0].velocity, bars[1].name, (double)bars[1].velocity);
+             exact->type, bars[0].name, (double)bars[0].velocity, UnitsOf((PetscObject)exact, UNIT_VELOCITY), bars[1].name,
+             (double)bars[1].velocity, UnitsOf((PetscObject)exact, UNIT_VELOCITY));
   for (PetscInt i = 0; i < 2; i++) {
     const PetscReal scale   = bars[i].mass * (PetscSqr(bars[0].velocity) + PetscSqr(bars[1].velocity));
     const PetscReal kinetic = 0.5 * bars[i].mass * PetscSqr(bars[i].velocity);
@@ -112,9 +114,11 @@ static PetscErrorCode CheckBars(MPI_Comm comm, ExactType type, const ExactBar ba
     PetscCheck(PetscAbsReal(measures[i].potential) <= ENERGY_ROUND_OFF * scale &&
                    PetscAbsReal(measures[i].kinetic - kinetic) <= ENERGY_ROUND_OFF * scale,
                comm, PETSC_ERR_USER_INPUT,
-               "-exact %s needs bars that start undeformed and move as a whole along the contact normal, but '%s' starts with %g J "
-               "potential and %g J kinetic energy, where its mean velocity makes %g J; change its initial state, or leave -exact out",
-               type, bars[i].name, (double)measures[i].potential, (double)measures[i].kinetic, (double)kinetic);
+               "-exact %s needs bars that start undeformed and move as a whole along the contact normal, but '%s' starts with %g%s "
+               "potential and %g%s kinetic energy, where its mean velocity makes %g%s; change its initial state, or leave -exact out",
+               exact->type, bars[i].name, (double)measures[i].potential, UnitsOf((PetscObject)exact, UNIT_ENERGY),
+               (double)measures[i].kinetic, UnitsOf((PetscObject)exact, UNIT_ENERGY), (double)kinetic,
+               UnitsOf((PetscObject)exact, UNIT_ENERGY));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -147,12 +151,12 @@ static PetscErrorCode CheckFaces(MPI_Comm comm, Exact exact, const Body sides[2]
     }
     size = PetscMax(ends[0][1] - ends[0][0], ends[1][1] - ends[1][0]);
     for (PetscInt e = 0; e < 2; e++)
-      PetscCheck(
-          PetscAbsReal(ends[0][e] - ends[1][e]) <= SAME_FACE * size, comm, PETSC_ERR_USER_INPUT,
-          "-exact %s needs bars that meet with the whole of their end faces, but along (%g, %g, %g) '%s' ends at %g m and '%s' at %g "
-          "m; move or resize one of them, or leave -exact out",
-          exact->type, (double)across[0], (double)across[1], (double)across[2], exact->bars[0].name, (double)ends[0][e],
-          exact->bars[1].name, (double)ends[1][e]);
+      PetscCheck(PetscAbsReal(ends[0][e] - ends[1][e]) <= SAME_FACE * size, comm, PETSC_ERR_USER_INPUT,
+                 "-exact %s needs bars that meet with the whole of their end faces, but along (%g, %g, %g) '%s' ends at %g%s and '%s' at "
+                 "%g%s; move or resize one of them, or leave -exact out",
+                 exact->type, (double)across[0], (double)across[1], (double)across[2], exact->bars[0].name, (double)ends[0][e],
+                 UnitsOf((PetscObject)exact, UNIT_LENGTH), exact->bars[1].name, (double)ends[1][e],
+                 UnitsOf((PetscObject)exact, UNIT_LENGTH));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -185,7 +189,7 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
     exact->body[i] = sides[i] == bodies[0] ? 0 : 1;
     PetscCall(GetBar(sides[i], exact->normal, &bars[i], &measures[i]));
   }
-  PetscCall(CheckBars(comm, exact->type, bars, measures));
+  PetscCall(CheckBars(comm, exact, bars, measures));
   PetscCall(CheckFaces(comm, exact, sides));
   PetscCall(ContactGetLaw(contact, &law));
   PetscCheck(law != CONTACT_LAW_TIED && law != CONTACT_LAW_BONDED, comm, PETSC_ERR_USER_INPUT,

@@ -1,19 +1,20 @@
 /* Impact of two equal elastic bars: Hoy, Tezaur, Mota, eqs. (4.1) to (4.7), after Carpenter, Taylor, Katona (1991). */
 #include "exactimpl.h"
+#include <sys/units.h>
 
 /* Figures of the bars that differ by less, relative, are equal: options have some digits, and masses are sums over nodes */
 #define EQUAL 1e-9
 /* Times are the same if they differ by less than this part of the duration of contact or of the start: steps add up round-off */
 #define ROUND_OFF 1e-12
 
-static PetscErrorCode CheckEqual(MPI_Comm comm, const ExactBar bars[2], const char what[], const char unit[], PetscReal one,
-                                 PetscReal other)
+static PetscErrorCode CheckEqual(MPI_Comm comm, Exact exact, const char what[], UnitDimension dimension, PetscReal one, PetscReal other)
 {
   PetscFunctionBegin;
   PetscCheck(PetscAbsReal(one - other) <= EQUAL * PetscMax(PetscAbsReal(one), PetscAbsReal(other)), comm, PETSC_ERR_USER_INPUT,
-             "-exact impact is known for two equal bars only, but the %s of '%s' is %.12g %s and that of '%s' %.12g %s; make them equal, "
+             "-exact impact is known for two equal bars only, but the %s of '%s' is %.12g%s and that of '%s' %.12g%s; make them equal, "
              "or leave -exact out",
-             what, bars[0].name, (double)one, unit, bars[1].name, (double)other, unit);
+             what, exact->bars[0].name, (double)one, UnitsOf((PetscObject)exact, dimension), exact->bars[1].name, (double)other,
+             UnitsOf((PetscObject)exact, dimension));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,10 +68,10 @@ PetscErrorCode ExactCreate_Impact(Controller controller, Exact exact)
   PetscReal       area;
 
   PetscFunctionBegin;
-  PetscCall(CheckEqual(comm, bars, "density", "kg/m^3", bars[0].density, bars[1].density));
-  PetscCall(CheckEqual(comm, bars, "uniaxial modulus", "Pa", bars[0].modulus, bars[1].modulus));
-  PetscCall(CheckEqual(comm, bars, "length", "m", bars[0].length, bars[1].length));
-  PetscCall(CheckEqual(comm, bars, "mass", "kg", bars[0].mass, bars[1].mass));
+  PetscCall(CheckEqual(comm, exact, "density", UNIT_DENSITY, bars[0].density, bars[1].density));
+  PetscCall(CheckEqual(comm, exact, "uniaxial modulus", UNIT_STRESS, bars[0].modulus, bars[1].modulus));
+  PetscCall(CheckEqual(comm, exact, "length", UNIT_LENGTH, bars[0].length, bars[1].length));
+  PetscCall(CheckEqual(comm, exact, "mass", UNIT_MASS, bars[0].mass, bars[1].mass));
   area                 = bars[0].mass / (bars[0].density * bars[0].length);
   exact->turn          = exact->impact + bars[0].length * PetscSqrtReal(bars[0].density / bars[0].modulus);
   exact->release       = exact->turn + (exact->turn - exact->impact);

@@ -53,7 +53,8 @@ static PetscErrorCode SetShape(Obstacle obstacle, ObstacleType type, const Petsc
   PetscCheck(!direction || (length > 0 && length < PETSC_MAX_REAL), PetscObjectComm((PetscObject)obstacle), PETSC_ERR_ARG_OUTOFRANGE,
              "Obstacle '%s': a vector of length %g has no direction", ((PetscObject)obstacle)->name, (double)PetscSqrtReal(length));
   PetscCheck(type == OBSTACLE_PLANE || (radius > 0 && radius < PETSC_MAX_REAL), PetscObjectComm((PetscObject)obstacle),
-             PETSC_ERR_ARG_OUTOFRANGE, "Obstacle '%s': a radius of %g m must be positive", ((PetscObject)obstacle)->name, (double)radius);
+             PETSC_ERR_ARG_OUTOFRANGE, "Obstacle '%s': a radius of %g%s must be positive", ((PetscObject)obstacle)->name, (double)radius,
+             UnitsOf((PetscObject)obstacle, UNIT_LENGTH));
   for (PetscInt d = 0; d < 3 && direction; d++) obstacle->direction[d] /= PetscSqrtReal(length);
   obstacle->type     = type;
   obstacle->radius   = radius;

@@ -1,6 +1,7 @@
 /* Rigid obstacles from options. */
 #include <impakt/obstacle.h>
 #include <petsc/private/petscimpl.h>
+#include <sys/units.h>
 
 /* Three numbers, or as many as there are dimensions; the rest is 0. An option that is not given is an error where it is needed. */
 static PetscErrorCode CheckVector(Obstacle obstacle, const char option[], const char meaning[], PetscBool set, PetscInt n,
@@ -84,7 +85,8 @@ PetscErrorCode ObstacleSetFromOptions(Obstacle obstacle)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCheck(has_radius && radius > 0 && radius < PETSC_MAX_REAL, PetscObjectComm((PetscObject)obstacle), PETSC_ERR_USER_INPUT,
-             "-%sradius %g m: obstacle '%s' needs a positive radius", prefix, (double)radius, ((PetscObject)obstacle)->name);
+             "-%sradius %g%s: obstacle '%s' needs a positive radius", prefix, (double)radius, UnitsOf((PetscObject)obstacle, UNIT_LENGTH),
+             ((PetscObject)obstacle)->name);
   if (type == (PetscEnum)OBSTACLE_SPHERE) {
     PetscCall(ObstacleSetSphere(obstacle, point, radius));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -89,7 +89,9 @@ PetscErrorCode OutputCompareOptions(MPI_Comm comm, const char before[], PetscBoo
     PetscCall(PetscFree(texts[k]));
   }
   PetscCheck(!differences[0] || allow, comm, PETSC_ERR_USER_INPUT,
-             "-restart %s is of a run with other options: %s; give the same ones, or -restart_allow_changes", path, differences);
+             "-restart %s is of a run with other options: %s; give the same ones, or -restart_allow_changes; -restart_state in place of "
+             "-restart begins a new run with the state of that one",
+             path, differences);
   if (differences[0])
     PetscCall(PetscFPrintf(comm, stderr, "impakt: warning: the run that is continued had other options: %s\n", differences));
   PetscFunctionReturn(PETSC_SUCCESS);

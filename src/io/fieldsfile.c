@@ -222,6 +222,37 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Field
 }
 
 /*
+  FieldsFileCount - how many frames a file has places for
+
+  Not Collective; one rank calls it
+
+  Input Parameter:
+. path - the file
+
+  Output Parameter:
+. n_frames - 0 where there is no file of fields
+*/
+PetscErrorCode FieldsFileCount(const char path[], PetscInt *n_frames)
+{
+  HDF5Silence silence;
+  hsize_t     has = 0;
+  hid_t       file, dataset, space;
+
+  PetscFunctionBegin;
+  HDF5SilenceBegin(&silence);
+  file    = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT);
+  dataset = file < 0 ? -1 : H5Dopen2(file, "time", H5P_DEFAULT);
+  space   = dataset < 0 ? -1 : H5Dget_space(dataset);
+  if (space >= 0 && H5Sget_simple_extent_ndims(space) == 1) H5Sget_simple_extent_dims(space, &has, NULL);
+  if (space >= 0) H5Sclose(space);
+  if (dataset >= 0) H5Dclose(dataset);
+  if (file >= 0) H5Fclose(file);
+  HDF5SilenceEnd(&silence);
+  *n_frames = (PetscInt)has;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*
   FieldsFileCut - leaves the first frames of a file, and has the others count as not there yet
 
   Not Collective; one rank calls it

@@ -52,6 +52,7 @@ PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, FieldsSet, Pet
 PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, FieldsSet, PetscInt, OutputPrecision, const char[]);
 PETSC_INTERN PetscErrorCode FieldsFileCreateGroup(hid_t, const char[], const char[]);
 PETSC_INTERN PetscErrorCode FieldsFileAdd(hid_t, const char[], hid_t, hsize_t, PetscInt, UnitDimension, const void *, const char[]);
+PETSC_INTERN PetscErrorCode FieldsFileCount(const char[], PetscInt *);
 PETSC_INTERN PetscErrorCode FieldsFileCut(const char[], PetscInt, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode FieldsFileOpen(MPI_Comm, const char[], hid_t *);
 PETSC_INTERN PetscErrorCode FieldsFileWrite(MPI_Comm, hid_t, const char[], const FieldsRows *, PetscInt, hid_t, const void *);

@@ -1,4 +1,5 @@
 /* What a run writes and prints: the class, its options, report and end. */
+#include "fieldsfile.h"
 #include "outputimpl.h"
 #include "outputpaths.h"
 #include "report.h"
@@ -123,6 +124,26 @@ static PetscErrorCode ReadExactDisplacements(Output output)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* -check has one frame to write, and not over the frames of a run */
+static PetscErrorCode LeaveFramesOfRun(Output output, const char path[], PetscBool *write)
+{
+  MPI_Comm    comm     = PetscObjectComm((PetscObject)output);
+  PetscInt    n_frames = 0;
+  PetscMPIInt rank;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  if (!rank) PetscCall(FieldsFileCount(path, &n_frames));
+  PetscCallMPI(MPI_Bcast(&n_frames, 1, MPIU_INT, 0, comm));
+  *write = (PetscBool)(n_frames <= 1);
+  if (!*write)
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "impakt: warning: -check leaves %s as it is, which has the fields of a run; for the frame of the start give "
+                           "-output_fields another path\n",
+                           path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   OutputSetFromOptions - reads what to write and what to compare with, and makes sure that the files can be written
 
@@ -188,6 +209,7 @@ PetscErrorCode OutputSetFromOptions(Output output)
   PetscCall(OutputCheckPaths(PetscObjectComm((PetscObject)output), summary, history, fields, ""));
   PetscCall(OutputSetCheck(output, checks));
   if (checks) has_summary = has_history = PETSC_FALSE;
+  if (checks && has_fields) PetscCall(LeaveFramesOfRun(output, fields, &has_fields));
   PetscCall(PetscStrcmp(exact, "none", &none));
   if (!none) PetscCall(OutputSetExact(output, exact));
   PetscCall(ReadExactDisplacements(output));
@@ -291,9 +313,6 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   if (output->history || output->summary_path[0] || output->fields || output->checkpoints.path[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "files\n"));
-  if (!output->history && !output->summary_path[0] && !output->fields)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "not written: history, summary and fields; -output_history h.h5 -output_summary s.json "
-                                             "-output_fields f.h5 write them\n"));
   if (output->history) {
     PetscCall(HistoryGetPath(output->history, &path));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", path));
@@ -304,6 +323,9 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "fields", path));
   }
   if (output->checkpoints.path[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "checkpoint", output->checkpoints.path));
+  if (!output->history && !output->summary_path[0] && !output->fields)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "not written: history, summary and fields; -output_history h.h5 -output_summary s.json "
+                                             "-output_fields f.h5 write them\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,6 +6,7 @@
 #include <controller/controllervisit.h>
 #include <exact/exactvisit.h>
 #include <stdlib.h>
+#include <sys/units.h>
 
 /* Minutes between checkpoints where the user says nothing */
 #define WALL_INTERVAL 15
@@ -186,8 +187,8 @@ static PetscErrorCode Restart(Output output)
   PetscCall(OutputCompareOptions(comm, file.info.options, c->allow_changes, path));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(Load(output, &file, (PetscBool)(file.info.ranks == size)));
-  PetscCall(PetscFPrintf(comm, stderr, "impakt: continued from %s, after controller step %" PetscInt_FMT " at time %g s\n", path,
-                         file.info.step, (double)file.info.time));
+  PetscCall(PetscFPrintf(comm, stderr, "impakt: continued from %s, after controller step %" PetscInt_FMT " at time %g%s\n", path,
+                         file.info.step, (double)file.info.time, UnitsOf((PetscObject)output->controller, UNIT_TIME)));
   PetscCall(PetscStrcmp(path, c->path, &same));
   if (same) c->last_step = file.info.step;
   c->next_look = file.info.step + 1;

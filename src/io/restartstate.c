@@ -6,6 +6,7 @@
 #include <contact/interface/contactvisit.h>
 #include "outputimpl.h"
 #include "checkpointfileimpl.h"
+#include <sys/units.h>
 
 /* What a checkpoint has of a body, on every rank */
 typedef struct {
@@ -134,11 +135,11 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
   PetscCall(ControllerGetTimes(output->controller, &start, NULL, NULL));
   if (start != file.info.time)
     PetscCall(PetscSNPrintf(again, sizeof(again),
-                            "; time starts again at %g s, and so do formulas in t of loads and displacements: a load that is to stay needs "
+                            "; time starts again at %g%s, and so do formulas in t of loads and displacements: a load that is to stay needs "
                             "its value there, or -time_start %.9g, with which formulas go on",
-                            (double)start, (double)file.info.time));
-  PetscCall(PetscFPrintf(comm, stderr, "impakt: begun with the state of %s, after its controller step %" PetscInt_FMT " at time %g s%s\n",
-                         path, file.info.step, (double)file.info.time, again));
+                            (double)start, UnitsOf((PetscObject)output->controller, UNIT_TIME), (double)file.info.time));
+  PetscCall(PetscFPrintf(comm, stderr, "impakt: begun with the state of %s, after its controller step %" PetscInt_FMT " at time %g%s%s\n",
+                         path, file.info.step, (double)file.info.time, UnitsOf((PetscObject)output->controller, UNIT_TIME), again));
   PetscCall(CheckpointFileClose(&file));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -183,7 +183,7 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   if (cuts.lossy_steps && !(gain <= tolerance && loss <= tolerance))
     PetscCall(Add(verdict,
                   "%" PetscInt_FMT " step%s accepted although contact took or brought more energy than -contact_energy_tolerance after "
-                  "the last cut, to %.3g%s",
+                  "the last cut, to %.3g%s; a smaller -time_step, or more -controller_step_cuts, makes it less",
                   cuts.lossy_steps, cuts.lossy_steps == 1 ? " was" : "s were", (double)cuts.smallest_step,
                   UnitsText(verdict->units, UNIT_TIME)));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -17,8 +17,8 @@ static PetscErrorCode MaterialSetYoungsModulus_Isotropic(Material material, Pets
   Isotropic *constants = (Isotropic *)material->data;
 
   PetscFunctionBegin;
-  PetscCheck(modulus > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE, "Young's modulus is %g Pa; it must be positive",
-             (double)modulus);
+  PetscCheck(modulus > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE, "Young's modulus is %g%s; it must be positive",
+             (double)modulus, UnitsOf((PetscObject)material, UNIT_STRESS));
   constants->youngs_modulus = modulus;
   FindLamesConstants(constants);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -63,10 +63,13 @@ PetscErrorCode MaterialSetFromOptions_Isotropic(Material material)
   PetscCall(PetscOptionsReal("-youngs_modulus", "Young's modulus [Pa]", "MaterialSetYoungsModulus", E, &E, &set));
   PetscCall(PetscOptionsReal("-poissons_ratio", "Poisson's ratio", "MaterialSetPoissonsRatio", nu, &nu, NULL));
   PetscOptionsEnd();
-  PetscCheck(set || E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is missing; give Young's modulus in Pa", prefix);
-  PetscCheck(E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is %g Pa; it must be positive", prefix, (double)E);
+  PetscCheck(set || E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is missing; give Young's modulus%s%s", prefix,
+             *UnitsOf((PetscObject)material, UNIT_STRESS) ? " in" : "", UnitsOf((PetscObject)material, UNIT_STRESS));
+  PetscCheck(E > 0, comm, PETSC_ERR_USER_INPUT, "-%syoungs_modulus is %g%s; it must be positive", prefix, (double)E,
+             UnitsOf((PetscObject)material, UNIT_STRESS));
   PetscCheck(E >= MATERIAL_SMALLEST && E <= MATERIAL_LARGEST, comm, PETSC_ERR_USER_INPUT,
-             "-%syoungs_modulus is %g Pa; it must lie between %g and %g Pa", prefix, (double)E, MATERIAL_SMALLEST, MATERIAL_LARGEST);
+             "-%syoungs_modulus is %g%s; it must lie between %g and %g%s", prefix, (double)E, UnitsOf((PetscObject)material, UNIT_STRESS),
+             MATERIAL_SMALLEST, MATERIAL_LARGEST, UnitsOf((PetscObject)material, UNIT_STRESS));
   PetscCheck(nu > -1 && nu < 0.5, comm, PETSC_ERR_USER_INPUT, "-%spoissons_ratio is %g; it must lie between -1 and 0.5", prefix,
              (double)nu);
   constants->youngs_modulus = E;

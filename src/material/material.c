@@ -154,12 +154,14 @@ PetscErrorCode MaterialSetFromOptions(Material material)
   PetscOptionsEnd();
   PetscCall(MaterialSetType(material, type));
   PetscCheck(set || density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%sdensity is missing; give the mass density in kg/m^3", prefix);
-  PetscCheck(density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%sdensity is %g kg/m^3; a density must be positive", prefix, (double)density);
+             "-%sdensity is missing; give the mass density%s%s", prefix, *UnitsOf((PetscObject)material, UNIT_DENSITY) ? " in" : "",
+             UnitsOf((PetscObject)material, UNIT_DENSITY));
+  PetscCheck(density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT, "-%sdensity is %g%s; a density must be positive",
+             prefix, (double)density, UnitsOf((PetscObject)material, UNIT_DENSITY));
   PetscCheck(density >= MATERIAL_SMALLEST && density <= MATERIAL_LARGEST, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%sdensity is %g kg/m^3; a density must lie between %g and %g kg/m^3", prefix, (double)density, MATERIAL_SMALLEST,
-             MATERIAL_LARGEST);
+             "-%sdensity is %g%s; a density must lie between %g and %g%s", prefix, (double)density,
+             UnitsOf((PetscObject)material, UNIT_DENSITY), MATERIAL_SMALLEST, MATERIAL_LARGEST,
+             UnitsOf((PetscObject)material, UNIT_DENSITY));
   PetscCall(MaterialSetDensity(material, density));
   PetscTryTypeMethod(material, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -295,8 +297,8 @@ PetscErrorCode MaterialSetDensity(Material material, PetscReal density)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
   PetscValidLogicalCollectiveReal(material, density, 2);
-  PetscCheck(density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE, "A density of %g kg/m^3 must be positive",
-             (double)density);
+  PetscCheck(density > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE, "A density of %g%s must be positive",
+             (double)density, UnitsOf((PetscObject)material, UNIT_DENSITY));
   material->density = density;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

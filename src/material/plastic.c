@@ -51,16 +51,17 @@ static PetscErrorCode CheckTable(Material material, PetscInt n, const PetscReal 
              GetPrefix(material), (double)strain[0]);
   for (PetscInt i = 0; i < n; i++) {
     PetscCheck(stress[i] > 0 && isfinite(stress[i]), comm, PETSC_ERR_USER_INPUT,
-               "-%shardening_table: strength %g Pa of point %" PetscInt_FMT " must be positive", GetPrefix(material), (double)stress[i], i);
+               "-%shardening_table: strength %g%s of point %" PetscInt_FMT " must be positive", GetPrefix(material), (double)stress[i],
+               UnitsOf((PetscObject)material, UNIT_STRESS), i);
     if (!i) continue;
     PetscCheck(strain[i] > strain[i - 1] && isfinite(strain[i]), comm, PETSC_ERR_USER_INPUT,
                "-%shardening_table: plastic strain %g of point %" PetscInt_FMT " comes after %g; plastic strains must ascend",
                GetPrefix(material), (double)strain[i], i, (double)strain[i - 1]);
     PetscCheck(stress[i] >= stress[i - 1], comm, PETSC_ERR_USER_INPUT,
-               "-%shardening_table: strength falls from %g to %g Pa at point %" PetscInt_FMT
+               "-%shardening_table: strength falls from %g to %g%s at point %" PetscInt_FMT
                "; a material that softens has no solution that "
                "the mesh does not decide",
-               GetPrefix(material), (double)stress[i - 1], (double)stress[i], i);
+               GetPrefix(material), (double)stress[i - 1], (double)stress[i], UnitsOf((PetscObject)material, UNIT_STRESS), i);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -85,7 +86,8 @@ static PetscErrorCode MaterialSetYieldStress_Plastic(Material material, PetscRea
 {
   PetscFunctionBegin;
   PetscCheck(yield > 0 && isfinite(yield), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%syield_stress is %g Pa; it must be positive", GetPrefix(material), (double)yield);
+             "-%syield_stress is %g%s; it must be positive", GetPrefix(material), (double)yield,
+             UnitsOf((PetscObject)material, UNIT_STRESS));
   GetPlastic(material)->yield = yield;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -94,7 +96,8 @@ static PetscErrorCode MaterialSetHardeningModulus_Plastic(Material material, Pet
 {
   PetscFunctionBegin;
   PetscCheck(modulus >= 0 && isfinite(modulus), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%shardening_modulus is %g Pa; it must not be negative", GetPrefix(material), (double)modulus);
+             "-%shardening_modulus is %g%s; it must not be negative", GetPrefix(material), (double)modulus,
+             UnitsOf((PetscObject)material, UNIT_STRESS));
   GetPlastic(material)->modulus = modulus;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -103,7 +106,8 @@ static PetscErrorCode MaterialSetKinematicModulus_Plastic(Material material, Pet
 {
   PetscFunctionBegin;
   PetscCheck(modulus >= 0 && isfinite(modulus), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%skinematic_modulus is %g Pa; it must not be negative", GetPrefix(material), (double)modulus);
+             "-%skinematic_modulus is %g%s; it must not be negative", GetPrefix(material), (double)modulus,
+             UnitsOf((PetscObject)material, UNIT_STRESS));
   GetPlastic(material)->kinematic = modulus;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,8 +116,8 @@ static PetscErrorCode MaterialSetVoceHardening_Plastic(Material material, PetscR
 {
   PetscFunctionBegin;
   PetscCheck(saturation > 0 && isfinite(saturation), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%ssaturation_stress is %g Pa; it must be positive, and not below -%syield_stress", GetPrefix(material), (double)saturation,
-             GetPrefix(material));
+             "-%ssaturation_stress is %g%s; it must be positive, and not below -%syield_stress", GetPrefix(material), (double)saturation,
+             UnitsOf((PetscObject)material, UNIT_STRESS), GetPrefix(material));
   PetscCheck(rate > 0 && isfinite(rate), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
              "-%ssaturation_rate is %g; it must be positive", GetPrefix(material), (double)rate);
   GetPlastic(material)->saturation  = saturation;
@@ -156,8 +160,8 @@ static PetscErrorCode MaterialSetJohnsonCookHeat_Plastic(Material material, Pets
              (double)initial, GetPrefix(material), (double)melting);
   PetscCheck(heat_fraction >= 0 && heat_fraction <= 1, comm, PETSC_ERR_USER_INPUT, "-%sheat_fraction is %g; it must lie between 0 and 1",
              GetPrefix(material), (double)heat_fraction);
-  PetscCheck(specific_heat > 0 && isfinite(specific_heat), comm, PETSC_ERR_USER_INPUT,
-             "-%sspecific_heat is %g J/(kg K); it must be positive", GetPrefix(material), (double)specific_heat);
+  PetscCheck(specific_heat > 0 && isfinite(specific_heat), comm, PETSC_ERR_USER_INPUT, "-%sspecific_heat is %g%s; it must be positive",
+             GetPrefix(material), (double)specific_heat, UnitsOf((PetscObject)material, UNIT_SPECIFIC_HEAT));
   plastic->softening     = softening;
   plastic->initial       = initial;
   plastic->room          = room;
@@ -261,7 +265,8 @@ static PetscErrorCode SetFromOptions(Material material)
   else PetscCall(ReadHardening(material));
   if (plastic->hardening == HARDENING_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(yield != 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%syield_stress is missing; give the strength at which the material begins to yield, in Pa", GetPrefix(material));
+             "-%syield_stress is missing; give the strength at which the material begins to yield%s%s", GetPrefix(material),
+             *UnitsOf((PetscObject)material, UNIT_STRESS) ? " in" : "", UnitsOf((PetscObject)material, UNIT_STRESS));
   PetscCall(MaterialSetYieldStress(material, yield));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -279,8 +284,9 @@ static PetscErrorCode SetUp(Material material)
              "The material of type %s has no yield stress: call MaterialSetYieldStress() or MaterialSetFromOptions()",
              ((PetscObject)material)->type_name);
   PetscCheck(plastic->hardening != HARDENING_VOCE || plastic->saturation >= plastic->yield, comm, PETSC_ERR_USER_INPUT,
-             "-%ssaturation_stress %g Pa lies below -%syield_stress %g Pa", GetPrefix(material), (double)plastic->saturation,
-             GetPrefix(material), (double)plastic->yield);
+             "-%ssaturation_stress %g%s lies below -%syield_stress %g%s", GetPrefix(material), (double)plastic->saturation,
+             UnitsOf((PetscObject)material, UNIT_STRESS), GetPrefix(material), (double)plastic->yield,
+             UnitsOf((PetscObject)material, UNIT_STRESS));
   plastic->density = material->density;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,6 @@
 /* Meshes of bodies that are rings about the axis x = 0. */
 #include <impakt/mesh.h>
+#include <sys/units.h>
 
 /* Nodes that are nearer to the axis, in parts of the largest distance from it, lie on it */
 #define ON_AXIS 1e-9
@@ -35,8 +36,8 @@ PetscErrorCode MeshGetAxisTolerance(DM dm, PetscReal *tolerance)
   *tolerance = ON_AXIS * upper[0];
   PetscCheck(
       upper[0] > 0 && lower[0] >= -*tolerance, PetscObjectComm((PetscObject)dm), PETSC_ERR_USER_INPUT,
-      "-%s_axisymmetric true: the mesh reaches from x = %g to %g m; x is the distance from the axis, which is not negative: mesh one "
+      "-%s_axisymmetric true: the mesh reaches from x = %g to %g%s; x is the distance from the axis, which is not negative: mesh one "
       "half of the section alone, or move it (-%s_translate)",
-      name, (double)lower[0], (double)upper[0], name);
+      name, (double)lower[0], (double)upper[0], UnitsOf((PetscObject)dm, UNIT_LENGTH), name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

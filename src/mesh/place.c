@@ -1,5 +1,6 @@
 /* Where a body's mesh lies: scale, rotation and translation from options. */
 #include "meshimpl.h"
+#include <sys/units.h>
 
 /* A mesh that is smaller than this part of its distance from the origin has lost the digits that its coordinates need */
 #define SMALLEST_EXTENT 1e-9
@@ -97,15 +98,16 @@ static PetscErrorCode CheckPlace(DM dm, const char prefix[], const char name[], 
   }
   PetscCheck(
       size >= SMALLEST_EXTENT * distance, comm, PETSC_ERR_USER_INPUT,
-      "Body '%s' is %g m large and lies %g m from the origin, also by -%stranslate and -%srotate_centre: so far away its coordinates do "
+      "Body '%s' is %g%s large and lies %g%s from the origin, also by -%stranslate and -%srotate_centre: so far away its coordinates do "
       "not have the digits that its elements need",
-      name, (double)size, (double)distance, prefix, prefix);
+      name, (double)size, UnitsOf((PetscObject)dm, UNIT_LENGTH), (double)distance, UnitsOf((PetscObject)dm, UNIT_LENGTH), prefix, prefix);
   PetscCheck((size >= SMALLEST_SIZE && size <= LARGEST_SIZE) || motion->scale == 1, comm, PETSC_ERR_USER_INPUT,
-             "Body '%s' is %g m large after -%sscale %g: choose a factor that leaves it between %g and %g m", name, (double)size, prefix,
-             (double)motion->scale, SMALLEST_SIZE, LARGEST_SIZE);
+             "Body '%s' is %g%s large after -%sscale %g: choose a factor that leaves it between %g and %g%s", name, (double)size,
+             UnitsOf((PetscObject)dm, UNIT_LENGTH), prefix, (double)motion->scale, SMALLEST_SIZE, LARGEST_SIZE,
+             UnitsOf((PetscObject)dm, UNIT_LENGTH));
   PetscCheck(size >= SMALLEST_SIZE && size <= LARGEST_SIZE, comm, PETSC_ERR_USER_INPUT,
-             "Body '%s' is %g m large: its mesh must be between %g and %g m, also by -%sscale", name, (double)size, SMALLEST_SIZE,
-             LARGEST_SIZE, prefix);
+             "Body '%s' is %g%s large: its mesh must be between %g and %g%s, also by -%sscale", name, (double)size,
+             UnitsOf((PetscObject)dm, UNIT_LENGTH), SMALLEST_SIZE, LARGEST_SIZE, UnitsOf((PetscObject)dm, UNIT_LENGTH), prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,26 +166,32 @@ PetscErrorCode MeshPlace(DM dm, const char prefix[], const char name[])
   Input Parameter:
 . prefix - of the body's options, such as "left_"
 
-  Output Parameter:
-. option - without dash and prefix: `translate` of a mesh from a file, of a rod, and of any mesh that has been scaled, rotated or
-translated; `ball_centre` of a ball; `dm_plex_box_lower` of a box
+  Output Parameters:
++ option - without dash and prefix: `translate` of a mesh from a file, of a rod, and of any mesh that has been scaled, rotated or
+           translated; `ball_centre` of a ball; `dm_plex_box_lower` of a box; or `NULL`
+- keeps  - of a ball or a rod whose nodes lie outside its radius, so that its mesh has its volume: the option that has it so; else `NULL`;
+           or `NULL`
 
   Level: developer
 
 .seealso: `MeshCreate()`
 @*/
-PetscErrorCode MeshGetPlaceOption(const char prefix[], const char *option[])
+PetscErrorCode MeshGetPlaceOption(const char prefix[], const char *option[], const char *keeps[])
 {
-  const char *const placed[] = {"-dm_plex_filename", "-scale", "-rotate", "-translate"};
-  PetscBool         is       = PETSC_FALSE;
+  const char *const placed[]  = {"-dm_plex_filename", "-scale", "-rotate", "-translate"}, *volume;
+  PetscBool         is_placed = PETSC_FALSE, is_rod, is_ball, keeps_it = PETSC_TRUE;
+  char              name[32];
 
   PetscFunctionBegin;
-  PetscAssertPointer(option, 2);
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(placed) && !is; i++) PetscCall(PetscOptionsHasName(NULL, prefix, placed[i], &is));
-  if (!is) PetscCall(MeshIsRod(prefix, &is));
-  *option = is ? "translate" : "dm_plex_box_lower";
-  if (is) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MeshIsBall(prefix, &is));
-  if (is) *option = "ball_centre";
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(placed) && !is_placed; i++)
+    PetscCall(PetscOptionsHasName(NULL, prefix, placed[i], &is_placed));
+  PetscCall(MeshIsRod(prefix, &is_rod));
+  PetscCall(MeshIsBall(prefix, &is_ball));
+  if (option) *option = is_placed || is_rod ? "translate" : is_ball ? "ball_centre" : "dm_plex_box_lower";
+  if (!keeps) PetscFunctionReturn(PETSC_SUCCESS);
+  volume = is_rod ? "rod_keep_volume" : "ball_keep_volume";
+  PetscCall(PetscSNPrintf(name, sizeof(name), "-%s", volume));
+  PetscCall(PetscOptionsGetBool(NULL, prefix, name, &keeps_it, NULL));
+  *keeps = (is_rod || is_ball) && keeps_it ? volume : NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,7 @@
 /* -example: options files to start from, with what each option means. They lie in the program, since who has it need not have the sources.
  */
 #include <impakt.h>
+#include <ctype.h>
 #include <errno.h>
 #include <signal.h>
 #include <stdio.h>
@@ -32,25 +33,40 @@ static const char *FindName(int argc, char **argv, PetscBool *asked)
   return NULL;
 }
 
-/* Characters of a text up to the full stop that ends its first sentence; one in a number does not */
-static size_t SentenceLength(const char text[])
+/* Whether the full stop at a place ends a sentence: none does in a number, behind an initial, or before a small letter or a bracket */
+static PetscBool EndsSentence(const char text[], size_t at)
 {
-  size_t length = strcspn(text, ".");
+  const PetscBool initial = (PetscBool)(at && isupper((unsigned char)text[at - 1]) && (at == 1 || !isalnum((unsigned char)text[at - 2])));
 
-  while (text[length] && text[length + 1] && text[length + 1] != ' ') length += 1 + strcspn(text + length + 1, ".");
-  return length;
+  if (!text[at + 1]) return PETSC_TRUE;
+  return (PetscBool)(!initial && text[at + 1] == ' ' && !islower((unsigned char)text[at + 2]) && text[at + 2] != '(');
+}
+
+/* The first sentence of the remark that an example begins with, which may go over several lines */
+static PetscErrorCode GetSentence(const Example *example, char text[], size_t size)
+{
+  PetscFunctionBegin;
+  text[0] = 0;
+  for (const char *const *line = example->lines; *line && (*line)[0] == '#'; line++)
+    PetscCall(NamesAppend(text, size, " ", *line + strspn(*line, "# ")));
+  for (char *stop = strchr(text, '.'); stop; stop = *stop ? strchr(stop + 1, '.') : NULL)
+    if (EndsSentence(text, (size_t)(stop - text))) *stop = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The examples, each with its first sentence */
 static PetscErrorCode PrintList(void)
 {
+  size_t longest = 0;
+
   PetscFunctionBegin;
+  for (size_t e = 0; e < PETSC_STATIC_ARRAY_LENGTH(examples); e++) longest = PetscMax(longest, strlen(examples[e].name));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "-example NAME writes NAME.opts, an options file with remarks, to start from:\n\n"));
   for (size_t e = 0; e < PETSC_STATIC_ARRAY_LENGTH(examples); e++) {
-    const char  *first  = examples[e].lines[0] + strspn(examples[e].lines[0], "# ");
-    const size_t length = SentenceLength(first);
+    char sentence[4096];
 
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-22s %.*s\n", examples[e].name, (int)length, first));
+    PetscCall(GetSentence(&examples[e], sentence, sizeof(sentence)));
+    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-*s  %s\n", (int)longest, examples[e].name, sentence));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -264,7 +264,21 @@ static PetscErrorCode VisitLines(Walk *walk, FILE *file, Place place)
       PetscCall(Blame(walk, place, problem));
       break;
     }
-    if (name) PetscCall(VisitOption(walk, name, NextWord(&rest), place));
+    if (name) {
+      const char *value = NextWord(&rest), *more = NextWord(&rest);
+      char        problem[512];
+
+      if (more && name[0] == '-') {
+        PetscCall(
+            PetscSNPrintf(problem, sizeof(problem),
+                          "'%.100s' follows the value '%.100s' of %.100s; an option has one value, without blanks after the commas of "
+                          "a list, and a line of its own",
+                          more, value, name));
+        PetscCall(Blame(walk, place, problem));
+        break;
+      }
+      PetscCall(VisitOption(walk, name, value, place));
+    }
   }
   free(text);
   PetscCall(CheckGiven(walk, place));

@@ -303,7 +303,7 @@ static const KnownOption options[] = {
      "lists options files to start from, or writes the one with this name, with remarks; and ends"},
     {"files", OPTION_OF_RUN, "check", "true|false",
      "set-up alone: prints moments of inertia, the elements that bound explicit steps, steps and wall time to expect; of all files writes "
-     "output_fields alone, with the frame of the start; default false"},
+     "output_fields alone, with the frame of the start, and not over the fields of a run; default false"},
     {"files", OPTION_OF_RUN, "options_file", "file",
      "more options from a file, which those of the command line overrule; a FILE.opts may stand alone"},
     {"files", OPTION_OF_RUN, "units", "SI|mm-t-s|none",

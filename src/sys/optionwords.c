@@ -1,6 +1,7 @@
 /* Options by their meaning: for -help WORD, and for what the message about an unknown option suggests. */
 #define _POSIX_C_SOURCE 200809L /* strncasecmp() */
 #include <petscsys.h>
+#include <ctype.h>
 #include <string.h>
 #include <strings.h>
 #include "names.h"
@@ -31,15 +32,15 @@ static const struct {
     {"youngs_modulus", "E young modulus elastic_modulus stiffness"},
     {"poissons_ratio", "nu poisson"},
     {"yield_stress", "yield sigma_y plastic"},
-    {"boundary_displacement", "displacement fix fixed clamp support dirichlet boundary bc"},
-    {"boundary_traction", "traction pressure load force neumann"},
+    {"boundary_displacement", "displacement fix fixed clamp support roller symmetry dirichlet boundary bc"},
+    {"boundary_traction", "traction pressure shear load force neumann"},
     {"body_force", "force load"},
     {"gravity", "g weight acceleration"},
     {"time_start", "start begin t_start t0"},
     {"time_end", "end stop duration end_time final_time t_end tend"},
     {"time_step", "dt step timestep delta_t"},
     {"ts_time_step", "dt step timestep time_step substep substeps"},
-    {"ts_type", "integrator explicit implicit static newmark time_integrator"},
+    {"ts_type", "integrator explicit implicit static quasistatic newmark time_integrator preload"},
     {"contact_pairs", "pairs contact_surfaces"},
     {"contact_type", "contact_method"},
     {"contact_law", "tie glue bond coulomb"},
@@ -55,19 +56,32 @@ static const struct {
     {"monitor_interval", "monitor verbose print"},
     {"checkpoint", "save"},
     {"restart", "resume"},
+    {"restart_state", "preload prestress"},
+    {"units", "mm millimetre tonne MPa"},
 };
 
-/* What an option needs beside itself: an option that begins so wants that other one to have this value; `standard`: what it has where it
-   is not given */
+/* What an option needs beside itself: an option that begins so, behind the name of its owner, wants that other one of the owner to have one
+   of these values; `standard`: what it has where it is not given. The first line for an option counts */
 static const struct {
-  const char *begin, *other, *value, *standard;
+  OptionOwner owner;
+  const char *begin, *other, *values, *standard;
 } needs[] = {
-    {"contact_friction", "contact_law", "coulomb", "frictionless"},
-    {"contact_penalty", "contact_type", "penalty", "schwarz"},
-    {"penalty_", "contact_type", "penalty", "schwarz"},
-    {"lagrange_", "contact_type", "lagrange", "schwarz"},
-    {"contact_augmentation_", "contact_type", "augmented_lagrangian", "schwarz"},
-    {"schwarz_", "contact_type", "schwarz", "schwarz"},
+    {OPTION_OF_RUN, "contact_friction", "contact_law", "coulomb", "frictionless"},
+    {OPTION_OF_RUN, "contact_penalty", "contact_type", "penalty", "schwarz"},
+    {OPTION_OF_RUN, "penalty_", "contact_type", "penalty", "schwarz"},
+    {OPTION_OF_RUN, "lagrange_", "contact_type", "lagrange", "schwarz"},
+    {OPTION_OF_RUN, "contact_augmentation_", "contact_type", "augmented_lagrangian", "schwarz"},
+    {OPTION_OF_RUN, "schwarz_", "contact_type", "schwarz", "schwarz"},
+    {OPTION_OF_BODY, "yield_stress", "material_type", "j2|j2_small|johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "hardening_exponent", "material_type", "johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "hardening_modulus", "material_type", "j2|j2_small|johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "hardening", "material_type", "j2|j2_small", "linear_elastic"},
+    {OPTION_OF_BODY, "kinematic_modulus", "material_type", "j2|j2_small", "linear_elastic"},
+    {OPTION_OF_BODY, "saturation_", "hardening", "voce", "linear"},
+    {OPTION_OF_BODY, "rate_coefficient", "material_type", "johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "melting_temperature", "material_type", "johnson_cook", "linear_elastic"},
+    {OPTION_OF_BODY, "mooney_rivlin_share", "material_type", "mooney_rivlin", "linear_elastic"},
+    {OPTION_OF_BODY, "ball_", "dm_plex_shape", "ball", "box"},
 };
 
 /* Whether a text is one of the words of a list with blanks between them */
@@ -92,13 +106,13 @@ static PetscBool Means(const char word[], const char option[])
   return PETSC_FALSE;
 }
 
-/* Whether a text has another in it, in whichever case */
+/* Whether a word of a text begins with another, in whichever case: "roller" is not in "controller" */
 static PetscBool Contains(const char text[], const char part[])
 {
   const size_t length = strlen(part);
 
   for (const char *at = text; *at; at++)
-    if (!strncasecmp(at, part, length)) return PETSC_TRUE;
+    if ((at == text || !isalnum((unsigned char)at[-1])) && !strncasecmp(at, part, length)) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -237,21 +251,34 @@ static PetscErrorCode FindMeant(const Unknown *unknown, char text[], size_t size
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Where the name that begins so is in an option: at its start, or, of a body or a material, somewhere behind their name; NULL: nowhere */
+static const char *FindName(const char option[], OptionOwner owner, const char begin[])
+{
+  const char *at = option;
+
+  if (owner == OPTION_OF_RUN) return strncasecmp(at, begin, strlen(begin)) ? NULL : at;
+  while ((at = strchr(at, '_')))
+    if (!strncasecmp(++at, begin, strlen(begin))) return at;
+  return NULL;
+}
+
 /* What an option (without its dash) needs that the run has not chosen, as "-contact_law coulomb"; or nothing */
 PetscErrorCode OptionsFindNeed(const char option[], char need[], size_t size)
 {
   PetscFunctionBegin;
   need[0] = 0;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(needs) && !need[0]; i++) {
-    char      other[64], value[64];
-    PetscBool same;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(needs); i++) {
+    const char *at = FindName(option, needs[i].owner, needs[i].begin);
+    char        other[128], value[64];
+    PetscBool   fits;
 
-    if (strncasecmp(option, needs[i].begin, strlen(needs[i].begin)) != 0) continue;
-    PetscCall(PetscSNPrintf(other, sizeof(other), "-%s", needs[i].other));
+    if (!at) continue;
+    PetscCall(PetscSNPrintf(other, sizeof(other), "-%.*s%s", (int)(at - option), option, needs[i].other));
     PetscCall(PetscStrncpy(value, needs[i].standard, sizeof(value)));
     PetscCall(PetscOptionsGetString(NULL, NULL, other, value, sizeof(value), NULL));
-    PetscCall(PetscStrcmp(value, needs[i].value, &same));
-    if (!same) PetscCall(PetscSNPrintf(need, size, "%s %s", other, needs[i].value));
+    PetscCall(PetscStrInList(value, needs[i].values, '|', &fits));
+    if (!fits) PetscCall(PetscSNPrintf(need, size, "%s %s", other, needs[i].values));
+    break;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

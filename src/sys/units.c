@@ -9,6 +9,7 @@ static const char *const labels[UNIT_DIMENSIONS][2] = {
     [UNIT_AREA]              = {" m^2", " mm^2"},
     [UNIT_TIME]              = {" s", " s"},
     [UNIT_VELOCITY]          = {" m/s", " mm/s"},
+    [UNIT_ACCELERATION]      = {" m/s^2", " mm/s^2"},
     [UNIT_RATE]              = {" 1/s", " 1/s"},
     [UNIT_ANGLE]             = {" rad", " rad"},
     [UNIT_ANGULAR_VELOCITY]  = {" rad/s", " rad/s"},
@@ -79,6 +80,6 @@ const char *UnitsOf(PetscObject object, UnitDimension dimension)
 {
   Units units = UNITS_SI;
 
-  PetscCallAbort(PetscObjectComm(object), UnitsGet(object, &units));
+  PetscCallAbort(object ? PetscObjectComm(object) : PETSC_COMM_SELF, UnitsGet(object, &units));
   return UnitsText(units, dimension);
 }

@@ -123,7 +123,10 @@ static void times_are_needed(void **state)
 
   AddBar("left", 0, 1, 4, 0);
   AddOptions("-bodies left -time_end 1");
-  refused(PETSC_ERR_USER_INPUT, "-time_end and -time_step", SimulationCreate(simulation));
+  refused(PETSC_ERR_USER_INPUT, "-time_step is missing|-time_step auto", SimulationCreate(simulation));
+  ok(PetscOptionsClearValue(NULL, "-time_end"));
+  AddOptions("-time_step 0.1");
+  refused(PETSC_ERR_USER_INPUT, "-time_end is missing", SimulationCreate(simulation));
 }
 
 static void bodies_are_needed(void **state)

@@ -5,6 +5,7 @@ import re
 import h5py
 import numpy as np
 import pytest
+from conftest import IMPAKT
 
 # Two layers of rectangles, 0.1 m high. Without Poisson's ratio waves cross an element in its least edge over c = sqrt(E / rho) = 1000 m/s, which is the stable
 # step of a lumped mass.
@@ -112,6 +113,22 @@ def test_inertia_and_fields(impakt, ranks):
         for name in ("mesh/positions", "mesh/cells", "displacement/0000", "velocity/0000", "stress/0000"):
             assert np.array_equal(first[name], whole[name]), name
         assert sum("displacement/" in name for name in (f"displacement/{key}" for key in first["displacement"])) == 1
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_fields_of_a_run_stay(launch, tmp_path, ranks):
+    """-check beside a run that is done leaves its fields, and says so; its own are written again."""
+    words = f"{BRICK} -output_fields f.h5 -time_end 2e-5".split()
+    assert "warning: -check" not in launch([IMPAKT, *words, "-check"], ranks, cwd=tmp_path).stderr
+    assert "warning: -check" not in launch([IMPAKT, *words, "-check"], ranks, cwd=tmp_path).stderr
+    launch([IMPAKT, *words], ranks, cwd=tmp_path)
+    before = [(tmp_path / name).read_bytes() for name in ("f.h5", "f.xdmf")]
+    check = launch([IMPAKT, *words, "-check"], ranks, cwd=tmp_path)
+    assert check.returncode == 0
+    assert check.stderr.count("warning: -check leaves f.h5 as it is") == 1
+    assert "f.xdmf" not in check.stdout
+    assert [(tmp_path / name).read_bytes() for name in ("f.h5", "f.xdmf")] == before
+    assert "f.xdmf" in launch([IMPAKT, *words], ranks, cwd=tmp_path).stdout
 
 
 def test_wall_time(impakt):

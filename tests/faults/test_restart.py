@@ -163,7 +163,7 @@ def test_refused(run_in, made):
     told = refused("-left_poissons_ratio", "0.1", "-contact_tolerance", "1e-9")
     assert "-left_poissons_ratio 0.1 (it had none)" in told and "-contact_tolerance 1e-9 (it had none)" in told
     changes = "-restart_allow_changes"
-    assert changes in told
+    assert changes in told and "-restart_state in place of -restart begins a new run" in told
     assert not list(made.glob("*.lock")) and not list(made.glob("*.part"))  # a run that is refused leaves nothing behind
     assert "of a run that starts at 0 s with steps of 2.2259999999999999e-06 s, and this one starts at 0 s with steps of 9.9" in refused("-time_step", "1e-6", changes)
     assert "it is of another problem" in refused("-left_dm_plex_box_faces", "10", changes)

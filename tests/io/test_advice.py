@@ -54,6 +54,14 @@ STRETCHED = (
 )
 
 
+# A steel block slides over a base after it has fallen on it, in ten times the step that resolves that
+SLAP = (
+    "-units mm-t-s -bodies a,b -all_density 7.85e-9 -all_youngs_modulus 210e3 -all_poissons_ratio 0.3 -a_dm_plex_box_faces 10,10 -a_dm_plex_box_upper 50,50 "
+    "-a_translate 0,0.3 -a_initial_velocity 1000,-626 -b_dm_plex_box_faces 20,4 -b_dm_plex_box_lower -50,-20 -b_dm_plex_box_upper 150,0 -b_boundary_displacement ymin "
+    "-b_boundary_displacement_ymin 0,0 -contact_law coulomb -contact_friction 0.3 -time_step 1e-5 -time_end 8e-4 -controller_step_cuts 2"
+)
+
+
 def energy(run):
     return worst_energy_error(run.summary)
 
@@ -95,6 +103,8 @@ CASES = {
     "centre of mass": (PLATE, "refine it across", "-a_dm_plex_box_faces 16,4", centre_shift, 5e-3, 1e-12),  # 6.4e-3 m, 0
     "never touched": (f"{PLATE} -time_end 1e-5", "pair a:b never touched: its smallest gap was 5e-05 m", "-time_end 1e-4", lambda run: run.summary["pairs"]["a:b"]["gap_min"], 4.99e-5, 1e-10),
     "stretched in a load step": (STRETCHED, "a smaller -time_step makes it less", "-time_step 0.1", energy, 0.04, 6e-4),  # 5.0e-2, 4.9e-4: the square of the step
+    "lossy steps, step": (SLAP, "than -contact_energy_tolerance after the last cut, to 2.5e-06 s; a smaller -time_step", "-time_step 1e-6", energy, 0.01, 2e-3),  # 1.6e-2, 5.5e-4
+    "lossy steps, cuts": (SLAP, "or more -controller_step_cuts, makes it less", "-controller_step_cuts 8", energy, 0.01, 2e-3),  # 1.6e-2, 3.1e-4
     "alpha": (ALPHA, "give both bodies the same parameters", "-right_ts_alpha_radius 0.6", system("momentum"), 4e-4, 1e-12),  # 5.4e-4, 1.2e-15
     "inside out": (CRUSHED, "set -b_material_type neo_hookean", "-b_material_type neo_hookean", lambda run: run.summary["bodies"]["b"]["inverted_max"], 8, 0),
     "divisions of a ball": (BALL, "take more -a_ball_divisions", "-a_ball_divisions 12", missing, 0.8, 1e-12),  # 0.89, 0

@@ -181,6 +181,7 @@ def test_what_is_not_written(launch, tmp_path):
     options = re.findall(r"(-output_\w+) (\S+\.\w+)", told[0])
     assert [option for option, _ in options] == ["-output_history", "-output_summary", "-output_fields"]
     assert not list(tmp_path.iterdir())
+    assert re.search(r"^files\n  checkpoint +c.h5\nnot written: ", launch([IMPAKT, *words, "-checkpoint", "c.h5"], cwd=tmp_path).stdout, re.MULTILINE)
     for option, path in options:
         assert "not written" not in launch([IMPAKT, *words, option, path], cwd=tmp_path).stdout
         assert (tmp_path / path).is_file()

@@ -41,12 +41,60 @@ def test_labels_follow(shared_run):
     assert not found[2]
 
 
-@pytest.mark.parametrize(("units", "expected"), [("SI", {"kg", "m", "s", "kg m^2"}), ("mm-t-s", {"t", "mm", "s", "t mm^2"}), ("none", set())])
-def test_labels_of_a_check_follow(units, expected, impakt):
-    """Of what -check adds to the start, for an explicit body, but for the seconds that the run itself takes."""
-    text = impakt(f"{MM} -block_ts_type centraldifference -block_ts_time_step auto -check -units {units}").stdout
-    text = re.sub(r"^  wall time .*", "", text[text.index("check of body") :], flags=re.MULTILINE)
-    assert set(re.findall(r"[\d)] (kg m\^2|t mm\^2|kg|t|mm|m|s)\b", text)) == expected
+NUMBER_WITH_UNIT = re.compile(r"(?:\d\.?|\)) (kg|t|m|mm|s|kg m\^2|t mm\^2)(?=[,;\n])")
+
+
+@pytest.mark.parametrize(
+    "units, expected",
+    [("SI", {"kg", "kg m^2", "m", "s"}), ("mm-t-s", {"t", "t mm^2", "mm", "s"}), ("none", set())],
+)
+def test_forecast_follows(units, expected, impakt):
+    """What -check expects, and the warning of an element that bounds the step of a mesh from a file; the wall time is in seconds always."""
+    run = impakt(f"{MM} -units {units} -block_ts_type centraldifference -check")
+    forecast = run.stdout.split("check of body block")[1].split("check of the run")[0]
+    assert set(NUMBER_WITH_UNIT.findall(forecast)) == expected
+    assert ", centre (50, 51, 0)" in forecast
+
+
+# Wrong options, and what the message says of their numbers
+WRONG = {
+    "-block_density 0": "is 0.{density};",
+    "-block_youngs_modulus -1": "is -1.{stress};",
+    "-block_material_type j2 -block_yield_stress -1": "is -1.{stress};",
+    "-block_material_type j2": "begins to yield{in_stress}",
+    "-block_thickness 0": "is 0.{length};",
+    "-block_translate 0,-6": "is 5.{length} inside",
+    "-block_translate 1e20,0": "is 100.{length} large and lies 1e+20{length} from",
+    "-block_axisymmetric true -block_translate -50,0": "from x = -50. to 50.{length};",
+    "-block_probe 0,0": "(0., 0., 0.){length} lies outside the mesh of body 'block', about 1{length} from",
+    "-time_step 0": "-time_step 0.{time} must",
+    "-time_end -1": "-time_end -1.{time} must be later than -time_start 0.{time}",
+    "-time_step 1e-10 -time_end 1e20": "-time_step 1e-10{time} is too small for 1e+20{time} of",
+    "-contact_law tied": "is apart by 1.{length}, which",
+    "-contact_type penalty -penalty_snes_max_it 1 -controller_step_cuts 0": "{force} (DIVERGED_MAX_IT)",
+    "-contact_type augmented_lagrangian -contact_augmentation_max_it 1 -controller_step_cuts 0": "augmentations the gap is off by 0.000906771{length}. Raise",
+}
+LABELS = {
+    "SI": {"density": " kg/m^3", "stress": " Pa", "force": " N", "in_stress": " in Pa", "length": " m", "time": " s"},
+    "mm-t-s": {"density": " t/mm^3", "stress": " MPa", "force": " N", "in_stress": " in MPa", "length": " mm", "time": " s"},
+    "none": {"density": "", "stress": "", "force": "", "in_stress": "", "length": "", "time": ""},
+}
+
+
+@pytest.mark.parametrize("units", list(LABELS))
+@pytest.mark.parametrize("wrong", list(WRONG))
+def test_errors_follow(wrong, units, impakt):
+    """Errors name the units that the user counts in."""
+    check_message(impakt(f"{MM} -units {units} {wrong}", expect_failure=True), [WRONG[wrong].format(**LABELS[units])])
+
+
+@pytest.mark.parametrize("option, unit", [("density", "t/mm^3"), ("youngs_modulus", "MPa")])
+def test_missing_numbers_are_asked_for(option, unit, impakt):
+    """In the units that are set: who is asked for kg/m^3 gives 7850."""
+    without = re.sub(rf"-block_{option} \S+", "", MM)
+    for units, asked in (("mm-t-s", f" in {unit}"), ("none", None)):
+        run = impakt(f"{without} -units {units}", expect_failure=True)
+        assert re.fullmatch(rf"impakt: error: -block_{option} is missing; give [^;]*?(?P<unit> in \S+)?\n", run.stderr)["unit"] == asked
 
 
 def test_nothing_is_read_by_the_way(impakt):
@@ -66,6 +114,9 @@ def test_wrong_word(impakt):
         (MM, ["-block_density 7.85e-09 kg/m^3 is implausible and would fit t/mm^3"]),
         (f"{BLOCK} -units mm-t-s -block_density 7850 -block_youngs_modulus 2.1e11", ["-block_density 7850. t/mm^3 is implausible and would fit kg/m^3", "-block_youngs_modulus 2.1e+11 MPa is implausible and would fit Pa"]),
         (f"{BLOCK} -block_density 7850 -block_youngs_modulus 210 -time_step 1e-3 -time_end 2e-3", ["-block_youngs_modulus 210. Pa is implausible and would fit GPa"]),
+        (f"{MM} -units mm-t-s -block_gravity 0,-9810", []),
+        (f"{MM} -units mm-t-s -block_gravity 0,-9.81", ["-block_gravity 9.81 mm/s^2 is implausible and would fit m/s^2"]),
+        (f"{BLOCK} -block_density 7850 -block_youngs_modulus 2.1e11 -block_gravity 3,-9810", ["-block_gravity 9810. m/s^2 is implausible and would fit mm/s^2"]),
         (f"{BLOCK} -block_density 7850 -block_youngs_modulus 2.1e11 -block_scale 100", ["-block_scale 10000. m is implausible and would fit mm"]),
         (f"{BLOCK} -block_density 7850 -block_youngs_modulus 2.1e11 -block_dm_plex_box_upper 10000,101", ["-block_dm_plex_box_upper 10000. m is implausible and would fit mm"]),
     ],

@@ -136,6 +136,10 @@ def test_compare(impakt, call):
     assert float(rows["body/b/mean_velocity"][-1]) < 1e-12
     assert "-b_density: 1 | 0.5" in printed
     assert "-time_step: 0.1 | 0.025" in printed
+    millimetres = impakt(f"{base} -b_density 1 -time_step 0.1 -units mm-t-s")
+    code, printed, told = call(compare, *(each.folder / "history.h5" for each in (one, millimetres)))
+    assert code == 1 and not printed
+    assert "has the units SI" in told and "mm-t-s: numbers of different units" in told
 
 
 def test_convergence(impakt, call, tmp_path):

@@ -73,6 +73,9 @@ def test_a_figure_that_is_not_there(call):
     code, table, _, _ = call("--vary", "time_step=2e-6", "--figure", "contact/heat")
     assert code == 1
     assert "its summary has no contact/heat" in table[0]["failure"]
+    _, table, _, _ = call("--vary", "time_step=2e-6", "--figure", "contact/force_max")
+    assert "no contact/force_max; the nearest are contact/force_" in table[0]["failure"] and "contact/force_peak" in table[0]["failure"]
+    assert len(table[0]["failure"]) < 200
 
 
 def test_files_of_the_case_are_left_alone(call, tmp_path):

@@ -132,7 +132,8 @@ static void shared_options_without_effect_are_refused(void **state)
   AddOptions("-all_thickness 2 -all_densty 3 -right_material steel -material_steel_yield_stress 4 -material_brass_density 5");
   ok(SimulationCreate(simulation));
   refused(PETSC_ERR_USER_INPUT,
-          "-all_densty 3 (the nearest known one is -all_density)|-all_thickness 2|-material_steel_yield_stress 4 (goes with another|"
+          "-all_densty 3 (the nearest known one is -all_density)|-all_thickness 2|-material_steel_yield_stress 4 (needs "
+          "-material_steel_material_type j2|"
           "-material_brass_density 5 (no body names this material, as in -left_material brass)",
           ImpaktCheckOptions(2, names));
 }

@@ -11,6 +11,7 @@ from messages import check_message
 
 BLOCKS = "options/blocks.opts"
 SHORT = ["-time_end", "1e-6"]
+FLOOR = ["-obstacles", "floor", "-floor_obstacle_type", "plane", "-floor_point", "0,-9,0", "-floor_normal", "0,1,0"]
 
 
 @pytest.fixture
@@ -81,7 +82,10 @@ LINES = {
     "prefix without value": ("-prefix_push", ["line 1", "-prefix_push needs the prefix"]),
     "prefix never pushed": ("-time_end 1\n-prefix_pop", ["line 2", "without a -prefix_push"]),
     "no prefix": ("-prefix_push 1", ['"1"', "first character must be a letter"]),
-    "second value": ("-time_end 1 2", ["line 1", "extra token 2"]),
+    "second value": ("-time_end 1 2", ["line 1", "'2' follows the value '1' of -time_end"]),
+    "blank in a list": ("-left_gravity 0, -9.81 # m/s^2", ["line 1", "'-9.81' follows the value '0,' of -left_gravity", "without blanks"]),
+    "two options with values": ("-time_end 1 -time_step 1", ["line 1", "'-time_step'", "a line of its own"]),
+    "equals sign": ("-time_end = 1", ["line 1", "'1' follows the value '=' of -time_end"]),
     "two options": ("-time_end 1\n-left_density -right_density", ["line 2", "two options per line"]),
     "word": ("time_end 1", ["line 1", "'time_end' is no option", "dash"]),
     "byte-order mark": ("\ufeff-time_end 1", ["line 1", "byte-order mark"]),
@@ -297,6 +301,8 @@ def test_example(words, tmp_path):
     """Nothing that is there is overwritten, on several ranks neither; what is written can be run."""
     listed = dict(re.findall(r"^  (\S+) +(.*)", words("-example").stdout, re.MULTILINE))
     assert listed["sliding-flat-3d"] == "The block of sliding-flat.opts in three dimensions, on hexahedra"  # a full stop amid it
+    assert listed["bouncing-bar"].endswith("SIAM Journal on Scientific Computing 33 (2011)")  # initials, and two lines
+    assert listed["taylor-bar-axisymmetric-wall"].startswith("Taylor's impact test")
     (tmp_path / "blocks.opts").write_text("mine")
     refused(words("-example", "blocks"), ["'blocks.opts' exists already"])
     assert (tmp_path / "blocks.opts").read_text() == "mine"
@@ -323,6 +329,16 @@ SENSELESS = {
     "option with digit": (["-bodies", "1a", "-1a_dm_plex_dim", "1"], ["'-1a_dm_plex_dim'", "letter"]),
     "body not ASCII": (["-bodies", "block,kl\u00f6tz"], ["-bodies", "kl\u00f6tz", "letters"]),
     "obstacle": ([BLOCKS, "-obstacles", "2nd"], ["-obstacles", "'2nd'"]),
+    "strength of an elastic body": ([BLOCKS, "-left_yield_stress", "3e8"], ["-left_yield_stress 3e8 (needs -left_material_type j2|j2_small|johnson_cook)"]),
+    "strength of an elastic material": ([BLOCKS, "-left_material", "steel", "-material_steel_yield_stress", "3e8"], ["(needs -material_steel_material_type j2|"]),
+    "exponent of j2": ([BLOCKS, "-left_material_type", "j2", "-left_yield_stress", "3e8", "-left_hardening_exponent", "2"], ["(needs -left_material_type johnson_cook)"]),
+    "saturation of linear hardening": ([BLOCKS, "-left_material_type", "j2", "-left_yield_stress", "3e8", "-left_saturation_stress", "4e8"], ["(needs -left_hardening voce)"]),
+    "radius of a box": ([BLOCKS, "-left_ball_radius", "2"], ["-left_ball_radius 2 (needs -left_dm_plex_shape ball)"]),
+    "surface without components": ([BLOCKS, "-left_boundary_displacement", "xmin"], ["names 'xmin'", "as in -left_boundary_displacement_xmin 0,0"]),
+    "misspelt body of a pair": ([BLOCKS, "-contact_pairs", "left:rigth"], ["left:rigth", "no body 'rigth'; -bodies has left, right"]),
+    "misspelt obstacle of a pair": ([BLOCKS, *FLOOR, "-contact_pairs", "left:flor"], ["no body 'flor'; -bodies has left, right; -obstacles has floor (obstacles stand second"]),
+    "obstacle first": ([BLOCKS, *FLOOR, "-contact_pairs", "floor:left"], ["no body 'floor'", "-obstacles has floor (obstacles stand second"]),
+    "surfaces that look away": ([BLOCKS, "-contact_pairs", "left.xmin:right.xmax"], ["do not face each other", "-left_dm_plex_box_lower", "-right_dm_plex_box_lower", "-contact_facing false"]),
     "far away": ([BLOCKS, "-left_translate", "1e12,0"], ["'left'", "-left_translate", "digits"]),
     "tiny": ([BLOCKS, "-left_scale", "1e-80"], ["'left'", "-left_scale"]),
     "large step of bars": (["options/impact-high-speed.opts", "-time_step", "1e20"], ["-time_step 1e+20 s", "resolve contact", "masses"]),

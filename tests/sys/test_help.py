@@ -127,6 +127,11 @@ WORDS = {
     "Gmsh": (["<body>_dm_plex_filename"], {"<body>_<block>_material_type"}),
     "youngs_modulus": (["<body>_youngs_modulus"], set()),
     "glue": (["contact_law"], set()),
+    "roller": (["<body>_boundary_displacement"], set()),
+    "symmetry": (["<body>_boundary_displacement"], set()),
+    "shear": (["<body>_boundary_traction"], set()),
+    "preload": (["<body>_ts_type", "restart_state"], set()),
+    "mm": (["units"], set()),
 }
 
 

@@ -127,7 +127,7 @@ PetscErrorCode BodyAddBodyForce(Body body, const char components[])
 
   Level: beginner
 
-.seealso: `Body`, `BodyAddBodyForce()`, `BodyLoadsSetFromOptions()`
+.seealso: `Body`, `BodyGetGravity()`, `BodyAddBodyForce()`, `BodyLoadsSetFromOptions()`
 @*/
 PetscErrorCode BodySetGravity(Body body, const PetscReal gravity[])
 {
@@ -136,6 +136,30 @@ PetscErrorCode BodySetGravity(Body body, const PetscReal gravity[])
   PetscAssertPointer(gravity, 2);
   PetscCall(Prepare(body));
   PetscCall(BodyLoadsSetGravity(body, gravity));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetGravity - the acceleration of gravity
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, with its mesh
+
+  Output Parameter:
+. gravity - as many numbers as the body has dimensions [m/s^2]; zeros where none is set
+
+  Level: beginner
+
+.seealso: `Body`, `BodySetGravity()`
+@*/
+PetscErrorCode BodyGetGravity(Body body, PetscReal gravity[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(gravity, 2);
+  for (PetscInt d = 0; d < body->mesh.dim; d++) gravity[d] = body->loads && body->loads->has_gravity ? body->loads->gravity[d] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

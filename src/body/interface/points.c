@@ -1,6 +1,7 @@
 /* Points of a body whose motion and stress are observed: -<body>_probe. */
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
+#include <sys/units.h>
 
 /* A point counts as one of an element if it is farther from it by less than this part of the element: round-off of positions */
 #define INSIDE 1e-9
@@ -242,9 +243,10 @@ PetscErrorCode BodySetUpPoints(Body body)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &nearest, 1, MPIU_REAL, MPIU_MIN, comm));
     PetscCheck(
         nearest == 0, comm, PETSC_ERR_USER_INPUT,
-        "-%sprobe: the point (%g, %g, %g) m lies outside the mesh of body '%s', about %.3g m from its nearest element; positions are "
+        "-%sprobe: the point (%g, %g, %g)%s lies outside the mesh of body '%s', about %.3g%s from its nearest element; positions are "
         "those of the undeformed body, after its placement",
-        ((PetscObject)body)->prefix, (double)x[0], (double)x[1], (double)x[2], body->hdr.name, (double)nearest);
+        ((PetscObject)body)->prefix, (double)x[0], (double)x[1], (double)x[2], UnitsOf((PetscObject)body, UNIT_LENGTH), body->hdr.name,
+        (double)nearest, UnitsOf((PetscObject)body, UNIT_LENGTH));
   }
   PetscCall(WeighPlaces(body));
   PetscCall(PetscMalloc3(points->n_places * nodes, &points->connectivity, 6 * points->n_places, &points->stress, N_SUMS * points->n,

@@ -41,14 +41,15 @@ static PetscErrorCode GetNames(Body body, const char name[], PetscInt *n, char *
 /* The value of -<body>_<list>_<surface> */
 static PetscErrorCode GetSurfaceText(Body body, const char list[], const char surface[], const char *text[])
 {
-  const char *prefix = ((PetscObject)body)->prefix;
-  char        name[LOADS_NAME_LENGTH];
+  const char *prefix = ((PetscObject)body)->prefix, *const zeros[] = {"0", "0,0", "0,0,0"};
+  char name[LOADS_NAME_LENGTH];
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s_%s", list, surface));
   PetscCall(BodyLoadsGetText(body, name, text));
-  PetscCheck(*text, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s names '%s', but there is no -%s%s with its components",
-             prefix, list, surface, prefix, name);
+  PetscCheck(*text, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-%s%s names '%s', but its components are missing; give them, as in -%s%s %s", prefix, list, surface, prefix, name,
+             zeros[body->mesh.dim - 1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

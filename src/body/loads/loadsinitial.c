@@ -1,10 +1,11 @@
 /* Displacement and velocity at the start, from options. */
 #include "loadsimpl.h"
+#include <sys/units.h>
 
 /* Composed with the body where the option of that name is given */
-static const char *const initial[] = {"initial_displacement", "initial_velocity"};
-static const char *const unit[]    = {"m", "m/s"};
-static const PetscReal   bound[]   = {1e22, 1e60};
+static const char *const   initial[]   = {"initial_displacement", "initial_velocity"};
+static const UnitDimension dimension[] = {UNIT_LENGTH, UNIT_VELOCITY};
+static const PetscReal     bound[]     = {1e22, 1e60};
 
 static PetscErrorCode Evaluate(Body body, const Expression list[], Vec values)
 {
@@ -49,8 +50,8 @@ static PetscErrorCode CheckSize(Body body, int which, Vec values)
   PetscFunctionBegin;
   PetscCall(VecNorm(values, NORM_INFINITY, &largest));
   PetscCheck(largest <= bound[which], PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "-%s%s is up to %g %s; it must not be larger than %g %s", ((PetscObject)body)->prefix, initial[which], (double)largest,
-             unit[which], (double)bound[which], unit[which]);
+             "-%s%s is up to %g%s; it must not be larger than %g%s", ((PetscObject)body)->prefix, initial[which], (double)largest,
+             UnitsOf((PetscObject)body, dimension[which]), (double)bound[which], UnitsOf((PetscObject)body, dimension[which]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

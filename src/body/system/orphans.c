@@ -7,6 +7,7 @@
    furthest nodes first.
 */
 #include <body/layout/bodyimpl.h>
+#include <sys/units.h>
 
 /* Mass that would have to go further than this many elements has no place nearby */
 #define MAX_DISTANCE 8
@@ -206,9 +207,9 @@ PetscErrorCode BodyFindOrphans(Body body)
   PetscCall(VecDestroy(&orphans.nearer));
   PetscCall(VecDestroy(&work));
   PetscCheck(left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "Body '%s': %g kg of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the "
+             "Body '%s': %g%s of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the "
              "mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false",
-             body->hdr.name, (double)left, ((PetscObject)body)->prefix);
+             body->hdr.name, (double)left, UnitsOf((PetscObject)body, UNIT_MASS), ((PetscObject)body)->prefix);
   PetscCall(CopyToComponents(body, orphans.mass));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

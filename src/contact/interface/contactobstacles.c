@@ -1,5 +1,6 @@
 /* Obstacles of a contact problem. */
 #include <contact/parts.h>
+#include <sys/units.h>
 
 /* Pairs find bodies and obstacles by their names */
 PetscErrorCode ContactCheckObstacleName(Contact contact, const char name[])
@@ -159,15 +160,16 @@ static PetscErrorCode AdviseObstacle(const ContactPair *pair, size_t size, char 
 /* The error of a body that is inside an obstacle at the start */
 PetscErrorCode ContactRefuseInside(Contact contact, const ContactPair *pair, PetscReal depth)
 {
-  char advice[512], moves[CONTACT_MOVES];
+  char advice[512], moves[CONTACT_MOVES], nodes[CONTACT_MOVES];
 
   PetscFunctionBegin;
   PetscCall(AdviseObstacle(pair, sizeof(advice), advice));
   PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
+  PetscCall(ContactDescribeRound(contact, pair->body[0], nodes));
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-          "-contact_pairs %s: the body is %g m inside the obstacle at the start; move the body (%s) or the obstacle, or look whether it is "
-          "on the wrong side: %s",
-          pair->name, (double)depth, moves, advice);
+          "-contact_pairs %s: the body is %g%s inside the obstacle at the start; move the body (%s) or the obstacle, or look whether it is "
+          "on the wrong side: %s%s",
+          pair->name, (double)depth, UnitsOf((PetscObject)contact, UNIT_LENGTH), moves, advice, nodes);
 }
 
 /* The error of a surface that looks away from the obstacle it is to touch */

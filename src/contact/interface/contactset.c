@@ -1,5 +1,6 @@
 /* What programs set of contact beside its options, whatever the method. */
 #include <contact/parts.h>
+#include <sys/units.h>
 
 const char *const ContactLaws[]        = {"frictionless", "tied", "bonded", "friction", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
@@ -236,7 +237,7 @@ PetscErrorCode ContactSetTolerance(Contact contact, PetscReal tolerance)
   PetscValidLogicalCollectiveReal(contact, tolerance, 2);
   ContactCheckNotSetUp(contact);
   PetscCheck(tolerance >= 0 || tolerance == (PetscReal)PETSC_DEFAULT, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "A contact tolerance of %g m must not be negative", (double)tolerance);
+             "A contact tolerance of %g%s must not be negative", (double)tolerance, UnitsOf((PetscObject)contact, UNIT_LENGTH));
   contact->options.tolerance = tolerance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

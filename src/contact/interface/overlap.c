@@ -1,6 +1,7 @@
 /* Bodies that are inside each other, or inside obstacles. */
 #include <contact/parts.h>
 #include <impakt/mesh.h>
+#include <sys/units.h>
 
 /* Rows at the start are at most this deep where bodies have the state of another run, in contact there [parts of a contact element] */
 #define INSIDE 0.02
@@ -22,7 +23,7 @@ static PetscErrorCode LeastElement(Contact contact, const ContactPair *pair, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows that start no deeper than the bow of their partner's faces makes of surfaces which only touch, as two balls whose poles meet, start
+/* Rows that start no deeper than the bow of their partner's faces makes of surfaces which only touch, as two rounds whose poles meet, start
    closed: the depth is added to their gap until they have been open, so that it is no blow in the first step. Bodies that begin with the
    state of another run (`of_state`) have been in contact there by other rows perhaps, of the other side: what these leave of depth is
    allowed too. */
@@ -117,22 +118,41 @@ PetscErrorCode ContactDescribeMoves(Contact contact, PetscInt body, char text[CO
   const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *option;
 
   PetscFunctionBegin;
-  PetscCall(MeshGetPlaceOption(prefix, &option));
+  PetscCall(MeshGetPlaceOption(prefix, &option, NULL));
   PetscCall(PetscSNPrintf(text, CONTACT_MOVES, "-%s%s, -%sinitial_displacement", prefix, option, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of a ball or a rod whose nodes lie outside its radius, that they do; of other bodies nothing */
+PetscErrorCode ContactDescribeRound(Contact contact, PetscInt body, char text[CONTACT_MOVES])
+{
+  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *keeps;
+
+  PetscFunctionBegin;
+  text[0] = 0;
+  PetscCall(MeshGetPlaceOption(prefix, NULL, &keeps));
+  if (keeps)
+    PetscCall(PetscSNPrintf(text, CONTACT_MOVES,
+                            "; nodes of '%s' lie outside its radius, for the mesh to have its volume: with -%s%s false they lie at it",
+                            ((PetscObject)contact->bodies[body])->name, prefix, keeps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode RefuseOverlap(Contact contact, const SurfaceDepth *overlap)
 {
   const PetscInt *of = overlap->surfaces;
-  char            moves[2][CONTACT_MOVES];
+  char            moves[2][CONTACT_MOVES], nodes[2][CONTACT_MOVES];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) PetscCall(ContactDescribeMoves(contact, of[k], moves[k]));
+  for (PetscInt k = 0; k < 2; k++) {
+    PetscCall(ContactDescribeMoves(contact, of[k], moves[k]));
+    PetscCall(ContactDescribeRound(contact, of[k], nodes[k]));
+  }
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-          "Bodies '%s' and '%s' overlap by %g m at the start, at (%g, %g, %g); move one of them: %s, or %s",
+          "Bodies '%s' and '%s' overlap by %g%s at the start, at (%g, %g, %g); move one of them: %s, or %s%s%s",
           ((PetscObject)contact->bodies[of[0]])->name, ((PetscObject)contact->bodies[of[1]])->name, (double)overlap->depth,
-          (double)overlap->x[0], (double)overlap->x[1], (double)overlap->x[2], moves[0], moves[1]);
+          UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)overlap->x[0], (double)overlap->x[1], (double)overlap->x[2], moves[0],
+          moves[1], nodes[0], nodes[1]);
 }
 
 /* The deepest of the overlaps of a pair; NULL: none */

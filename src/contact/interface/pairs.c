@@ -23,17 +23,20 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
     if (same) *body = b;
     PetscCall(NamesAppend(known, sizeof(known), ", ", ((PetscObject)contact->bodies[b])->name));
   }
-  for (PetscInt o = 0; obstacle && !dot && *body < 0 && o < contact->n_obstacles; o++) {
+  if (contact->n_obstacles) PetscCall(NamesAppend(known, sizeof(known), "", "; -obstacles has"));
+  for (PetscInt o = 0; o < contact->n_obstacles; o++) {
     const char *other;
 
     PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+    PetscCall(NamesAppend(known, sizeof(known), o ? ", " : " ", other));
     PetscCall(PetscStrcmp(other, name, &same));
-    if (!same) continue;
+    if (!same || !obstacle || dot || *body >= 0) continue;
     *body     = contact->n_bodies;
     *obstacle = contact->obstacles[o];
   }
   PetscCheck(*body >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_pairs %s: there is no body '%s'; -bodies has %s (obstacles stand second, without a surface)", pair, name, known);
+             "-contact_pairs %s: there is no body '%s'; -bodies has %s%s", pair, name, known,
+             contact->n_obstacles ? " (obstacles stand second, without a surface)" : "");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,6 +3,7 @@
    smaller as a whole, is solved in the same sweeps and steps and has the same figures but for their scale.
 */
 #include <contact/parts.h>
+#include <sys/units.h>
 
 /* Diameter of the ball about the mean of a body's nodes that has all of them in it [m]: the length of a bar, however it lies in space */
 static PetscErrorCode GetExtent(Body body, PetscReal *extent)
@@ -82,9 +83,10 @@ PetscErrorCode ContactSetUpScales(Contact contact)
   PetscCheck(
       !contact->n_pairs || tolerance <= LARGEST_TOLERANCE * contact->scale.length, PetscObjectComm((PetscObject)contact),
       PETSC_ERR_USER_INPUT,
-      "Gaps count as closed to %g m (-contact_tolerance), but body '%s' is %g m large altogether, and '%s' %g m: bodies that meet must "
+      "Gaps count as closed to %g%s (-contact_tolerance), but body '%s' is %g%s large altogether, and '%s' %g%s: bodies that meet must "
       "not differ in size so much. Check their units, -%s_scale and -%s_scale",
-      (double)tolerance, small, (double)contact->scale.length, large, (double)largest, small, large);
+      (double)tolerance, UnitsOf((PetscObject)contact, UNIT_LENGTH), small, (double)contact->scale.length,
+      UnitsOf((PetscObject)contact, UNIT_LENGTH), large, (double)largest, UnitsOf((PetscObject)contact, UNIT_LENGTH), small, large);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,6 +7,7 @@
    same material points on both sides, and no slip.
 */
 #include "friction.h"
+#include <sys/units.h>
 
 /* Round-off of normals that a velocity may have a part along */
 #define ACROSS 1e-6
@@ -181,9 +182,10 @@ static PetscErrorCode GetDrive(Contact contact, const ContactPair *pair, PetscIn
     cosine += normal[d] * surface[d];
   }
   PetscCheck(!contact->start.active[row] || PetscAbsReal(across) <= ACROSS * PetscSqrtReal(size), PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "The velocity (%g, %g, %g) m/s of the obstacle of %s at (%g, %g, %g) m has a part across its surface; an obstacle moves "
+             "The velocity (%g, %g, %g)%s of the obstacle of %s at (%g, %g, %g)%s has a part across its surface; an obstacle moves "
              "along its surface alone",
-             (double)velocity[0], (double)velocity[1], (double)velocity[2], pair->name, (double)x[0], (double)x[1], (double)x[2]);
+             (double)velocity[0], (double)velocity[1], (double)velocity[2], UnitsOf((PetscObject)contact, UNIT_VELOCITY), pair->name,
+             (double)x[0], (double)x[1], (double)x[2], UnitsOf((PetscObject)contact, UNIT_LENGTH));
   for (PetscInt d = 0; d < 3 && cosine < 0; d++) surface[d] = -surface[d]; /* rows have the normal of the body */
   TurnAlong(surface, normal, velocity);
   PetscFunctionReturn(PETSC_SUCCESS);

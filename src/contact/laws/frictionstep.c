@@ -116,8 +116,8 @@ static PetscErrorCode Fail(Contact contact, PetscBool solved, PetscReal mismatch
   else
     PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
                              "The forces of friction did not settle in the step that ends at time %.9g s: after %" PetscInt_FMT
-                             " sweeps gaps and slips are missed by %g m. Choose a smaller -time_step",
-                             (double)time, contact->counts.sweeps, (double)mismatch));
+                             " sweeps gaps and slips are missed by %g%s. Choose a smaller -time_step",
+                             (double)time, contact->counts.sweeps, (double)mismatch, UnitsOf((PetscObject)contact, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -195,9 +195,9 @@ static PetscErrorCode Augment(Contact contact)
   PetscCall(ForcesGetTime(contact, &time));
   PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
                            "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-                           " augmentations gaps and slips are off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or "
+                           " augmentations gaps and slips are off by %g%s. Raise -contact_penalty or -contact_augmentation_max_it, or "
                            "loosen -contact_augmentation_tolerance",
-                           (double)time, step->springs.max_it, (double)worst));
+                           (double)time, step->springs.max_it, (double)worst, UnitsOf((PetscObject)contact, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -79,7 +79,8 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
 static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 {
   Surface surfaces[2];
-  int     any[2] = {0, 1};
+  int     any[2]                  = {0, 1};
+  char    moves[2][CONTACT_MOVES] = {"", ""};
 
   PetscFunctionBegin;
   if (pair->chosen || !contact->options.facing) PetscFunctionReturn(PETSC_SUCCESS);
@@ -93,8 +94,11 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
     PetscCall(SurfaceDestroy(&surfaces[side]));
   }
   if (pair->obstacle && !any[0]) PetscCall(ContactRefuseTurned(contact, pair));
+  for (PetscInt side = 0; side < 2 && !(any[0] && any[1]); side++) PetscCall(ContactDescribeMoves(contact, pair->body[side], moves[side]));
   PetscCheck(any[0] && any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere", pair->name);
+             "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere at the start; name others, move one of the "
+             "bodies (%s, or %s), or set -contact_facing false where they turn to each other later",
+             pair->name, moves[0], moves[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,5 +1,6 @@
 /* The rows of all pairs: from surfaces to transfers, and what these say of each row. */
 #include <contact/parts.h>
+#include <sys/units.h>
 
 /* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
 #define NO_COMPONENT 1e-9
@@ -212,7 +213,8 @@ PetscErrorCode ContactSetUpRows(Contact contact)
   }
   if (contact->options.tolerance == (PetscReal)PETSC_DEFAULT) contact->options.tolerance = PENETRATION_TOLERANCE * extent;
   PetscCheck(contact->options.tolerance >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_tolerance %g m must not be negative", (double)contact->options.tolerance);
+             "-contact_tolerance %g%s must not be negative", (double)contact->options.tolerance,
+             UnitsOf((PetscObject)contact, UNIT_LENGTH));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

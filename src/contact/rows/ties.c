@@ -5,6 +5,7 @@
    that tie nothing.
 */
 #include <contact/parts.h>
+#include <sys/units.h>
 
 /* Nodes farther from the partner than this belong to another part of the surface and are left alone [edges of the face]. A node that is
    nearer and yet not within the tie distance is an error. */
@@ -181,15 +182,16 @@ static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, c
 
     if (!summary->n[state]) continue;
     PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
-    SETERRQ(
-        comm, PETSC_ERR_USER_INPUT,
-        "-contact_pairs %s: at the start %" PetscInt_FMT " of %" PetscInt_FMT " nodes of body '%s' opposite to the partner %s, and "
-        "-contact_law tied ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g m, which "
-        "is %.3g of its face. Move one of the bodies (%s), name smaller surfaces in -contact_pairs, "
-        "or set -contact_tie_distance, now %g of a face, above that number to tie them as they are",
-        pair->name, summary->n[state], summary->n[TIE_HOLDS] + summary->n[TIE_OVERLAPS] + summary->n[TIE_TOO_FAR] + summary->n[TIE_APART],
-        first, state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", (double)x[0], (double)x[1], (double)x[2],
-        state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, (double)(gap / size), moves, (double)contact->options.tie_distance);
+    SETERRQ(comm, PETSC_ERR_USER_INPUT,
+            "-contact_pairs %s: at the start %" PetscInt_FMT " of %" PetscInt_FMT " nodes of body '%s' opposite to the partner %s, and "
+            "-contact_law tied ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g%s, which "
+            "is %.3g of its face. Move one of the bodies (%s), name smaller surfaces in -contact_pairs, "
+            "or set -contact_tie_distance, now %g of a face, above that number to tie them as they are",
+            pair->name, summary->n[state],
+            summary->n[TIE_HOLDS] + summary->n[TIE_OVERLAPS] + summary->n[TIE_TOO_FAR] + summary->n[TIE_APART], first,
+            state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", (double)x[0], (double)x[1], (double)x[2],
+            state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)(gap / size),
+            moves, (double)contact->options.tie_distance);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -221,12 +223,12 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
                pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
     SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
             "-contact_pairs %s: -contact_law tied ties nothing: at the start the node of body '%s' that is nearest to the partner, at "
-            "(%g, %g, %g) before any displacement, has a gap of %g m, which is %.3g of its face, and nodes are tied within "
+            "(%g, %g, %g) before any displacement, has a gap of %g%s, which is %.3g of its face, and nodes are tied within "
             "-contact_tie_distance, now %g of a face; move one of the bodies (%s), or leave the pair out "
             "of -contact_pairs",
             pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1], (double)x[2],
-            (double)summary->gap[TIE_APART], (double)(summary->gap[TIE_APART] / summary->size[TIE_APART - 1]),
-            (double)contact->options.tie_distance, moves);
+            (double)summary->gap[TIE_APART], UnitsOf((PetscObject)contact, UNIT_LENGTH),
+            (double)(summary->gap[TIE_APART] / summary->size[TIE_APART - 1]), (double)contact->options.tie_distance, moves);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

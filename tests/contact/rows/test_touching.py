@@ -2,6 +2,7 @@
 the row of the pole was dropped for that, so that discs of 64 edges touched 5e-5 s late, and discs of 16 edges went through each other."""
 
 import pytest
+from cases import joined
 
 TOUCH = (
     "-options_file options/discs.opts -a_ball_centre -0.01,0 -b_ball_centre 0.01,0 -a_initial_velocity 1,0 -b_initial_velocity -1,0 "
@@ -21,5 +22,12 @@ def test_poles(divisions, pair, shared_run):
 
 
 def test_overlap_is_refused(impakt):
-    """A tenth of a face deep is no touch."""
+    """A tenth of a face deep is no touch. Nodes that lie outside the radius are named, where that is what overlaps: moved to it they only touch."""
     assert "overlap by" in impakt(f"{TOUCH} -b_ball_centre 0.0099,0", expect_failure=True).stderr
+    kept = [f"-{body}_ball_keep_volume" for body in "ab"]
+    coarse = f"{TOUCH} -a_ball_divisions 4 -b_ball_divisions 4 -contact_pairs b:a"
+    refused = impakt(joined(coarse, " ".join(f"{option} true" for option in kept)), expect_failure=True).stderr
+    assert all(f"nodes of '{body}' lie outside its radius" in refused and f"with {option} false they lie at it" in refused for body, option in zip("ab", kept, strict=True))
+    assert "outside" not in impakt(f"{TOUCH} -b_ball_centre 0.0099,0", expect_failure=True).stderr
+    floor = "-obstacles floor -floor_obstacle_type plane -floor_point 0,-0.01 -floor_normal 0,1 -contact_pairs b:floor"
+    assert "with -b_ball_keep_volume false they lie at it" in impakt(joined(coarse, f"-bodies b {floor} -b_ball_keep_volume true"), expect_failure=True).stderr

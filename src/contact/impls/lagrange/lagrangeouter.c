@@ -1,6 +1,7 @@
 /* The outer iteration on implicit Lagrange multipliers: a SNES for variational inequalities, with complementarity measured in metres. */
 #include "lagrangeimpl.h"
 #include <sys/petsccompat.h>
+#include <sys/units.h>
 
 /* Relative to the largest compliance: pivots below are round-off */
 #define ZERO_PIVOT (100 * PETSC_MACHINE_EPSILON)
@@ -176,8 +177,9 @@ PetscErrorCode LagrangeCheckConverged(Contact contact)
   PetscCall(StepFailureSet(
       &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
       "The iteration on the Lagrange multipliers did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-      " evaluations the contact constraint is missed by %g m (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose "
+      " evaluations the contact constraint is missed by %g%s (%s). Raise -lagrange_snes_max_it, loosen -lagrange_snes_atol, or choose "
       "a smaller -time_step",
-      (double)time, contact->counts.sweeps, (double)lagrange->mismatch, SNESConvergedReasons[reason]));
+      (double)time, contact->counts.sweeps, (double)lagrange->mismatch, UnitsOf((PetscObject)contact, UNIT_LENGTH),
+      SNESConvergedReasons[reason]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

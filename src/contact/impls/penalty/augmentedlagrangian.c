@@ -25,7 +25,8 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
                             penalty->augmentation_max_it, &penalty->augmentation_max_it, NULL));
   PetscOptionsEnd();
   PetscCheck(penalty->augmentation_tolerance == (PetscReal)PETSC_DEFAULT || penalty->augmentation_tolerance > 0, comm, PETSC_ERR_USER_INPUT,
-             "-contact_augmentation_tolerance %g m must be positive", (double)penalty->augmentation_tolerance);
+             "-contact_augmentation_tolerance %g%s must be positive", (double)penalty->augmentation_tolerance,
+             UnitsOf((PetscObject)contact, UNIT_LENGTH));
   PetscCheck(penalty->augmentation_max_it > 0, comm, PETSC_ERR_USER_INPUT,
              "-contact_augmentation_max_it %" PetscInt_FMT " must be positive", penalty->augmentation_max_it);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -84,9 +85,9 @@ static PetscErrorCode ContactStep_AugmentedLagrangian(Contact contact)
   PetscCall(ForcesGetTime(contact, &time));
   PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
                            "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-                           " augmentations the gap is off by %g m. Raise -contact_penalty or -contact_augmentation_max_it, or loosen "
+                           " augmentations the gap is off by %g%s. Raise -contact_penalty or -contact_augmentation_max_it, or loosen "
                            "-contact_augmentation_tolerance",
-                           (double)time, penalty->augmentation_max_it, (double)mismatch));
+                           (double)time, penalty->augmentation_max_it, (double)mismatch, UnitsOf((PetscObject)contact, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -261,9 +261,10 @@ static PetscErrorCode CheckConverged(Contact contact)
   PetscCall(StepFailureSet(
       &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
       "The penalty iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-      " evaluations the contact force is off by %g N (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller "
+      " evaluations the contact force is off by %g%s (%s). Raise -penalty_snes_max_it, loosen -penalty_snes_rtol, or choose a smaller "
       "-contact_penalty (or -contact_penalty_scale) or -time_step",
-      (double)time, contact->counts.sweeps, (double)penalty->residual, SNESConvergedReasons[reason]));
+      (double)time, contact->counts.sweeps, (double)penalty->residual, UnitsOf((PetscObject)contact, UNIT_FORCE),
+      SNESConvergedReasons[reason]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 /* Setters of the penalty method and of the augmented Lagrangian, beside their options. */
 #include "penaltyimpl.h"
 #include "../methodset.h"
+#include <sys/units.h>
 
 /*@
   ContactPenaltySetParameter - sets the stiffness of the springs
@@ -116,7 +117,8 @@ PetscErrorCode ContactPenaltySetAugmentation(Contact contact, PetscReal toleranc
   PetscValidLogicalCollectiveReal(contact, tolerance, 2);
   PetscValidLogicalCollectiveInt(contact, max_it, 3);
   PetscCheck(tolerance > 0 && max_it > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "A gap of %g m that is left, and a limit of %" PetscInt_FMT " augmentations, must be positive", (double)tolerance, max_it);
+             "A gap of %g%s that is left, and a limit of %" PetscInt_FMT " augmentations, must be positive", (double)tolerance,
+             UnitsOf((PetscObject)contact, UNIT_LENGTH), max_it);
   penalty->augmentation_tolerance = tolerance;
   penalty->augmentation_max_it    = max_it;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,6 +1,7 @@
 /* When the outer iteration has converged. */
 #include "schwarzimpl.h"
 #include <sys/petsccompat.h>
+#include <sys/units.h>
 
 /* An iteration has come to round-off if, after STALL_FROM sweeps, STEADY_SWEEPS sweeps in a row change forces by at most STEADY_FORCE of
    them, and positions by no less than an earlier sweep. An iteration that converges, however slowly, has no such sweeps. */
@@ -241,9 +242,9 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
   PetscCall(StepFailureSet(
       &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
       "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-      " sweeps the change of position is %g m (%s; absolute tolerance %g m, relative %g). %sRaise -schwarz_snes_max_it, loosen "
+      " sweeps the change of position is %g%s (%s; absolute tolerance %g%s, relative %g). %sRaise -schwarz_snes_max_it, loosen "
       "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
-      (double)time, contact->counts.sweeps, (double)schwarz->change, SNESConvergedReasons[reason], (double)schwarz->atol,
-      (double)schwarz->rtol, advice));
+      (double)time, contact->counts.sweeps, (double)schwarz->change, UnitsOf((PetscObject)contact, UNIT_LENGTH),
+      SNESConvergedReasons[reason], (double)schwarz->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)schwarz->rtol, advice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
