@@ -142,10 +142,23 @@ PETSC_EXTERN PetscErrorCode BodyDescribeDrift(Body, size_t, char[]);
 PETSC_EXTERN PetscErrorCode BodyGetInertiaChange(Body, PetscInt, const PetscInt[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyDescribeSuddenLoad(Body, char[BODY_SUDDEN_LENGTH]);
 
-/* Forces that are the same throughout a controller step */
+/*E
+   BodyForceShape - how a force on a body runs in the course of a controller step
+
+   Values:
++ `BODY_FORCE_LINEAR`   - from that which the last step has ended with to that at the end of this one
+- `BODY_FORCE_CONSTANT` - the same throughout
+
+   Level: developer
+
+.seealso: `BodySetConstantForces()`, `BodyGetNodalCompliance()`
+E*/
+typedef enum { BODY_FORCE_LINEAR, BODY_FORCE_CONSTANT } BodyForceShape;
+
+/* Forces of a shape, and how nodes answer */
 PETSC_EXTERN PetscErrorCode BodySetConstantForces(Body, const PetscReal[], const PetscReal[], const PetscReal[]);
-PETSC_EXTERN PetscErrorCode BodyGetConstantCompliance(Body, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *,
-                                                      const PetscScalar *[]);
+PETSC_EXTERN PetscErrorCode BodyGetNodalCompliance(Body, BodyForceShape, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *,
+                                                   const PetscScalar *[]);
 
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);

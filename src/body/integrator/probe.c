@@ -89,7 +89,7 @@ static PetscErrorCode SetUnitForce(Body body, PetscInt row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A force of 1 N throughout the controller step along one displacement, from which the step starts too */
+/* A force of 1 N along one displacement, at the end of the controller step or throughout it, so that the step starts from it too */
 static PetscErrorCode SetUnitNodalForce(Body body, PetscInt dof)
 {
   PetscInt begin, end;
@@ -100,6 +100,7 @@ static PetscErrorCode SetUnitNodalForce(Body body, PetscInt dof)
   if (dof >= begin && dof < end) PetscCall(VecSetValue(body->probe->force, dof, 1, INSERT_VALUES));
   PetscCall(VecAssemblyBegin(body->probe->force));
   PetscCall(VecAssemblyEnd(body->probe->force));
+  if (body->rows.nodal_shape == BODY_FORCE_LINEAR) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecCopy(body->probe->force, body->work.nodes[0]));
   PetscCall(BodyAnswerAtStart(body, body->saved.a));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -159,7 +160,7 @@ static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
 }
 
 /* Columns of a compliance by making substeps: of a body at rest, with all rows free but the one in hand. `nodal`: not rows are meant but
-   displacements, of all ranks, at the end of the controller step under forces that are the same throughout it. */
+   displacements, of all ranks, at the end of the controller step alone. */
 static PetscErrorCode Probe(Body body, PetscBool nodal, PetscInt n, const PetscInt rows[], Compliance matrices)
 {
   const PetscInt counts[3] = {body->rows.n_prescribed, body->rows.n_forced, body->rows.n_robin};
@@ -212,10 +213,11 @@ PetscErrorCode BodyProbeBySubsteps(Body body, PetscInt n, const PetscInt rows[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyProbeConstant - columns of displacements, by their numbers on all ranks, under forces that are the same throughout a controller step */
-PetscErrorCode BodyProbeConstant(Body body, PetscInt n, const PetscInt dofs[], Compliance matrices)
+/* BodyProbeNodes - columns of displacements, by their numbers on all ranks, at the end of a controller step */
+PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], Compliance matrices)
 {
   PetscFunctionBegin;
+  body->rows.nodal_shape = shape;
   PetscCall(Probe(body, PETSC_TRUE, n, dofs, matrices));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -191,7 +191,8 @@ typedef struct {
   PetscScalar *kept_traces;   /* output traces put aside by BodyKeep() */
   BodyHandover handover;
   BodyExchange exchange;
-  Vec nodal_force; /* while the body is probed: acts on its nodes throughout the controller step; else NULL [N] */
+  Vec            nodal_force; /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
+  BodyForceShape nodal_shape; /* how */
 } BodyRows;
 
 /* What a body keeps for controller steps that have been cut in halves so many times, see src/body/interface/steplevel.c */
@@ -470,7 +471,7 @@ PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
-PETSC_INTERN PetscErrorCode BodyProbeConstant(Body, PetscInt, const PetscInt[], Compliance);
+PETSC_INTERN PetscErrorCode BodyProbeNodes(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode BodyAnswerAtStart(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyCreateTraces(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyTraces(Body);

@@ -20,7 +20,7 @@ PetscErrorCode BodyDestroyCompliance(Body body)
   PetscCall(PetscFree4(c->known_displacement, c->force, c->displacement, c->rhs));
   PetscCall(DenseFactorDestroy(&c->factor));
   PetscCall(ComplianceDestroy(&c->matrices));
-  PetscCall(ComplianceDestroy(&c->constant));
+  PetscCall(ComplianceDestroy(&c->nodal));
   PetscCall(PetscFree(body->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

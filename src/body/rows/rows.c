@@ -297,7 +297,7 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
   PetscCall(BodyAddHandover(body, position, scale, f));
   if (!body->rows.n_forced) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->rows.nodal_force) {
-    PetscCall(VecAXPY(f, scale, body->rows.nodal_force));
+    PetscCall(VecAXPY(f, body->rows.nodal_shape == BODY_FORCE_LINEAR ? scale * position : scale, body->rows.nodal_force));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (body->rows.exchange.open) {

@@ -24,29 +24,12 @@ static PetscErrorCode Place(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rates of rows as the step begins */
-static PetscErrorCode ComputeRates(Contact contact, PetscReal rate[])
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscScalar       *v[2];
-
-    for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].velocity, 0, &v[side]));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      rate[i] = PetscRealPart(v[1][i - pair->shift[1]] - v[0][i - pair->shift[0]]);
-      if (contact->friction.drive) rate[i] += contact->friction.drive[i] / contact->step;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode Begin(Contact contact, ContactStepper *stepper)
 {
   const PetscReal half = 0.5 * contact->step;
 
   PetscFunctionBegin;
-  PetscCall(ComputeRates(contact, stepper->rate));
+  PetscCall(ContactStepperComputeRates(contact, stepper->rate));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
@@ -96,4 +79,4 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper)
 }
 
 const ContactRule ContactRuleImpulse = {
-    .name = "impulse", .place = Place, .begin = Begin, .load = Load, .compliance = BodyGetConstantCompliance, .end = End};
+    .name = "impulse", .place = Place, .begin = Begin, .load = Load, .shape = BODY_FORCE_CONSTANT, .end = End};

@@ -90,7 +90,7 @@ static PetscErrorCode AddBody(Contact contact, ContactStepper *stepper, PetscInt
   PetscCall(PetscMalloc1(count, &dofs));
   PetscCall(PetscArraycpy(dofs, entries.columns, count));
   PetscCall(PetscSortRemoveDupsInt(&count, dofs));
-  PetscCall((*stepper->rule->compliance)(contact->bodies[b], count, dofs, &place, &leading, &W));
+  PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rule->shape, count, dofs, &place, &leading, &W));
   for (PetscInt k = 0; k < entries.n; k++)
     for (PetscInt l = 0; l < entries.n; l++) {
       PetscScalar sum = 0;

@@ -11,14 +11,14 @@ static ContactStepper *Stepper(Contact contact)
 
 static PetscErrorCode SetFromOptions(Contact contact)
 {
-  const char *const rules[] = {"impulse"};
+  const char *const rules[] = {"auto", "impulse", "linear"};
   PetscInt          rule    = 0;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEList("-contact_rule", "How forces run within a step", "ContactSetType", rules, 1, rules[0], &rule, NULL));
+  PetscCall(PetscOptionsEList("-contact_rule", "How forces run within a step", "ContactSetType", rules, 3, rules[0], &rule, NULL));
   PetscOptionsEnd();
-  Stepper(contact)->rule = &ContactRuleImpulse;
+  Stepper(contact)->rule = rule == 1 ? &ContactRuleImpulse : rule == 2 ? &ContactRuleLinear : NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -37,7 +37,7 @@ static PetscErrorCode Check(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const Body  body = contact->bodies[b];
     const char *name = ((PetscObject)body)->name;
-    PetscBool   is_static, is_rigid, is_explicit, massless;
+    PetscBool   is_static, is_rigid, is_explicit;
     PetscReal   alpha_m, alpha_f;
     TS          ts;
 
@@ -45,13 +45,10 @@ static PetscErrorCode Check(Contact contact)
     PetscCall(BodyIsStatic(body, &is_static));
     PetscCall(BodyIsRigid(body, &is_rigid));
     PetscCall(BodyIsExplicit(body, &is_explicit));
-    PetscCall(BodyIsRedistributed(body, &massless));
     PetscCheck(!is_static, comm, PETSC_ERR_SUP, "-contact_type force: body '%s' is static, and has no velocities; choose -contact_type schwarz",
                name);
     PetscCheck(!is_rigid, comm, PETSC_ERR_SUP, "-contact_type force: body '%s' is rigid, which it does not know yet; choose -contact_type schwarz",
                name);
-    PetscCheck(!massless || !is_explicit, comm, PETSC_ERR_SUP,
-               "-contact_type force keeps the mass of the contact nodes of explicit bodies; set -%s_mass_redistribute false", name);
     if (is_explicit) continue;
     PetscCall(BodyGetTS(body, &ts));
     PetscCall(TSAlpha2GetParams(ts, &alpha_m, &alpha_f, NULL, NULL));
@@ -63,6 +60,20 @@ static PetscErrorCode Check(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Contact nodes without mass have no impulse to lose; those with mass would ring if their gap were closed */
+static PetscErrorCode ChooseRule(Contact contact, ContactStepper *stepper)
+{
+  PetscBool has_mass;
+
+  PetscFunctionBegin;
+  PetscCall(ContactHasMass(contact, PETSC_FALSE, &has_mass));
+  if (!stepper->rule) stepper->rule = has_mass ? &ContactRuleImpulse : &ContactRuleLinear;
+  PetscCall(ContactRefuseUnstable(contact, (PetscBool)(has_mass && stepper->rule->shape == BODY_FORCE_LINEAR),
+                                  "-contact_rule linear: contact nodes with mass whose gaps are closed at the ends of steps swing and gain "
+                                  "energy; choose impulse, or set -<body>_mass_redistribute true"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SetUp(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);
@@ -70,9 +81,9 @@ static PetscErrorCode SetUp(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(Check(contact));
-  if (!stepper->rule) stepper->rule = &ContactRuleImpulse;
+  PetscCall(ChooseRule(contact, stepper));
   contact->attempt.moves_start = PETSC_FALSE;
-  contact->energy.unlimited    = "its rule lets contact gain none";
+  if (stepper->rule->shape == BODY_FORCE_CONSTANT) contact->energy.unlimited = "its rule lets contact gain none";
   stepper->problem.law         = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
   contact->friction.steps      = PETSC_TRUE;
   stepper->rtol                = RTOL;
@@ -163,7 +174,7 @@ static PetscErrorCode Destroy(Contact contact)
    CONTACT_FORCE - the one contact step: forces of rows by a rule and a law
 
    Options Database Keys:
-+  -contact_rule impulse                - how forces run within a step, and when a row counts as closed
++  -contact_rule (auto|impulse|linear)  - how forces run within a step, and when a row counts as closed
 .  -schwarz_snes_rtol, -schwarz_snes_max_it - tolerance of the outer iteration [parts of the largest way of a row in the step], its limit
 .  -law_snes_type, -law_ksp_type, ...   - how the law of all rows is solved: Newton's method
 -  -law_nodes_snes_max_it               - sweeps node by node, where that goes round in a circle

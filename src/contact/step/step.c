@@ -20,6 +20,23 @@ static ContactStepper *Stepper(Contact contact)
   return (ContactStepper *)contact->data;
 }
 
+/* Rates of rows as the step begins */
+PetscErrorCode ContactStepperComputeRates(Contact contact, PetscReal rate[])
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *v[2];
+
+    for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].velocity, 0, &v[side]));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      rate[i] = PetscRealPart(v[1][i - pair->shift[1]] - v[0][i - pair->shift[0]]);
+      if (contact->friction.drive) rate[i] += contact->friction.drive[i] / contact->step;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What a row reads, less what it may: by the law */
 static PetscReal Reading(Contact contact, const ContactStepper *stepper, PetscInt i)
 {
@@ -322,19 +339,24 @@ static PetscErrorCode SumLoss(Contact contact, ContactStepper *stepper)
 PetscErrorCode ContactStepperStep(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);
+  PetscBool       more    = PETSC_TRUE;
 
   PetscFunctionBegin;
   stepper->passes = 0;
   PetscCall(PetscArraycpy(stepper->last, contact->start.force, contact->rows.n));
   PetscCall((*stepper->rule->begin)(contact, stepper));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
-  PetscCall(ListRows(contact, stepper));
-  if (stepper->problem.n) {
-    PetscCall(GetLimits(contact, stepper));
-    PetscCall(ContactStepperAssemble(contact, stepper));
-    PetscCall(Iterate(contact, stepper));
-  } else PetscCall(Advance(contact));
-  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  while (more) {
+    PetscCall(ListRows(contact, stepper));
+    if (stepper->problem.n) {
+      PetscCall(GetLimits(contact, stepper));
+      PetscCall(ContactStepperAssemble(contact, stepper));
+      PetscCall(Iterate(contact, stepper));
+    } else PetscCall(Advance(contact));
+    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+    more = PETSC_FALSE;
+    if (stepper->rule->more) PetscCall((*stepper->rule->more)(contact, stepper, &more));
+  }
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) {
       const PetscInt first = i - (i - contact->pairs[p].begin) % contact->pairs[p].components;

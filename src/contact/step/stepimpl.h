@@ -11,7 +11,8 @@ typedef struct {
   PetscErrorCode (*place)(Contact, ContactStepper *);             /* (NULL) where rows are to be laid, before they are */
   PetscErrorCode (*begin)(Contact, ContactStepper *);             /* which rows may touch, the guess, what closed rows may still move */
   PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);    /* the forces `contact->end.force` on the rows of a body */
-  PetscErrorCode (*compliance)(Body, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *, const PetscScalar *[]);
+  BodyForceShape shape;                                           /* of forces in the step */
+  PetscErrorCode (*more)(Contact, ContactStepper *, PetscBool *); /* (NULL) whether rows that were left out touch after all */
   PetscErrorCode (*end)(Contact, ContactStepper *);               /* (NULL) after the step has been made */
 } ContactRule;
 
@@ -47,7 +48,8 @@ struct _ContactStepper {
 
 PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
+PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
 
-extern const ContactRule ContactRuleImpulse;
+extern const ContactRule ContactRuleImpulse, ContactRuleLinear;

@@ -20,7 +20,7 @@
   Note:
   Holds until the next call, `BodySave()`, or `BodyDropStartForce()`. Forces that act along rows as they were, see `BodyHandOver()`, are gone.
 
-.seealso: `Body`, `BodySetStartForce()`, `BodyGetConstantCompliance()`
+.seealso: `Body`, `BodySetStartForce()`, `BodyGetNodalCompliance()`
 @*/
 PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const PetscReal last[], const PetscReal none[])
 {
@@ -44,14 +44,15 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
 }
 
 /*@
-  BodyGetConstantCompliance - displacements at the end of the controller step under unit forces on nodes throughout it
+  BodyGetNodalCompliance - displacements at the end of the controller step under unit forces on nodes
 
   Collective
 
   Input Parameters:
-+ body - the `Body`, set up
-. n    - number of displacements
-- dofs - their numbers among those of all ranks, the same on every rank; those that are known already cost nothing
++ body  - the `Body`, set up
+. shape - how forces run in the step: from none to 1 N, or 1 N throughout
+. n     - number of displacements
+- dofs  - their numbers among those of all ranks, the same on every rank; those that are known already cost nothing
 
   Output Parameters:
 + place   - for each displacement of all ranks its place among the known ones, or -1
@@ -65,33 +66,34 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
 
 .seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`
 @*/
-PetscErrorCode BodyGetConstantCompliance(Body body, PetscInt n, const PetscInt dofs[], const PetscInt *place[], PetscInt *leading,
-                                         const PetscScalar *matrix[])
+PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], const PetscInt *place[],
+                                      PetscInt *leading, const PetscScalar *matrix[])
 {
-  Compliance *constant = &body->compliance->constant;
+  Compliance *nodal    = &body->compliance->nodal;
   PetscInt    unknown  = 0, local, begin, all;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(place, 4);
-  PetscAssertPointer(leading, 5);
-  PetscAssertPointer(matrix, 6);
-  if (*constant && body->compliance->constant_step != body->time.step) PetscCall(ComplianceDestroy(constant));
-  if (!*constant) {
-    body->compliance->constant_step = body->time.step;
+  PetscAssertPointer(place, 5);
+  PetscAssertPointer(leading, 6);
+  PetscAssertPointer(matrix, 7);
+  if (*nodal && (body->compliance->nodal_step != body->time.step || body->compliance->nodal_shape != shape)) PetscCall(ComplianceDestroy(nodal));
+  if (!*nodal) {
+    body->compliance->nodal_step  = body->time.step;
+    body->compliance->nodal_shape = shape;
     PetscCall(VecGetLocalSize(body->state.u, &local));
     PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
     PetscCall(VecGetSize(body->state.u, &all));
-    PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, constant));
+    PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, nodal));
   }
-  for (PetscInt i = 0; i < n; i++) unknown += !ComplianceKnows(*constant, dofs[i]);
+  for (PetscInt i = 0; i < n; i++) unknown += !ComplianceKnows(*nodal, dofs[i]);
   if (unknown) {
     PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
-    PetscCall(ComplianceReserve(*constant, unknown));
-    PetscCall(BodyProbeConstant(body, n, dofs, *constant));
+    PetscCall(ComplianceReserve(*nodal, unknown));
+    PetscCall(BodyProbeNodes(body, shape, n, dofs, *nodal));
     PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   }
-  ComplianceGetRows(*constant, NULL, NULL, place);
-  ComplianceGetMatrix(*constant, 0, leading, matrix);
+  ComplianceGetRows(*nodal, NULL, NULL, place);
+  ComplianceGetMatrix(*nodal, 0, leading, matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

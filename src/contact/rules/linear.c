@@ -1,0 +1,73 @@
+/*
+   The rule `linear`, for contact nodes without mass. The force of a row goes linearly from that which the last step has ended with to that at
+   the end of this one, where a closed row has no gap. Rows are laid as bodies are at the start of the step.
+*/
+#include <contact/step/stepimpl.h>
+
+/* Rows that were in contact, or would be at the end if bodies went on as they do: others join as they are found to be inside */
+static PetscErrorCode Begin(Contact contact, ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactStepperComputeRates(contact, stepper->rate));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+      const PetscBool carried = (PetscBool)(contact->rows.tied[first] || contact->start.active[first]);
+      const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] &&
+                                                        contact->start.gap[first] + contact->step * stepper->rate[first] <= 0));
+
+      for (PetscInt i = first; i < first + pair->components; i++) {
+        stepper->touches[i]   = touches;
+        stepper->joins[i]     = (PetscBool)(touches && !carried);
+        stepper->lets[i]      = i == first ? -contact->start.gap[i] : 0;
+        contact->end.force[i] = touches ? contact->start.force[i] : 0;
+      }
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
+{
+  const ContactBodyRows *of    = &contact->body_rows[b];
+  Trace                  trace = contact->traces[b].force_in;
+  PetscScalar           *force;
+  PetscInt               levels;
+
+  PetscFunctionBegin;
+  (void)stepper;
+  PetscCall(TraceGetSizes(trace, NULL, &levels));
+  for (PetscInt level = 0; level <= levels; level++) {
+    PetscCall(TraceGetLevel(trace, level, &force));
+    for (PetscInt k = 0; k < of->n; k++) {
+      const PetscInt  i     = of->rows[k];
+      const PetscReal start = contact->start.force[i];
+
+      force[k] = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * (start + (contact->end.force[i] - start) * level / levels);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Rows that end inside their partner join */
+static PetscErrorCode More(Contact contact, ContactStepper *stepper, PetscBool *more)
+{
+  int any = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+      if (stepper->touches[first] || !contact->rows.opposite[first] || contact->end.gap[first] >= -contact->options.tolerance) continue;
+      for (PetscInt i = first; i < first + pair->components; i++) stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
+      any = 1;
+    }
+  }
+  PetscCall(ContactOr(contact, &any));
+  *more = (PetscBool)(any > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+const ContactRule ContactRuleLinear = {.name = "linear", .begin = Begin, .load = Load, .shape = BODY_FORCE_LINEAR, .more = More};
