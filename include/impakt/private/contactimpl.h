@@ -349,11 +349,12 @@ typedef struct {
 
 /* The artificial springs of a body in a controller step */
 typedef struct {
-  PetscInt body;   /* its number */
-  PetscInt begin;  /* number of its first spring among all */
-  PetscInt steady; /* times in a row that their stretch has stayed as it is */
-  PetscInt stalls; /* times in a row that it has not fallen much */
-  PetscInt leaps;  /* times that they have been moved far, since nothing resisted */
+  PetscInt  body;   /* its number */
+  PetscInt  begin;  /* number of its first spring among all */
+  PetscInt  steady; /* times in a row that their stretch has stayed as it is */
+  PetscInt  stalls; /* times in a row that it has not fallen much */
+  PetscReal lowest; /* square of the stretch that it is to fall below [J] */
+  PetscInt  leaps;  /* times that they have been moved far, since nothing resisted */
 } ContactSprings;
 
 /* Static bodies that contact or ties alone hold, see src/contact/interface/floating.c */

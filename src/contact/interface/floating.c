@@ -17,7 +17,8 @@
 #define REST_FORCE   3e-9
 #define MAX_STALLS   3
 #define LONG_STALLS  10
-/* A stretch above this part of the last one does not fall */
+/* A stretch above this part of the last one does not fall; where it may be round-off, above this part of the least that it has been there,
+   as round-off has no order */
 #define FALLS 0.5
 /* One that changes by less than this part of it is steady */
 #define STEADY 1e-3
@@ -149,7 +150,8 @@ static PetscErrorCode Measure(Contact contact, PetscInt times, PetscBool *rest)
       change += PetscSqr(f->stretch[at] - f->last[at]);
     }
     least           = force > 0 ? REST_FORCE * force / state->stiffness : atol;
-    springs->stalls = times && square > PetscSqr(FALLS) * last ? springs->stalls + 1 : 0;
+    springs->stalls = times && square > PetscSqr(FALLS) * springs->lowest ? springs->stalls + 1 : 0;
+    springs->lowest = times && most <= PetscMax(least, atol) ? PetscMin(springs->lowest, square) : square;
     springs->steady = times && most > least && change < PetscSqr(STEADY) * last ? springs->steady + 1 : 0;
     if (most > STRETCH_RTOL * state->displacement &&
         (springs->stalls < MAX_STALLS || most > least || (springs->stalls < LONG_STALLS && most > atol)))
