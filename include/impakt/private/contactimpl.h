@@ -363,6 +363,7 @@ typedef struct {
   ContactSprings  *bodies;
   BodySpringState *states;             /* per body: as the step has left it when made last */
   PetscReal       *work;               /* work space, one for each of all bodies */
+  PetscBool        start_counts;       /* a body has inertia, or substeps, or is linear: see MakeStep() */
   PetscInt         n_springs;          /* of all bodies; the following have a number for each, times the square root of its stiffness */
   PetscReal       *root;               /* that root [sqrt(N/m)] */
   PetscReal       *stretch;            /* [sqrt(J)] */
