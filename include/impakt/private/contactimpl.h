@@ -362,7 +362,7 @@ typedef struct {
   PetscInt         n;
   ContactSprings  *bodies;
   BodySpringState *states;             /* per body: as the step has left it when made last */
-  PetscReal       *work;               /* work space, one for each of all bodies */
+  PetscReal       *work, *held;        /* work space, one for each of all bodies */
   PetscBool        start_counts;       /* a body has inertia, or substeps, or is linear: see MakeStep() */
   PetscInt         n_springs;          /* of all bodies; the following have a number for each, times the square root of its stiffness */
   PetscReal       *root;               /* that root [sqrt(N/m)] */

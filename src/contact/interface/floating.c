@@ -55,7 +55,7 @@ PetscErrorCode ContactSetUpFloating(Contact contact)
   const PetscInt   n = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc3(n, &f->bodies, n, &f->states, n, &f->work));
+  PetscCall(PetscCalloc4(n, &f->bodies, n, &f->states, n, &f->work, n, &f->held));
   for (PetscInt b = 0; b < n; b++) {
     PetscBool floating, is_static, exact;
     PetscInt  substeps;
@@ -85,7 +85,7 @@ PetscErrorCode ContactDestroyFloating(Contact contact)
   ContactFloating *f = &contact->floating;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree3(f->bodies, f->states, f->work));
+  PetscCall(PetscFree4(f->bodies, f->states, f->work, f->held));
   PetscCall(PetscFree4(f->root, f->stretch, f->last, f->move));
   PetscCall(PetscFree4(f->moves, f->changes, f->basis, f->directions));
   PetscCall(PetscFree2(f->start_force, f->start_active));
