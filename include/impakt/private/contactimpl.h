@@ -350,11 +350,12 @@ typedef struct {
 
 /* The artificial springs of a body in a controller step */
 typedef struct {
-  PetscInt body;   /* its number */
-  PetscInt begin;  /* number of its first spring among all */
-  PetscInt steady; /* times in a row that their stretch has stayed as it is */
-  PetscInt stalls; /* times in a row that it has not fallen much */
-  PetscInt leaps;  /* times that they have been moved far, since nothing resisted */
+  PetscInt  body;   /* its number */
+  PetscInt  begin;  /* number of its first spring among all */
+  PetscInt  steady; /* times in a row that their stretch has stayed as it is */
+  PetscInt  stalls; /* times in a row that it has not fallen much */
+  PetscReal lowest; /* square of the stretch that it is to fall below [J] */
+  PetscInt  leaps;  /* times that they have been moved far, since nothing resisted */
 } ContactSprings;
 
 /* Static bodies that contact or ties alone hold, see src/contact/interface/floating.c */
@@ -362,7 +363,8 @@ typedef struct {
   PetscInt         n;
   ContactSprings  *bodies;
   BodySpringState *states;             /* per body: as the step has left it when made last */
-  PetscReal       *work;               /* work space, one for each of all bodies */
+  PetscReal       *work, *held;        /* work space, one for each of all bodies */
+  PetscBool        start_counts;       /* a body has inertia, or substeps, or is linear: see MakeStep() */
   PetscInt         n_springs;          /* of all bodies; the following have a number for each, times the square root of its stiffness */
   PetscReal       *root;               /* that root [sqrt(N/m)] */
   PetscReal       *stretch;            /* [sqrt(J)] */

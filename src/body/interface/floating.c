@@ -126,6 +126,44 @@ PetscErrorCode BodyResetSprings(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Parts of the rigid motions that the springs have with these values, and of the free motions */
+static PetscErrorCode FindMotions(Body body, const PetscReal values[], PetscReal amounts[], PetscReal parts[])
+{
+  const BodySprings *springs = &body->springs;
+  const PetscInt     dim = body->mesh.dim, n_rigid = dim == 1 ? 1 : 3 * (dim - 1);
+  PetscReal          matrix[BODY_MAX_RIGID * BODY_MAX_RIGID];
+  PetscBLASInt       order = (PetscBLASInt)springs->n, one = 1, info, pivots[BODY_MAX_RIGID];
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(matrix, springs->at_springs, springs->n * springs->n));
+  PetscCall(PetscArraycpy(amounts, values, springs->n));
+  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&order, &one, matrix, &order, pivots, amounts, &order, &info));
+  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv info %d", (int)info);
+  PetscCall(PetscArrayzero(parts, BODY_MAX_RIGID));
+  for (PetscInt k = 0; k < springs->n; k++)
+    for (PetscInt i = 0; i < n_rigid; i++) parts[i] += amounts[k] * springs->motions[k * n_rigid + i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What of the stretch is a translation, of those that are free */
+static PetscErrorCode FindFall(Body body, BodySpringState *state)
+{
+  const BodySprings *springs = &body->springs;
+  const PetscInt     dim = body->mesh.dim, n_rigid = dim == 1 ? 1 : 3 * (dim - 1);
+  PetscReal          amounts[BODY_MAX_RIGID], parts[BODY_MAX_RIGID];
+
+  PetscFunctionBegin;
+  PetscCall(FindMotions(body, state->stretch, amounts, parts));
+  for (PetscInt k = 0; k < springs->n; k++) {
+    PetscReal amount = 0;
+
+    for (PetscInt i = 0; i < dim; i++) amount += parts[i] * springs->motions[k * n_rigid + i];
+    for (PetscInt i = 0; i < dim; i++) state->fall[i] += amount * springs->motions[k * n_rigid + i];
+    for (PetscInt n = 0; n < springs->n; n++) state->falls[n] += amount * springs->at_springs[k * springs->n + n];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyMeasureSprings - how the artificial springs of a floating body are stretched at the end of the step that has been made
 
@@ -160,6 +198,7 @@ PetscErrorCode BodyMeasureSprings(Body body, BodySpringState *state)
     state->displacement = PetscMax(state->displacement, PetscAbsReal(springs->reached[k]));
     state->way          = PetscMax(state->way, PetscAbsReal(springs->reached[k] - springs->start[k]));
   }
+  if (springs->n) PetscCall(FindFall(body, state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -205,19 +244,13 @@ PetscErrorCode BodyMoveSprings(Body body, const PetscReal move[])
 PetscErrorCode BodyDescribeDrift(Body body, size_t size, char text[])
 {
   const BodySprings *springs = &body->springs;
-  const PetscInt     dim = body->mesh.dim, n_rigid = dim == 1 ? 1 : 3 * (dim - 1);
-  PetscReal          parts[BODY_MAX_RIGID] = {0}, matrix[BODY_MAX_RIGID * BODY_MAX_RIGID], amounts[BODY_MAX_RIGID];
-  PetscBLASInt       order = (PetscBLASInt)springs->n, one = 1, info, pivots[BODY_MAX_RIGID];
+  PetscReal          values[BODY_MAX_RIGID], amounts[BODY_MAX_RIGID], parts[BODY_MAX_RIGID];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(text, 3);
-  PetscCall(PetscArraycpy(matrix, springs->at_springs, springs->n * springs->n));
-  for (PetscInt k = 0; k < springs->n; k++) amounts[k] = springs->reached[k] - springs->start[k];
-  PetscCallBLAS("LAPACKgesv", LAPACKgesv_(&order, &one, matrix, &order, pivots, amounts, &order, &info));
-  PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK gesv info %d", (int)info);
-  for (PetscInt k = 0; k < springs->n; k++)
-    for (PetscInt i = 0; i < n_rigid; i++) parts[i] += amounts[k] * springs->motions[k * n_rigid + i];
-  PetscCall(BodyDescribeMotions(dim, parts, size, text));
+  for (PetscInt k = 0; k < springs->n; k++) values[k] = springs->reached[k] - springs->start[k];
+  PetscCall(FindMotions(body, values, amounts, parts));
+  PetscCall(BodyDescribeMotions(body->mesh.dim, parts, size, text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

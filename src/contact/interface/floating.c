@@ -17,7 +17,8 @@
 #define REST_FORCE   3e-9
 #define MAX_STALLS   3
 #define LONG_STALLS  10
-/* A stretch above this part of the last one does not fall */
+/* A stretch above this part of the last one does not fall; where it may be round-off, above this part of the least that it has been there,
+   as round-off has no order */
 #define FALLS 0.5
 /* One that changes by less than this part of it is steady */
 #define STEADY 1e-3
@@ -54,10 +55,15 @@ PetscErrorCode ContactSetUpFloating(Contact contact)
   const PetscInt   n = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc3(n, &f->bodies, n, &f->states, n, &f->work));
+  PetscCall(PetscCalloc4(n, &f->bodies, n, &f->states, n, &f->work, n, &f->held));
   for (PetscInt b = 0; b < n; b++) {
-    PetscBool floating;
+    PetscBool floating, is_static, exact;
+    PetscInt  substeps;
 
+    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
+    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
+    PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
+    f->start_counts = (PetscBool)(f->start_counts || !is_static || substeps > 1 || exact);
     PetscCall(BodyIsFloating(contact->bodies[b], &floating));
     if (!floating) continue;
     PetscCall(BodyMeasureSprings(contact->bodies[b], &f->states[f->n]));
@@ -79,7 +85,7 @@ PetscErrorCode ContactDestroyFloating(Contact contact)
   ContactFloating *f = &contact->floating;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree3(f->bodies, f->states, f->work));
+  PetscCall(PetscFree4(f->bodies, f->states, f->work, f->held));
   PetscCall(PetscFree4(f->root, f->stretch, f->last, f->move));
   PetscCall(PetscFree4(f->moves, f->changes, f->basis, f->directions));
   PetscCall(PetscFree2(f->start_force, f->start_active));
@@ -149,7 +155,8 @@ static PetscErrorCode Measure(Contact contact, PetscInt times, PetscBool *rest)
       change += PetscSqr(f->stretch[at] - f->last[at]);
     }
     least           = force > 0 ? REST_FORCE * force / state->stiffness : atol;
-    springs->stalls = times && square > PetscSqr(FALLS) * last ? springs->stalls + 1 : 0;
+    springs->stalls = times && square > PetscSqr(FALLS) * springs->lowest ? springs->stalls + 1 : 0;
+    springs->lowest = times && most <= PetscMax(least, atol) ? PetscMin(springs->lowest, square) : square;
     springs->steady = times && most > least && change < PetscSqr(STEADY) * last ? springs->steady + 1 : 0;
     if (most > STRETCH_RTOL * state->displacement &&
         (springs->stalls < MAX_STALLS || most > least || (springs->stalls < LONG_STALLS && most > atol)))
@@ -163,13 +170,14 @@ static PetscErrorCode Measure(Contact contact, PetscInt times, PetscBool *rest)
 }
 
 /* The step of the method, from where contact has been the last time; but not where rows that are let go have forces that fade from what
-   they were at the start */
+   they were at the start, if a body is to have these, nor with linear bodies: they would be prescribed to be where they have been at the
+   start, and forces counted from those that this takes, with their round-off */
 static PetscErrorCode MakeStep(Contact contact, PetscBool first)
 {
   const PetscBool again = contact->energy.again;
 
   PetscFunctionBegin;
-  if (!first && !contact->release.fades) {
+  if (!first && !(contact->floating.start_counts && contact->release.fades)) {
     PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
     PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
   }

@@ -21,6 +21,8 @@
 #define LONGER       8
 #define FIRST_STRAIN 1e-2
 #define LARGE_STRAIN 0.04
+/* A row lies ahead of a body that falls where the cosine between both ways is larger */
+#define AHEAD 0.01
 
 static PetscReal Dot(PetscInt n, const PetscReal a[], const PetscReal b[])
 {
@@ -117,19 +119,62 @@ static PetscErrorCode DropLong(ContactFloating *f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For each body the smallest gap of its rows, 0 where it is in contact; PETSC_MAX_REAL: nothing lies opposite [m] */
+/* The cosine between the way on which a body falls and the one to its partner in a row */
+static PetscReal Ahead(Contact contact, PetscInt i, const ContactPair *pair, PetscInt body, const PetscReal fall[])
+{
+  const PetscReal *normal = contact->rows.normal + 3 * i, length = PetscSqrtReal(Dot(3, fall, fall));
+
+  return length > 0 ? -ContactSign(pair, body) * Dot(3, fall, normal) / length : 0;
+}
+
+/* -1 for bodies that are held, or in contact with something that is, directly or by others; else 0 */
+static PetscErrorCode FindHeld(Contact contact, PetscReal held[])
+{
+  const ContactFloating *f       = &contact->floating;
+  PetscBool              changes = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) held[b] = -1;
+  for (PetscInt k = 0; k < f->n; k++) held[f->bodies[k].body] = 0;
+  while (changes) {
+    PetscReal before = 0, after = 0;
+
+    for (PetscInt b = 0; b < contact->n_bodies; b++) before += held[b];
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+
+      if (!contact->end.active[i]) continue;
+      if (pair->obstacle) held[pair->body[0]] = -1;
+      else held[pair->body[0]] = held[pair->body[1]] = PetscMin(held[pair->body[0]], held[pair->body[1]]);
+    }
+    if (contact->ranks.size > 1)
+      PetscCallMPI(
+          MPI_Allreduce(MPI_IN_PLACE, held, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+    for (PetscInt b = 0; b < contact->n_bodies; b++) after += held[b];
+    changes = (PetscBool)(after < before);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* For each floating body the smallest gap of the rows ahead of it as it falls, 0 where one is in contact, or tied, or sticks;
+   PETSC_MAX_REAL: nothing lies there [m] */
 static PetscErrorCode FindGaps(Contact contact, PetscReal gaps[])
 {
+  ContactFloating *f = &contact->floating;
+
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) gaps[b] = PETSC_MAX_REAL;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+  for (PetscInt k = 0; k < f->n; k++) {
+    const PetscInt b = f->bodies[k].body;
 
-    for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
-      const PetscReal gap = contact->end.active[i] ? 0 : PetscMax(contact->end.gap[i], 0);
+    gaps[b] = PETSC_MAX_REAL;
+    for (PetscInt i = 0; i < contact->rows.n; i++) {
+      const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
+      const PetscBool    holds = (PetscBool)(contact->end.active[i] && (contact->rows.tied[i] || pair->components > 1));
 
-      if (!contact->rows.opposite[i]) continue;
-      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) gaps[pair->body[side]] = PetscMin(gaps[pair->body[side]], gap);
+      if ((pair->body[0] != b && (pair->obstacle || pair->body[1] != b)) || !contact->rows.opposite[i]) continue;
+      if (holds) gaps[b] = 0;
+      else if ((i - pair->begin) % pair->components == 0 && Ahead(contact, i, pair, b, f->states[k].fall) > AHEAD)
+        gaps[b] = PetscMin(gaps[b], contact->end.active[i] ? 0 : PetscMax(contact->end.gap[i], 0));
     }
   }
   if (contact->ranks.size > 1)
@@ -138,28 +183,30 @@ static PetscErrorCode FindGaps(Contact contact, PetscReal gaps[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bodies that fall freely leap: one that touches nothing by its gap, others the farther the longer they fall */
+/* Bodies that fall freely leap: one that nothing holds by the gap ahead of it, as it is, others the farther the longer they fall */
 static PetscErrorCode Leap(Contact contact)
 {
   ContactFloating *f = &contact->floating;
 
   PetscFunctionBegin;
   PetscCall(FindGaps(contact, f->work));
+  PetscCall(FindHeld(contact, f->held));
   for (PetscInt k = 0; k < f->n; k++) {
     const BodySpringState *state   = &f->states[k];
     ContactSprings        *springs = &f->bodies[k];
-    const PetscReal       *stretch = f->stretch + springs->begin;
-    const PetscReal        gap     = f->work[springs->body];
-    PetscReal              leap;
+    const PetscReal       *stretch = f->stretch + springs->begin, *root = f->root + springs->begin;
+    const PetscReal        gap  = f->work[springs->body];
+    PetscReal             *move = f->move + springs->begin, leap;
 
-    if (gap > 0 && gap < PETSC_MAX_REAL) leap = gap;
-    else if (springs->steady < STEADY_TIMES) continue;
-    else {
+    if (gap > 0 && gap < PETSC_MAX_REAL && f->held[springs->body] == 0) {
+      for (PetscInt i = 0; i < state->n; i++) move[i] = root[i] * state->falls[i];
+      Scale(state->n, PetscMax(1, gap / PetscSqrtReal(Dot(3, state->fall, state->fall))), move);
+    } else if (springs->steady >= STEADY_TIMES) {
       leap = LengthOfStrain(state, FIRST_STRAIN) * PetscPowRealInt(LONGER, springs->leaps++);
       if (!state->linear) leap = PetscMin(leap, LengthOfStrain(state, LARGE_STRAIN));
-    }
-    PetscCall(PetscArraycpy(f->move + springs->begin, stretch, state->n));
-    Scale(state->n, PetscMax(1, f->root[springs->begin] * leap / PetscSqrtReal(Dot(state->n, stretch, stretch))), f->move + springs->begin);
+      PetscCall(PetscArraycpy(move, stretch, state->n));
+      Scale(state->n, PetscMax(1, root[0] * leap / PetscSqrtReal(Dot(state->n, stretch, stretch))), move);
+    } else continue;
     springs->steady = 0;
     f->n_history    = 0;
     f->leapt        = PETSC_TRUE;

@@ -169,7 +169,7 @@ def test_cylinder_between_plates(shared_run):
 
 
 UNHELD = {
-    "sideways": ("-upper_body_force 1e-3*t,-1e4*t", "'upper'", "move along x", "-upper_boundary_displacement"),
+    "sideways": ("-upper_body_force 1e-2*t,-1e4*t", "'upper'", "move along x", "-upper_boundary_displacement"),
     "up": ("-upper_body_force 0,1e4*t", "'upper'", "move along y"),
     "no-floor": ("-contact_pairs middle.ymin:lower.ymax,upper.ymin:middle.ymax", "move along y"),
     "neo-hookean": ("-upper_material_type neo_hookean -upper_body_force 1e2*t,-1e4*t", "'upper'", "move along x"),

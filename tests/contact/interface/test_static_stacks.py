@@ -40,9 +40,12 @@ def stack(seed):
     return joined(f"-bodies {','.join(names)} -obstacles f -contact_pairs {','.join(pairs)} -time_step 1 -time_end 1", floor, *options), pairs, borne
 
 
-@pytest.mark.parametrize("seed", [0, 1, 4, 7, 13, *long(2, 3, 6, 10, 12, 14, 15, 16, 18, 19, 20, 22, 24, 25, 26, 28, 30, 33, 36, 39)])
+SHORT = (0, 1, 4, 7, 11, 13, 55)
+
+
+@pytest.mark.parametrize("seed", [*SHORT, *long(*(seed for seed in range(60) if seed not in SHORT))])
 def test_weights(seed, impakt):
-    """Each block bears what stands on it, and itself, to 1e-8 of all. Measured: 1.4e-9 at most."""
+    """Each block bears what stands on it, and itself, to 1e-8 of all. Measured: 2.1e-9 at most."""
     options, pairs, borne = stack(seed)
     run = impakt(options)
     for pair, weight in zip(pairs, borne, strict=True):
@@ -51,8 +54,8 @@ def test_weights(seed, impakt):
     assert "energy error" not in run.stderr  # which says nothing where blocks fall through their gaps
 
 
-@pytest.mark.parametrize("ranks", [*long(3)])
-def test_ranks(ranks, impakt):
-    options, pairs, borne = stack(1)
+@pytest.mark.parametrize(("seed", "ranks"), [(11, 3), *long((1, 3))])
+def test_ranks(seed, ranks, impakt):
+    options, pairs, borne = stack(seed)
     run = impakt(options, ranks)
     assert abs(run.history[f"contact/{pairs[0]}/force_vector"][-1][1]) == pytest.approx(borne[0], rel=1e-8)
