@@ -1,5 +1,5 @@
-/* A body is put to rest, without loads, to see what a unit force on a row brings about, in the course of a substep or throughout a controller
-   step; afterwards it is as it was. */
+/* A body is put to rest, without loads, to see what a unit force on a row brings about, in the course of a substep or throughout a
+   controller step; afterwards it is as it was. */
 #include "explicitimpl.h"
 
 #define N_BACKUP 7

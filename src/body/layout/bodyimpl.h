@@ -186,11 +186,11 @@ typedef struct {
   PetscReal     *robin;                           /* per local row: stiffness of its Robin spring [N/m] */
   PetscInt       n_prescribed, n_forced, n_robin; /* over all ranks; Robin rows are forced ones */
   /* of a nonlinear body whose equations hold at a stage within the substep: forces are what they are there, and those at the end follow */
-  PetscReal    stage;         /* where it is, as a part of the substep */
-  Vec          stage_balance; /* forces that hold rows and held dofs at the stage; NULL: they are those at the end [N] */
-  PetscScalar *kept_traces;   /* output traces put aside by BodyKeep() */
-  BodyHandover handover;
-  BodyExchange exchange;
+  PetscReal      stage;         /* where it is, as a part of the substep */
+  Vec            stage_balance; /* forces that hold rows and held dofs at the stage; NULL: they are those at the end [N] */
+  PetscScalar   *kept_traces;   /* output traces put aside by BodyKeep() */
+  BodyHandover   handover;
+  BodyExchange   exchange;
   Vec            nodal_force; /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
   BodyForceShape nodal_shape; /* how */
 } BodyRows;

@@ -1,6 +1,7 @@
 /*
-   Forces on the rows that are the same throughout a controller step, and what they bring about at its end. Integrators take the force at both
-   ends of a substep; what a step begins with is in the acceleration there, which has that of the last step: so the acceleration is changed.
+   Forces on the rows that are the same throughout a controller step, and what they bring about at its end. Integrators take the force at
+   both ends of a substep; what a step begins with is in the acceleration there, which has that of the last step: so the acceleration is
+   changed.
 */
 #include "complianceimpl.h"
 
@@ -18,7 +19,8 @@
   Level: developer
 
   Note:
-  Holds until the next call, `BodySave()`, or `BodyDropStartForce()`. Forces that act along rows as they were, see `BodyHandOver()`, are gone.
+  Holds until the next call, `BodySave()`, or `BodyDropStartForce()`. Forces that act along rows as they were, see `BodyHandOver()`, are
+gone.
 
 .seealso: `Body`, `BodySetStartForce()`, `BodyGetNodalCompliance()`
 @*/
@@ -69,15 +71,16 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
 PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], const PetscInt *place[],
                                       PetscInt *leading, const PetscScalar *matrix[])
 {
-  Compliance *nodal    = &body->compliance->nodal;
-  PetscInt    unknown  = 0, local, begin, all;
+  Compliance *nodal   = &body->compliance->nodal;
+  PetscInt    unknown = 0, local, begin, all;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(place, 5);
   PetscAssertPointer(leading, 6);
   PetscAssertPointer(matrix, 7);
-  if (*nodal && (body->compliance->nodal_step != body->time.step || body->compliance->nodal_shape != shape)) PetscCall(ComplianceDestroy(nodal));
+  if (*nodal && (body->compliance->nodal_step != body->time.step || body->compliance->nodal_shape != shape))
+    PetscCall(ComplianceDestroy(nodal));
   if (!*nodal) {
     body->compliance->nodal_step  = body->time.step;
     body->compliance->nodal_shape = shape;

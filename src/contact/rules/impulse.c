@@ -42,10 +42,10 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper)
       for (PetscInt i = first; i < first + pair->components; i++) {
         const PetscReal way = half * (i == first ? PetscMin(stepper->rate[i], 0) : stepper->rate[i]);
 
-        stepper->touches[i]     = touches;
-        stepper->joins[i]       = (PetscBool)(touches && !carried);
-        stepper->lets[i]        = carried ? 0 : way;
-        contact->end.force[i]   = carried && (tied || !stepper->joined[i]) ? contact->start.force[i] : 0;
+        stepper->touches[i]   = touches;
+        stepper->joins[i]     = (PetscBool)(touches && !carried);
+        stepper->lets[i]      = carried ? 0 : way;
+        contact->end.force[i] = carried && (tied || !stepper->joined[i]) ? contact->start.force[i] : 0;
       }
     }
   }

@@ -1,6 +1,6 @@
 /*
-   The rule `linear`, for contact nodes without mass. The force of a row goes linearly from that which the last step has ended with to that at
-   the end of this one, where a closed row has no gap. Rows are laid as bodies are at the start of the step.
+   The rule `linear`, for contact nodes without mass. The force of a row goes linearly from that which the last step has ended with to that
+   at the end of this one, where a closed row has no gap. Rows are laid as bodies are at the start of the step.
 */
 #include <contact/step/stepimpl.h>
 

@@ -17,8 +17,9 @@
 #define PROXIMAL        1e-10 /* of the diagonal of S */
 #define MOST_PROXIMAL   20
 #define TOLERANCE       1e-13 /* of the largest force, and of the largest force that would close what is read */
-#define MOST_NEWTON     40
-#define MOST_SWEEPS     20000
+#define MOST_NEWTON     50
+#define FIRST_SWEEPS    5
+#define MOST_SWEEPS     5120
 #define NODE_ITERATIONS 10 /* for the rows of one node in a sweep */
 
 /* What rows read, without the proximal term */
@@ -36,7 +37,8 @@ static void Read(const LawProblem *problem, const PetscScalar force[], PetscScal
 
 static PetscReal Diagonal(const LawProblem *problem, PetscInt i)
 {
-  return PetscMax(PetscRealPart(problem->S[i * (problem->n + 1)]), PETSC_SMALL * problem->largest); /* of a row that is held all of it is zero */
+  return PetscMax(PetscRealPart(problem->S[i * (problem->n + 1)]),
+                  PETSC_SMALL * problem->largest); /* of a row that is held all of it is zero */
 }
 
 /* The trial forces lambda - r y of a node's rows */
@@ -238,8 +240,8 @@ PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
     PetscCall(PetscFree(problem->S));
     problem->room = PetscMax(n, 2 * problem->room);
     PetscCall(PetscMalloc7(problem->room + 1, &problem->begin, 2 * problem->room, &problem->limit, problem->room, &problem->base,
-                           problem->room, &problem->read, problem->room, &problem->centre, problem->room, &problem->force, problem->room,
-                           &problem->work));
+                           problem->room, &problem->read, problem->room, &problem->centre, problem->room, &problem->force,
+                           2 * problem->room, &problem->work));
     PetscCall(PetscMalloc1(problem->room * problem->room, &problem->S));
   }
   if (n == problem->rows || !n) PetscFunctionReturn(PETSC_SUCCESS);
@@ -249,31 +251,48 @@ PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By Newton's method, or else node by node, from `force` on */
-static PetscErrorCode SolveOnce(LawProblem *problem, PetscBool *solved)
+/* By one of the solvers, from `force` on */
+static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, SNESConvergedReason *reason)
 {
-  SNESConvergedReason reason;
-  PetscScalar        *x;
+  PetscScalar *x;
+  PetscInt     iterations;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) {
-    SNES     snes = k ? problem->nodes : problem->newton;
-    PetscInt iterations;
-
-    PetscCall(VecGetArrayWrite(problem->x, &x));
-    PetscCall(PetscArraycpy(x, problem->force, problem->n));
-    PetscCall(VecRestoreArrayWrite(problem->x, &x));
-    PetscCall(SNESSolve(snes, NULL, problem->x));
-    PetscCall(SNESGetConvergedReason(snes, &reason));
-    PetscCall(SNESGetIterationNumber(snes, &iterations));
-    problem->iterations += iterations;
-    problem->by_nodes = (PetscBool)(problem->by_nodes || k);
-    if (reason > 0) break;
-  }
-  *solved = (PetscBool)(reason > 0);
+  PetscCall(VecGetArrayWrite(problem->x, &x));
+  PetscCall(PetscArraycpy(x, problem->force, problem->n));
+  PetscCall(VecRestoreArrayWrite(problem->x, &x));
+  PetscCall(SNESSolve(snes, NULL, problem->x));
+  PetscCall(SNESGetConvergedReason(snes, reason));
+  PetscCall(SNESGetIterationNumber(snes, &iterations));
+  problem->iterations += iterations;
   PetscCall(VecGetArray(problem->x, &x));
   PetscCall(PetscArraycpy(problem->force, x, problem->n));
   PetscCall(VecRestoreArray(problem->x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By Newton's method; where it goes round in a circle, from where a few sweeps node by node lead, more of them each time */
+static PetscErrorCode SolveOnce(LawProblem *problem, PetscBool *solved)
+{
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscScalar        *start  = problem->work + problem->n;
+  PetscInt            sweeps = FIRST_SWEEPS, most;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(start, problem->force, problem->n));
+  PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
+  PetscCall(SolveBy(problem, problem->newton, &reason));
+  for (; reason < 0 && sweeps <= most; sweeps *= 4) {
+    problem->by_nodes = PETSC_TRUE;
+    PetscCall(PetscArraycpy(problem->force, start, problem->n));
+    PetscCall(SNESSetTolerances(problem->nodes, 0, 0, 0, sweeps, PETSC_INT_MAX));
+    PetscCall(SolveBy(problem, problem->nodes, &reason));
+    if (reason == SNES_DIVERGED_NAN) break;
+    PetscCall(PetscArraycpy(start, problem->force, problem->n));
+    if (reason < 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, &reason));
+  }
+  PetscCall(SNESSetTolerances(problem->nodes, 0, 0, 0, most, PETSC_INT_MAX));
+  *solved = (PetscBool)(reason > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

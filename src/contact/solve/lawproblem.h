@@ -7,16 +7,16 @@ typedef struct {
   PetscInt      n, n_nodes; /* rows; nodes, whose rows follow each other */
   PetscInt     *begin;      /* per node: its first row; n_nodes + 1 */
   const RowLaw *law;
-  PetscReal    *limit;          /* two numbers per node */
-  PetscScalar  *S;              /* what rows read by forces on them, n x n by columns [m/N] */
-  PetscScalar  *base, *read;    /* per row: a force [N], and what is read under it [m] */
-  PetscScalar  *centre;         /* per row: the force that the proximal term pulls to [N] */
-  PetscScalar  *force;          /* per row: the solution [N] */
-  PetscScalar  *work;           /* three numbers per row */
-  PetscReal     largest;        /* on the diagonal of S [m/N] */
-  PetscInt      room, rows;     /* rows that there is room for; of the solvers */
-  PetscInt      iterations;     /* of Newton's method, and node by node, in the last solution */
-  PetscBool     by_nodes;       /* the last solution was found node by node */
+  PetscReal    *limit;       /* two numbers per node */
+  PetscScalar  *S;           /* what rows read by forces on them, n x n by columns [m/N] */
+  PetscScalar  *base, *read; /* per row: a force [N], and what is read under it [m] */
+  PetscScalar  *centre;      /* per row: the force that the proximal term pulls to [N] */
+  PetscScalar  *force;       /* per row: the solution [N] */
+  PetscScalar  *work;        /* two numbers per row */
+  PetscReal     largest;     /* on the diagonal of S [m/N] */
+  PetscInt      room, rows;  /* rows that there is room for; of the solvers */
+  PetscInt      iterations;  /* of Newton's method, and node by node, in the last solution */
+  PetscBool     by_nodes;    /* the last solution was found node by node */
   Vec           x, f;
   Mat           jacobian;
   SNES          newton, nodes;

@@ -28,7 +28,7 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
 {
   const Mat      B     = contact->interfaces[b];
   const PetscInt begin = contact->body_rows[b].begin, end = begin + contact->body_rows[b].n;
-  PetscInt      *counts, total = 0;
+  PetscInt      *counts, total                            = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(entries->n + 1, &entries->begin));

@@ -2,7 +2,9 @@
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
 
-#define RTOL 1e-6 /* of the largest way of a touching row in the step; linear bodies are right to round-off all the same */
+/* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right. Linear bodies are to round-off. */
+#define RTOL        1e-6
+#define RTOL_STATIC 1e-9 /* without inertia the balance is what is wanted */
 
 static ContactStepper *Stepper(Contact contact)
 {
@@ -37,20 +39,14 @@ static PetscErrorCode Check(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const Body  body = contact->bodies[b];
     const char *name = ((PetscObject)body)->name;
-    PetscBool   is_static, is_rigid, is_explicit;
     PetscReal   alpha_m, alpha_f;
+    PetscBool   implicit;
     TS          ts;
 
     if (!contact->body_rows[b].n_all) continue;
-    PetscCall(BodyIsStatic(body, &is_static));
-    PetscCall(BodyIsRigid(body, &is_rigid));
-    PetscCall(BodyIsExplicit(body, &is_explicit));
-    PetscCheck(!is_static, comm, PETSC_ERR_SUP, "-contact_type force: body '%s' is static, and has no velocities; choose -contact_type schwarz",
-               name);
-    PetscCheck(!is_rigid, comm, PETSC_ERR_SUP, "-contact_type force: body '%s' is rigid, which it does not know yet; choose -contact_type schwarz",
-               name);
-    if (is_explicit) continue;
     PetscCall(BodyGetTS(body, &ts));
+    PetscCall(PetscObjectTypeCompare((PetscObject)ts, TSALPHA2, &implicit));
+    if (!implicit) continue;
     PetscCall(TSAlpha2GetParams(ts, &alpha_m, &alpha_f, NULL, NULL));
     PetscCheck(alpha_m == 1 && alpha_f == 1, comm, PETSC_ERR_SUP,
                "-contact_type force needs forces at the ends of steps, and body '%s' has alpha_m %g and alpha_f %g; leave "
@@ -71,35 +67,50 @@ static PetscErrorCode ChooseRule(Contact contact, ContactStepper *stepper)
   PetscCall(ContactRefuseUnstable(contact, (PetscBool)(has_mass && stepper->rule->shape == BODY_FORCE_LINEAR),
                                   "-contact_rule linear: contact nodes with mass whose gaps are closed at the ends of steps swing and gain "
                                   "energy; choose impulse, or set -<body>_mass_redistribute true"));
+  for (PetscInt b = 0; b < contact->n_bodies && stepper->rule->shape == BODY_FORCE_CONSTANT; b++) {
+    const char *name = ((PetscObject)contact->bodies[b])->name;
+    PetscBool   is_static;
+
+    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
+    PetscCheck(!is_static, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+               "-contact_rule impulse is about velocities, and body '%s' is static; set -<body>_mass_redistribute true for the others, or "
+               "give '%s' inertia (-%s_ts_type alpha2)",
+               name, name, name);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SetUp(Contact contact)
 {
-  ContactStepper *stepper = Stepper(contact);
-  const PetscInt  n       = PetscMax(contact->rows.n, 1);
+  ContactStepper *stepper    = Stepper(contact);
+  const PetscInt  n          = PetscMax(contact->rows.n, 1);
+  PetscBool       any_static = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(Check(contact));
+  for (PetscInt b = 0; b < contact->n_bodies && !any_static; b++) PetscCall(BodyIsStatic(contact->bodies[b], &any_static));
   PetscCall(ChooseRule(contact, stepper));
   contact->attempt.moves_start = PETSC_FALSE;
   if (stepper->rule->shape == BODY_FORCE_CONSTANT) contact->energy.unlimited = "its rule lets contact gain none";
-  stepper->problem.law         = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
-  contact->friction.steps      = PETSC_TRUE;
-  stepper->rtol                = RTOL;
-  stepper->atol                = CONTACT_POSITION_TOLERANCE * contact->scale.length;
-  stepper->assembled           = -1;
+  stepper->problem.law    = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
+  contact->friction.steps = PETSC_TRUE;
+  stepper->rtol           = any_static ? RTOL_STATIC : RTOL;
+  stepper->atol           = CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  stepper->assembled      = -1;
   if (contact->friction.law.setup && contact->options.law == CONTACT_LAW_FRICTION)
     PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
+  PetscCall(LawProblemResize(&stepper->problem, 1)); /* options are read now, and what nobody reads is an error */
+  PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
-  PetscCall(PetscCalloc6(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before));
+  PetscCall(
+      PetscCalloc6(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode LayRows(Contact contact)
 {
   PetscFunctionBegin;
-  if (Stepper(contact)->rule->place) PetscCall((*Stepper(contact)->rule->place)(contact, Stepper(contact)));
+  if (Stepper(contact)->rule && Stepper(contact)->rule->place) PetscCall((*Stepper(contact)->rule->place)(contact, Stepper(contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,6 @@
 /*
-   One controller step of bodies that touch. (1) All bodies are advanced under a guess of the forces of rows; (2) the law of each node's rows
-   is solved on what these would read under other forces, y + S dlambda; (3) all are advanced under the solution; (4) what rows read is
+   One controller step of bodies that touch. (1) All bodies are advanced under a guess of the forces of rows; (2) the law of each node's
+   rows is solved on what these would read under other forces, y + S dlambda; (3) all are advanced under the solution; (4) what rows read is
    compared with what S told of it. Where they agree the step is made; else S is corrected by the secant, and (2) comes again. (1), (3), (4)
    are one evaluation of the outer SNES, F = lambda - (2)(lambda), and (2) is the SNES of solve/.
 
@@ -11,9 +11,9 @@
 #include <contact/laws/friction.h>
 #include <sys/petsccompat.h>
 
-#define CURVATURE 1e-10 /* a secant counts whose work is at least this part of what S tells of it */
+#define CURVATURE   1e-10 /* a secant counts whose work is at least this part of what S tells of it */
 #define MOST_PASSES 50
-#define EXACT     1e-9  /* S has told right what differs by less than this part of it */
+#define EXACT       1e-9 /* S has told right what differs by less than this part of it */
 
 static ContactStepper *Stepper(Contact contact)
 {
@@ -59,8 +59,7 @@ static PetscErrorCode Gather(Contact contact, ContactStepper *stepper, PetscInt 
     for (PetscInt f = 0; f < fields && i >= 0 && i < contact->rows.n; f++) all[f * n + k] = mine[f][i];
   }
   if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(fields * n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(fields * n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,10 +146,12 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
     PetscScalar change = 0;
 
     for (PetscInt j = 0; j < n; j++) change += problem->S[j * n + i] * (problem->force[j] - problem->base[j]);
-    stepper->off = PetscMax(stepper->off, PetscAbsScalar(change));
+    stepper->off   = PetscMax(stepper->off, PetscAbsScalar(change));
+    stepper->scale = PetscMax(stepper->scale, PetscAbsScalar(problem->S[i * (n + 1)] * problem->force[i]));
   }
-  PetscCall(PetscInfo(contact, "pass %" PetscInt_FMT ": rows off by %g m, law %s after %" PetscInt_FMT " iterations%s\n", stepper->passes,
-                      (double)stepper->off, solved ? "solved" : "not solved", problem->iterations, problem->by_nodes ? ", node by node" : ""));
+  PetscCall(PetscInfo(contact, "pass %" PetscInt_FMT ": rows off by %g m of %g m, law %s after %" PetscInt_FMT " iterations%s\n",
+                      stepper->passes, (double)stepper->off, (double)stepper->scale, solved ? "solved" : "not solved", problem->iterations,
+                      problem->by_nodes ? ", node by node" : ""));
   if (!solved) {
     PetscCall(ContactRejectResidual(F));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -166,7 +167,7 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step is made where rows would move no more by other forces */
+/* The step is made where rows would move no more by other forces, beside the way that forces make them go */
 static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
                                       SNESConvergedReason *reason, void *ctx)
 {
@@ -277,7 +278,7 @@ static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest way that a touching row would go [m], for the tolerance */
+/* The largest way of a touching row as the step begins [m], for the tolerance */
 static PetscErrorCode FindScale(Contact contact, ContactStepper *stepper)
 {
   PetscFunctionBegin;

@@ -22,7 +22,7 @@ struct _ContactStepper {
   SNES               outer; /* its unknowns are the forces of this rank's touching rows */
   Vec                x, f;
   PetscReal          rtol, atol;      /* tolerances of the outer iteration on what rows read [parts of the largest way; m] */
-  PetscReal          scale;           /* the largest way of a touching row in the step [m] */
+  PetscReal          scale;           /* the largest way of a touching row in the step, without forces or by its own [m] */
   PetscReal          off;             /* by how much rows still miss, after the last pass [m] */
   PetscInt           passes, n_local; /* of this step; touching rows of this rank */
   PetscInt          *rows;            /* touching rows of all ranks, by their numbers, ascending */
