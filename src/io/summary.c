@@ -72,8 +72,9 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
   json_t     *object, *pair;
   ContactType type;
   ContactLaw  law;
-  PetscBool   friction;
-  const char *name;
+  ContactCounts counts;
+  PetscBool     friction;
+  const char   *name;
 
   PetscFunctionBegin;
   PetscCall(ContactGetType(contact, &type));
@@ -83,10 +84,9 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
   PetscCall(SummarySetMember(object, "type", json_string(type)));
   PetscCall(SetContactStatistics(object, &results->contact, friction));
   PetscCall(AddOverlap(object, controller, contact, results));
+  PetscCall(ContactGetCounts(contact, &counts));
+  if (counts.tells_loss) PetscCall(SummarySetReal(object, "contact_loss", counts.contact_loss));
   if (friction) {
-    ContactCounts counts;
-
-    PetscCall(ContactGetCounts(contact, &counts));
     PetscCall(SummarySetReal(object, "friction_least", counts.friction_least));
     PetscCall(SummarySetReal(object, "friction_residual", counts.friction_residual));
     PetscCall(SummarySetInteger(object, "ambiguous_steps", counts.ambiguous_steps));

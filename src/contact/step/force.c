@@ -20,6 +20,7 @@ static PetscErrorCode SetFromOptions(Contact contact)
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEList("-contact_rule", "How forces run within a step", "ContactSetType", rules, 3, rules[0], &rule, NULL));
   PetscOptionsEnd();
+  PetscCall(ContactMonitorSetFromOptions(contact, &Stepper(contact)->monitor));
   Stepper(contact)->rule = rule == 1 ? &ContactRuleImpulse : rule == 2 ? &ContactRuleLinear : NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,11 +93,12 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(ChooseRule(contact, stepper));
   contact->attempt.moves_start = PETSC_FALSE;
   if (stepper->rule->shape == BODY_FORCE_CONSTANT) contact->energy.unlimited = "its rule lets contact gain none";
-  stepper->problem.law    = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
-  contact->friction.steps = PETSC_TRUE;
-  stepper->rtol           = any_static ? RTOL_STATIC : RTOL;
-  stepper->atol           = CONTACT_POSITION_TOLERANCE * contact->scale.length;
-  stepper->assembled      = -1;
+  stepper->problem.law       = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
+  contact->counts.tells_loss = PETSC_TRUE;
+  contact->friction.steps    = PETSC_TRUE;
+  stepper->rtol              = any_static ? RTOL_STATIC : RTOL;
+  stepper->atol              = CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  stepper->assembled         = -1;
   if (contact->friction.law.setup && contact->options.law == CONTACT_LAW_FRICTION)
     PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(LawProblemResize(&stepper->problem, 1)); /* options are read now, and what nobody reads is an error */
@@ -137,7 +139,7 @@ static PetscErrorCode Accept(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(stepper->joined, stepper->joins, contact->rows.n));
-  stepper->loss += stepper->step_loss;
+  contact->counts.contact_loss += stepper->step_loss;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,7 +149,6 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitBools(checkpoint, "joined", contact->rows.n, stepper->joined));
-  PetscCall(CheckpointVisitReals(checkpoint, "loss", 1, &stepper->loss));
   if (CheckpointLoads(checkpoint)) stepper->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,6 +170,7 @@ static PetscErrorCode Destroy(Contact contact)
   ContactStepper *stepper = Stepper(contact);
 
   PetscFunctionBegin;
+  PetscCall(PetscViewerDestroy(&stepper->monitor.viewer));
   PetscCall(SNESDestroy(&stepper->outer));
   PetscCall(VecDestroy(&stepper->x));
   PetscCall(VecDestroy(&stepper->f));
@@ -185,7 +187,8 @@ static PetscErrorCode Destroy(Contact contact)
    CONTACT_FORCE - the one contact step: forces of rows by a rule and a law
 
    Options Database Keys:
-+  -contact_rule (auto|impulse|linear)  - how forces run within a step, and when a row counts as closed
++  -contact_monitor                     - a line for each pass of a step
+.  -contact_rule (auto|impulse|linear)  - how forces run within a step, and when a row counts as closed
 .  -schwarz_snes_rtol, -schwarz_snes_max_it - tolerance of the outer iteration [parts of the largest way of a row in the step], its limit
 .  -law_snes_type, -law_ksp_type, ...   - how the law of all rows is solved: Newton's method
 -  -law_nodes_snes_max_it               - sweeps node by node, where that goes round in a circle

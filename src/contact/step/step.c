@@ -103,6 +103,7 @@ static PetscErrorCode CorrectS(ContactStepper *stepper)
     for (PetscInt i = 0; i < n; i++)
       problem->S[j * n + i] += (problem->read[i] - read[i]) * (problem->read[j] - read[j]) / work - product[i] * product[j] / told_work;
   stepper->assembled = -1;
+  stepper->corrected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -135,6 +136,7 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(Gather(contact, stepper, 2, fields, stepper->gathered));
   PetscCall(PetscArraycpy(problem->base, stepper->gathered, n));
   PetscCall(PetscArraycpy(problem->read, stepper->gathered + n, n));
+  stepper->corrected = PETSC_FALSE;
   if (stepper->has_told) PetscCall(CorrectS(stepper));
   PetscCall(PetscArraycpy(stepper->told, stepper->gathered, 2 * n));
   stepper->has_told = PETSC_TRUE;
@@ -149,9 +151,9 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
     stepper->off   = PetscMax(stepper->off, PetscAbsScalar(change));
     stepper->scale = PetscMax(stepper->scale, PetscAbsScalar(problem->S[i * (n + 1)] * problem->force[i]));
   }
-  PetscCall(PetscInfo(contact, "pass %" PetscInt_FMT ": rows off by %g m of %g m, law %s after %" PetscInt_FMT " iterations%s\n",
-                      stepper->passes, (double)stepper->off, (double)stepper->scale, solved ? "solved" : "not solved", problem->iterations,
-                      problem->by_nodes ? ", node by node" : ""));
+  PetscCall(ContactMonitorPass(contact, stepper, solved));
+  PetscCall(PetscInfo(contact, "pass %" PetscInt_FMT ": rows off by %g m of %g m\n", stepper->passes, (double)stepper->off,
+                      (double)stepper->scale));
   if (!solved) {
     PetscCall(ContactRejectResidual(F));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -312,6 +314,7 @@ static PetscErrorCode Iterate(Contact contact, ContactStepper *stepper)
   stepper->has_told = PETSC_FALSE;
   PetscCall(SNESSolve(stepper->outer, NULL, stepper->x));
   PetscCall(SNESGetConvergedReason(stepper->outer, &reason));
+  PetscCall(ContactMonitorStep(contact, stepper, reason));
   if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForcesGetTime(contact, &time));
   PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
@@ -323,14 +326,14 @@ static PetscErrorCode Iterate(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What contact takes of the energy in the step, friction apart */
+/* What contact takes of the energy in the step, friction apart, by the mean of the forces at its start and its end */
 static PetscErrorCode SumLoss(Contact contact, ContactStepper *stepper)
 {
   PetscFunctionBegin;
   stepper->step_loss = 0;
   for (PetscInt i = 0; i < contact->rows.n; i++)
     if (stepper->touches[i] && !ContactRowRubs(contact, i))
-      stepper->step_loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]);
+      stepper->step_loss -= 0.5 * (contact->start.force[i] + contact->end.force[i]) * (contact->end.gap[i] - contact->start.gap[i]);
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stepper->step_loss, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -364,8 +367,8 @@ PetscErrorCode ContactStepperStep(Contact contact)
 
       contact->end.active[i] = (PetscBool)(contact->rows.tied[first] || contact->end.force[first] > 0);
     }
-  PetscCall(SumLoss(contact, stepper));
   if (stepper->rule->end) PetscCall((*stepper->rule->end)(contact, stepper));
+  PetscCall(SumLoss(contact, stepper));
   PetscCall(ContactComputeFrictionLoss(contact, contact->start.force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,7 +16,14 @@ typedef struct {
   PetscErrorCode (*end)(Contact, ContactStepper *);               /* (NULL) after the step has been made */
 } ContactRule;
 
+/* Where to tell of each pass, see monitor.c */
+typedef struct {
+  PetscViewer       viewer; /* NULL: nowhere */
+  PetscViewerFormat format;
+} ContactMonitor;
+
 struct _ContactStepper {
+  ContactMonitor     monitor;
   const ContactRule *rule;
   LawProblem         problem;
   SNES               outer; /* its unknowns are the forces of this rank's touching rows */
@@ -27,11 +34,11 @@ struct _ContactStepper {
   PetscInt           passes, n_local; /* of this step; touching rows of this rank */
   PetscInt          *rows;            /* touching rows of all ranks, by their numbers, ascending */
   PetscInt           room;
-  PetscInt          *of_body, *places; /* work space: touching rows of a body, and their places in the list */
-  PetscScalar       *gathered;         /* work space: three numbers per touching row */
-  PetscScalar       *told;             /* work space: forces and readings of the last pass */
-  PetscBool          has_told;
-  PetscInt64         state; /* counts changes of rows, for which S is another */
+  PetscInt          *of_body, *places;    /* work space: touching rows of a body, and their places in the list */
+  PetscScalar       *gathered;            /* work space: three numbers per touching row */
+  PetscScalar       *told;                /* work space: forces and readings of the last pass */
+  PetscBool          has_told, corrected; /* there has been a pass in the step; S has been corrected in the last one */
+  PetscInt64         state;               /* counts changes of rows, for which S is another */
   PetscInt64         assembled;
   PetscInt           n_assembled, *of_assembled; /* the rows that S has */
   /* per row of this rank */
@@ -42,12 +49,14 @@ struct _ContactStepper {
   PetscReal *lets;             /* how far a closed row moves in the step [m] */
   PetscReal *none;             /* zeros */
   PetscReal *mine, *before;    /* work space */
-  PetscReal  loss;             /* what contact has taken in accepted steps, friction apart [J] */
-  PetscReal  step_loss;        /* the same in this step [J] */
+  PetscReal  step_loss;        /* what contact takes of the energy in this step, friction apart [J] */
 };
 
 PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
+PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor *);
+PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *, PetscBool);
+PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
 PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);

@@ -1,0 +1,86 @@
+/* -contact_monitor: a line for each pass of a step, and one at its end. It looks at what is there, and changes no number. */
+#include "stepimpl.h"
+#include <contact/compliance/forces.h>
+#include <sys/statusline.h>
+#include <sys/units.h>
+
+PetscErrorCode ContactMonitorSetFromOptions(Contact contact, ContactMonitor *monitor)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscViewerDestroy(&monitor->viewer));
+  PetscObjectOptionsBegin((PetscObject)contact);
+  PetscCall(PetscOptionsViewer("-contact_monitor", "A line for each pass of a contact step", "ContactSetType", &monitor->viewer,
+                               &monitor->format, NULL));
+  PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How many touching nodes of all ranks push, have joined in this step, have left, stick and slide, by the forces of the last solution */
+static void CountNodes(const ContactStepper *stepper, PetscInt *push, PetscInt *stick, PetscInt *slide)
+{
+  const LawProblem *problem = &stepper->problem;
+
+  *push = *stick = *slide = 0;
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt  first = problem->begin[node], end = problem->begin[node + 1];
+    const PetscReal normal = PetscRealPart(problem->force[first]), bound = problem->limit[2 * node] + problem->limit[2 * node + 1] * normal;
+    PetscReal       across = 0;
+
+    if (!(normal > 0) && problem->law->reads != ROW_LAW_READS_END) continue;
+    (*push)++;
+    for (PetscInt i = first + 1; i < end; i++) across += PetscSqr(PetscRealPart(problem->force[i]));
+    if (end == first + 1) continue;
+    if (problem->law->reads == ROW_LAW_READS_END || PetscSqrtReal(across) < bound * (1 - PETSC_SQRT_MACHINE_EPSILON)) (*stick)++;
+    else (*slide)++;
+  }
+}
+
+/* After a pass */
+PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper, PetscBool solved)
+{
+  const LawProblem *problem = &stepper->problem;
+  const char       *m       = UnitsOf((PetscObject)contact, UNIT_LENGTH);
+  PetscViewer       viewer  = stepper->monitor.viewer;
+  PetscInt          push, stick, slide;
+  PetscReal         time;
+
+  PetscFunctionBegin;
+  if (!viewer) PetscFunctionReturn(PETSC_SUCCESS);
+  CountNodes(stepper, &push, &stick, &slide);
+  PetscCall(ForcesGetTime(contact, &time));
+  StatusLineBreak();
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "step that ends at %.9g%s, pass %" PetscInt_FMT
+                                   ": rows off by %.3e%s, %.1e of the way that forces make; %" PetscInt_FMT
+                                   " nodes may touch, %" PetscInt_FMT " push (%" PetscInt_FMT " stick, %" PetscInt_FMT
+                                   " slide); law %s in %" PetscInt_FMT " iterations%s%s\n",
+                                   (double)time, UnitsOf((PetscObject)contact, UNIT_TIME), stepper->passes, (double)stepper->off, m,
+                                   (double)(stepper->scale > 0 ? stepper->off / stepper->scale : 0), problem->n_nodes, push, stick, slide,
+                                   solved ? "solved" : "NOT solved", problem->iterations, problem->by_nodes ? ", node by node too" : "",
+                                   stepper->corrected ? "; compliance corrected" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the end of a step */
+PetscErrorCode ContactMonitorStep(Contact contact, const ContactStepper *stepper, SNESConvergedReason reason)
+{
+  PetscViewer viewer = stepper->monitor.viewer;
+  PetscReal   time;
+  int         counts[2] = {0, 0};
+
+  PetscFunctionBegin;
+  if (!viewer) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (ContactRowRubs(contact, i)) continue;
+    counts[0] += stepper->joins[i] && contact->end.force[i] > 0;
+    counts[1] += contact->start.active[i] && !(contact->end.force[i] > 0) && !contact->rows.tied[i];
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ForcesGetTime(contact, &time));
+  StatusLineBreak();
+  PetscCall(PetscViewerASCIIPrintf(viewer, "step that ends at %.9g%s: %s in %" PetscInt_FMT " passes; %d rows joined, %d left\n",
+                                   (double)time, UnitsOf((PetscObject)contact, UNIT_TIME), SNESConvergedReasons[reason], stepper->passes,
+                                   counts[0], counts[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
