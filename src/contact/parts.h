@@ -142,6 +142,7 @@ PETSC_INTERN PetscErrorCode ContactStartTies(Contact);
 PETSC_INTERN PetscErrorCode ContactSetMeanForces(Contact);
 PETSC_INTERN PetscErrorCode ContactBalanceStart(Contact);
 PETSC_INTERN PetscErrorCode ContactMoveSurfaces(Contact);
+PETSC_INTERN PetscErrorCode ContactGetRowPlace(Contact, PetscInt, Vec *);
 PETSC_INTERN void           ContactForgetAhead(Contact);
 PETSC_INTERN PetscErrorCode ContactLayAhead(Contact, PetscInt, PetscReal *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactFindFarPairs(Contact, PetscReal);

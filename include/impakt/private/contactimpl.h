@@ -474,7 +474,8 @@ struct _p_Contact {
   ContactBodyRows  *body_rows;  /* per body */
   Mat              *interfaces; /* per body: its rows */
   Mat              *spares;     /* the same of other steps, to be filled next */
-  Vec              *ends;       /* per body: where the last attempt at the step has ended, if rows are laid there */
+  Vec              *ends;       /* per body: where rows are laid if not where it is, as where the last attempt at the step has ended */
+  PetscBool         at_ends;    /* the rows of all pairs are laid there */
   ContactNodes      nodes;
   ContactRows       rows;
   ContactTurns      turns;

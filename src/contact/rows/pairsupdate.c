@@ -38,13 +38,13 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacements of the bodies of a pair */
+/* Displacements of the bodies of a pair with which its rows are laid */
 static PetscErrorCode GetDisplacements(Contact contact, const ContactPair *pair, Vec u[2])
 {
   PetscFunctionBegin;
   u[0] = u[1] = NULL;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
+    PetscCall(ContactGetRowPlace(contact, pair->body[side], &u[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

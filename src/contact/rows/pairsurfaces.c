@@ -194,6 +194,15 @@ static PetscErrorCode MirrorSurface(Contact contact, PetscInt body, Surface surf
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The displacement of a body with which rows are laid, unless those of a pair are laid elsewhere, see ContactPair's `ahead` */
+PetscErrorCode ContactGetRowPlace(Contact contact, PetscInt b, Vec *u)
+{
+  PetscFunctionBegin;
+  if (contact->at_ends) *u = contact->ends[b];
+  else PetscCall(BodyGetSolution(contact->bodies[b], u, NULL, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All surfaces to where their bodies are */
 PetscErrorCode ContactMoveSurfaces(Contact contact)
 {
@@ -201,7 +210,7 @@ PetscErrorCode ContactMoveSurfaces(Contact contact)
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
     Vec u;
 
-    PetscCall(BodyGetSolution(contact->bodies[contact->surfaces[s].body], &u, NULL, NULL));
+    PetscCall(ContactGetRowPlace(contact, contact->surfaces[s].body, &u));
     PetscCall(SurfaceUpdate(contact->surfaces[s].surface, u));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -20,7 +20,7 @@ static PetscErrorCode Place(Contact contact, ContactStepper *stepper)
     if (!contact->ends[b]) PetscCall(VecDuplicate(u, &contact->ends[b]));
     PetscCall(VecWAXPY(contact->ends[b], 0.5 * contact->step, v, u));
   }
-  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].ahead = PETSC_TRUE;
+  contact->at_ends = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
