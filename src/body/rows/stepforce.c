@@ -100,3 +100,44 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   ComplianceGetMatrix(*nodal, 0, leading, matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/*@
+  BodyGetNodalDiagonal - the nodal compliance of a body none of whose nodes answers to forces on others within a controller step
+
+  Collective
+
+  Input Parameters:
++ body  - the `Body`, set up
+- shape - how forces run in the step
+
+  Output Parameter:
+. diagonal - displacement of each node along each axis at the end of the step under unit forces there [m/N], owned by the body; `NULL` where
+             nodes answer to each other
+
+  Level: developer
+
+  Note:
+  Central differences with lumped mass in one step move nodes by the forces at its start alone: dt^2/2 over the mass. Exact for any material.
+
+.seealso: `Body`, `BodyGetNodalCompliance()`
+@*/
+PetscErrorCode BodyGetNodalDiagonal(Body body, BodyForceShape shape, Vec *diagonal)
+{
+  struct _BodyCompliance *compliance = body->compliance;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(diagonal, 3);
+  *diagonal = NULL;
+  if (shape != BODY_FORCE_CONSTANT || !body->mass.inverse || body->integrator->staggered <= 0 || body->time.substeps > 1 || body->layer.exists)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  if (!compliance->diagonal || compliance->diagonal_step != body->time.step) {
+    if (!compliance->diagonal) PetscCall(BodyCreateVec(body, &compliance->diagonal));
+    PetscCall(VecCopy(body->mass.inverse, compliance->diagonal));
+    PetscCall(VecScale(compliance->diagonal, 0.5 * PetscSqr(body->time.step)));
+    PetscCall(BodyZeroHeld(body, compliance->diagonal));
+    compliance->diagonal_step = body->time.step;
+  }
+  *diagonal = compliance->diagonal;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

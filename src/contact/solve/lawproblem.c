@@ -22,23 +22,39 @@
 #define MOST_SWEEPS     5120
 #define NODE_ITERATIONS 10 /* for the rows of one node in a sweep */
 
-/* What rows read, without the proximal term */
-static void Read(const LawProblem *problem, const PetscScalar force[], PetscScalar y[])
+/* out = S in */
+PetscErrorCode LawProblemMultiply(LawProblem *problem, const PetscScalar in[], PetscScalar out[])
 {
-  const PetscInt n = problem->n;
+  const PetscScalar *product;
+  PetscScalar       *x;
 
-  for (PetscInt i = 0; i < n; i++) y[i] = problem->read[i];
-  for (PetscInt j = 0; j < n; j++) {
-    const PetscScalar change = force[j] - problem->base[j];
-
-    for (PetscInt i = 0; i < n && change != 0; i++) y[i] += problem->S[j * n + i] * change;
-  }
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(problem->in, &x));
+  PetscCall(PetscArraycpy(x, in, problem->n));
+  PetscCall(VecRestoreArrayWrite(problem->in, &x));
+  PetscCall(MatMult(problem->S, problem->in, problem->out));
+  PetscCall(VecGetArrayRead(problem->out, &product));
+  PetscCall(PetscArraycpy(out, product, problem->n));
+  PetscCall(VecRestoreArrayRead(problem->out, &product));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What rows read, without the proximal term */
+static PetscErrorCode Read(LawProblem *problem, const PetscScalar force[], PetscScalar y[])
+{
+  PetscScalar *change = problem->work + 2 * problem->n;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < problem->n; i++) change[i] = force[i] - problem->base[i];
+  PetscCall(LawProblemMultiply(problem, change, y));
+  for (PetscInt i = 0; i < problem->n; i++) y[i] += problem->read[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of a row that is held all of it is zero */
 static PetscReal Diagonal(const LawProblem *problem, PetscInt i)
 {
-  return PetscMax(PetscRealPart(problem->S[i * (problem->n + 1)]),
-                  PETSC_SMALL * problem->largest); /* of a row that is held all of it is zero */
+  return PetscMax(problem->diagonal[i], PETSC_SMALL * problem->largest);
 }
 
 /* The trial forces lambda - r y of a node's rows */
@@ -50,7 +66,7 @@ static void GetTrial(const LawProblem *problem, PetscInt node, const PetscScalar
 
 static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
 {
-  const LawProblem  *problem = (const LawProblem *)ctx;
+  LawProblem        *problem = (LawProblem *)ctx;
   const PetscScalar *x;
   PetscScalar       *f, *y = problem->work;
 
@@ -58,7 +74,7 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayWrite(F, &f));
-  Read(problem, x, y);
+  PetscCall(Read(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
     PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
@@ -72,39 +88,57 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* I - D (I - r (S + eps diag S)), D the derivative of P */
+/* Rows of I - D (I - r (S + eps diag S)) for the rows of one node, D the derivative of P for it */
+static PetscErrorCode SetNode(const LawProblem *problem, PetscInt first, PetscInt rows, const PetscReal derivative[], Mat J)
+{
+  PetscFunctionBegin;
+  for (PetscInt l = 0; l < rows; l++) {
+    const PetscInt     i = first + l, *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(problem->S, i, &n, &columns, &values));
+    for (PetscInt k = 0; k < rows; k++) {
+      const PetscInt  row  = first + k;
+      const PetscReal part = derivative[k * rows + l] / Diagonal(problem, i);
+
+      for (PetscInt e = 0; e < n; e++) {
+        const PetscScalar value = part * values[e];
+
+        if (value != 0) PetscCall(MatSetValues(J, 1, &row, 1, &columns[e], &value, ADD_VALUES));
+      }
+    }
+    PetscCall(MatRestoreRow(problem->S, i, &n, &columns, &values));
+    for (PetscInt k = 0; k < rows; k++) {
+      const PetscInt    row   = first + k;
+      const PetscScalar value = (row == i) - derivative[k * rows + l] * (1 - PROXIMAL);
+
+      PetscCall(MatSetValues(J, 1, &row, 1, &i, &value, ADD_VALUES));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 {
-  const LawProblem  *problem = (const LawProblem *)ctx;
-  const PetscInt     n       = problem->n;
+  LawProblem        *problem = (LawProblem *)ctx;
   const PetscScalar *x;
-  PetscScalar       *matrix, *y = problem->work;
+  PetscScalar       *y = problem->work;
 
   PetscFunctionBegin;
   (void)snes;
   (void)P;
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(MatDenseGetArrayWrite(J, &matrix));
-  Read(problem, x, y);
+  PetscCall(Read(problem, x, y));
+  PetscCall(MatZeroEntries(J));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
     PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
     GetTrial(problem, node, x, y, p);
     (*problem->law->project)(rows, problem->limit + 2 * node, p, force, derivative);
-    for (PetscInt j = 0; j < n; j++)
-      for (PetscInt k = 0; k < rows; k++) {
-        PetscScalar sum = first + k == j;
-
-        for (PetscInt l = 0; l < rows; l++) {
-          const PetscInt i = first + l;
-
-          sum -= derivative[k * rows + l] * ((i == j) * (1 - PROXIMAL) - problem->S[j * n + i] / Diagonal(problem, i));
-        }
-        matrix[j * n + first + k] = sum;
-      }
+    PetscCall(SetNode(problem, first, rows, derivative, J));
   }
-  PetscCall(MatDenseRestoreArrayWrite(J, &matrix));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
@@ -149,18 +183,31 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* y += a S_.i, which is a row of S too */
+static PetscErrorCode AddColumn(const LawProblem *problem, PetscInt i, PetscScalar a, PetscScalar y[])
+{
+  const PetscInt    *columns;
+  const PetscScalar *values;
+  PetscInt           n;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetRow(problem->S, i, &n, &columns, &values));
+  for (PetscInt e = 0; e < n; e++) y[columns[e]] += a * values[e];
+  PetscCall(MatRestoreRow(problem->S, i, &n, &columns, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* One sweep: the rows of each node, one node after the other */
 static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
 {
-  LawProblem    *problem = (LawProblem *)ctx;
-  const PetscInt n       = problem->n;
-  PetscScalar   *x, *y = problem->work;
+  LawProblem  *problem = (LawProblem *)ctx;
+  PetscScalar *x, *y = problem->work;
 
   PetscFunctionBegin;
   (void)snes;
   (void)B;
   PetscCall(VecGetArray(X, &x));
-  Read(problem, x, y);
+  PetscCall(Read(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
 
@@ -173,7 +220,7 @@ static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
         const PetscScalar change = force[k] - x[first + k];
 
         x[first + k] += change;
-        for (PetscInt i = 0; i < n && change != 0; i++) y[i] += problem->S[(first + k) * n + i] * change;
+        if (change != 0) PetscCall(AddColumn(problem, first + k, change, y));
       }
     }
   }
@@ -189,6 +236,8 @@ static PetscErrorCode DestroySolvers(LawProblem *problem)
   PetscCall(MatDestroy(&problem->jacobian));
   PetscCall(VecDestroy(&problem->x));
   PetscCall(VecDestroy(&problem->f));
+  PetscCall(VecDestroy(&problem->in));
+  PetscCall(VecDestroy(&problem->out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -205,6 +254,17 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Its entries are those of S, and those of the rows of one node */
+static PetscErrorCode CreateJacobian(LawProblem *problem)
+{
+  PetscFunctionBegin;
+  PetscCall(MatCreate(PETSC_COMM_SELF, &problem->jacobian));
+  PetscCall(MatSetSizes(problem->jacobian, problem->n, problem->n, problem->n, problem->n));
+  PetscCall(MatSetType(problem->jacobian, problem->sparse ? MATSEQAIJ : MATSEQDENSE));
+  PetscCall(MatSetUp(problem->jacobian));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CreateSolvers(LawProblem *problem)
 {
   SNESLineSearch line_search;
@@ -214,7 +274,9 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->x));
   PetscCall(VecDuplicate(problem->x, &problem->f));
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, problem->n, problem->n, NULL, &problem->jacobian));
+  PetscCall(VecDuplicate(problem->x, &problem->in));
+  PetscCall(VecDuplicate(problem->x, &problem->out));
+  PetscCall(CreateJacobian(problem));
   PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->newton));
   PetscCall(SNESSetJacobian(problem->newton, problem->jacobian, problem->jacobian, ComputeJacobian, problem));
   PetscCall(SNESGetLineSearch(problem->newton, &line_search));
@@ -237,17 +299,49 @@ PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
   problem->n = n;
   if (n > problem->room) {
     PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-    PetscCall(PetscFree(problem->S));
+    PetscCall(PetscFree(problem->diagonal));
     problem->room = PetscMax(n, 2 * problem->room);
     PetscCall(PetscMalloc7(problem->room + 1, &problem->begin, 2 * problem->room, &problem->limit, problem->room, &problem->base,
                            problem->room, &problem->read, problem->room, &problem->centre, problem->room, &problem->force,
-                           2 * problem->room, &problem->work));
-    PetscCall(PetscMalloc1(problem->room * problem->room, &problem->S));
+                           3 * problem->room, &problem->work));
+    PetscCall(PetscMalloc1(problem->room, &problem->diagonal));
   }
-  if (n == problem->rows || !n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DestroySolvers(problem));
-  PetscCall(CreateSolvers(problem));
-  problem->rows = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solvers for one row, that read their options */
+PetscErrorCode LawProblemSetUp(LawProblem *problem)
+{
+  Mat S;
+
+  PetscFunctionBegin;
+  PetscCall(LawProblemResize(problem, 1));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, 1, 1, NULL, &S));
+  PetscCall(LawProblemTakeS(problem, &S));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* S of the rows there are, which the equations own from now on; solvers are those of its size and kind */
+PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S)
+{
+  const PetscScalar *diagonal;
+  PetscBool          dense;
+
+  PetscFunctionBegin;
+  PetscCall(MatDestroy(&problem->S));
+  problem->S = *S;
+  *S         = NULL;
+  PetscCall(PetscObjectTypeCompare((PetscObject)problem->S, MATSEQDENSE, &dense));
+  if (problem->n != problem->rows || problem->sparse == dense || problem->sparse) {
+    problem->sparse = (PetscBool)!dense;
+    PetscCall(DestroySolvers(problem));
+    PetscCall(CreateSolvers(problem));
+    problem->rows = problem->n;
+  }
+  PetscCall(MatGetDiagonal(problem->S, problem->out));
+  PetscCall(VecGetArrayRead(problem->out, &diagonal));
+  for (PetscInt i = 0; i < problem->n; i++) problem->diagonal[i] = PetscRealPart(diagonal[i]);
+  PetscCall(VecRestoreArrayRead(problem->out, &diagonal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -303,7 +397,7 @@ PetscErrorCode LawProblemSolve(LawProblem *problem, PetscBool *solved)
   problem->iterations = 0;
   problem->by_nodes   = PETSC_FALSE;
   problem->largest    = 0;
-  for (PetscInt i = 0; i < problem->n; i++) problem->largest = PetscMax(problem->largest, PetscRealPart(problem->S[i * (problem->n + 1)]));
+  for (PetscInt i = 0; i < problem->n; i++) problem->largest = PetscMax(problem->largest, problem->diagonal[i]);
   for (PetscInt k = 0; k < MOST_PROXIMAL; k++) {
     PetscReal pull = 0;
 
@@ -321,6 +415,7 @@ PetscErrorCode LawProblemDestroy(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(DestroySolvers(problem));
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-  PetscCall(PetscFree(problem->S));
+  PetscCall(PetscFree(problem->diagonal));
+  PetscCall(MatDestroy(&problem->S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,20 +8,26 @@ typedef struct {
   PetscInt     *begin;      /* per node: its first row; n_nodes + 1 */
   const RowLaw *law;
   PetscReal    *limit;       /* two numbers per node */
-  PetscScalar  *S;           /* what rows read by forces on them, n x n by columns [m/N] */
+  Mat           S;           /* what rows read by forces on them: dense, or sparse [m/N] */
+  PetscReal    *diagonal;    /* of S */
   PetscScalar  *base, *read; /* per row: a force [N], and what is read under it [m] */
   PetscScalar  *centre;      /* per row: the force that the proximal term pulls to [N] */
   PetscScalar  *force;       /* per row: the solution [N] */
-  PetscScalar  *work;        /* two numbers per row */
+  PetscScalar  *work;        /* three numbers per row */
   PetscReal     largest;     /* on the diagonal of S [m/N] */
   PetscInt      room, rows;  /* rows that there is room for; of the solvers */
   PetscInt      iterations;  /* of Newton's method, and node by node, in the last solution */
   PetscBool     by_nodes;    /* the last solution was found node by node */
+  PetscBool     sparse;      /* S is */
   Vec           x, f;
+  Vec           in, out; /* work space of products with S */
   Mat           jacobian;
   SNES          newton, nodes;
 } LawProblem;
 
+PETSC_INTERN PetscErrorCode LawProblemSetUp(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemResize(LawProblem *, PetscInt);
+PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *);
+PETSC_INTERN PetscErrorCode LawProblemMultiply(LawProblem *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemSolve(LawProblem *, PetscBool *);
 PETSC_INTERN PetscErrorCode LawProblemDestroy(LawProblem *);

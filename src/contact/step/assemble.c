@@ -8,6 +8,16 @@ typedef struct {
   PetscScalar *values;          /* per entry, with the sign by which the row's gap goes with the body */
 } Entries;
 
+#define FEW_ROWS 60 /* up to so many S is dense whatever it is made of */
+
+static PetscErrorCode DestroyEntries(Entries *entries)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(entries->begin));
+  PetscCall(PetscFree2(entries->columns, entries->values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The touching rows of a body, by their numbers among its rows, and their places in the list of all */
 static PetscErrorCode ListBodyRows(Contact contact, ContactStepper *stepper, PetscInt b, PetscInt *n)
 {
@@ -74,8 +84,8 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds what one body does */
-static PetscErrorCode AddBody(Contact contact, ContactStepper *stepper, PetscInt b)
+/* Adds what one body does to a dense S */
+static PetscErrorCode AddBody(Contact contact, ContactStepper *stepper, PetscInt b, PetscScalar S[])
 {
   const PetscInt     n = stepper->problem.n, *place;
   const PetscScalar *W;
@@ -98,11 +108,66 @@ static PetscErrorCode AddBody(Contact contact, ContactStepper *stepper, PetscInt
       for (PetscInt e = entries.begin[k]; e < entries.begin[k + 1]; e++)
         for (PetscInt f = entries.begin[l]; f < entries.begin[l + 1]; f++)
           sum += entries.values[e] * entries.values[f] * W[place[entries.columns[f]] * leading + place[entries.columns[e]]];
-      stepper->problem.S[stepper->places[l] * n + stepper->places[k]] += sum;
+      S[stepper->places[l] * n + stepper->places[k]] += sum;
     }
   PetscCall(PetscFree(dofs));
-  PetscCall(PetscFree(entries.begin));
-  PetscCall(PetscFree2(entries.columns, entries.values));
+  PetscCall(DestroyEntries(&entries));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds to a sparse S what a body does none of whose nodes answers to forces on others: rows are coupled that share a displacement */
+static PetscErrorCode AddDiagonal(Contact contact, ContactStepper *stepper, PetscInt b, Vec diagonal, Mat S)
+{
+  const PetscScalar *values;
+  PetscScalar       *answer;
+  PetscInt           begin, end, count, *order, *row;
+  Entries            entries;
+
+  PetscFunctionBegin;
+  PetscCall(ListBodyRows(contact, stepper, b, &entries.n));
+  if (!entries.n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetEntries(contact, stepper, b, &entries));
+  count = entries.begin[entries.n];
+  PetscCall(PetscCalloc3(count, &answer, count, &order, count, &row));
+  PetscCall(VecGetOwnershipRange(diagonal, &begin, &end));
+  PetscCall(VecGetArrayRead(diagonal, &values));
+  for (PetscInt k = 0; k < entries.n; k++)
+    for (PetscInt e = entries.begin[k]; e < entries.begin[k + 1]; e++) {
+      order[e] = e;
+      row[e]   = stepper->places[k];
+      if (entries.columns[e] >= begin && entries.columns[e] < end) answer[e] = values[entries.columns[e] - begin];
+    }
+  PetscCall(VecRestoreArrayRead(diagonal, &values));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, answer, (PetscMPIInt)count, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(PetscSortIntWithPermutation(count, entries.columns, order));
+  for (PetscInt first = 0, last; first < count; first = last) {
+    for (last = first; last < count && entries.columns[order[last]] == entries.columns[order[first]]; last++);
+    for (PetscInt k = first; k < last; k++)
+      for (PetscInt l = first; l < last; l++) {
+        const PetscInt    e = order[k], f = order[l];
+        const PetscScalar value = entries.values[e] * entries.values[f] * answer[e];
+
+        PetscCall(MatSetValues(S, 1, &row[e], 1, &row[f], &value, ADD_VALUES));
+      }
+  }
+  PetscCall(PetscFree3(answer, order, row));
+  PetscCall(DestroyEntries(&entries));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether no node of any body answers to forces on others */
+static PetscErrorCode IsSparse(Contact contact, ContactStepper *stepper, PetscBool *sparse)
+{
+  PetscFunctionBegin;
+  *sparse = (PetscBool)(stepper->problem.n > FEW_ROWS);
+  for (PetscInt b = 0; b < contact->n_bodies && *sparse; b++) {
+    Vec diagonal;
+
+    if (!contact->body_rows[b].n_all) continue;
+    PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rule->shape, &diagonal));
+    *sparse = (PetscBool)(diagonal != NULL);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,14 +175,33 @@ static PetscErrorCode AddBody(Contact contact, ContactStepper *stepper, PetscInt
 PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
 {
   const PetscInt n    = stepper->problem.n;
-  PetscBool      same = (PetscBool)(stepper->assembled == stepper->state && stepper->n_assembled == n);
+  PetscBool      same = (PetscBool)(stepper->assembled == stepper->state && stepper->n_assembled == n), sparse;
+  PetscScalar   *values;
+  Mat            S;
 
   PetscFunctionBegin;
   if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
-  PetscCall(PetscArrayzero(stepper->problem.S, n * n));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddBody(contact, stepper, b));
+  PetscCall(IsSparse(contact, stepper, &sparse));
+  PetscCall(MatCreate(PETSC_COMM_SELF, &S));
+  PetscCall(MatSetSizes(S, n, n, n, n));
+  PetscCall(MatSetType(S, sparse ? MATSEQAIJ : MATSEQDENSE));
+  PetscCall(MatSetUp(S));
+  if (!sparse) PetscCall(MatDenseGetArrayWrite(S, &values));
+  if (!sparse) PetscCall(PetscArrayzero(values, n * n));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    Vec diagonal;
+
+    if (!sparse) PetscCall(AddBody(contact, stepper, b, values));
+    if (!sparse || !contact->body_rows[b].n_all) continue;
+    PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rule->shape, &diagonal));
+    PetscCall(AddDiagonal(contact, stepper, b, diagonal, S));
+  }
+  if (!sparse) PetscCall(MatDenseRestoreArrayWrite(S, &values));
+  PetscCall(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
+  PetscCall(LawProblemTakeS(&stepper->problem, &S));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
   stepper->n_assembled = n;
   stepper->assembled   = stepper->state;

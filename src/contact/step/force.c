@@ -101,7 +101,7 @@ static PetscErrorCode SetUp(Contact contact)
   stepper->assembled         = -1;
   if (contact->friction.law.setup && contact->options.law == CONTACT_LAW_FRICTION)
     PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
-  PetscCall(LawProblemResize(&stepper->problem, 1)); /* options are read now, and what nobody reads is an error */
+  PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now, and what nobody reads is an error */
   PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
   PetscCall(

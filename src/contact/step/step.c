@@ -78,30 +78,31 @@ static PetscErrorCode Advance(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* S is corrected by what the last two passes have shown of it, unless it has told right */
+/* A dense S is corrected by what the last two passes have shown of it, unless it has told right; a sparse one does */
 static PetscErrorCode CorrectS(ContactStepper *stepper)
 {
   LawProblem    *problem = &stepper->problem;
   const PetscInt n       = problem->n;
-  PetscScalar   *force = stepper->told, *read = stepper->told + n, *product = stepper->gathered + 2 * n;
+  PetscScalar   *force = stepper->told, *read = stepper->told + n, *product = stepper->gathered + 2 * n, *S;
   PetscReal      work = 0, told_work = 0, off = 0, largest = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) product[i] = 0;
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++) product[i] += problem->S[j * n + i] * (problem->base[j] - force[j]);
+  if (problem->sparse) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < n; i++) force[i] = problem->base[i] - force[i];
+  PetscCall(LawProblemMultiply(problem, force, product));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscReal change = PetscRealPart(problem->read[i] - read[i]);
-
-    work += PetscRealPart(problem->base[i] - force[i]) * change;
-    told_work += PetscRealPart((problem->base[i] - force[i]) * product[i]);
-    off     = PetscMax(off, PetscAbsScalar(change - product[i]));
+    read[i] = problem->read[i] - read[i];
+    work += PetscRealPart(force[i] * read[i]);
+    told_work += PetscRealPart(force[i] * product[i]);
+    off     = PetscMax(off, PetscAbsScalar(read[i] - product[i]));
     largest = PetscMax(largest, PetscAbsScalar(product[i]));
   }
   if (off <= EXACT * largest || !(work > CURVATURE * told_work) || !(told_work > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatDenseGetArray(problem->S, &S));
   for (PetscInt j = 0; j < n; j++)
-    for (PetscInt i = 0; i < n; i++)
-      problem->S[j * n + i] += (problem->read[i] - read[i]) * (problem->read[j] - read[j]) / work - product[i] * product[j] / told_work;
+    for (PetscInt i = 0; i < n; i++) S[j * n + i] += read[i] * read[j] / work - product[i] * product[j] / told_work;
+  PetscCall(MatDenseRestoreArray(problem->S, &S));
+  for (PetscInt i = 0; i < n; i++) problem->diagonal[i] += PetscRealPart(read[i] * read[i] / work - product[i] * product[i] / told_work);
   stepper->assembled = -1;
   stepper->corrected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -116,7 +117,7 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   const PetscInt     n       = problem->n;
   const PetscReal   *fields[2];
   const PetscScalar *x;
-  PetscScalar       *f;
+  PetscScalar       *f, *change;
   PetscBool          solved;
   PetscInt           k = 0;
 
@@ -142,14 +143,14 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   stepper->has_told = PETSC_TRUE;
   PetscCall(PetscArraycpy(problem->force, problem->base, n));
   PetscCall(LawProblemSolve(problem, &solved));
+  change = stepper->gathered;
   stepper->passes++;
   stepper->off = 0;
+  for (PetscInt i = 0; i < n; i++) change[i] = problem->force[i] - problem->base[i];
+  PetscCall(LawProblemMultiply(problem, change, change));
   for (PetscInt i = 0; i < n; i++) {
-    PetscScalar change = 0;
-
-    for (PetscInt j = 0; j < n; j++) change += problem->S[j * n + i] * (problem->force[j] - problem->base[j]);
-    stepper->off   = PetscMax(stepper->off, PetscAbsScalar(change));
-    stepper->scale = PetscMax(stepper->scale, PetscAbsScalar(problem->S[i * (n + 1)] * problem->force[i]));
+    stepper->off   = PetscMax(stepper->off, PetscAbsScalar(change[i]));
+    stepper->scale = PetscMax(stepper->scale, PetscAbsScalar(problem->diagonal[i] * problem->force[i]));
   }
   PetscCall(ContactMonitorPass(contact, stepper, solved));
   PetscCall(PetscInfo(contact, "pass %" PetscInt_FMT ": rows off by %g m of %g m\n", stepper->passes, (double)stepper->off,
