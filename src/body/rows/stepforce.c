@@ -129,7 +129,8 @@ PetscErrorCode BodyGetNodalDiagonal(Body body, BodyForceShape shape, Vec *diagon
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(diagonal, 3);
   *diagonal = NULL;
-  if (shape != BODY_FORCE_CONSTANT || !body->mass.inverse || body->integrator->staggered <= 0 || body->time.substeps > 1 || body->layer.exists)
+  if (shape != BODY_FORCE_CONSTANT || !body->mass.inverse || body->integrator->staggered <= 0 || body->time.substeps > 1 ||
+      body->layer.exists)
     PetscFunctionReturn(PETSC_SUCCESS);
   if (!compliance->diagonal || compliance->diagonal_step != body->time.step) {
     if (!compliance->diagonal) PetscCall(BodyCreateVec(body, &compliance->diagonal));
