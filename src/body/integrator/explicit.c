@@ -116,12 +116,21 @@ static PetscBool KnowsForce(Body body)
   return (PetscBool)(GetLayer(body) && !body->rows.n_robin);
 }
 
-/* What LayerBalanceSolve() has found is all that the rows depend on: the acceleration, which is zero on massless nodes, is left to
-   Complete(), and counts as changed on all ranks */
+/* Whether rows get where they do whatever the elements and the end of the step bring: by the balance of the layer alone, or, on nodes with
+   mass, by the forces that have acted from the start on */
+static PetscBool IsEarly(Body body)
+{
+  if (((BodyExplicit *)body->integrator->data)->layer_alone) return PETSC_TRUE;
+  return (PetscBool)(body->rows.constant && body->time.substeps == 1 && !GetLayer(body) && !body->rows.n_prescribed &&
+                     !body->rows.n_robin && !body->unloaded);
+}
+
+/* The displacement is all that the rows depend on: the acceleration, which is zero on massless nodes, is left to Complete(), and counts as
+   changed on all ranks */
 static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
-  if (!body->layer.left) PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
+  if (GetLayer(body) && !body->layer.left) PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
   if (body->held.n && !body->state.incomplete) PetscCall(VecZeroEntries(A)); /* of held nodes it is not */
   else PetscCall(PetscObjectStateIncrease((PetscObject)A));
   body->state.incomplete = PETSC_TRUE;
@@ -137,7 +146,7 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
   PetscFunctionBegin;
   PetscCall(PlaceRows(body, t, U, force));
   if (body->state.damping) PetscCall(BodyMultiplyDamping(body, U, V, body->state.damping));
-  if (((BodyExplicit *)body->integrator->data)->layer_alone) {
+  if (IsEarly(body)) {
     PetscCall(LeaveIncomplete(body, U, A));
     PetscCall(TSCentralDifferenceLeaveVelocity(ts));
   } else PetscCall(Accelerate(body, t, KnowsForce(body), force, U, A));
@@ -363,10 +372,10 @@ static PetscErrorCode SetUp(Body body)
   integrator->depends_on_step = (PetscBool)(body->time.substeps > 1);
   integrator->reads_start     = layer;
   integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
+  if (body->time.substeps == 1) integrator->ops.complete = Complete;
   if (layer && body->time.substeps == 1) integrator->ops.freerows = ComputeFreeRows;
   if (explicit->layer_alone) {
-    integrator->ops.repeat   = RepeatLayer;
-    integrator->ops.complete = Complete;
+    integrator->ops.repeat = RepeatLayer;
     if (body->model.linear) {
       integrator->ops.expect     = Expect;
       integrator->ops.follow     = Follow;

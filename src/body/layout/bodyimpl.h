@@ -191,6 +191,7 @@ typedef struct {
   PetscScalar   *kept_traces;   /* output traces put aside by BodyKeep() */
   BodyHandover   handover;
   BodyExchange   exchange;
+  PetscBool      constant;    /* forces act that are the same throughout the controller step, see BodySetConstantForces() */
   Vec            nodal_force; /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
   BodyForceShape nodal_shape; /* how */
 } BodyRows;

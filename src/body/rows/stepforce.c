@@ -39,7 +39,8 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
     PetscCall(TraceGetLevel(body->traces.force_in, level, &values));
     PetscCall(PetscArraycpy(values, force, body->rows.local));
   }
-  change = body->compliance->mine;
+  body->rows.constant = PETSC_TRUE;
+  change              = body->compliance->mine;
   for (PetscInt i = 0; i < body->rows.local; i++) change[i] = force[i] - last[i];
   PetscCall(BodySetStartForce(body, change, none));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -14,13 +14,14 @@
 #include "lawproblem.h"
 #include <sys/petsccompat.h>
 
-#define PROXIMAL        1e-10 /* of the diagonal of S */
-#define MOST_PROXIMAL   20
-#define TOLERANCE       1e-13 /* of the largest force, and of the largest force that would close what is read */
-#define MOST_NEWTON     50
-#define FIRST_SWEEPS    5
-#define MOST_SWEEPS     5120
-#define NODE_ITERATIONS 10 /* for the rows of one node in a sweep */
+#define PROXIMAL         1e-10 /* of the diagonal of S */
+#define MOST_PROXIMAL    20
+#define TOLERANCE        1e-13 /* of the largest force, and of the largest force that would close what is read */
+#define MOST_NEWTON      50
+#define FIRST_SWEEPS     5
+#define SPARSE_TOLERANCE 1e-12 /* of linear iterations [parts of the residual] */
+#define MOST_SWEEPS      5120
+#define NODE_ITERATIONS  10 /* for the rows of one node in a sweep */
 
 /* out = S in */
 PetscErrorCode LawProblemMultiply(LawProblem *problem, const PetscScalar in[], PetscScalar out[])
@@ -91,6 +92,8 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
 /* Rows of I - D (I - r (S + eps diag S)) for the rows of one node, D the derivative of P for it */
 static PetscErrorCode SetNode(const LawProblem *problem, PetscInt first, PetscInt rows, const PetscReal derivative[], Mat J)
 {
+  PetscScalar *line = problem->work + problem->n;
+
   PetscFunctionBegin;
   for (PetscInt l = 0; l < rows; l++) {
     const PetscInt     i = first + l, *columns;
@@ -102,11 +105,8 @@ static PetscErrorCode SetNode(const LawProblem *problem, PetscInt first, PetscIn
       const PetscInt  row  = first + k;
       const PetscReal part = derivative[k * rows + l] / Diagonal(problem, i);
 
-      for (PetscInt e = 0; e < n; e++) {
-        const PetscScalar value = part * values[e];
-
-        if (value != 0) PetscCall(MatSetValues(J, 1, &row, 1, &columns[e], &value, ADD_VALUES));
-      }
+      for (PetscInt e = 0; e < n; e++) line[e] = part * values[e];
+      if (part != 0) PetscCall(MatSetValues(J, 1, &row, n, columns, line, ADD_VALUES));
     }
     PetscCall(MatRestoreRow(problem->S, i, &n, &columns, &values));
     for (PetscInt k = 0; k < rows; k++) {
@@ -282,9 +282,11 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscCall(SNESGetLineSearch(problem->newton, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESGetKSP(problem->newton, &ksp));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
   PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCLU));
+  /* a sparse S is nearly diagonal: a few iterations, to round-off, take a fraction of the time of factors */
+  PetscCall(KSPSetType(ksp, problem->sparse ? KSPGMRES : KSPPREONLY));
+  PetscCall(PCSetType(pc, problem->sparse ? PCILU : PCLU));
+  PetscCall(KSPSetTolerances(ksp, SPARSE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(SNESSetFromOptions(problem->newton));
   PetscCall(CreateSNES(problem, "law_nodes_", SNESNGS, MOST_SWEEPS, &problem->nodes));
   PetscCall(SNESSetNGS(problem->nodes, SweepNodes, problem));
