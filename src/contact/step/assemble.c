@@ -120,7 +120,8 @@ static PetscErrorCode AddDiagonal(Contact contact, ContactStepper *stepper, Pets
 {
   const PetscScalar *values;
   PetscScalar       *answer;
-  PetscInt           begin, end, count, *order, *row;
+  PetscScalar       *block;
+  PetscInt           begin, end, count, most = 0, *order, *row, *rows;
   Entries            entries;
 
   PetscFunctionBegin;
@@ -143,14 +144,23 @@ static PetscErrorCode AddDiagonal(Contact contact, ContactStepper *stepper, Pets
   PetscCall(PetscSortIntWithPermutation(count, entries.columns, order));
   for (PetscInt first = 0, last; first < count; first = last) {
     for (last = first; last < count && entries.columns[order[last]] == entries.columns[order[first]]; last++);
-    for (PetscInt k = first; k < last; k++)
-      for (PetscInt l = first; l < last; l++) {
-        const PetscInt    e = order[k], f = order[l];
-        const PetscScalar value = entries.values[e] * entries.values[f] * answer[e];
-
-        PetscCall(MatSetValues(S, 1, &row[e], 1, &row[f], &value, ADD_VALUES));
-      }
+    most = PetscMax(most, last - first);
   }
+  PetscCall(PetscMalloc2(most, &rows, most * most, &block));
+  for (PetscInt first = 0, last; first < count; first = last) {
+    PetscInt n;
+
+    for (last = first; last < count && entries.columns[order[last]] == entries.columns[order[first]]; last++);
+    n = last - first;
+    for (PetscInt k = 0; k < n; k++) {
+      const PetscInt e = order[first + k];
+
+      rows[k] = row[e];
+      for (PetscInt l = 0; l < n; l++) block[k * n + l] = entries.values[e] * entries.values[order[first + l]] * answer[e];
+    }
+    PetscCall(MatSetValues(S, n, rows, n, rows, block, ADD_VALUES));
+  }
+  PetscCall(PetscFree2(rows, block));
   PetscCall(PetscFree3(answer, order, row));
   PetscCall(DestroyEntries(&entries));
   PetscFunctionReturn(PETSC_SUCCESS);
