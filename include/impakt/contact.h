@@ -292,8 +292,8 @@ typedef struct {
   PetscReal      friction_residual; /* most by which a step has missed the law of friction, de Saxce's residual [m] */
   PetscReal      contact_loss;      /* energy that contact has taken, friction apart, where the method tells it [J] */
   PetscBool      tells_loss;
-  PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
-  PetscLogDouble seconds;           /* in sweeps */
+  PetscInt       rebuilds; /* of the operators between contact surfaces, beyond the first */
+  PetscLogDouble seconds;  /* in sweeps */
 } ContactCounts;
 
 /* What ContactFieldsCompute() gives for each node */

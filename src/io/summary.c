@@ -69,9 +69,9 @@ static PetscErrorCode AddOverlap(json_t *root, Controller controller, Contact co
 
 static PetscErrorCode AddContact(json_t *root, Controller controller, Contact contact, const StatisticsResults *results)
 {
-  json_t     *object, *pair;
-  ContactType type;
-  ContactLaw  law;
+  json_t       *object, *pair;
+  ContactType   type;
+  ContactLaw    law;
   ContactCounts counts;
   PetscBool     friction;
   const char   *name;

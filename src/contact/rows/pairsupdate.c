@@ -43,8 +43,7 @@ static PetscErrorCode GetDisplacements(Contact contact, const ContactPair *pair,
 {
   PetscFunctionBegin;
   u[0] = u[1] = NULL;
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-    PetscCall(ContactGetRowPlace(contact, pair->body[side], &u[side]));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(ContactGetRowPlace(contact, pair->body[side], &u[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
