@@ -361,6 +361,7 @@ PETSC_EXTERN PetscErrorCode ContactGetBalance(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetAutomaticBalance(Contact);
 PETSC_EXTERN PetscErrorCode ContactGetSharedTimes(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetUnlimitedReason(Contact, const char *[], const char *[]);
+PETSC_EXTERN PetscErrorCode ContactGetLossReason(Contact, const char *[]);
 PETSC_EXTERN PetscErrorCode ContactSetBalancedStart(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetBalancedStart(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetParts(Contact, PetscInt *);

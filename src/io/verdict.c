@@ -96,10 +96,13 @@ static PetscErrorCode AddNumbers(Verdict *verdict)
 }
 
 /* `always`: why contact cannot be kept from taking or bringing energy, or NULL */
-static PetscErrorCode LookAtEnergy(Controller controller, const char *always, PetscReal gain, PetscReal loss, Verdict *verdict)
+static PetscErrorCode LookAtEnergy(Controller controller, Contact contact, const char *always, PetscReal gain, PetscReal loss,
+                                   Verdict *verdict)
 {
-  const double percent = (double)(100 * (loss > ENERGY_LOSS && loss > gain ? -loss : gain));
-  PetscReal    step, resolved;
+  const PetscBool lost    = (PetscBool)(loss > ENERGY_LOSS && loss > gain);
+  const double    percent = (double)(100 * (lost ? -loss : gain));
+  const char     *takes;
+  PetscReal       step, resolved;
 
   PetscFunctionBegin;
   if (gain <= ENERGY_GAIN && loss <= ENERGY_LOSS) PetscFunctionReturn(PETSC_SUCCESS);
@@ -114,7 +117,9 @@ static PetscErrorCode LookAtEnergy(Controller controller, const char *always, Pe
   }
   PetscCall(ControllerGetTimes(controller, NULL, &step, NULL));
   PetscCall(ControllerGetResolvedStep(controller, &resolved));
-  if (always)
+  PetscCall(ContactGetLossReason(contact, &takes));
+  if (takes && lost) PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst: %s", percent, takes));
+  else if (always)
     PetscCall(Add(verdict,
                   "the energy error is %+.3g %% at its worst, and contact may bring or take some, since %s; massless contact nodes "
                   "(-<body>_mass_redistribute, the default) keep it",
@@ -143,7 +148,7 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   PetscCall(ContactGetEnergyCap(contact, NULL, &excess));
   PetscCall(ContactGetEnergyTolerance(contact, &tolerance));
   PetscCall(ContactGetUnlimitedReason(contact, &always, &reason));
-  PetscCall(LookAtEnergy(controller, always, gain, loss, verdict));
+  PetscCall(LookAtEnergy(controller, contact, always, gain, loss, verdict));
   if (reason && results->momentum_error_max > MOMENTUM_ERROR)
     PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or -schwarz_transmission dirichlet_neumann",
                   (double)(100 * results->momentum_error_max), reason));
@@ -207,10 +212,11 @@ static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const c
     thickness = PetscMin(thickness, upper[d] - lower[d]);
   }
   if (PetscSqrtReal(square) > CENTRE_SHIFT * thickness)
-    PetscCall(AddOfKind(
-        verdict, VERDICT_CENTRE,
-        "massless contact nodes move the centre of mass of body '%s' by %.3g%s, %.3g %% of its least extent: refine it across", name,
-        (double)PetscSqrtReal(square), UnitsText(verdict->units, UNIT_LENGTH), (double)(100 * PetscSqrtReal(square) / thickness)));
+    PetscCall(AddOfKind(verdict, VERDICT_CENTRE,
+                        "massless contact nodes move the centre of mass of body '%s' by %.3g%s, %.3g %% of its least extent: keep its mass "
+                        "(-contact_type force -%s_mass_redistribute false), or refine it across",
+                        name, (double)PetscSqrtReal(square), UnitsText(verdict->units, UNIT_LENGTH),
+                        (double)(100 * PetscSqrtReal(square) / thickness), name));
   else if (inertia > INERTIA_CHANGE) {
     char advice[256] = "";
 
@@ -220,8 +226,8 @@ static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const c
           PetscSNPrintf(advice, sizeof(advice), ", or set -%s_mass_redistribute near, which leaves %.3g %%", name, (double)(100 * near)));
     PetscCall(AddOfKind(verdict, VERDICT_INERTIA,
                         "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; "
-                        "refine it across%s",
-                        name, (double)(100 * inertia), advice));
+                        "keep its mass (-contact_type force -%s_mass_redistribute false), or refine it across%s",
+                        name, (double)(100 * inertia), name, advice));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -133,8 +133,7 @@ static PetscErrorCode PrintScreen(void)
   for (size_t t = 0; t < n; t++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-10s %s\n", topics[t].name, topics[t].text));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  all        the options of all topics, and those of PETSc\n"
                                           "  markdown   the options of all topics, as tables in Markdown\n"
-                                          "-example [NAME] lists options files to start from, or writes one.\n"
-                                          "-version prints what Impakt was built with and ends.\n\n"));
+                                          "-example [NAME] lists or writes options files; -version lists what is built in.\n\n"));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD,
                         "PETSc %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT ", %s, HDF5 %u.%u.%u\nbuilt by %s, %s\n", v.petsc[0],
                         v.petsc[1], v.petsc[2], v.mpi, v.hdf5[0], v.hdf5[1], v.hdf5[2], COMPILER, IMPAKT_OPTIMISATION));

@@ -11,6 +11,7 @@ static const OptionTopic topics[] = {
     {"contact", "what may touch what, and by which method and law"},
     {"obstacles", "rigid planes, spheres and cylinders"},
     {"schwarz", "the Schwarz alternating method and its outer iteration"},
+    {"rules", "-contact_type force: how forces run within a step, and laws of rows"},
     {"penalty", "the penalty method"},
     {"lagrange", "Lagrange multipliers and the augmented Lagrangian"},
     {"files", "what a run reads, writes, and shows on the terminal"},
@@ -188,7 +189,8 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_rows", "first|second|finer",
      "which body of a pair has a contact row for each of its nodes, and takes displacements: the one named first, which is the default, or "
      "second, or the one whose surface is finer where they may touch; or a value for each pair, with commas"},
-    {"contact", OPTION_OF_RUN, "contact_type", "schwarz|penalty|lagrange|augmented_lagrangian", "contact method, default schwarz"},
+    {"contact", OPTION_OF_RUN, "contact_type", "schwarz|force|penalty|lagrange|augmented_lagrangian",
+     "contact method, default schwarz; force: also where contact nodes have mass, as in sheets and plates, with friction too"},
     {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded|coulomb",
      "what surfaces do to each other, default frictionless; bonded: they stick once they have met; coulomb: friction"},
     {"contact", OPTION_OF_RUN, "contact_friction", "mu", "coefficient of friction of all pairs that have none of their own"},
@@ -198,8 +200,7 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_friction_decay", "d", "d in that [s/m]"},
     {"contact", OPTION_OF_RUN, "contact_friction_dense_limit", "n",
      "rows in contact up to which steps with friction have dense matrices, default 300, and 2000 where products take longer; beyond, "
-     "forces "
-     "come from GMRES"},
+     "forces come from GMRES. Not with -contact_type force"},
     {"contact", OPTION_OF_RUN, "contact_separation", "true|false",
      "whether surfaces that have met may come apart again, default true; false, of frictionless ones under schwarz: they slide on each "
      "other, "
@@ -215,7 +216,8 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_angle_bound", "a",
      "turn of a contact normal after which its row is built again [rad], default 0.1"},
     {"contact", OPTION_OF_RUN, "contact_energy_tolerance", "t",
-     "part of the system's energy that contact may take or bring in a controller step before it is made again in halves, default 1e-3"},
+     "part of the system's energy that contact may take or bring in a controller step before it is made again in halves, default 1e-3; "
+     "not with -contact_rule impulse"},
     {"contact", OPTION_OF_RUN, "contact_tolerance", "g", "depth that does not yet count as penetration [m]"},
     {"contact", OPTION_OF_RUN, "contact_allow_unstable", "true|false",
      "whether choices that are known to gain energy run all the same, default false"},
@@ -227,9 +229,10 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_balanced_start", "true|false",
      "whether massless nodes are brought into balance in the first state, default true"},
     {"contact", OPTION_OF_RUN, "contact_energy_cap", "true|false",
-     "whether steps in which contact would gain energy are made again with less force at their start, default true"},
+     "whether steps in which contact would gain energy are made again with less force at their start, default true; not with "
+     "-contact_rule impulse, where contact gains none"},
     {"contact", OPTION_OF_RUN, "contact_energy_excess", "e",
-     "part of the energy that contact may gain in the whole run all the same, default 1e-3"},
+     "part of the energy that contact may gain in the whole run all the same, default 1e-3; not with -contact_rule impulse"},
 
     {"obstacles", OPTION_OF_RUN, "obstacles", "o,p", "names of rigid obstacles; options of obstacle o begin with -o_"},
     {"obstacles", OPTION_OF_OBSTACLE, "obstacle_type", "plane|sphere|cylinder", "shape of the obstacle"},
@@ -240,10 +243,13 @@ static const KnownOption options[] = {
     {"obstacles", OPTION_OF_OBSTACLE, "velocity", "v,v[,v]",
      "velocity of its surface along itself, as of a belt or a turning roll, which bodies feel by friction [m/s]; formulas in x, y, z, t"},
 
-    {"schwarz", OPTION_OF_RUN, "schwarz_snes_type", "newtonls|anderson|nrichardson|ngmres|qn", "outer iteration, default newtonls"},
+    {"schwarz", OPTION_OF_RUN, "schwarz_snes_type", "newtonls|anderson|nrichardson|ngmres|qn",
+     "outer iteration, default newtonls; with -contact_type force nrichardson, and not newtonls"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_atol", "a",
      "absolute tolerance on the change of position [m], default 4e-12 of the size of the smallest body"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_snes_rtol", "r", "relative tolerance on it, default 1e-15"},
+    {"schwarz", OPTION_OF_RUN, "schwarz_snes_rtol", "r",
+     "relative tolerance on it, default 1e-15; with -contact_type force in parts of the largest way that contact makes a row go in the "
+     "step, default 1e-6, and 1e-9 where a body is static"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_max_it", "n", "limit of outer iterations, default 50"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_linesearch_damping", "theta", "relaxation of nrichardson, default 1"},
     {"schwarz", OPTION_OF_RUN, "schwarz_relaxation", "fixed|aitken", "whether nrichardson adapts its relaxation, default fixed"},
@@ -277,6 +283,17 @@ static const KnownOption options[] = {
      "what to do with a controller step that does not converge, default error"},
     {"schwarz", OPTION_OF_RUN, "contact_swap_sides", "true|false",
      "whether Dirichlet and Neumann side change places with every controller step, default false"},
+
+    {"rules", OPTION_OF_RUN, "contact_monitor", "[ascii[:file]]", "a line for each pass of a contact step, and why it ended; default none"},
+    {"rules", OPTION_OF_RUN, "contact_rule", "auto|impulse|linear",
+     "how the force of a row runs within a step, and when the row is closed; impulse: constant, and its gap does not change, where contact "
+     "nodes have mass; linear: from the last step's to the new one, and it has no gap at the end, where they are massless. Default auto: "
+     "impulse where some contact node has mass, else linear"},
+    {"rules", OPTION_OF_RUN, "law_snes_type", "newtonls|...", "solver of the law of all rows, default newtonls"},
+    {"rules", OPTION_OF_RUN, "law_snes_rtol", "r",
+     "its tolerance, in parts of the largest force, or of that which alone would close a row, default 1e-13"},
+    {"rules", OPTION_OF_RUN, "law_snes_max_it", "n", "limit of its iterations, default 50; beyond, sweeps node by node help it"},
+    {"rules", OPTION_OF_RUN, "law_nodes_snes_max_it", "n", "limit of these sweeps, default 5120; less than 5: none"},
 
     {"penalty", OPTION_OF_RUN, "contact_penalty", "tau", "penalty parameter [N/m^3; N/m in 1-D], default from material and element size"},
     {"penalty", OPTION_OF_RUN, "contact_penalty_scale", "s",

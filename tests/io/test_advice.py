@@ -30,6 +30,11 @@ TILTED = (
     f"-b_boundary_displacement_ymin {TURN.format('', '')} "
     f"-a_boundary_displacement_ymax {TURN.format(f'+2e-4*min(1,5*t)*sin({ANGLE}*t)', f'-2e-4*min(1,5*t)*cos({ANGLE}*t)')}"
 )
+# Two squares hit each other with their whole faces, by the contact step whose rule is for nodes with mass
+FLAT = (
+    "-bodies left,right -all_density 1000 -all_youngs_modulus 1e9 -left_dm_plex_box_faces 8,4 -right_dm_plex_box_faces 6,3 -right_translate 1.005,0 "
+    "-left_initial_velocity 20,0 -time_step 2e-5 -time_end 6e-4 -contact_type force -all_mass_redistribute false"
+)
 # A square of 0.2 m falls on a plate that is two layers of triangles thick
 PLATE = (
     f"-bodies a,b -contact_pairs a:b {TWO} -a_dm_plex_simplex -a_dm_plex_box_faces 16,2 -a_dm_plex_box_upper 2,0.1 -b_dm_plex_box_lower 0.9,0.1001 -b_dm_plex_box_upper 1.1,0.3 "
@@ -90,6 +95,8 @@ CASES = {
     "load steps": ("-options_file options/hertz-sphere-axisymmetric.opts", "smaller -time_step", "-time_step 0.125", energy, 0.05, 1e-2),  # 0.063, 4.6e-3
     "sliding": (SLIDING, "together with a smaller -contact_slip_bound", "-time_step 1e-3 -contact_slip_bound 0.01", energy, 0.02, 6e-3),  # 0.022, 5.0e-3
     "energy of nodes with mass": ("-options_file options/impact-low-speed.opts", "massless contact nodes", "-left_mass_redistribute true -right_mass_redistribute true", energy, 0.03, 3e-3),  # 0.032, 2.3e-3
+    "energy that a rule takes": (FLAT, "and finer elements lose less", "-left_dm_plex_box_faces 32,16 -right_dm_plex_box_faces 24,12", energy, 0.05, 0.02),  # 5.9e-2, 1.8e-2
+    "energy of nodes with mass, by a rule": (FLAT, "massless contact nodes", "-all_mass_redistribute true", energy, 0.05, 2e-3),  # 5.9e-2, 6.8e-4
     "momentum of nodes with mass": (f"{BLOCKS} -left_mass_redistribute false -right_mass_redistribute false", "massless contact nodes", "-left_mass_redistribute true -right_mass_redistribute true", system("momentum"), 5e-3, 1e-12),  # 9.8e-3, 1.6e-14
     "unequal substeps": (UNEQUAL, "-schwarz_transmission dirichlet_neumann", "-schwarz_transmission dirichlet_neumann", system("momentum"), 0.1, 1e-12),  # 0.19, 4e-14
     "round-off, step": (f"{STIFF} -time_step 1e-7 -time_end -1.999e-4", "smaller -time_step", "-time_step 1e-9 -time_end -1.9999e-4", system("momentum"), 0.05, 1e-4),  # 0.063, 1.5e-5
@@ -101,6 +108,7 @@ CASES = {
     "tilt": (f"{TILTED} {NONLINEAR}", "smaller -contact_angle_bound", "-contact_angle_bound 1e-4", contact("friction_tilt"), 0.999 * ANGLE / FRICTION, 1.001 * ANGLE / STEPS / FRICTION),
     "tilt of linear bodies": (TILTED, "take materials that are not linear", f"{NONLINEAR} -contact_angle_bound 1e-4", contact("friction_tilt"), 1.9 * ANGLE / FRICTION, 1.001 * ANGLE / STEPS / FRICTION),
     "centre of mass": (PLATE, "refine it across", "-a_dm_plex_box_faces 16,4", centre_shift, 5e-3, 1e-12),  # 6.4e-3 m, 0
+    "mass of a plate": (PLATE, "-contact_type force -a_mass_redistribute false", "-contact_type force -a_mass_redistribute false", centre_shift, 5e-3, 1e-12),  # the same
     "never touched": (f"{PLATE} -time_end 1e-5", "pair a:b never touched: its smallest gap was 5e-05 m", "-time_end 1e-4", lambda run: run.summary["pairs"]["a:b"]["gap_min"], 4.99e-5, 1e-10),
     "stretched in a load step": (STRETCHED, "a smaller -time_step makes it less", "-time_step 0.1", energy, 0.04, 6e-4),  # 5.0e-2, 4.9e-4: the square of the step
     "lossy steps, step": (SLAP, "than -contact_energy_tolerance after the last cut, to 2.5e-06 s; a smaller -time_step", "-time_step 1e-6", energy, 0.01, 2e-3),  # 1.6e-2, 5.5e-4

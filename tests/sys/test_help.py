@@ -6,7 +6,7 @@ import re
 import pytest
 from conftest import IMPAKT, ROOT, complaints
 
-TOPICS = ["bodies", "meshes", "materials", "loads", "time", "contact", "obstacles", "schwarz", "penalty", "lagrange", "files"]
+TOPICS = ["bodies", "meshes", "materials", "loads", "time", "contact", "obstacles", "schwarz", "rules", "penalty", "lagrange", "files"]
 ENTRY = re.compile(r"^  -(\S+) \S+\n      \S.*$", re.MULTILINE)
 
 # Options that Impakt looks at, and that are PETSc's own: their table is PETSc's
@@ -84,6 +84,7 @@ SOME = {
     "contact": {"contact_pairs", "contact_type"},
     "obstacles": {"obstacles", "<obstacle>_normal"},
     "schwarz": {"schwarz_snes_type", "contact_swap_sides"},
+    "rules": {"contact_rule", "law_snes_type", "law_snes_max_it", "law_nodes_snes_max_it"},
     "penalty": {"contact_penalty", "penalty_snes_rtol"},
     "lagrange": {"lagrange_snes_type", "contact_augmentation_tolerance"},
     "files": {"options_file", "output_history"},
@@ -132,6 +133,10 @@ WORDS = {
     "shear": (["<body>_boundary_traction"], set()),
     "preload": (["<body>_ts_type", "restart_state"], set()),
     "mm": (["units"], set()),
+    "sheet": (["<body>_mass_redistribute", "contact_rule"], {"contact_type"}),
+    "thin": (["<body>_mass_redistribute", "contact_rule"], set()),
+    "plate": (["<body>_mass_redistribute", "contact_rule"], {"contact_type"}),
+    "mass": (["<body>_density"], {"<body>_mass_redistribute", "contact_rule", "contact_type"}),
 }
 
 

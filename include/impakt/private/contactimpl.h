@@ -266,6 +266,8 @@ typedef struct {
   PetscBool      limits;                   /* steps must not gain more than there is room for */
   const char    *unlimited;                /* why the method cannot have that, or NULL */
   const char    *not_always;               /* why it cannot in every step, or NULL */
+  const char    *takes;                    /* what contact takes by its rule, which brings none, and what makes that less; or NULL */
+  const char    *asked;                    /* an option that limits what contact brings or takes, as the user has given it, or NULL */
   PetscReal      excess;                   /* part of the energy that contact may bring out of nothing in the whole run */
   PetscReal      scale;                    /* that energy [J] */
   PetscBool      begun;                    /* it is known */

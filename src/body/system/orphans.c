@@ -206,10 +206,11 @@ PetscErrorCode BodyFindOrphans(Body body)
   PetscCall(VecDestroy(&orphans.distance));
   PetscCall(VecDestroy(&orphans.nearer));
   PetscCall(VecDestroy(&work));
-  PetscCheck(left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-             "Body '%s': %g%s of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the "
-             "mesh, name smaller surfaces in -contact_pairs, or set -%smass_redistribute false",
-             body->hdr.name, (double)left, UnitsOf((PetscObject)body, UNIT_MASS), ((PetscObject)body)->prefix);
+  PetscCheck(
+      left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+      "Body '%s': %g%s of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the "
+      "mesh, name smaller surfaces in -contact_pairs, or keep the mass where it is: -%smass_redistribute false with -contact_type force",
+      body->hdr.name, (double)left, UnitsOf((PetscObject)body, UNIT_MASS), ((PetscObject)body)->prefix);
   PetscCall(CopyToComponents(body, orphans.mass));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -102,7 +102,7 @@ PetscErrorCode ContactSetBodies(Contact contact, PetscInt n, const Body bodies[]
 - type    - its name
 
   Options Database Key:
-. -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
+. -contact_type (schwarz|force|penalty|lagrange|augmented_lagrangian) - the contact method
 
   Level: beginner
 

@@ -46,7 +46,7 @@ static PetscErrorCode ReadSettings(Contact contact)
 {
   PetscReal energy_tolerance = 0;
   char      balance[64]      = "";
-  PetscBool given;
+  PetscBool given, set;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
@@ -54,7 +54,8 @@ static PetscErrorCode ReadSettings(Contact contact)
                              contact->options.tolerance, &contact->options.tolerance, NULL));
   PetscCall(ContactGetEnergyTolerance(contact, &energy_tolerance));
   PetscCall(PetscOptionsReal("-contact_energy_tolerance", "Energy that contact may take or bring in a step [parts of the system's]",
-                             "ContactSetEnergyTolerance", energy_tolerance, &energy_tolerance, NULL));
+                             "ContactSetEnergyTolerance", energy_tolerance, &energy_tolerance, &set));
+  if (set) contact->energy.asked = "-contact_energy_tolerance";
   PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "ContactSetConstraint",
                              ContactConstraints, (PetscEnum)contact->options.constraint, (PetscEnum *)&contact->options.constraint, NULL));
   PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetStabilization", ContactStabilizations,
@@ -79,9 +80,11 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscCall(PetscOptionsBool("-contact_balanced_start", "Massless nodes are brought into balance in the first state",
                              "ContactSetBalancedStart", contact->options.balanced_start, &contact->options.balanced_start, NULL));
   PetscCall(PetscOptionsBool("-contact_energy_cap", "Steps that would gain energy at contact are made again", "ContactSetEnergyCap",
-                             contact->energy.limits, &contact->energy.limits, NULL));
+                             contact->energy.limits, &contact->energy.limits, &set));
+  if (set && contact->energy.limits) contact->energy.asked = "-contact_energy_cap true";
   PetscCall(PetscOptionsReal("-contact_energy_excess", "Part of the energy that contact may gain in the whole run", "ContactSetEnergyCap",
-                             contact->energy.excess, &contact->energy.excess, NULL));
+                             contact->energy.excess, &contact->energy.excess, &set));
+  if (set) contact->energy.asked = "-contact_energy_excess";
   PetscOptionsEnd();
   PetscCheck(energy_tolerance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_energy_tolerance %g must be positive; a large one for none", (double)energy_tolerance);
@@ -192,7 +195,7 @@ static PetscErrorCode ReadRowSides(Contact contact)
                                                                  that is better; a.top:b.bottom for certain surfaces; default: the two
                                                                  bodies, where there are two
 . -contact_rows (first|second|finer)                            - which body of a pair has the rows; or a value for each pair
-. -contact_type (schwarz|penalty|lagrange|augmented_lagrangian) - the contact method
+. -contact_type (schwarz|force|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
 . -contact_law (frictionless|tied|bonded|coulomb)               - what the surfaces do to each other

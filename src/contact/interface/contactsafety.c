@@ -119,19 +119,43 @@ PetscErrorCode ContactGetSharedTimes(Contact contact, PetscBool *shared)
 . contact - the `Contact`, set up
 
   Output Parameters:
-+ always - the reason why no step is kept from it, or `NULL`
++ always - the reason why no step is kept from it, or `NULL`, as where contact never gains energy
 - some   - the reason why some steps are not, or `NULL`
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactSetEnergyCap()`, `ContactView()`
+.seealso: `Contact`, `ContactGetLossReason()`, `ContactSetEnergyCap()`, `ContactView()`
 @*/
 PetscErrorCode ContactGetUnlimitedReason(Contact contact, const char *always[], const char *some[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  if (always) *always = contact->energy.unlimited;
+  if (always) *always = contact->energy.takes ? NULL : contact->energy.unlimited;
   if (some) *some = contact->energy.not_always;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetLossReason - what energy contact takes by its rule, which lets it gain none
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameter:
+. reason - what it takes, and what makes that less, as the part of a sentence; or `NULL`
+
+  Level: intermediate
+
+.seealso: `Contact`, `CONTACT_FORCE`, `ContactGetUnlimitedReason()`
+@*/
+PetscErrorCode ContactGetLossReason(Contact contact, const char *reason[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(reason, 2);
+  *reason = contact->energy.takes;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -169,8 +169,11 @@ PetscErrorCode ContactSetUp(Contact contact)
   }
   PetscCheck(contact->options.law != CONTACT_LAW_FRICTION || contact->friction.steps || !contact->rows.n_all,
              PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_law %s: -contact_type %s has no friction; choose schwarz, lagrange, penalty or augmented_lagrangian",
+             "-contact_law %s: -contact_type %s has no friction; choose schwarz, force, lagrange, penalty or augmented_lagrangian",
              contact->friction.name, ((PetscObject)contact)->type_name);
+  PetscCheck(!contact->energy.takes || !contact->energy.asked, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "%s has no effect: %s, and no step is made again for what it takes; leave it out", contact->energy.asked,
+             contact->energy.unlimited);
   if (!contact->ops->stored && !contact->energy.unlimited) contact->energy.unlimited = "the method does not tell what its forces store";
   contact->setup = PETSC_TRUE;
   StatusLineTell("first state");

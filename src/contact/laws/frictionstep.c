@@ -317,9 +317,9 @@ static PetscErrorCode Check(Contact contact)
              contact->friction.name);
   PetscCall(ContactHasMass(contact, PETSC_FALSE, &has_mass));
   PetscCheck(!has_mass, comm, PETSC_ERR_SUP,
-             "-contact_law %s needs massless contact nodes: with mass the forces of friction ring from step to step; leave "
-             "-<body>_mass_redistribute at true",
-             contact->friction.name);
+             "-contact_law %s needs massless contact nodes with -contact_type %s: with mass the forces of friction ring from step to step; "
+             "leave -<body>_mass_redistribute at true, or choose -contact_type force",
+             contact->friction.name, ((PetscObject)contact)->type_name);
   PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_SUP,
              "-contact_law %s closes gaps; leave -contact_constraint at gap", contact->friction.name);
   PetscCheck(contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm, PETSC_ERR_SUP,

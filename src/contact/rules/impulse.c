@@ -79,4 +79,11 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper)
 }
 
 const ContactRule ContactRuleImpulse = {
-    .name = "impulse", .place = Place, .begin = Begin, .load = Load, .shape = BODY_FORCE_CONSTANT, .end = End};
+    .name  = "impulse",
+    .takes = "contact takes the kinetic energy of the contact nodes that hit, which have mass; massless contact nodes "
+             "(-<body>_mass_redistribute, the default) and finer elements lose less",
+    .place = Place,
+    .begin = Begin,
+    .load  = Load,
+    .shape = BODY_FORCE_CONSTANT,
+    .end   = End};

@@ -163,11 +163,11 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 {
   const LawProblem  *problem = (const LawProblem *)ctx;
   const PetscScalar *x;
-  PetscReal          largest;
-  PetscInt           most;
+  PetscReal          largest, atol, rtol;
   Vec                X, F;
 
   PetscFunctionBegin;
+  (void)it;
   (void)xnorm;
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
@@ -175,11 +175,10 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
   PetscCall(VecNorm(F, NORM_INFINITY, &largest));
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(SNESGetTolerances(snes, NULL, NULL, NULL, &most, NULL));
+  PetscCall(SNESGetTolerances(snes, &atol, &rtol, NULL, NULL, NULL));
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  else if (largest <= TOLERANCE * ForceScale(problem, x)) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  else if (largest <= rtol * ForceScale(problem, x) + atol) *reason = SNES_CONVERGED_FNORM_RELATIVE;
   PetscCall(VecRestoreArrayRead(X, &x));
-  (void)it;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -248,7 +247,7 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
   PetscCall(SNESSetOptionsPrefix(*snes, prefix));
   PetscCall(SNESSetFunction(*snes, problem->f, ComputeResidual, problem));
   PetscCall(SNESSetType(*snes, type));
-  PetscCall(SNESSetTolerances(*snes, 0, 0, 0, most, PETSC_INT_MAX));
+  PetscCall(SNESSetTolerances(*snes, 0, TOLERANCE, 0, most, PETSC_INT_MAX));
   PetscCall(SNESSetConvergenceTest(*snes, TestConvergence, problem, NULL));
   PetscCall(SNESSetErrorIfNotConverged(*snes, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -368,7 +367,7 @@ static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, SNESConvergedReaso
 }
 
 /* By Newton's method; where it goes round in a circle, from where a few sweeps node by node lead, more of them each time */
-static PetscErrorCode SolveOnce(LawProblem *problem, PetscBool *solved)
+static PetscErrorCode SolveOnce(LawProblem *problem)
 {
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscScalar        *start  = problem->work + problem->n;
@@ -381,19 +380,19 @@ static PetscErrorCode SolveOnce(LawProblem *problem, PetscBool *solved)
   for (; reason < 0 && sweeps <= most; sweeps *= 4) {
     problem->by_nodes = PETSC_TRUE;
     PetscCall(PetscArraycpy(problem->force, start, problem->n));
-    PetscCall(SNESSetTolerances(problem->nodes, 0, 0, 0, sweeps, PETSC_INT_MAX));
+    PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
     PetscCall(SolveBy(problem, problem->nodes, &reason));
     if (reason == SNES_DIVERGED_NAN) break;
     PetscCall(PetscArraycpy(start, problem->force, problem->n));
     if (reason < 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, &reason));
   }
-  PetscCall(SNESSetTolerances(problem->nodes, 0, 0, 0, most, PETSC_INT_MAX));
-  *solved = (PetscBool)(reason > 0);
+  PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
+  problem->solved = (PetscBool)(reason > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces of all rows, from `force` on; `solved`: they have been found */
-PetscErrorCode LawProblemSolve(LawProblem *problem, PetscBool *solved)
+/* The forces of all rows, from `force` on, and whether they have been found */
+PetscErrorCode LawProblemSolve(LawProblem *problem)
 {
   PetscFunctionBegin;
   problem->iterations = 0;
@@ -404,8 +403,8 @@ PetscErrorCode LawProblemSolve(LawProblem *problem, PetscBool *solved)
     PetscReal pull = 0;
 
     PetscCall(PetscArraycpy(problem->centre, problem->force, problem->n));
-    PetscCall(SolveOnce(problem, solved));
-    if (!*solved) break;
+    PetscCall(SolveOnce(problem));
+    if (!problem->solved) break;
     for (PetscInt i = 0; i < problem->n; i++) pull = PetscMax(pull, PetscAbsScalar(problem->force[i] - problem->centre[i]));
     if (PROXIMAL * pull <= TOLERANCE * ForceScale(problem, problem->force)) break;
   }

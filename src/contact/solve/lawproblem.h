@@ -17,7 +17,8 @@ typedef struct {
   PetscReal     largest;     /* on the diagonal of S [m/N] */
   PetscInt      room, rows;  /* rows that there is room for; of the solvers */
   PetscInt      iterations;  /* of Newton's method, and node by node, in the last solution */
-  PetscBool     by_nodes;    /* the last solution was found node by node */
+  PetscBool     solved;      /* there is a solution since the last call */
+  PetscBool     by_nodes;    /* that was found node by node */
   PetscBool     sparse;      /* S is */
   Vec           x, f;
   Vec           in, out; /* work space of products with S */
@@ -29,5 +30,5 @@ PETSC_INTERN PetscErrorCode LawProblemSetUp(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemResize(LawProblem *, PetscInt);
 PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemMultiply(LawProblem *, const PetscScalar[], PetscScalar[]);
-PETSC_INTERN PetscErrorCode LawProblemSolve(LawProblem *, PetscBool *);
+PETSC_INTERN PetscErrorCode LawProblemSolve(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemDestroy(LawProblem *);

@@ -31,12 +31,14 @@ static PetscErrorCode Check(Contact contact)
   MPI_Comm comm = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
-  PetscCheck(contact->options.law != CONTACT_LAW_BONDED, comm, PETSC_ERR_SUP,
-             "-contact_type force knows no bonding yet; choose -contact_type schwarz, or -contact_law tied");
   PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP && contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm,
-             PETSC_ERR_USER_INPUT, "-contact_type force needs neither -contact_constraint nor -contact_stabilization: leave them out");
-  PetscCheck(contact->options.separation, comm, PETSC_ERR_SUP,
-             "-contact_separation false is not there with -contact_type force yet; choose -contact_type schwarz");
+             PETSC_ERR_USER_INPUT,
+             "-contact_type force has a rule of its own for closed rows and for nodes with mass (-contact_rule); leave -contact_constraint "
+             "and -contact_stabilization out");
+  PetscCheck(contact->dim > 1 || contact->options.law != CONTACT_LAW_FRICTION, comm, PETSC_ERR_SUP,
+             "-contact_law %s: bars of one dimension cannot slide; choose frictionless", contact->friction.name);
+  PetscCheck(contact->options.friction_dense < 0, comm, PETSC_ERR_USER_INPUT,
+             "-contact_friction_dense_limit has no effect with -contact_type force, whose matrices are all dense; leave it out");
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const Body  body = contact->bodies[b];
     const char *name = ((PetscObject)body)->name;
@@ -92,7 +94,8 @@ static PetscErrorCode SetUp(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies && !any_static; b++) PetscCall(BodyIsStatic(contact->bodies[b], &any_static));
   PetscCall(ChooseRule(contact, stepper));
   contact->attempt.moves_start = PETSC_FALSE;
-  if (stepper->rule->shape == BODY_FORCE_CONSTANT) contact->energy.unlimited = "its rule lets contact gain none";
+  contact->energy.takes        = stepper->rule->takes;
+  if (contact->energy.takes) contact->energy.unlimited = "contact gains none by its rule";
   stepper->problem.law       = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
   contact->counts.tells_loss = PETSC_TRUE;
   contact->friction.steps    = PETSC_TRUE;
@@ -101,7 +104,7 @@ static PetscErrorCode SetUp(Contact contact)
   stepper->assembled         = -1;
   if (contact->friction.law.setup && contact->options.law == CONTACT_LAW_FRICTION)
     PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
-  PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now, and what nobody reads is an error */
+  PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
   PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
   PetscCall(
@@ -156,10 +159,12 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 static PetscErrorCode View(Contact contact, PetscViewer viewer)
 {
   const ContactStepper *stepper = Stepper(contact);
+  PetscReal             rtol;
 
   PetscFunctionBegin;
+  PetscCall(SNESGetTolerances(stepper->outer, NULL, &rtol, NULL, NULL, NULL));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  rule %s, tolerance %g of the largest way of a row in the step\n", stepper->rule->name,
-                                   (double)stepper->rtol));
+                                   (double)rtol));
   if (contact->options.law == CONTACT_LAW_FRICTION && contact->friction.law.view)
     PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -187,23 +192,26 @@ static PetscErrorCode Destroy(Contact contact)
    CONTACT_FORCE - the one contact step: forces of rows by a rule and a law
 
    Options Database Keys:
-+  -contact_monitor                     - a line for each pass of a step
-.  -contact_rule (auto|impulse|linear)  - how forces run within a step, and when a row counts as closed
-.  -schwarz_snes_rtol, -schwarz_snes_max_it - tolerance of the outer iteration [parts of the largest way of a row in the step], its limit
-.  -law_snes_type, -law_ksp_type, ...   - how the law of all rows is solved: Newton's method
--  -law_nodes_snes_max_it               - sweeps node by node, where that goes round in a circle
++  -contact_monitor                              - a line for each pass of a step
+.  -contact_rule (auto|impulse|linear)           - how forces run within a step, and when a row counts as closed
+.  -schwarz_snes_type (nrichardson|anderson|ngmres|qn) - the outer iteration
+.  -schwarz_snes_rtol r, -schwarz_snes_atol a    - its tolerance [parts of the largest way that contact makes a row go in the step; m]
+.  -schwarz_snes_max_it n                        - its limit
+.  -law_snes_type (newtonls|...), -law_snes_max_it n - how the law of all rows is solved: Newton's method, and its limit
+.  -law_snes_rtol r                              - its tolerance [parts of the largest force]
+-  -law_nodes_snes_max_it n                      - limit of sweeps node by node, where Newton's method repeats itself
 
    Level: beginner
 
    Notes:
-   Contact nodes may have mass: sheets and plates, which `CONTACT_SCHWARZ` would take the mass of. Contact takes no more energy than the
-   kinetic energy of the contact nodes in the direction of the hit, and never brings any.
+   Contact nodes may have mass: sheets and plates, of which `CONTACT_SCHWARZ` would move the mass to inner nodes. With the rule impulse
+   contact never brings energy, and takes the kinetic energy of the contact nodes in the direction of the hit. A run has one rule.
 
    References:
 .  * - V. Acary, Energy conservation and dissipation properties of time-integration methods for nonsmooth elastodynamics with contact, ZAMM
        96 (2016) 585-603
 
-.seealso: `ContactSetType()`, `CONTACT_SCHWARZ`
+.seealso: `ContactSetType()`, `CONTACT_SCHWARZ`, `ContactGetLossReason()`
 M*/
 PetscErrorCode ContactCreate_Force(Contact contact)
 {

@@ -36,7 +36,7 @@ static void CountNodes(const ContactStepper *stepper, PetscInt *push, PetscInt *
 }
 
 /* After a pass */
-PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper, PetscBool solved)
+PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper)
 {
   const LawProblem *problem = &stepper->problem;
   const char       *m       = UnitsOf((PetscObject)contact, UNIT_LENGTH);
@@ -56,8 +56,8 @@ PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper
                                    " slide); law %s in %" PetscInt_FMT " iterations%s%s\n",
                                    (double)time, UnitsOf((PetscObject)contact, UNIT_TIME), stepper->passes, (double)stepper->off, m,
                                    (double)(stepper->scale > 0 ? stepper->off / stepper->scale : 0), problem->n_nodes, push, stick, slide,
-                                   solved ? "solved" : "NOT solved", problem->iterations, problem->by_nodes ? ", node by node too" : "",
-                                   stepper->corrected ? "; compliance corrected" : ""));
+                                   problem->solved ? "solved" : "NOT solved", problem->iterations,
+                                   problem->by_nodes ? ", node by node too" : "", stepper->corrected ? "; compliance corrected" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

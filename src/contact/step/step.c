@@ -118,7 +118,6 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   const PetscReal   *fields[2];
   const PetscScalar *x;
   PetscScalar       *f, *change;
-  PetscBool          solved;
   PetscInt           k = 0;
 
   PetscFunctionBegin;
@@ -142,7 +141,7 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(PetscArraycpy(stepper->told, stepper->gathered, 2 * n));
   stepper->has_told = PETSC_TRUE;
   PetscCall(PetscArraycpy(problem->force, problem->base, n));
-  PetscCall(LawProblemSolve(problem, &solved));
+  PetscCall(LawProblemSolve(problem));
   change = stepper->gathered;
   stepper->passes++;
   stepper->off = 0;
@@ -152,10 +151,10 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
     stepper->off   = PetscMax(stepper->off, PetscAbsScalar(change[i]));
     stepper->scale = PetscMax(stepper->scale, PetscAbsScalar(problem->diagonal[i] * problem->force[i]));
   }
-  PetscCall(ContactMonitorPass(contact, stepper, solved));
+  PetscCall(ContactMonitorPass(contact, stepper));
   PetscCall(PetscInfo(contact, "pass %" PetscInt_FMT ": rows off by %g m of %g m\n", stepper->passes, (double)stepper->off,
                       (double)stepper->scale));
-  if (!solved) {
+  if (!problem->solved) {
     PetscCall(ContactRejectResidual(F));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -192,6 +191,8 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *stepper)
 {
   SNESLineSearch line_search;
+  SNESType       type;
+  PetscBool      known;
   MPI_Comm       comm = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
@@ -211,6 +212,12 @@ PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *steppe
   PetscCall(SNESSetTolerances(stepper->outer, stepper->atol, stepper->rtol, 0, MOST_PASSES, PETSC_INT_MAX));
   PetscCall(SNESSetErrorIfNotConverged(stepper->outer, PETSC_FALSE));
   PetscCall(SNESSetFromOptions(stepper->outer));
+  PetscCall(SNESGetType(stepper->outer, &type));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)stepper->outer, &known, SNESNRICHARDSON, SNESANDERSON, SNESNGMRES, SNESQN, ""));
+  PetscCheck(known, comm, PETSC_ERR_USER_INPUT,
+             "-schwarz_snes_type %s: the outer iteration of -contact_type force has no Jacobian, since the law of rows is solved inside "
+             "it; choose nrichardson, which is the default, anderson, ngmres or qn",
+             type);
   PetscCall(SNESSetConvergenceTest(stepper->outer, TestConvergence, contact, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -300,7 +307,7 @@ static PetscErrorCode Iterate(Contact contact, ContactStepper *stepper)
   PetscScalar        *x;
   PetscInt            size = 0, k = 0;
   int                 other;
-  PetscReal           time;
+  PetscReal           time, atol, rtol;
 
   PetscFunctionBegin;
   if (stepper->x) PetscCall(VecGetLocalSize(stepper->x, &size));
@@ -318,11 +325,21 @@ static PetscErrorCode Iterate(Contact contact, ContactStepper *stepper)
   PetscCall(ContactMonitorStep(contact, stepper, reason));
   if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForcesGetTime(contact, &time));
+  if (!stepper->problem.solved) {
+    PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                             "The law of the %" PetscInt_FMT
+                             " contact rows of the step that ends at time %.9g s was not solved in %" PetscInt_FMT
+                             " iterations; choose a smaller -time_step, raise -law_snes_max_it and -law_nodes_snes_max_it, or look with "
+                             "-law_snes_monitor and -law_nodes_snes_monitor",
+                             stepper->problem.n, (double)time, stepper->problem.iterations));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SNESGetTolerances(stepper->outer, &atol, &rtol, NULL, NULL, NULL));
   PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
                            "The contact forces of the step that ends at time %.9g s were not found in %" PetscInt_FMT
                            " passes: rows are off by %g m, where %g m are allowed%s; choose a smaller -time_step, raise "
                            "-schwarz_snes_max_it, or look with -schwarz_snes_monitor and -info",
-                           (double)time, stepper->passes, (double)stepper->off, (double)(stepper->rtol * stepper->scale + stepper->atol),
+                           (double)time, stepper->passes, (double)stepper->off, (double)(rtol * stepper->scale + atol),
                            PetscIsInfOrNanReal(stepper->off) ? " (not a number)" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

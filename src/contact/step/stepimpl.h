@@ -8,6 +8,7 @@ typedef struct _ContactStepper ContactStepper;
 /* How forces run within a step, where rows lie, when a row counts as closed */
 typedef struct {
   const char *name;
+  const char *takes; /* (NULL) what closed rows take of the energy, which they bring none of, and what makes that less */
   PetscErrorCode (*place)(Contact, ContactStepper *);             /* (NULL) where rows are to be laid, before they are */
   PetscErrorCode (*begin)(Contact, ContactStepper *);             /* which rows may touch, the guess, what closed rows may still move */
   PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);    /* the forces `contact->end.force` on the rows of a body */
@@ -55,7 +56,7 @@ struct _ContactStepper {
 PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
 PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor *);
-PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *, PetscBool);
+PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
 PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);

@@ -121,7 +121,7 @@ static void unknown_type_is_refused(void **state)
 
   AddCollision(4, 3, 0);
   AddOptions("-contact_type schwartz");
-  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'schwartz'|augmented_lagrangian, lagrange, penalty, schwarz", SimulationCreate(simulation));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'schwartz'|augmented_lagrangian, force, lagrange, penalty, schwarz", SimulationCreate(simulation));
 }
 
 static void overlap_at_the_start_is_refused(void **state)
