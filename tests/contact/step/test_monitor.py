@@ -1,0 +1,40 @@
+"""-contact_monitor, and what contact has taken of the energy."""
+
+import re
+
+import numpy as np
+import pytest
+
+PASS = re.compile(
+    r"step that ends at (\S+) s, pass (\d+): rows off by (\S+) m, \S+ of the way that forces make; (\d+) nodes may touch, (\d+) push \((\d+) stick, (\d+) slide\); "
+    r"law solved in (\d+) iterations(?:, node by node too)?(?:; compliance corrected)?"
+)
+END = re.compile(r"step that ends at (\S+) s: CONVERGED_FNORM_RELATIVE in (\d+) passes; (\d+) rows joined, (\d+) left")
+BLOCKS = "-options_file options/blocks.opts -contact_type force -left_mass_redistribute false -right_mass_redistribute false -time_end 1e-4"
+
+
+@pytest.mark.parametrize("ranks", [1, 3])
+def test_lines_and_bits(ranks, impakt):
+    """A line for each pass and one at the end of each step, of linear bodies two passes, the second with nothing left; all numbers stay the same to the last bit. What
+    contact has taken is what the energy lacks, to the round-off of the energies."""
+    with_it, without = impakt(f"{BLOCKS} -contact_monitor", ranks), impakt(BLOCKS, ranks)
+    passes, ends = PASS.findall(with_it.stdout), END.findall(with_it.stdout)
+    assert ends and len(passes) == sum(int(end[1]) for end in ends)
+    assert {int(end[1]) for end in ends} <= {1, 2}
+    assert all(float(off) < 1e-15 for _, number, off, *_ in passes if number == "2")
+    assert sum(int(end[2]) for end in ends) > 0
+
+    def compare(name, item):
+        if hasattr(item, "shape"):
+            np.testing.assert_array_equal(item[()], without.history[name][()], err_msg=name)
+
+    with_it.history.visititems(compare)
+    loss, change = with_it.summary["contact"]["contact_loss"], with_it.history["energy/change"][-1]
+    assert loss > 0
+    assert loss == pytest.approx(-change, abs=1e-9 * with_it.history["energy/scale"][-1])
+
+
+def test_into_a_file(impakt):
+    run = impakt(f"{BLOCKS} -contact_monitor ascii:passes.txt")
+    assert PASS.search((run.folder / "passes.txt").read_text())
+    assert not PASS.search(run.stdout)
