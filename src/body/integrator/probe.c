@@ -13,6 +13,7 @@ struct _BodyProbe {
   PetscScalar *column; /* displacement of this rank's rows, for each substep */
   PetscReal    time, saved_time, work, damping_work;
   PetscInt     step, saved_step;
+  PetscBool    force_known; /* whether the internal force is that of the present state: not after a step that has failed */
 };
 
 PetscErrorCode BodyDestroyProbe(Body body)
@@ -66,6 +67,7 @@ static PetscErrorCode BeginProbe(Body body)
   if (body->state.applied) PetscCall(VecCopy(body->state.applied, body->probe->applied));
   if (body->state.damping) PetscCall(VecCopy(body->state.damping, body->probe->damping));
   PetscCall(CopyTraces(body, PETSC_TRUE));
+  body->probe->force_known  = body->state.force_known;
   body->probe->time         = body->state.time;
   body->probe->saved_time   = body->saved.time;
   body->probe->step         = body->state.step;
@@ -116,6 +118,7 @@ static PetscErrorCode EndProbe(Body body)
   if (body->state.applied) PetscCall(VecCopy(body->probe->applied, body->state.applied));
   if (body->state.damping) PetscCall(VecCopy(body->probe->damping, body->state.damping));
   PetscCall(CopyTraces(body, PETSC_FALSE));
+  body->state.force_known   = body->probe->force_known;
   body->state.time          = body->probe->time;
   body->saved.time          = body->probe->saved_time;
   body->state.step          = body->probe->step;

@@ -8,7 +8,7 @@
 /* The first row is along the normal */
 static void Project(PetscInt n, const PetscReal limit[2], const PetscReal p[], PetscReal force[], PetscReal derivative[])
 {
-  const PetscBool pushes = (PetscBool)(p[0] > 0);
+  const PetscBool pushes = (PetscBool) !(p[0] <= 0); /* what is no number stays none, and is found out */
   PetscReal       bound, size = 0;
 
   force[0] = pushes ? p[0] : 0;

@@ -15,6 +15,7 @@
 #include <sys/petsccompat.h>
 
 #define PROXIMAL         1e-10 /* of the diagonal of S */
+#define VANISHES         1e-12 /* of what rows read, by themselves or by their own force */
 #define MOST_PROXIMAL    20
 #define TOLERANCE        1e-13 /* of the largest force, and of the largest force that would close what is read */
 #define MOST_NEWTON      50
@@ -52,17 +53,26 @@ static PetscErrorCode Read(LawProblem *problem, const PetscScalar force[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of a row that is held all of it is zero */
-static PetscReal Diagonal(const LawProblem *problem, PetscInt i)
+/* 1/r of all rows. Rows across the normal of a node have the same r: else friction would not point against the slip */
+static void FindWeights(LawProblem *problem)
 {
-  return PetscMax(problem->diagonal[i], PETSC_SMALL * problem->largest);
+  problem->largest = 0;
+  for (PetscInt i = 0; i < problem->n; i++) problem->largest = PetscMax(problem->largest, problem->diagonal[i]);
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
+    PetscReal      across = 0;
+
+    for (PetscInt i = first + 1; i < end; i++) across = PetscMax(across, problem->diagonal[i]);
+    for (PetscInt i = first; i < end; i++) /* of a row that is held all of the diagonal is zero */
+      problem->weight[i] = PetscMax(i == first ? problem->diagonal[i] : across, PETSC_SMALL * problem->largest);
+  }
 }
 
 /* The trial forces lambda - r y of a node's rows */
 static void GetTrial(const LawProblem *problem, PetscInt node, const PetscScalar force[], const PetscScalar y[], PetscReal p[])
 {
   for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++)
-    p[i - problem->begin[node]] = PetscRealPart(force[i] - y[i] / Diagonal(problem, i) - PROXIMAL * (force[i] - problem->centre[i]));
+    p[i - problem->begin[node]] = PetscRealPart(force[i] - y[i] / problem->weight[i] - PROXIMAL * (force[i] - problem->centre[i]));
 }
 
 static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
@@ -103,7 +113,7 @@ static PetscErrorCode SetNode(const LawProblem *problem, PetscInt first, PetscIn
     PetscCall(MatGetRow(problem->S, i, &n, &columns, &values));
     for (PetscInt k = 0; k < rows; k++) {
       const PetscInt  row  = first + k;
-      const PetscReal part = derivative[k * rows + l] / Diagonal(problem, i);
+      const PetscReal part = derivative[k * rows + l] / problem->weight[i];
 
       for (PetscInt e = 0; e < n; e++) line[e] = part * values[e];
       if (part != 0) PetscCall(MatSetValues(J, 1, &row, n, columns, line, ADD_VALUES));
@@ -153,7 +163,7 @@ static PetscReal ForceScale(const LawProblem *problem, const PetscScalar force[]
   for (PetscInt i = 0; i < problem->n; i++) {
     scale = PetscMax(scale, PetscAbsScalar(force[i]));
     scale = PetscMax(scale, PetscAbsScalar(problem->base[i]));
-    scale = PetscMax(scale, PetscAbsScalar(problem->read[i]) / Diagonal(problem, i));
+    scale = PetscMax(scale, PetscAbsScalar(problem->read[i]) / problem->weight[i]);
   }
   return scale;
 }
@@ -300,12 +310,12 @@ PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
   problem->n = n;
   if (n > problem->room) {
     PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-    PetscCall(PetscFree(problem->diagonal));
+    PetscCall(PetscFree2(problem->diagonal, problem->weight));
     problem->room = PetscMax(n, 2 * problem->room);
     PetscCall(PetscMalloc7(problem->room + 1, &problem->begin, 2 * problem->room, &problem->limit, problem->room, &problem->base,
                            problem->room, &problem->read, problem->room, &problem->centre, problem->room, &problem->force,
                            3 * problem->room, &problem->work));
-    PetscCall(PetscMalloc1(problem->room, &problem->diagonal));
+    PetscCall(PetscMalloc2(problem->room, &problem->diagonal, problem->room, &problem->weight));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -391,14 +401,25 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the proximal term is nothing beside what rows read: where no forces close the rows it never is, and forces grow for ever */
+static PetscBool ProximalVanishes(const LawProblem *problem)
+{
+  PetscReal off = 0, scale = 0;
+
+  for (PetscInt i = 0; i < problem->n; i++) {
+    off   = PetscMax(off, PROXIMAL * problem->weight[i] * PetscAbsScalar(problem->force[i] - problem->centre[i]));
+    scale = PetscMax(scale, PetscMax(PetscAbsScalar(problem->read[i]), PetscAbsScalar(problem->diagonal[i] * problem->force[i])));
+  }
+  return (PetscBool)(off <= VANISHES * scale);
+}
+
 /* The forces of all rows, from `force` on, and whether they have been found */
 PetscErrorCode LawProblemSolve(LawProblem *problem)
 {
   PetscFunctionBegin;
   problem->iterations = 0;
   problem->by_nodes   = PETSC_FALSE;
-  problem->largest    = 0;
-  for (PetscInt i = 0; i < problem->n; i++) problem->largest = PetscMax(problem->largest, problem->diagonal[i]);
+  FindWeights(problem);
   for (PetscInt k = 0; k < MOST_PROXIMAL; k++) {
     PetscReal pull = 0;
 
@@ -407,6 +428,7 @@ PetscErrorCode LawProblemSolve(LawProblem *problem)
     if (!problem->solved) break;
     for (PetscInt i = 0; i < problem->n; i++) pull = PetscMax(pull, PetscAbsScalar(problem->force[i] - problem->centre[i]));
     if (PROXIMAL * pull <= TOLERANCE * ForceScale(problem, problem->force)) break;
+    if (k == MOST_PROXIMAL - 1) problem->solved = ProximalVanishes(problem);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -416,7 +438,7 @@ PetscErrorCode LawProblemDestroy(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(DestroySolvers(problem));
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-  PetscCall(PetscFree(problem->diagonal));
+  PetscCall(PetscFree2(problem->diagonal, problem->weight));
   PetscCall(MatDestroy(&problem->S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

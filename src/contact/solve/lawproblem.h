@@ -10,6 +10,7 @@ typedef struct {
   PetscReal    *limit;       /* two numbers per node */
   Mat           S;           /* what rows read by forces on them: dense, or sparse [m/N] */
   PetscReal    *diagonal;    /* of S */
+  PetscReal    *weight;      /* per row: 1 / r of the trial force lambda - r y [m/N] */
   PetscScalar  *base, *read; /* per row: a force [N], and what is read under it [m] */
   PetscScalar  *centre;      /* per row: the force that the proximal term pulls to [N] */
   PetscScalar  *force;       /* per row: the solution [N] */

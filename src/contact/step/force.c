@@ -229,6 +229,8 @@ PetscErrorCode ContactCreate_Force(Contact contact)
   contact->ops->steplevel      = SetStepLevel;
   contact->ops->accept         = Accept;
   contact->ops->visit          = Visit;
+  contact->ops->pack           = ContactStepperPack;
+  contact->ops->unpack         = ContactStepperUnpack;
   contact->ops->view           = View;
   contact->ops->destroy        = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -59,6 +59,8 @@ PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
 PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactStepperPack(Contact, Tables);
+PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
 

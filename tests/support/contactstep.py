@@ -1,0 +1,97 @@
+"""Bodies for tests of the contact step `-contact_type force`, and what must hold of any run with the rule `impulse`."""
+
+import numpy as np
+from cases import joined
+from setups import box, material, words
+
+STEEL = (2e11, 0.3, 7800)
+SI, MM_T_S = (1, 1), (1e3, 1e-3)
+
+
+def integrator(name, step, substeps, kind):
+    """kind I: implicit, with enhanced elements against locking in bending; E: explicit."""
+    how = "-{0}_ts_type centraldifference" if kind == "E" else "-{0}_element_formulation enhanced"
+    return joined(how.format(name), f"-{name}_ts_time_step {step / substeps:.17g}")
+
+
+def friction(mu):
+    return f"-contact_law coulomb -contact_friction {mu}" if mu else ""
+
+
+def sheet_and_block(
+    kinds="II", mu=0.2, step=1e-6, end=6e-4, substeps=(1, 1), pair="block:sheet", velocity=(2, -5), frame=(0, 0), turn=0, gap=1e-5, free=False, units=SI, more=""
+):
+    """The sheet and block of DESIGN.md, section 3: 0.2 m x 1 mm, one element thick, held at its ends, hit by a block of 20 mm. `frame`: a velocity that all
+    has; `turn`: degrees by which all is turned; `free`: the sheet flies; `units`: how many of their units make a metre and a kilogram."""
+    metre, kilogram = units
+    c, s = np.cos(np.radians(turn)), np.sin(np.radians(turn))
+    direct = np.array([[c, -s], [s, c]])
+    start = {"block": direct @ velocity * metre + np.array(frame) * metre, "sheet": np.array(frame) * metre}
+    boxes = {"block": ((8, 8), (-0.01, gap), (0.01, 0.02 + gap)), "sheet": ((100, 1), (-0.1, -0.001), (0.1, 0))}
+    led = ",".join(f"{v:.17g}*t" for v in start["sheet"])
+    e, nu, rho = STEEL
+    bodies = []
+    for (name, (faces, low, high)), n, kind in zip(boxes.items(), substeps, kinds, strict=True):
+        bodies += [
+            box(name, faces, [x * metre for x in low], [x * metre for x in high], f"-{name}_thickness {metre:.17g}"),
+            f"-{name}_material_type linear_elastic -{name}_mass_redistribute false",
+            material(name, e * kilogram / metre, nu, rho * kilogram / metre**3),
+            f"-{name}_initial_velocity {words(start[name])}" if np.any(start[name]) else "",
+            f"-{name}_rotate {turn}" if turn else "",
+            integrator(name, step, n, kind),
+        ]
+    return joined(
+        f"-bodies block,sheet -contact_type force -contact_pairs {pair} -time_step {step:.17g} -time_end {end:.17g}",
+        *bodies,
+        "" if free else f"-sheet_boundary_displacement xmin,xmax -sheet_boundary_displacement_xmin {led} -sheet_boundary_displacement_xmax {led}",
+        friction(mu),
+        more,
+    )
+
+
+def pressed_bars(kinds="II", mu=0, step=1e-6, end=1e-3, substeps=(1, 1), pair="a.xmax:b.xmin", at_rest=False, more=""):
+    """Two bars, of 40 x 2 and 30 x 2 elements, held at their far ends and pressed on each other, so that they are shorter by 1e-4; through the first, unless all is
+    `at_rest`, a pulse of 2 m/s comes that opens and closes the interface."""
+    boxes = {"a": ((40, 2), (-0.1, 0), (0, 0.01)), "b": ((30, 2), (-2e-5, 0), (0.09998, 0.01))}
+    strain = {"a": "-1e-4*(x+0.1),0", "b": "1e-4*(0.09998-x),0"}
+    bodies = []
+    for (name, (faces, low, high)), n, kind, held in zip(boxes.items(), substeps, kinds, ("xmin", "xmax"), strict=True):
+        bodies += [
+            box(name, faces, low, high),
+            f"-{name}_material_type linear_elastic -{name}_mass_redistribute false",
+            material(name, *STEEL),
+            f"-{name}_boundary_displacement {held} -{name}_boundary_displacement_{held} 0,0 -{name}_initial_displacement {strain[name]}",
+            integrator(name, step, n, kind),
+        ]
+    pulse = "" if at_rest else "-a_initial_velocity 2*exp(-((x+0.05)/0.01)^2),0"
+    return joined(f"-bodies a,b -contact_type force -contact_pairs {pair} -time_step {step:.17g} -time_end {end:.17g}", *bodies, pulse, friction(mu), more)
+
+
+def energy(run):
+    """Change of the system's energy, with what friction has taken, by the energy that is exchanged; from the first step on, as the acceleration of an explicit
+    body that is pressed at the start has no contact force before, which makes its energy there too low."""
+    change = run.history["energy/change"][()] / run.history["energy/scale"][()].max()
+    return change[1:] - max(change[1], 0)
+
+
+def pair_of(run):
+    (pair,) = run.history["contact"]
+    return pair
+
+
+def impulse(run):
+    """Of all contact forces on the first body of the pair [N s]."""
+    return run.history[f"contact/{pair_of(run)}/impulse"][-1]
+
+
+def momentum_error(run, name):
+    """Change of a free body's momentum less the impulse of contact, by the largest momentum: largest at any time."""
+    momentum = run.history[f"body/{name}/momentum"][()]
+    of_contact = run.history[f"contact/{pair_of(run)}/impulse"][()][:, : momentum.shape[1]]
+    sign = 1 if pair_of(run).startswith(name) else -1
+    return min(np.abs(momentum - momentum[0] - side * of_contact).max() for side in (sign, -sign)) / np.abs(momentum).max()
+
+
+def sweeps(run):
+    """Of steps in contact: mean and largest number."""
+    return run.summary["schwarz"]["mean_contact_steps"], run.summary["schwarz"]["max"]
