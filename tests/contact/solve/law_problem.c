@@ -73,7 +73,8 @@ static PetscReal Reads(const LawProblem *problem, PetscInt i)
 {
   PetscReal y = PetscRealPart(problem->read[i]);
 
-  for (PetscInt j = 0; j < problem->n; j++) y += PetscRealPart(entries(problem)[j * problem->n + i] * (problem->force[j] - problem->base[j]));
+  for (PetscInt j = 0; j < problem->n; j++)
+    y += PetscRealPart(entries(problem)[j * problem->n + i] * (problem->force[j] - problem->base[j]));
   return y;
 }
 
@@ -228,10 +229,10 @@ static void a_node_sticks_and_slips_as_by_hand(void **state)
     Fill(&problem, &RowLawUnilateral, 2, 2, 1, 0, 1, B);
     entries(&problem)[0] = entries(&problem)[3] = 1;
     entries(&problem)[1] = entries(&problem)[2] = 0;
-    problem.limit[1]            = 0.3;
-    problem.read[0]             = -2;
-    problem.read[1]             = readings[k];
-    solved = solve(&problem);
+    problem.limit[1]                            = 0.3;
+    problem.read[0]                             = -2;
+    problem.read[1]                             = readings[k];
+    solved                                      = solve(&problem);
     assert_true(solved);
     near(PetscRealPart(problem.force[0]), 2, 1e-12);
     near(PetscRealPart(problem.force[1]), expected[k], 1e-12);
@@ -337,17 +338,17 @@ static void what_has_no_solution_is_not_solved(void **state)
     entries(&problem)[0] = entries(&problem)[3] = 1;
     entries(&problem)[1] = entries(&problem)[2] = -1;
     problem.read[0] = problem.read[1] = -1;
-    solved = solve(&problem);
+    solved                            = solve(&problem);
     assert_false(solved);
     assert_true(problem.iterations < 100000); /* sweeps are limited: 5120, Newton's method between them */
   }
   entries(&problem)[0] = NAN;
-  problem.law  = &RowLawUnilateral;
-  solved = solve(&problem);
+  problem.law          = &RowLawUnilateral;
+  solved               = solve(&problem);
   assert_false(solved);
-  entries(&problem)[0]    = 1;
-  problem.read[0] = NAN;
-  solved = solve(&problem);
+  entries(&problem)[0] = 1;
+  problem.read[0]      = NAN;
+  solved               = solve(&problem);
   assert_false(solved);
   ok(LawProblemDestroy(&problem));
 }
