@@ -124,6 +124,7 @@ static void times_are_needed(void **state)
   AddBar("left", 0, 1, 4, 0);
   AddOptions("-bodies left -time_end 1");
   refused(PETSC_ERR_USER_INPUT, "-time_step is missing|-time_step auto", SimulationCreate(simulation));
+  ok(ControllerDestroy(&simulation->controller));
   ok(PetscOptionsClearValue(NULL, "-time_end"));
   AddOptions("-time_step 0.1");
   refused(PETSC_ERR_USER_INPUT, "-time_end is missing", SimulationCreate(simulation));

@@ -2,7 +2,7 @@
    The rule `impulse`, for contact nodes with mass. The force of a row is the same throughout the step. A row whose node carried a force in
    the step before is closed where its gap does not change; one that joins, whose gap would be closed in the middle of the step, where its
    gap changes by half of the way that its closing rate would make. So what closed rows do to the bodies, force times change of the gap, is
-   never positive, whatever the bodies do inside the step: DESIGN, one_step. Rows are laid where bodies will be in the middle of the step.
+   never positive, whatever the bodies do inside the step. Rows are laid where bodies will be in the middle of the step.
 
    Velocity-level contact: V. Acary, ZAMM 96 (2016) 585-603; here on increments of gaps, so that substeps of any integrator may lie between.
 */
