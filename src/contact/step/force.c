@@ -37,8 +37,9 @@ static PetscErrorCode Check(Contact contact)
              "and -contact_stabilization out");
   PetscCheck(contact->dim > 1 || contact->options.law != CONTACT_LAW_FRICTION, comm, PETSC_ERR_SUP,
              "-contact_law %s: bars of one dimension cannot slide; choose frictionless", contact->friction.name);
-  PetscCheck(contact->options.friction_dense < 0, comm, PETSC_ERR_USER_INPUT,
-             "-contact_friction_dense_limit has no effect with -contact_type force, which chooses its matrices by the bodies; leave it out");
+  PetscCheck(
+      contact->options.friction_dense < 0, comm, PETSC_ERR_USER_INPUT,
+      "-contact_friction_dense_limit has no effect with -contact_type force, which chooses its matrices by the bodies; leave it out");
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const Body  body = contact->bodies[b];
     const char *name = ((PetscObject)body)->name;
