@@ -118,7 +118,8 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   Level: developer
 
   Note:
-  Central differences with lumped mass in one step move nodes by the forces at its start alone: dt^2/2 over the mass. Exact for any material.
+  Central differences with lumped mass in one step move nodes by the forces at its start alone: dt^2/2 over the mass, whatever the
+  material.
 
 .seealso: `Body`, `BodyGetNodalCompliance()`
 @*/
