@@ -194,6 +194,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpRelease(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginRelease(Contact, PetscBool (*)(Contact, PetscInt));
 PETSC_INTERN PetscErrorCode ContactReleaseRow(Contact, PetscInt, PetscBool);
 PETSC_INTERN PetscBool      ContactRowFades(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode ContactLoadRows(Contact, PetscInt, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactLoadReleased(Contact, PetscInt);
 
 PETSC_INTERN PetscErrorCode ContactReadFriction(Contact);

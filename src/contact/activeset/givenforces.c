@@ -1,8 +1,9 @@
 /* All bodies under given contact forces: the step of methods that know the forces, or guess them until they fit. */
 #include <contact/parts.h>
 
-/* The force on the rows of a body at each of its substeps; it pushes Neumann sides along the rows and Dirichlet sides against them */
-static PetscErrorCode LoadRows(Contact contact, PetscInt b, const PetscReal end[])
+/* The force on the rows of a body at each of its substeps, linear from that of the last accepted step to `end`; it pushes Neumann sides
+   along the rows and Dirichlet sides against them */
+PetscErrorCode ContactLoadRows(Contact contact, PetscInt b, const PetscReal end[])
 {
   const ContactBodyRows *of    = &contact->body_rows[b];
   Trace                  trace = contact->traces[b].force_in;
@@ -52,7 +53,7 @@ PetscErrorCode ContactIntegrateForces(Contact contact, const PetscReal force[])
   if (contact->rows.n) PetscAssertPointer(force, 2);
   PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(LoadRows(contact, b, force));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactLoadRows(contact, b, force));
   PetscCall(ContactIntegrateBodies(contact));
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {

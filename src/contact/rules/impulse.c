@@ -68,13 +68,15 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the step begins with is what it ends with, for all that takes the mean of both */
+/* What the step begins with is what it ends with, for all that takes the mean of both. Nobody else sums up what friction takes where the
+   energy is not limited. */
 static PetscErrorCode End(Contact contact, ContactStepper *stepper)
 {
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(contact->energy.last_force, stepper->last, contact->rows.n));
   PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
   contact->energy.changed = PETSC_TRUE;
+  PetscCall(ContactComputeFrictionLoss(contact, contact->start.force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,23 +30,9 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper)
 
 static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
 {
-  const ContactBodyRows *of    = &contact->body_rows[b];
-  Trace                  trace = contact->traces[b].force_in;
-  PetscScalar           *force;
-  PetscInt               levels;
-
   PetscFunctionBegin;
   (void)stepper;
-  PetscCall(TraceGetSizes(trace, NULL, &levels));
-  for (PetscInt level = 0; level <= levels; level++) {
-    PetscCall(TraceGetLevel(trace, level, &force));
-    for (PetscInt k = 0; k < of->n; k++) {
-      const PetscInt  i     = of->rows[k];
-      const PetscReal start = contact->start.force[i];
-
-      force[k] = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * (start + (contact->end.force[i] - start) * level / levels);
-    }
-  }
+  PetscCall(ContactLoadRows(contact, b, contact->end.force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -94,8 +94,7 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(Check(contact));
   for (PetscInt b = 0; b < contact->n_bodies && !any_static; b++) PetscCall(BodyIsStatic(contact->bodies[b], &any_static));
   PetscCall(ChooseRule(contact, stepper));
-  contact->attempt.moves_start = PETSC_FALSE;
-  contact->energy.takes        = stepper->rule->takes;
+  contact->energy.takes = stepper->rule->takes;
   if (contact->energy.takes) contact->energy.unlimited = "contact gains none by its rule";
   stepper->problem.law       = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
   contact->counts.tells_loss = PETSC_TRUE;

@@ -387,6 +387,5 @@ PetscErrorCode ContactStepperStep(Contact contact)
     }
   if (stepper->rule->end) PetscCall((*stepper->rule->end)(contact, stepper));
   PetscCall(SumLoss(contact, stepper));
-  PetscCall(ContactComputeFrictionLoss(contact, contact->start.force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
