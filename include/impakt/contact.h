@@ -290,10 +290,9 @@ typedef struct {
   PetscInt       ambiguous_steps;   /* in which friction may have had more than one solution */
   PetscReal      friction_tilt;     /* most by which normal forces were off along surfaces, in parts of what friction can bear; statics */
   PetscReal      friction_residual; /* most by which a step has missed the law of friction, de Saxce's residual [m] */
-  PetscReal      contact_loss;      /* energy that contact has taken, friction apart, where the method tells it [J] */
-  PetscBool      tells_loss;
-  PetscInt       rebuilds; /* of the operators between contact surfaces, beyond the first */
-  PetscLogDouble seconds;  /* in sweeps */
+  PetscReal      contact_loss;      /* energy that contact has taken, friction apart, where `ContactGetLossReason()` has one [J] */
+  PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
+  PetscLogDouble seconds;           /* in sweeps */
 } ContactCounts;
 
 /* What ContactFieldsCompute() gives for each node */

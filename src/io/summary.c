@@ -74,7 +74,7 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
   ContactLaw    law;
   ContactCounts counts;
   PetscBool     friction;
-  const char   *name;
+  const char   *name, *takes;
 
   PetscFunctionBegin;
   PetscCall(ContactGetType(contact, &type));
@@ -85,7 +85,8 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
   PetscCall(SetContactStatistics(object, &results->contact, friction));
   PetscCall(AddOverlap(object, controller, contact, results));
   PetscCall(ContactGetCounts(contact, &counts));
-  if (counts.tells_loss) PetscCall(SummarySetReal(object, "contact_loss", counts.contact_loss));
+  PetscCall(ContactGetLossReason(contact, &takes));
+  if (takes) PetscCall(SummarySetReal(object, "contact_loss", counts.contact_loss));
   if (friction) {
     PetscCall(SummarySetReal(object, "friction_least", counts.friction_least));
     PetscCall(SummarySetReal(object, "friction_residual", counts.friction_residual));

@@ -68,6 +68,19 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What contact takes of the energy in the step, friction apart */
+static PetscErrorCode SumLoss(Contact contact, ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  stepper->step_loss = 0;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (stepper->touches[i] && !ContactRowRubs(contact, i))
+      stepper->step_loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]);
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stepper->step_loss, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What the step begins with is what it ends with, for all that takes the mean of both. Nobody else sums up what friction takes where the
    energy is not limited. */
 static PetscErrorCode End(Contact contact, ContactStepper *stepper)
@@ -76,6 +89,7 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper)
   PetscCall(PetscArraycpy(contact->energy.last_force, stepper->last, contact->rows.n));
   PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
   contact->energy.changed = PETSC_TRUE;
+  PetscCall(SumLoss(contact, stepper));
   PetscCall(ContactComputeFrictionLoss(contact, contact->start.force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

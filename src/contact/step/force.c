@@ -96,12 +96,11 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(ChooseRule(contact, stepper));
   contact->energy.takes = stepper->rule->takes;
   if (contact->energy.takes) contact->energy.unlimited = "contact gains none by its rule";
-  stepper->problem.law       = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
-  contact->counts.tells_loss = PETSC_TRUE;
-  contact->friction.steps    = PETSC_TRUE;
-  stepper->rtol              = any_static ? RTOL_STATIC : RTOL;
-  stepper->atol              = CONTACT_POSITION_TOLERANCE * contact->scale.length;
-  stepper->assembled         = -1;
+  stepper->problem.law    = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
+  contact->friction.steps = PETSC_TRUE;
+  stepper->rtol           = any_static ? RTOL_STATIC : RTOL;
+  stepper->atol           = CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  stepper->assembled      = -1;
   if (contact->friction.law.setup && contact->options.law == CONTACT_LAW_FRICTION)
     PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */

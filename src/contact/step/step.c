@@ -344,19 +344,6 @@ static PetscErrorCode Iterate(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What contact takes of the energy in the step, friction apart, by the mean of the forces at its start and its end */
-static PetscErrorCode SumLoss(Contact contact, ContactStepper *stepper)
-{
-  PetscFunctionBegin;
-  stepper->step_loss = 0;
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (stepper->touches[i] && !ContactRowRubs(contact, i))
-      stepper->step_loss -= 0.5 * (contact->start.force[i] + contact->end.force[i]) * (contact->end.gap[i] - contact->start.gap[i]);
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stepper->step_loss, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* One controller step of all bodies */
 PetscErrorCode ContactStepperStep(Contact contact)
 {
@@ -386,6 +373,5 @@ PetscErrorCode ContactStepperStep(Contact contact)
       contact->end.active[i] = (PetscBool)(contact->rows.tied[first] || contact->end.force[first] > 0);
     }
   if (stepper->rule->end) PetscCall((*stepper->rule->end)(contact, stepper));
-  PetscCall(SumLoss(contact, stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
