@@ -8,6 +8,8 @@
 */
 #include <contact/step/stepimpl.h>
 
+#define PRESSED 1e-3 /* forces that press a joining node by less than this part of what stops it are left alone */
+
 /* Where bodies will be in the middle of the step, if their nodes go on as they do */
 static PetscErrorCode Place(Contact contact, ContactStepper *stepper)
 {
@@ -68,6 +70,30 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A row that joins takes the kinetic energy of its node, 1/2 m w^2 with m = dt^2/(2 S_ii), by its way q = 1/2 dt |w|. Where forces press
+   its node on the partner beside that, they would lose theirs times q too. Then it moves by a part of q, the largest with which it takes no
+   more: with S_ii lambda = (2 + f - part) q that is part (2 + f - part) = 1, f what forces press with. */
+static PetscErrorCode Limit(Contact contact, ContactStepper *stepper, const PetscScalar lets[])
+{
+  LawProblem *problem = &stepper->problem;
+  PetscBool   any     = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt  k = problem->begin[node], i = stepper->rows[k] - contact->rows.begin;
+    const PetscReal q = -PetscRealPart(lets[k]), pressed = problem->diagonal[k] * PetscRealPart(problem->force[k]) / q + 1;
+    PetscReal       part;
+
+    if (!(q > 0) || pressed <= 2 + PRESSED) continue;
+    part = 2 / (pressed + PetscSqrtReal(PetscSqr(pressed) - 4));
+    problem->read[k] -= (1 - part) * q;
+    if (i >= 0 && i < contact->rows.n) stepper->lets[i] *= part;
+    any = PETSC_TRUE;
+  }
+  if (any) PetscCall(LawProblemSolve(problem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What contact takes of the energy in the step, friction apart */
 static PetscErrorCode SumLoss(Contact contact, ContactStepper *stepper)
 {
@@ -102,4 +128,5 @@ const ContactRule ContactRuleImpulse = {
     .begin = Begin,
     .load  = Load,
     .shape = BODY_FORCE_CONSTANT,
+    .limit = Limit,
     .end   = End};

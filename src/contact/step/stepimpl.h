@@ -13,6 +13,8 @@ typedef struct {
   PetscErrorCode (*begin)(Contact, ContactStepper *);             /* which rows may touch, the guess, what closed rows may still move */
   PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);    /* the forces `contact->end.force` on the rows of a body */
   BodyForceShape shape;                                           /* of forces in the step */
+  /* (NULL) after the first solution of the law: changes what closed rows may still move, from the ways of all ranks' touching rows [m] */
+  PetscErrorCode (*limit)(Contact, ContactStepper *, const PetscScalar[]);
   PetscErrorCode (*more)(Contact, ContactStepper *, PetscBool *); /* (NULL) whether rows that were left out touch after all */
   PetscErrorCode (*end)(Contact, ContactStepper *);               /* (NULL) after the step has been made */
 } ContactRule;
