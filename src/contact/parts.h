@@ -237,6 +237,7 @@ PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);
 PETSC_INTERN PetscErrorCode ContactRefuseUnstable(Contact, PetscBool, const char[]);
+PETSC_INTERN PetscErrorCode ContactBodyHasMass(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactHasMass(Contact, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactStabilize(Contact);
 

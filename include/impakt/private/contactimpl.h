@@ -477,7 +477,7 @@ struct _p_Contact {
   Mat              *interfaces; /* per body: its rows */
   Mat              *spares;     /* the same of other steps, to be filled next */
   Vec              *ends;       /* per body: where rows are laid if not where it is, as where the last attempt at the step has ended */
-  PetscBool         at_ends;    /* the rows of all pairs are laid there */
+  PetscBool        *at_end;     /* per body: rows of all its pairs are laid there */
   ContactNodes      nodes;
   ContactRows       rows;
   ContactTurns      turns;

@@ -10,7 +10,7 @@ static PetscErrorCode AllocateBodies(Contact contact)
   const PetscInt n = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(n, &contact->ends));
+  PetscCall(PetscCalloc2(n, &contact->ends, n, &contact->at_end));
   PetscCall(PetscCalloc2(4 * n, &contact->reach.mean, 2 * n, &contact->reach.spread));
   contact->reach.acceleration = contact->reach.spread + n;
   PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));
@@ -171,7 +171,7 @@ PetscErrorCode ContactSetUp(Contact contact)
              PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law %s: -contact_type %s has no friction; choose schwarz, force, lagrange, penalty or augmented_lagrangian",
              contact->friction.name, ((PetscObject)contact)->type_name);
-  PetscCheck(!contact->energy.takes || !contact->energy.asked, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(!contact->energy.takes || !contact->energy.unlimited || !contact->energy.asked, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "%s has no effect: %s, and no step is made again for what it takes; leave it out", contact->energy.asked,
              contact->energy.unlimited);
   if (!contact->ops->stored && !contact->energy.unlimited) contact->energy.unlimited = "the method does not tell what its forces store";

@@ -48,7 +48,7 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
 }
 
 /* Whether the contact nodes of a body have mass */
-static PetscErrorCode BodyHasMass(Body body, PetscBool *has)
+PetscErrorCode ContactBodyHasMass(Body body, PetscBool *has)
 {
   PetscBool massless, without_inertia, rigid;
 
@@ -75,7 +75,7 @@ PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *h
     for (PetscInt side = 0; side < sides; side++) {
       PetscBool mass = PETSC_FALSE;
 
-      PetscCall(BodyHasMass(contact->bodies[contact->pairs[p].body[side]], &mass));
+      PetscCall(ContactBodyHasMass(contact->bodies[contact->pairs[p].body[side]], &mass));
       with += mass;
     }
     *has = (PetscBool)(*has || (all_sides ? with == sides : with > 0));
@@ -84,7 +84,7 @@ PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *h
   for (PetscInt b = 0; b < contact->n_bodies; b++) { /* any two of them may come near */
     PetscBool mass = PETSC_FALSE;
 
-    PetscCall(BodyHasMass(contact->bodies[b], &mass));
+    PetscCall(ContactBodyHasMass(contact->bodies[b], &mass));
     all += mass;
   }
   if (all > (all_sides && !contact->n_obstacles ? 1 : 0)) *has = PETSC_TRUE;

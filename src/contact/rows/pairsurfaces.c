@@ -198,7 +198,7 @@ static PetscErrorCode MirrorSurface(Contact contact, PetscInt body, Surface surf
 PetscErrorCode ContactGetRowPlace(Contact contact, PetscInt b, Vec *u)
 {
   PetscFunctionBegin;
-  if (contact->at_ends) *u = contact->ends[b];
+  if (contact->at_end[b]) *u = contact->ends[b];
   else PetscCall(BodyGetSolution(contact->bodies[b], u, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

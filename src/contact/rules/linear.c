@@ -5,24 +5,19 @@
 #include <contact/step/stepimpl.h>
 
 /* Rows that were in contact, or would be at the end if bodies went on as they do: others join as they are found to be inside */
-static PetscErrorCode Begin(Contact contact, ContactStepper *stepper)
+static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
   PetscFunctionBegin;
-  PetscCall(ContactStepperComputeRates(contact, stepper->rate));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+  for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+    const PetscReal end     = contact->start.gap[first] + contact->step * stepper->rate[first];
+    const PetscBool carried = (PetscBool)(contact->rows.tied[first] || contact->start.active[first]);
+    const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && end <= 0));
 
-    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
-      const PetscBool carried = (PetscBool)(contact->rows.tied[first] || contact->start.active[first]);
-      const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] &&
-                                                        contact->start.gap[first] + contact->step * stepper->rate[first] <= 0));
-
-      for (PetscInt i = first; i < first + pair->components; i++) {
-        stepper->touches[i]   = touches;
-        stepper->joins[i]     = (PetscBool)(touches && !carried);
-        stepper->lets[i]      = i == first ? -contact->start.gap[i] : 0;
-        contact->end.force[i] = touches ? contact->start.force[i] : 0;
-      }
+    for (PetscInt i = first; i < first + pair->components; i++) {
+      stepper->touches[i]   = touches;
+      stepper->joins[i]     = (PetscBool)(touches && !carried);
+      stepper->lets[i]      = i == first ? -contact->start.gap[i] : 0;
+      contact->end.force[i] = touches ? contact->start.force[i] : 0;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -37,22 +32,14 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
 }
 
 /* Rows that end inside their partner join */
-static PetscErrorCode More(Contact contact, ContactStepper *stepper, PetscBool *more)
+static PetscErrorCode More(Contact contact, ContactStepper *stepper, const ContactPair *pair, PetscBool *more)
 {
-  int any = 0;
-
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
-      if (stepper->touches[first] || !contact->rows.opposite[first] || contact->end.gap[first] >= -contact->options.tolerance) continue;
-      for (PetscInt i = first; i < first + pair->components; i++) stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
-      any = 1;
-    }
+  for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+    if (stepper->touches[first] || !contact->rows.opposite[first] || contact->end.gap[first] >= -contact->options.tolerance) continue;
+    for (PetscInt i = first; i < first + pair->components; i++) stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
+    *more = PETSC_TRUE;
   }
-  PetscCall(ContactOr(contact, &any));
-  *more = (PetscBool)(any > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

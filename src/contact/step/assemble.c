@@ -100,7 +100,7 @@ static PetscErrorCode AddBody(Contact contact, ContactStepper *stepper, PetscInt
   PetscCall(PetscMalloc1(count, &dofs));
   PetscCall(PetscArraycpy(dofs, entries.columns, count));
   PetscCall(PetscSortRemoveDupsInt(&count, dofs));
-  PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rule->shape, count, dofs, &place, &leading, &W));
+  PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rules[b]->shape, count, dofs, &place, &leading, &W));
   for (PetscInt k = 0; k < entries.n; k++)
     for (PetscInt l = 0; l < entries.n; l++) {
       PetscScalar sum = 0;
@@ -175,7 +175,7 @@ static PetscErrorCode IsSparse(Contact contact, ContactStepper *stepper, PetscBo
     Vec diagonal;
 
     if (!contact->body_rows[b].n_all) continue;
-    PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rule->shape, &diagonal));
+    PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
     *sparse = (PetscBool)(diagonal != NULL);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -205,7 +205,7 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
 
     if (!sparse) PetscCall(AddBody(contact, stepper, b, values));
     if (!sparse || !contact->body_rows[b].n_all) continue;
-    PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rule->shape, &diagonal));
+    PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
     PetscCall(AddDiagonal(contact, stepper, b, diagonal, S));
   }
   if (!sparse) PetscCall(MatDenseRestoreArrayWrite(S, &values));

@@ -21,7 +21,7 @@ static PetscErrorCode SetFromOptions(Contact contact)
   PetscCall(PetscOptionsEList("-contact_rule", "How forces run within a step", "ContactSetType", rules, 3, rules[0], &rule, NULL));
   PetscOptionsEnd();
   PetscCall(ContactMonitorSetFromOptions(contact, &Stepper(contact)->monitor));
-  Stepper(contact)->rule = rule == 1 ? &ContactRuleImpulse : rule == 2 ? &ContactRuleLinear : NULL;
+  Stepper(contact)->asked = rule == 1 ? &ContactRuleImpulse : rule == 2 ? &ContactRuleLinear : NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -60,30 +60,6 @@ static PetscErrorCode Check(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Contact nodes without mass have no impulse to lose; those with mass would ring if their gap were closed */
-static PetscErrorCode ChooseRule(Contact contact, ContactStepper *stepper)
-{
-  PetscBool has_mass;
-
-  PetscFunctionBegin;
-  PetscCall(ContactHasMass(contact, PETSC_FALSE, &has_mass));
-  if (!stepper->rule) stepper->rule = has_mass ? &ContactRuleImpulse : &ContactRuleLinear;
-  PetscCall(ContactRefuseUnstable(contact, (PetscBool)(has_mass && stepper->rule->shape == BODY_FORCE_LINEAR),
-                                  "-contact_rule linear: contact nodes with mass whose gaps are closed at the ends of steps swing and gain "
-                                  "energy; choose impulse, or set -<body>_mass_redistribute true"));
-  for (PetscInt b = 0; b < contact->n_bodies && stepper->rule->shape == BODY_FORCE_CONSTANT; b++) {
-    const char *name = ((PetscObject)contact->bodies[b])->name;
-    PetscBool   is_static;
-
-    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
-    PetscCheck(!is_static, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-               "-contact_rule impulse is about velocities, and body '%s' is static; set -<body>_mass_redistribute true for the others, or "
-               "give '%s' inertia (-%s_ts_type alpha2)",
-               name, name, name);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SetUp(Contact contact)
 {
   ContactStepper *stepper    = Stepper(contact);
@@ -93,9 +69,10 @@ static PetscErrorCode SetUp(Contact contact)
   PetscFunctionBegin;
   PetscCall(Check(contact));
   for (PetscInt b = 0; b < contact->n_bodies && !any_static; b++) PetscCall(BodyIsStatic(contact->bodies[b], &any_static));
-  PetscCall(ChooseRule(contact, stepper));
-  contact->energy.takes = stepper->rule->takes;
-  if (contact->energy.takes) contact->energy.unlimited = "contact gains none by its rule";
+  PetscCall(PetscCalloc4(contact->n_bodies, &stepper->rules, contact->n_bodies, &stepper->group, contact->n_bodies, &stepper->moves,
+                         contact->n_bodies, &stepper->rests));
+  PetscCall(PetscCalloc3(contact->n_bodies, &stepper->done, contact->n_bodies, &stepper->scale, contact->n_bodies, &stepper->off));
+  PetscCall(ContactStepperSetUpRules(contact, stepper));
   stepper->problem.law    = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
   contact->friction.steps = PETSC_TRUE;
   stepper->rtol           = any_static ? RTOL_STATIC : RTOL;
@@ -106,15 +83,18 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
   PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
-  PetscCall(
-      PetscCalloc6(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before));
+  PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
+                         n, &stepper->given));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode LayRows(Contact contact)
 {
+  const ContactStepper *stepper = Stepper(contact);
+
   PetscFunctionBegin;
-  if (Stepper(contact)->rule && Stepper(contact)->rule->place) PetscCall((*Stepper(contact)->rule->place)(contact, Stepper(contact)));
+  for (PetscInt b = 0; b < contact->n_bodies && stepper->rules; b++)
+    if (stepper->rules[b]->place) PetscCall((*stepper->rules[b]->place)(contact, b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,12 +138,17 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 static PetscErrorCode View(Contact contact, PetscViewer viewer)
 {
   const ContactStepper *stepper = Stepper(contact);
+  PetscBool             one     = PETSC_TRUE;
   PetscReal             rtol;
 
   PetscFunctionBegin;
   PetscCall(SNESGetTolerances(stepper->outer, NULL, &rtol, NULL, NULL, NULL));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  rule %s, tolerance %g of the largest way of a row in the step\n", stepper->rule->name,
-                                   (double)rtol));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) one = (PetscBool)(one && stepper->rules[b] == stepper->rules[0]);
+  PetscCall(PetscViewerASCIIPrintf(viewer, "  rule %s, tolerance %g of the largest way of a row in the step\n",
+                                   one ? stepper->rules[0]->name : "as bodies need", (double)rtol));
+  for (PetscInt b = 0; b < contact->n_bodies && !one; b++)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  rule of body '%s' and what it may touch: %s\n", ((PetscObject)contact->bodies[b])->name,
+                                     stepper->rules[b]->name));
   if (contact->options.law == CONTACT_LAW_FRICTION && contact->friction.law.view)
     PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -182,7 +167,9 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(PetscFree5(stepper->rows, stepper->of_body, stepper->places, stepper->gathered, stepper->of_assembled));
   PetscCall(PetscFree(stepper->told));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
-  PetscCall(PetscFree6(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before));
+  PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
+  PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));
+  PetscCall(PetscFree3(stepper->done, stepper->scale, stepper->off));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,49 +15,59 @@ PetscErrorCode ContactMonitorSetFromOptions(Contact contact, ContactMonitor *mon
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many touching nodes of all ranks push, have joined in this step, have left, stick and slide, by the forces of the last solution */
-static void CountNodes(const ContactStepper *stepper, PetscInt *push, PetscInt *stick, PetscInt *slide)
+typedef struct {
+  PetscInt nodes, push, stick, slide;
+} NodeCounts;
+
+/* Nodes of a group, of all ranks, that may touch, push, stick and slide, by the forces of the last solution */
+static void CountNodes(Contact contact, const ContactStepper *stepper, PetscInt g, NodeCounts *counts)
 {
   const LawProblem *problem = &stepper->problem;
 
-  *push = *stick = *slide = 0;
+  *counts = (NodeCounts){0, 0, 0, 0};
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt  first = problem->begin[node], end = problem->begin[node + 1];
     const PetscReal normal = PetscRealPart(problem->force[first]), bound = problem->limit[2 * node] + problem->limit[2 * node + 1] * normal;
     PetscReal       across = 0;
 
+    if (ContactStepperGroup(contact, stepper, first) != g) continue;
+    counts->nodes++;
     if (!(normal > 0) && problem->law->reads != ROW_LAW_READS_END) continue;
-    (*push)++;
+    counts->push++;
     for (PetscInt i = first + 1; i < end; i++) across += PetscSqr(PetscRealPart(problem->force[i]));
     if (end == first + 1) continue;
-    if (problem->law->reads == ROW_LAW_READS_END || PetscSqrtReal(across) < bound * (1 - PETSC_SQRT_MACHINE_EPSILON)) (*stick)++;
-    else (*slide)++;
+    if (problem->law->reads == ROW_LAW_READS_END || PetscSqrtReal(across) < bound * (1 - PETSC_SQRT_MACHINE_EPSILON)) counts->stick++;
+    else counts->slide++;
   }
 }
 
-/* After a pass */
+/* After a pass: a line for each group that has been advanced in it */
 PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper)
 {
   const LawProblem *problem = &stepper->problem;
   const char       *m       = UnitsOf((PetscObject)contact, UNIT_LENGTH);
   PetscViewer       viewer  = stepper->monitor.viewer;
-  PetscInt          push, stick, slide;
   PetscReal         time;
 
   PetscFunctionBegin;
   if (!viewer) PetscFunctionReturn(PETSC_SUCCESS);
-  CountNodes(stepper, &push, &stick, &slide);
   PetscCall(ForcesGetTime(contact, &time));
   StatusLineBreak();
-  PetscCall(PetscViewerASCIIPrintf(viewer,
-                                   "step that ends at %.9g%s, pass %" PetscInt_FMT
-                                   ": rows off by %.3e%s, %.1e of the way that forces make; %" PetscInt_FMT
-                                   " nodes may touch, %" PetscInt_FMT " push (%" PetscInt_FMT " stick, %" PetscInt_FMT
-                                   " slide); law %s in %" PetscInt_FMT " iterations%s%s\n",
-                                   (double)time, UnitsOf((PetscObject)contact, UNIT_TIME), stepper->passes, (double)stepper->off, m,
-                                   (double)(stepper->scale > 0 ? stepper->off / stepper->scale : 0), problem->n_nodes, push, stick, slide,
-                                   problem->solved ? "solved" : "NOT solved", problem->iterations,
-                                   problem->by_nodes ? ", node by node too" : "", stepper->corrected ? "; compliance corrected" : ""));
+  for (PetscInt g = 0; g < contact->n_bodies; g++) {
+    NodeCounts counts;
+
+    CountNodes(contact, stepper, g, &counts);
+    if (!counts.nodes || stepper->done[g]) continue;
+    PetscCall(PetscViewerASCIIPrintf(
+        viewer,
+        "step that ends at %.9g%s, group of '%s', pass %" PetscInt_FMT
+        ": rows off by %.3e%s, %.1e of the way that forces make; %" PetscInt_FMT " nodes may touch, %" PetscInt_FMT " push (%" PetscInt_FMT
+        " stick, %" PetscInt_FMT " slide); law %s in %" PetscInt_FMT " iterations%s%s\n",
+        (double)time, UnitsOf((PetscObject)contact, UNIT_TIME), ((PetscObject)contact->bodies[g])->name, stepper->passes,
+        (double)stepper->off[g], m, (double)(stepper->scale[g] > 0 ? stepper->off[g] / stepper->scale[g] : 0), counts.nodes, counts.push,
+        counts.stick, counts.slide, problem->solved ? "solved" : "NOT solved", problem->iterations,
+        problem->by_nodes ? ", node by node too" : "", stepper->corrected ? "; compliance corrected" : ""));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

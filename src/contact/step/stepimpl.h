@@ -5,18 +5,19 @@
 
 typedef struct _ContactStepper ContactStepper;
 
-/* How forces run within a step, where rows lie, when a row counts as closed */
+/* How forces run within a step, where rows lie, when a row counts as closed. One rule holds for each set of bodies that pairs connect. */
 typedef struct {
   const char *name;
   const char *takes; /* (NULL) what closed rows take of the energy, which they bring none of, and what makes that less */
-  PetscErrorCode (*place)(Contact, ContactStepper *);             /* (NULL) where rows are to be laid, before they are */
-  PetscErrorCode (*begin)(Contact, ContactStepper *);             /* which rows may touch, the guess, what closed rows may still move */
-  PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);    /* the forces `contact->end.force` on the rows of a body */
-  BodyForceShape shape;                                           /* of forces in the step */
-  /* (NULL) after the first solution of the law: changes what closed rows may still move, from the ways of all ranks' touching rows [m] */
-  PetscErrorCode (*limit)(Contact, ContactStepper *, const PetscScalar[]);
-  PetscErrorCode (*more)(Contact, ContactStepper *, PetscBool *); /* (NULL) whether rows that were left out touch after all */
-  PetscErrorCode (*end)(Contact, ContactStepper *);               /* (NULL) after the step has been made */
+  PetscErrorCode (*place)(Contact, PetscInt);                              /* (NULL) where rows of a body are to be laid, before they are */
+  PetscErrorCode (*begin)(Contact, ContactStepper *, const ContactPair *); /* which rows may touch, the guess, what closed rows may move */
+  PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);             /* the forces `contact->end.force` on the rows of a body */
+  BodyForceShape shape;                                                    /* of forces in the step */
+  /* (NULL) after the first solution of the law: a smaller way of a closed row that joins, from the present one [m] and the way by which its
+     force alone has moved it [m] */
+  PetscReal (*limit)(PetscReal, PetscReal);
+  PetscErrorCode (*more)(Contact, ContactStepper *, const ContactPair *, PetscBool *); /* (NULL) whether rows left out touch after all */
+  PetscErrorCode (*end)(Contact, ContactStepper *, const ContactPair *);               /* (NULL) after the step has been made */
 } ContactRule;
 
 /* Where to tell of each pass, see monitor.c */
@@ -27,13 +28,11 @@ typedef struct {
 
 struct _ContactStepper {
   ContactMonitor     monitor;
-  const ContactRule *rule;
+  const ContactRule *asked; /* the rule of all sets; NULL: as bodies have mass on contact nodes or not */
   LawProblem         problem;
   SNES               outer; /* its unknowns are the forces of this rank's touching rows */
   Vec                x, f;
   PetscReal          rtol, atol;      /* tolerances of the outer iteration on what rows read [parts of the largest way; m] */
-  PetscReal          scale;           /* the largest way of a touching row in the step, without forces or by its own [m] */
-  PetscReal          off;             /* by how much rows still miss, after the last pass [m] */
   PetscInt           passes, n_local; /* of this step; touching rows of this rank */
   PetscInt          *rows;            /* touching rows of all ranks, by their numbers, ascending */
   PetscInt           room;
@@ -44,7 +43,17 @@ struct _ContactStepper {
   PetscInt64         state;               /* counts changes of rows, for which S is another */
   PetscInt64         assembled;
   PetscInt           n_assembled, *of_assembled; /* the rows that S has */
+  /* per body */
+  const ContactRule **rules; /* of its set */
+  PetscInt           *group; /* the first body of its group: bodies that touch in this step, directly or by others */
+  int                *moves; /* work space */
+  PetscBool          *rests; /* it has been advanced under the forces that its rows have now */
+  /* per group, by its first body */
+  PetscBool *done;  /* it is within the tolerance */
+  PetscReal *scale; /* the largest way of a touching row in the step, without forces or by its own [m] */
+  PetscReal *off;   /* by how much rows still miss, after the last pass [m] */
   /* per row of this rank */
+  PetscReal *given;            /* force under which its bodies have been advanced [N] */
   PetscBool *touches, *joined; /* it may touch in this step; its node has touched first in the last accepted step */
   PetscBool *joins;            /* the same of this step */
   PetscReal *last;             /* force at the end of the last step [N] */
@@ -64,6 +73,19 @@ PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperPack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperSetUpRules(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);
+PETSC_INTERN PetscInt       ContactStepperGroup(Contact, const ContactStepper *, PetscInt);
+PETSC_INTERN PetscErrorCode ContactStepperAdvance(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperCorrectS(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, PetscInt, const PetscReal *const[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode ContactStepperIterate(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
+
+/* The rule of a pair's set */
+static inline const ContactRule *ContactStepperRule(const ContactStepper *stepper, const ContactPair *pair)
+{
+  return stepper->rules[pair->body[0]];
+}
 
 extern const ContactRule ContactRuleImpulse, ContactRuleLinear;

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 PASS = re.compile(
-    r"step that ends at (\S+) s, pass (\d+): rows off by (\S+) m, \S+ of the way that forces make; (\d+) nodes may touch, (\d+) push \((\d+) stick, (\d+) slide\); "
+    r"step that ends at (\S+) s, group of '\w+', pass (\d+): rows off by (\S+) m, \S+ of the way that forces make; (\d+) nodes may touch, (\d+) push \((\d+) stick, (\d+) slide\); "
     r"law solved in (\d+) iterations(?:, node by node too)?(?:; compliance corrected)?"
 )
 END = re.compile(r"step that ends at (\S+) s: CONVERGED_FNORM_RELATIVE in (\d+) passes; (\d+) rows joined, (\d+) left")

@@ -1,0 +1,273 @@
+/*
+   The passes of a step: all bodies are advanced under forces of the touching rows, and the law has other forces for what rows read then.
+   That is one evaluation of the outer SNES, F = lambda - law(lambda).
+*/
+#include "stepimpl.h"
+#include <contact/compliance/forces.h>
+#include <sys/petsccompat.h>
+
+#define MOST_PASSES 50
+
+static ContactStepper *Stepper(Contact contact)
+{
+  return (ContactStepper *)contact->data;
+}
+
+/* What a row reads, less what it may: by the law */
+static PetscReal Reading(Contact contact, const ContactStepper *stepper, PetscInt i)
+{
+  const PetscBool rubs = ContactRowRubs(contact, i);
+
+  if (stepper->problem.law->reads == ROW_LAW_READS_END) return contact->end.gap[i];
+  return (rubs ? contact->friction.slip[i] : contact->end.gap[i] - contact->start.gap[i]) - stepper->lets[i];
+}
+
+/* Numbers of this rank's touching rows, on all ranks; `fields` of them, one after the other */
+PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, PetscInt fields, const PetscReal *const mine[],
+                                    PetscScalar all[])
+{
+  const PetscInt n = stepper->problem.n;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(all, fields * n));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt i = stepper->rows[k] - contact->rows.begin;
+
+    for (PetscInt f = 0; f < fields && i >= 0 && i < contact->rows.n; f++) all[f * n + k] = mine[f][i];
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(fields * n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After the first solution of the law in a step: rows that join may move less than their rule has said at first */
+static PetscErrorCode LimitWays(Contact contact, ContactStepper *stepper, const PetscScalar ways[])
+{
+  LawProblem *problem = &stepper->problem;
+  PetscBool   any     = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt     k = problem->begin[node], i = stepper->rows[k] - contact->rows.begin;
+    const ContactRule *rule = ContactStepperRule(stepper, &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]]);
+    const PetscReal    way  = PetscRealPart(ways[k]);
+    PetscReal          less = way;
+
+    if (rule->limit) less = (*rule->limit)(way, problem->diagonal[k] * PetscRealPart(problem->force[k]));
+    if (less == way) continue;
+    problem->read[k] += way - less;
+    if (i >= 0 && i < contact->rows.n) stepper->lets[i] = less;
+    any = PETSC_TRUE;
+  }
+  if (any) PetscCall(LawProblemSolve(problem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much rows of each group still miss, and which groups are within the tolerance: their forces stay as they are */
+static PetscErrorCode MeasureGroups(Contact contact, ContactStepper *stepper)
+{
+  LawProblem    *problem = &stepper->problem;
+  const PetscInt n       = problem->n;
+  PetscScalar   *change  = stepper->gathered;
+  PetscReal      rtol, atol;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetTolerances(stepper->outer, &atol, &rtol, NULL, NULL, NULL));
+  PetscCall(PetscArrayzero(stepper->off, contact->n_bodies));
+  for (PetscInt i = 0; i < n; i++) change[i] = problem->force[i] - problem->base[i];
+  PetscCall(LawProblemMultiply(problem, change, change));
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt g = ContactStepperGroup(contact, stepper, i);
+
+    stepper->off[g]   = PetscMax(stepper->off[g], PetscAbsScalar(change[i]));
+    stepper->scale[g] = PetscMax(stepper->scale[g], PetscAbsScalar(problem->diagonal[i] * problem->force[i]));
+  }
+  PetscCall(ContactMonitorPass(contact, stepper));
+  for (PetscInt g = 0; g < contact->n_bodies; g++) stepper->done[g] = (PetscBool)(stepper->off[g] <= rtol * stepper->scale[g] + atol);
+  for (PetscInt i = 0; i < n; i++)
+    if (stepper->done[ContactStepperGroup(contact, stepper, i)]) problem->force[i] = problem->base[i];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces that the law has for what rows read under those in X, less these: one pass */
+static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
+{
+  Contact            contact = (Contact)ctx;
+  ContactStepper    *stepper = Stepper(contact);
+  LawProblem        *problem = &stepper->problem;
+  const PetscInt     n       = problem->n;
+  const PetscReal   *fields[3];
+  const PetscScalar *x;
+  PetscScalar       *f;
+  PetscInt           k = 0;
+
+  PetscFunctionBegin;
+  (void)snes;
+  PetscCall(VecGetArrayRead(X, &x));
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.force[i] = stepper->touches[i] ? PetscRealPart(x[k++]) : 0;
+  PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(ContactStepperAdvance(contact, stepper));
+  if (ContactFailed(contact)) {
+    PetscCall(ContactRejectResidual(F));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt i = 0; i < contact->rows.n; i++) stepper->mine[i] = stepper->touches[i] ? Reading(contact, stepper, i) : 0;
+  fields[0] = contact->end.force;
+  fields[1] = stepper->mine;
+  fields[2] = stepper->lets;
+  PetscCall(ContactStepperGather(contact, stepper, 3, fields, stepper->gathered));
+  PetscCall(PetscArraycpy(problem->base, stepper->gathered, n));
+  PetscCall(PetscArraycpy(problem->read, stepper->gathered + n, n));
+  PetscCall(PetscArraycpy(problem->force, problem->base, n));
+  PetscCall(ContactStepperCorrectS(contact, stepper));
+  PetscCall(LawProblemSolve(problem));
+  if (!stepper->passes++) PetscCall(LimitWays(contact, stepper, stepper->gathered + 2 * n));
+  PetscCall(PetscArraycpy(stepper->told, problem->base, n));
+  PetscCall(PetscArraycpy(stepper->told + n, problem->read, n));
+  stepper->has_told = PETSC_TRUE;
+  PetscCall(MeasureGroups(contact, stepper));
+  if (!problem->solved) {
+    PetscCall(ContactRejectResidual(F));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecGetArrayWrite(F, &f));
+  k = 0;
+  for (PetscInt place = 0; place < n; place++) {
+    const PetscInt i = stepper->rows[place] - contact->rows.begin;
+
+    if (i >= 0 && i < contact->rows.n) f[k++] = problem->base[place] - problem->force[place];
+  }
+  PetscCall(VecRestoreArrayWrite(F, &f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The group that misses most, in parts of its tolerance */
+static PetscInt WorstGroup(Contact contact, const ContactStepper *stepper, PetscReal atol, PetscReal rtol)
+{
+  PetscInt  worst = 0;
+  PetscReal most  = -1;
+
+  for (PetscInt g = 0; g < contact->n_bodies; g++) {
+    const PetscReal parts = stepper->off[g] / (rtol * stepper->scale[g] + atol);
+
+    if (!(parts <= most)) worst = g;
+    most = PetscMax(most, parts);
+  }
+  return worst;
+}
+
+/* The step is made where rows would move no more by other forces, beside the way that forces make them go */
+static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                      SNESConvergedReason *reason, void *ctx)
+{
+  Contact               contact = (Contact)ctx;
+  const ContactStepper *stepper = Stepper(contact);
+  PetscBool             done    = PETSC_TRUE;
+  PetscInt              most;
+
+  PetscFunctionBegin;
+  (void)xnorm;
+  (void)gnorm;
+  PetscCall(SNESGetTolerances(snes, NULL, NULL, NULL, &most, NULL));
+  for (PetscInt g = 0; g < contact->n_bodies; g++) done = (PetscBool)(done && stepper->done[g]);
+  *reason = SNES_CONVERGED_ITERATING;
+  if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_LOCAL_MIN;
+  else if (done) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  else if (it >= most) *reason = SNES_DIVERGED_MAX_IT;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *stepper)
+{
+  SNESLineSearch line_search;
+  SNESType       type;
+  PetscBool      known;
+  MPI_Comm       comm = PetscObjectComm((PetscObject)contact);
+
+  PetscFunctionBegin;
+  PetscCall(SNESDestroy(&stepper->outer));
+  PetscCall(VecDestroy(&stepper->x));
+  PetscCall(VecDestroy(&stepper->f));
+  PetscCall(VecCreate(comm, &stepper->x));
+  PetscCall(VecSetSizes(stepper->x, stepper->n_local, PETSC_DETERMINE));
+  PetscCall(VecSetType(stepper->x, VECSTANDARD));
+  PetscCall(VecDuplicate(stepper->x, &stepper->f));
+  PetscCall(SNESCreate(comm, &stepper->outer));
+  PetscCall(SNESSetOptionsPrefix(stepper->outer, "schwarz_"));
+  PetscCall(SNESSetFunction(stepper->outer, stepper->f, ComputeChange, contact));
+  PetscCall(SNESSetType(stepper->outer, SNESNRICHARDSON));
+  PetscCall(SNESGetLineSearch(stepper->outer, &line_search));
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
+  PetscCall(SNESSetTolerances(stepper->outer, stepper->atol, stepper->rtol, 0, MOST_PASSES, PETSC_INT_MAX));
+  PetscCall(SNESSetErrorIfNotConverged(stepper->outer, PETSC_FALSE));
+  PetscCall(SNESSetFromOptions(stepper->outer));
+  PetscCall(SNESGetType(stepper->outer, &type));
+  PetscCall(PetscObjectTypeCompareAny((PetscObject)stepper->outer, &known, SNESNRICHARDSON, SNESANDERSON, SNESNGMRES, SNESQN, ""));
+  PetscCheck(known, comm, PETSC_ERR_USER_INPUT,
+             "-schwarz_snes_type %s: the outer iteration of -contact_type force has no Jacobian, since the law of rows is solved inside "
+             "it; choose nrichardson, which is the default, anderson, ngmres or qn",
+             type);
+  PetscCall(SNESSetConvergenceTest(stepper->outer, TestConvergence, contact, NULL));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The largest way of the touching rows of each group as the step begins [m], for the tolerance */
+static PetscErrorCode FindScales(Contact contact, ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    PetscReal *scale = &stepper->scale[stepper->group[contact->pairs[contact->rows.pair[i]].body[0]]];
+
+    if (stepper->touches[i]) *scale = PetscMax(*scale, PetscAbsReal(contact->step * stepper->rate[i]));
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stepper->scale, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MAX,
+                               PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The outer iteration over the touching rows */
+PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
+{
+  SNESConvergedReason reason;
+  PetscScalar        *x;
+  PetscInt            size = 0, k = 0, worst;
+  int                 other;
+  PetscReal           time, atol, rtol;
+
+  PetscFunctionBegin;
+  if (stepper->x) PetscCall(VecGetLocalSize(stepper->x, &size));
+  other = !stepper->x || size != stepper->n_local;
+  PetscCall(ContactOr(contact, &other));
+  if (other) PetscCall(ContactStepperCreateOuter(contact, stepper));
+  PetscCall(VecGetArrayWrite(stepper->x, &x));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (stepper->touches[i]) x[k++] = contact->end.force[i];
+  PetscCall(VecRestoreArrayWrite(stepper->x, &x));
+  PetscCall(ContactStepperFindGroups(contact, stepper));
+  PetscCall(FindScales(contact, stepper));
+  stepper->has_told = PETSC_FALSE;
+  PetscCall(SNESSolve(stepper->outer, NULL, stepper->x));
+  PetscCall(SNESGetConvergedReason(stepper->outer, &reason));
+  PetscCall(ContactMonitorStep(contact, stepper, reason));
+  if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ForcesGetTime(contact, &time));
+  if (!stepper->problem.solved) {
+    PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                             "The law of the %" PetscInt_FMT
+                             " contact rows of the step that ends at time %.9g s was not solved in %" PetscInt_FMT
+                             " iterations; choose a smaller -time_step, raise -law_snes_max_it and -law_nodes_snes_max_it, or look with "
+                             "-law_snes_monitor and -law_nodes_snes_monitor",
+                             stepper->problem.n, (double)time, stepper->problem.iterations));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(SNESGetTolerances(stepper->outer, &atol, &rtol, NULL, NULL, NULL));
+  worst = WorstGroup(contact, stepper, atol, rtol);
+  PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                           "The contact forces of the step that ends at time %.9g s were not found in %" PetscInt_FMT
+                           " passes: rows are off by %g m, where %g m are allowed%s; choose a smaller -time_step, raise "
+                           "-schwarz_snes_max_it, or look with -schwarz_snes_monitor and -info",
+                           (double)time, stepper->passes, (double)stepper->off[worst], (double)(rtol * stepper->scale[worst] + atol),
+                           PetscIsInfOrNanReal(stepper->off[worst]) ? " (not a number)" : ""));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
