@@ -81,6 +81,7 @@ static PetscErrorCode SetUp(Contact contact)
   if (contact->friction.law.setup && contact->options.law == CONTACT_LAW_FRICTION)
     PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
+  PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
   PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
@@ -161,11 +162,8 @@ static PetscErrorCode Destroy(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscViewerDestroy(&stepper->monitor.viewer));
   PetscCall(SNESDestroy(&stepper->outer));
-  PetscCall(VecDestroy(&stepper->x));
-  PetscCall(VecDestroy(&stepper->f));
+  PetscCall(ContactStepperDestroyVecs(stepper));
   PetscCall(LawProblemDestroy(&stepper->problem));
-  PetscCall(PetscFree5(stepper->rows, stepper->of_body, stepper->places, stepper->gathered, stepper->of_assembled));
-  PetscCall(PetscFree(stepper->told));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));

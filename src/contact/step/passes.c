@@ -22,31 +22,15 @@ static PetscReal Reading(Contact contact, const ContactStepper *stepper, PetscIn
   return (rubs ? contact->friction.slip[i] : contact->end.gap[i] - contact->start.gap[i]) - stepper->lets[i];
 }
 
-/* Numbers of this rank's touching rows, on all ranks; `fields` of them, one after the other */
-PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, PetscInt fields, const PetscReal *const mine[],
-                                    PetscScalar all[])
-{
-  const PetscInt n = stepper->problem.n;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(all, fields * n));
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscInt i = stepper->rows[k] - contact->rows.begin;
-
-    for (PetscInt f = 0; f < fields && i >= 0 && i < contact->rows.n; f++) all[f * n + k] = mine[f][i];
-  }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, (PetscMPIInt)(fields * n), MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* After the first solution of the law in a step: rows that join may move less than their rule has said at first */
-static PetscErrorCode LimitWays(Contact contact, ContactStepper *stepper, const PetscScalar ways[])
+static PetscErrorCode LimitWays(Contact contact, ContactStepper *stepper)
 {
-  LawProblem *problem = &stepper->problem;
-  PetscBool   any     = PETSC_FALSE;
+  LawProblem        *problem = &stepper->problem;
+  const PetscScalar *ways    = stepper->gathered;
+  PetscBool          any     = PETSC_FALSE;
 
   PetscFunctionBegin;
+  PetscCall(ContactStepperGather(contact, stepper, stepper->lets, stepper->gathered));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt     k = problem->begin[node], i = stepper->rows[k] - contact->rows.begin;
     const ContactRule *rule = ContactStepperRule(stepper, &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]]);
@@ -96,15 +80,13 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   ContactStepper    *stepper = Stepper(contact);
   LawProblem        *problem = &stepper->problem;
   const PetscInt     n       = problem->n;
-  const PetscReal   *fields[3];
   const PetscScalar *x;
   PetscScalar       *f;
-  PetscInt           k = 0;
 
   PetscFunctionBegin;
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.force[i] = stepper->touches[i] ? PetscRealPart(x[k++]) : 0;
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.force[i] = stepper->touches[i] ? PetscRealPart(x[i]) : 0;
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(ContactStepperAdvance(contact, stepper));
   if (ContactFailed(contact)) {
@@ -112,16 +94,12 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) stepper->mine[i] = stepper->touches[i] ? Reading(contact, stepper, i) : 0;
-  fields[0] = contact->end.force;
-  fields[1] = stepper->mine;
-  fields[2] = stepper->lets;
-  PetscCall(ContactStepperGather(contact, stepper, 3, fields, stepper->gathered));
-  PetscCall(PetscArraycpy(problem->base, stepper->gathered, n));
-  PetscCall(PetscArraycpy(problem->read, stepper->gathered + n, n));
+  PetscCall(ContactStepperGather(contact, stepper, contact->end.force, problem->base));
+  PetscCall(ContactStepperGather(contact, stepper, stepper->mine, problem->read));
   PetscCall(PetscArraycpy(problem->force, problem->base, n));
   PetscCall(ContactStepperCorrectS(contact, stepper));
   PetscCall(LawProblemSolve(problem));
-  if (!stepper->passes++) PetscCall(LimitWays(contact, stepper, stepper->gathered + 2 * n));
+  if (!stepper->passes++) PetscCall(LimitWays(contact, stepper));
   PetscCall(PetscArraycpy(stepper->told, problem->base, n));
   PetscCall(PetscArraycpy(stepper->told + n, problem->read, n));
   stepper->has_told = PETSC_TRUE;
@@ -131,11 +109,11 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(VecGetArrayWrite(F, &f));
-  k = 0;
+  PetscCall(PetscArrayzero(f, contact->rows.n));
   for (PetscInt place = 0; place < n; place++) {
     const PetscInt i = stepper->rows[place] - contact->rows.begin;
 
-    if (i >= 0 && i < contact->rows.n) f[k++] = problem->base[place] - problem->force[place];
+    if (i >= 0 && i < contact->rows.n) f[i] = problem->base[place] - problem->force[place];
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -185,13 +163,6 @@ PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *steppe
   MPI_Comm       comm = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
-  PetscCall(SNESDestroy(&stepper->outer));
-  PetscCall(VecDestroy(&stepper->x));
-  PetscCall(VecDestroy(&stepper->f));
-  PetscCall(VecCreate(comm, &stepper->x));
-  PetscCall(VecSetSizes(stepper->x, stepper->n_local, PETSC_DETERMINE));
-  PetscCall(VecSetType(stepper->x, VECSTANDARD));
-  PetscCall(VecDuplicate(stepper->x, &stepper->f));
   PetscCall(SNESCreate(comm, &stepper->outer));
   PetscCall(SNESSetOptionsPrefix(stepper->outer, "schwarz_"));
   PetscCall(SNESSetFunction(stepper->outer, stepper->f, ComputeChange, contact));
@@ -231,18 +202,12 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
 {
   SNESConvergedReason reason;
   PetscScalar        *x;
-  PetscInt            size = 0, k = 0, worst;
-  int                 other;
+  PetscInt            worst;
   PetscReal           time, atol, rtol;
 
   PetscFunctionBegin;
-  if (stepper->x) PetscCall(VecGetLocalSize(stepper->x, &size));
-  other = !stepper->x || size != stepper->n_local;
-  PetscCall(ContactOr(contact, &other));
-  if (other) PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(VecGetArrayWrite(stepper->x, &x));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (stepper->touches[i]) x[k++] = contact->end.force[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) x[i] = stepper->touches[i] ? contact->end.force[i] : 0;
   PetscCall(VecRestoreArrayWrite(stepper->x, &x));
   PetscCall(ContactStepperFindGroups(contact, stepper));
   PetscCall(FindScales(contact, stepper));

@@ -29,69 +29,24 @@ PetscErrorCode ContactStepperComputeRates(Contact contact, PetscReal rate[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lists the touching rows of all ranks, by their numbers, and the nodes that have them with their law */
-static PetscErrorCode ListRows(Contact contact, ContactStepper *stepper)
-{
-  LawProblem *problem = &stepper->problem;
-  int        *touches = contact->ranks.mine_active, *all = contact->ranks.all_active;
-  PetscInt    n = 0, local = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    touches[i] = stepper->touches[i];
-    local += stepper->touches[i];
-  }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allgatherv(touches, (PetscMPIInt)contact->rows.n, MPI_INT, all, contact->ranks.counts, contact->ranks.offsets, MPI_INT,
-                                PetscObjectComm((PetscObject)contact)));
-  else all = touches;
-  for (PetscInt i = 0; i < contact->rows.n_all; i++) n += all[i];
-  PetscCall(LawProblemResize(problem, n));
-  if (n > stepper->room) {
-    PetscCall(PetscFree5(stepper->rows, stepper->of_body, stepper->places, stepper->gathered, stepper->of_assembled));
-    PetscCall(PetscFree(stepper->told));
-    stepper->room = PetscMax(n, 2 * stepper->room);
-    PetscCall(PetscMalloc5(stepper->room, &stepper->rows, stepper->room, &stepper->of_body, stepper->room, &stepper->places,
-                           3 * stepper->room, &stepper->gathered, stepper->room, &stepper->of_assembled));
-    PetscCall(PetscMalloc1(2 * stepper->room, &stepper->told));
-    stepper->assembled = -1;
-  }
-  stepper->n_local = local;
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  n = problem->n_nodes = 0;
-  for (PetscInt i = 0; i < contact->rows.n_all; i++) {
-    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[i]];
-
-    if (!all[i]) continue;
-    /* the rows of a node follow each other, and touch all together */
-    if (!problem->n_nodes || n - problem->begin[problem->n_nodes - 1] == pair->components ||
-        contact->ranks.row_pair[i] != contact->ranks.row_pair[stepper->rows[n - 1]])
-      problem->begin[problem->n_nodes++] = n;
-    stepper->rows[n++] = i;
-  }
-  problem->begin[problem->n_nodes] = n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Bounds that the law of friction has for touching nodes, on all ranks */
 static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
 {
-  LawProblem      *problem = &stepper->problem;
-  const PetscReal *fields[2];
+  LawProblem *problem = &stepper->problem;
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(problem->limit, 2 * problem->n_nodes));
   if (contact->options.law != CONTACT_LAW_FRICTION) PetscFunctionReturn(PETSC_SUCCESS);
-  fields[0] = stepper->mine;
-  fields[1] = stepper->before;
   PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
   PetscCall(PetscArrayzero(stepper->before, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i += contact->dim)
     (*contact->friction.law.getlimit)(contact, contact->friction.law.data, i, contact->friction.speed[i], &stepper->mine[i],
                                       &stepper->before[i]);
-  PetscCall(ContactStepperGather(contact, stepper, 2, fields, stepper->gathered));
-  for (PetscInt node = 0; node < problem->n_nodes; node++)
-    for (PetscInt k = 0; k < 2; k++) problem->limit[2 * node + k] = PetscRealPart(stepper->gathered[k * problem->n + problem->begin[node]]);
+  for (PetscInt k = 0; k < 2; k++) {
+    PetscCall(ContactStepperGather(contact, stepper, k ? stepper->before : stepper->mine, stepper->gathered));
+    for (PetscInt node = 0; node < problem->n_nodes; node++)
+      problem->limit[2 * node + k] = PetscRealPart(stepper->gathered[problem->begin[node]]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -152,7 +107,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   while (more) {
-    PetscCall(ListRows(contact, stepper));
+    PetscCall(ContactStepperListRows(contact, stepper));
     if (stepper->problem.n) {
       PetscCall(GetLimits(contact, stepper));
       PetscCall(ContactStepperAssemble(contact, stepper));

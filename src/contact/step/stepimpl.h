@@ -27,41 +27,46 @@ typedef struct {
 } ContactMonitor;
 
 struct _ContactStepper {
+  /* options */
   ContactMonitor     monitor;
-  const ContactRule *asked; /* the rule of all sets; NULL: as bodies have mass on contact nodes or not */
-  LawProblem         problem;
-  SNES               outer; /* its unknowns are the forces of this rank's touching rows */
-  Vec                x, f;
-  PetscReal          rtol, atol;      /* tolerances of the outer iteration on what rows read [parts of the largest way; m] */
-  PetscInt           passes, n_local; /* of this step; touching rows of this rank */
-  PetscInt          *rows;            /* touching rows of all ranks, by their numbers, ascending */
-  PetscInt           room;
-  PetscInt          *of_body, *places;    /* work space: touching rows of a body, and their places in the list */
-  PetscScalar       *gathered;            /* work space: three numbers per touching row */
-  PetscScalar       *told;                /* work space: forces and readings of the last pass */
-  PetscBool          has_told, corrected; /* there has been a pass in the step; S has been corrected in the last one */
-  PetscInt64         state;               /* counts changes of rows, for which S is another */
-  PetscInt64         assembled;
-  PetscInt           n_assembled, *of_assembled; /* the rows that S has */
-  /* per body */
-  const ContactRule **rules; /* of its set */
-  PetscInt           *group; /* the first body of its group: bodies that touch in this step, directly or by others */
-  int                *moves; /* work space */
-  PetscBool          *rests; /* it has been advanced under the forces that its rows have now */
-  /* per group, by its first body */
-  PetscBool *done;  /* it is within the tolerance */
+  const ContactRule *asked;      /* the rule of all sets; NULL: as bodies have mass on contact nodes or not */
+  PetscReal          rtol, atol; /* tolerances of the outer iteration on what rows read [parts of the largest way; m] */
+  /* set-up */
+  SNES                outer; /* its unknowns are the forces of all rows */
+  LawProblem          problem;
+  const ContactRule **rules; /* per body: that of its set */
+  VecScatter          to_all;
+  /* state between steps, per row of this rank */
+  PetscBool *joined; /* its node has touched first in the last accepted step */
+  /* state of a step, per row of this rank */
+  PetscBool *touches, *joins; /* it may touch in this step; its node touches for the first time */
+  PetscReal *last;            /* force at the end of the last step [N] */
+  PetscReal *rate;            /* of what it reads, as the step begins [m/s] */
+  PetscReal *lets;            /* how far a closed row moves in the step [m] */
+  PetscReal *given;           /* force under which its bodies have been advanced [N] */
+  /* the same, per touching row of all ranks */
+  PetscInt    *rows; /* by their numbers, ascending */
+  PetscScalar *told; /* forces of the last pass, then what rows have read under them */
+  /* per body, and per group of bodies that touch, directly or by others, in the place of its first body */
+  PetscInt  *group; /* the first body of its group */
+  PetscBool *rests; /* it has been advanced under the forces that its rows have now */
+  PetscBool *done;  /* the group is within the tolerance */
   PetscReal *scale; /* the largest way of a touching row in the step, without forces or by its own [m] */
   PetscReal *off;   /* by how much rows still miss, after the last pass [m] */
-  /* per row of this rank */
-  PetscReal *given;            /* force under which its bodies have been advanced [N] */
-  PetscBool *touches, *joined; /* it may touch in this step; its node has touched first in the last accepted step */
-  PetscBool *joins;            /* the same of this step */
-  PetscReal *last;             /* force at the end of the last step [N] */
-  PetscReal *rate;             /* of what it reads, as the step begins [m/s] */
-  PetscReal *lets;             /* how far a closed row moves in the step [m] */
-  PetscReal *none;             /* zeros */
-  PetscReal *mine, *before;    /* work space */
-  PetscReal  step_loss;        /* what contact takes of the energy in this step, friction apart [J] */
+  /* the step as a whole */
+  PetscInt  passes;
+  PetscBool has_told, corrected; /* there has been a pass with these rows; S has been corrected in the last one */
+  PetscReal step_loss;           /* what contact takes of the energy in this step, friction apart [J] */
+  /* S: counts of the changes of rows, for which S is another; now, and when S was assembled; the rows that it has */
+  PetscInt64 state, assembled;
+  PetscInt   n_assembled, *of_assembled;
+  /* work space */
+  Vec          x, f, field, of_all;
+  PetscInt    *of_body, *places; /* touching rows of a body, and their places in the list */
+  PetscScalar *gathered;         /* a number per touching row */
+  PetscReal   *none;             /* zeros */
+  PetscReal   *mine, *before;
+  int         *moves; /* per body */
 };
 
 PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
@@ -78,7 +83,10 @@ PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);
 PETSC_INTERN PetscInt       ContactStepperGroup(Contact, const ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperAdvance(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCorrectS(Contact, ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, PetscInt, const PetscReal *const[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, const PetscReal[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode ContactStepperListRows(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperIterate(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
 
