@@ -43,13 +43,15 @@ typedef const char *ContactType;
                                displacement since then are equal
 . `CONTACT_LAW_BONDED`       - they slide without resistance until they meet; a node that has been pushed against the partner stays there
                                from the next controller step on
+. `CONTACT_LAW_SPRING`       - nodes that lie on the partner at the start are glued to it by springs in all directions, see
+                               `ContactSetSpringStiffness()`
 - `CONTACT_LAW_FRICTION`     - they resist sliding, by the law that `ContactSetFrictionLaw()` names
 
    Level: beginner
 
-.seealso: `ContactSetLaw()`
+.seealso: `ContactSetLaw()`, `ContactSetPairLaw()`
 E*/
-typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED, CONTACT_LAW_FRICTION } ContactLaw;
+typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED, CONTACT_LAW_SPRING, CONTACT_LAW_FRICTION } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
 
 /*E
@@ -337,7 +339,13 @@ PETSC_EXTERN PetscErrorCode ContactSetEnergyTolerance(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetLaw(Contact, ContactLaw);
 PETSC_EXTERN PetscErrorCode ContactGetLaw(Contact, ContactLaw *);
+PETSC_EXTERN PetscErrorCode ContactSetPairLaw(Contact, PetscInt, ContactLaw);
+PETSC_EXTERN PetscErrorCode ContactGetPairLaw(Contact, PetscInt, ContactLaw *);
+PETSC_EXTERN PetscErrorCode ContactHasLaw(Contact, ContactLaw, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactSetSpringStiffness(Contact, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSetPairSpringStiffness(Contact, PetscInt, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetFrictionLaw(Contact, const char[]);
+PETSC_EXTERN PetscErrorCode ContactSetPairFrictionLaw(Contact, PetscInt, const char[]);
 PETSC_EXTERN PetscErrorCode ContactSetFriction(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetPairFriction(Contact, PetscInt, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetKineticFriction(Contact, PetscReal, PetscReal);

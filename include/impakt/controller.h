@@ -65,11 +65,12 @@ typedef struct {
   const PetscReal        *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
   const ContactPairState *pairs;              /* per pair */
   PetscInt                sweeps;             /* of this step, or of that part of it which took most */
-  PetscReal               penalty_energy;     /* stored in penalty springs, 0 with other methods [J] */
-  PetscReal               obstacle_work;      /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
-  PetscReal               friction_loss;      /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
-  PetscReal               energy_change;      /* of all bodies since the start, less work done on them, with what friction, damping and
-                                                 plastic flow have taken [J] */
+  PetscReal               penalty_energy;     /* stored in springs between surfaces, see ContactGetPenaltyEnergy() [J] */
+  PetscReal uncounted_energy;         /* that part of it which `energy_change` leaves out: of penalty springs, which are no glue [J] */
+  PetscReal obstacle_work;            /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
+  PetscReal friction_loss;            /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
+  PetscReal energy_change;            /* of all bodies since the start, less work done on them, with what friction, damping and
+                                         plastic flow have taken [J] */
   PetscReal energy_scale;             /* what that is relative to: the largest so far of kinetic energy, without that of the common motion
                                          of bodies that are free, strain energy, and work done or taken [J] */
   PetscInt                 step_cuts; /* how often a step had to be cut in halves in this controller step */

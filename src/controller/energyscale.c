@@ -19,9 +19,10 @@
 */
 PetscErrorCode EnergyScaleAdd(EnergyScale *scale, Controller controller, ControllerFrame *frame)
 {
-  PetscReal   balance = frame->friction_loss - frame->obstacle_work, kinetic, strain = 0;
-  PetscReal   done = PetscAbsReal(frame->obstacle_work), taken = frame->friction_loss;
-  const Body *bodies;
+  const PetscReal glue    = frame->penalty_energy - frame->uncounted_energy;
+  PetscReal       balance = frame->friction_loss - frame->obstacle_work + glue, kinetic, strain = glue;
+  PetscReal       done = PetscAbsReal(frame->obstacle_work), taken = frame->friction_loss;
+  const Body     *bodies;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetBodies(controller, NULL, &bodies));

@@ -134,7 +134,7 @@ static PetscErrorCode CheckFinite(Controller controller, const ControllerFrame *
 PetscErrorCode ControllerGuardEnergy(Controller controller, const ControllerFrame *frame)
 {
   PetscReal       start = 0, size = 0, own, scale, work = PetscAbsReal(frame->obstacle_work), unresolved;
-  const PetscReal gain = frame->energy_change + frame->penalty_energy;
+  const PetscReal gain = frame->energy_change + frame->uncounted_energy;
 
   PetscFunctionBegin;
   PetscCall(CheckFinite(controller, frame));

@@ -45,7 +45,7 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
                            .supports           = controller->supports,
                            .n_probes           = controller->n_probes,
                            .probes             = controller->probes};
-  PetscBool       logged;
+  PetscBool       logged, glued;
 
   PetscFunctionBegin;
   PetscCall(StageBegin(STAGE_OUTPUT, &logged));
@@ -63,6 +63,8 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   frame.sweeps    = step ? controller->step_sweeps : 0;
   frame.step_cuts = step ? controller->step_cuts : 0;
   PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
+  PetscCall(ContactHasLaw(controller->contact, CONTACT_LAW_SPRING, &glued));
+  frame.uncounted_energy = glued ? 0 : frame.penalty_energy;
   PetscCall(ContactGetFrictionLoss(controller->contact, &frame.friction_loss));
   PetscCall(ContactGetObstacleWork(controller->contact, &frame.obstacle_work));
   PetscCall(EnergyScaleAdd(&controller->scale, controller, &frame));

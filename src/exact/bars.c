@@ -191,10 +191,10 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
   }
   PetscCall(CheckBars(comm, exact, bars, measures));
   PetscCall(CheckFaces(comm, exact, sides));
-  PetscCall(ContactGetLaw(contact, &law));
-  PetscCheck(law != CONTACT_LAW_TIED && law != CONTACT_LAW_BONDED, comm, PETSC_ERR_USER_INPUT,
+  PetscCall(ContactGetPairLaw(contact, 0, &law));
+  PetscCheck(law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION, comm, PETSC_ERR_USER_INPUT,
              "-exact %s is known for bars that part again, and -contact_law %s does not let them; leave one of the options out",
-             exact->type, law == CONTACT_LAW_TIED ? "tied" : "bonded");
+             exact->type, ContactLaws[law]);
   PetscCall(ContactGetSeparation(contact, &separation));
   PetscCheck(separation, comm, PETSC_ERR_USER_INPUT,
              "-exact %s is known for bars that part again, and -contact_separation false does not let them; leave one of the options out",

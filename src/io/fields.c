@@ -96,8 +96,7 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   Contact     contact;
   PetscInt    steps, n_bodies, n_pairs;
   PetscMPIInt rank;
-  PetscBool   plastic = PETSC_FALSE, blocks = PETSC_FALSE;
-  ContactLaw  law;
+  PetscBool   plastic = PETSC_FALSE, blocks = PETSC_FALSE, friction;
   Fields      f;
 
   PetscFunctionBegin;
@@ -124,8 +123,8 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   f->problem = contact;
   PetscCall(FieldsObstaclesCheckPath(contact, path));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCall(ContactGetLaw(contact, &law));
-  f->set = (1u << (!n_pairs ? FIELDS_FIRST_OF_CONTACT : law == CONTACT_LAW_FRICTION ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_FRICTION)) - 1;
+  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
+  f->set = (1u << (!n_pairs ? FIELDS_FIRST_OF_CONTACT : friction ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_FRICTION)) - 1;
   for (PetscInt i = 0; i < n_bodies && !plastic; i++) PetscCall(BodyHasHistory(bodies[i], &plastic));
   if (!plastic) f->set &= ~(1u << FIELDS_PLASTIC_STRAIN);
   for (PetscInt i = 0; i < n_bodies && !blocks; i++) {

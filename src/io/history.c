@@ -63,7 +63,6 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   const Body              *bodies;
   const char              *name;
   Contact                  contact;
-  ContactLaw               law;
   PetscInt                 n_pairs, n_supports, n_probes;
   const ControllerSupport *supports;
   const ControllerProbe   *probes;
@@ -76,9 +75,9 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
   PetscCall(PetscMalloc5(history->n_bodies, &history->dims, history->n_bodies, &history->damped, history->n_bodies, &history->plastic,
                          history->n_bodies, &history->hourglasses, history->n_bodies, &history->rigid));
-  PetscCall(ContactGetLaw(contact, &law));
-  history->friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
+  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &history->friction));
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &history->springs));
+  if (!history->springs) PetscCall(ContactHasLaw(contact, CONTACT_LAW_SPRING, &history->springs));
   PetscCall(PetscCalloc1(5 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", UNIT_TIME, 1));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", UNIT_ONE, 1));

@@ -82,18 +82,20 @@ static PetscErrorCode ViewContact(const Report *report, Contact contact, Exact e
   const ContactStatistics *c       = &report->results->contact;
   PetscReal                impulse = NAN;
   ContactType              type;
-  ContactLaw               law;
+  PetscBool                pulls = PETSC_FALSE, friction;
 
   PetscFunctionBegin;
   if (exact) PetscCall(ExactGetImpulse(exact, &impulse));
   PetscCall(ContactGetType(contact, &type));
-  PetscCall(ContactGetLaw(contact, &law));
+  for (ContactLaw law = CONTACT_LAW_TIED; law <= CONTACT_LAW_FRICTION && !pulls; law = (ContactLaw)(law + 1))
+    PetscCall(ContactHasLaw(contact, law, &pulls));
+  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
   PetscCall(PetscViewerASCIIPrintf(report->viewer, "contact (%s)\n", type));
   PetscCall(ViewTimes(report, exact));
-  if (law != CONTACT_LAW_FRICTIONLESS) PetscCall(PrintValue(report, "tension of a node, peak", c->tension_max, UNIT_FORCE, NAN));
+  if (pulls) PetscCall(PrintValue(report, "tension of a node, peak", c->tension_max, UNIT_FORCE, NAN));
   if (!report->statics.all) PetscCall(PrintValue(report, "impulse along the normals", c->impulse, UNIT_IMPULSE, impulse));
   PetscCall(PrintValue(report, "largest penetration", PetscMax(0, -c->gap_min), UNIT_LENGTH, NAN));
-  if (law == CONTACT_LAW_FRICTION) PetscCall(PrintValue(report, "energy taken by friction", c->friction_loss, UNIT_ENERGY, NAN));
+  if (friction) PetscCall(PrintValue(report, "energy taken by friction", c->friction_loss, UNIT_ENERGY, NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -211,7 +213,7 @@ static PetscErrorCode ViewEnergies(const Report *report, const Body bodies[])
   if (moves && dim > 1 && !PetscIsInfOrNanReal(results->angular_momentum_error_max))
     PetscCall(PrintPercent(report, "angular momentum error, worst", results->angular_momentum_error_max));
   if (results->penalty_energy_max > 0)
-    PetscCall(PrintValue(report, "energy in penalty springs, most", results->penalty_energy_max, UNIT_ENERGY, NAN));
+    PetscCall(PrintValue(report, "energy in springs of contact, most", results->penalty_energy_max, UNIT_ENERGY, NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

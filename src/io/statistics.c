@@ -200,6 +200,7 @@ static void AddEnergies(Statistics s, const ControllerFrame *frame)
   r->angular_momentum_error_max = s->loaded ? NAN
                                             : PetscMax(r->angular_momentum_error_max, Relative(StatisticsNorm(angular), s->angular_scale));
   r->penalty_energy_max         = PetscMax(r->penalty_energy_max, frame->penalty_energy);
+  r->uncounted_energy_max       = PetscMax(r->uncounted_energy_max, frame->uncounted_energy);
 }
 
 static void AddSupports(Statistics s, const ControllerFrame *frame)

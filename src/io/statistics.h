@@ -75,6 +75,7 @@ typedef struct {
   PetscReal angular_momentum_error_max; /* about the centre of mass of all bodies, relative to the largest of any body about the centre
                                            of any at the start; likewise [kg m^2/s] */
   PetscReal penalty_energy_max;         /* [J] */
+  PetscReal uncounted_energy_max;       /* of that part of it which energy errors leave out [J] */
 } StatisticsResults;
 
 typedef struct _n_Statistics *Statistics;

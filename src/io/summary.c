@@ -71,15 +71,13 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
 {
   json_t       *object, *pair;
   ContactType   type;
-  ContactLaw    law;
   ContactCounts counts;
   PetscBool     friction;
   const char   *name, *takes;
 
   PetscFunctionBegin;
   PetscCall(ContactGetType(contact, &type));
-  PetscCall(ContactGetLaw(contact, &law));
-  friction = (PetscBool)(law == CONTACT_LAW_FRICTION);
+  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
   PetscCall(SummarySetObject(root, "contact", &object));
   PetscCall(SummarySetMember(object, "type", json_string(type)));
   PetscCall(SetContactStatistics(object, &results->contact, friction));

@@ -135,7 +135,7 @@ static PetscErrorCode LookAtEnergy(Controller controller, Contact contact, const
 static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const StatisticsResults *results, Verdict *verdict)
 {
   /* what penalty springs hold they give back */
-  const PetscReal in_springs = results->energy_scale > 0 ? results->penalty_energy_max / results->energy_scale : 0;
+  const PetscReal in_springs = results->energy_scale > 0 ? results->uncounted_energy_max / results->energy_scale : 0;
   const PetscReal gain = results->energy_error_max, loss = -results->energy_error_min - in_springs;
   const char     *reason = NULL, *always = NULL;
   PetscReal       excess, tolerance;
@@ -283,16 +283,17 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   const char *name;
   char        nearest[64];
   ContactLaw  law;
-  PetscBool   named;
+  PetscBool   named, tied;
   PetscInt    side;
 
   PetscFunctionBegin;
   PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
-  PetscCall(ContactGetLaw(contact, &law));
-  if (law == CONTACT_LAW_TIED && !results->pairs[p].active_max)
+  PetscCall(ContactGetPairLaw(contact, p, &law));
+  tied = (PetscBool)(law == CONTACT_LAW_TIED || law == CONTACT_LAW_SPRING);
+  if (tied && !results->pairs[p].active_max)
     PetscCall(AddOfKind(verdict, VERDICT_UNTIED, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
   PetscCall(ContactPairIsNamed(contact, p, &named));
-  if (named && law != CONTACT_LAW_TIED && !results->pairs[p].steps_in_contact) {
+  if (named && !tied && !results->pairs[p].steps_in_contact) {
     if (results->pairs[p].gap_min < CONTACT_NO_GAP)
       PetscCall(PetscSNPrintf(nearest, sizeof(nearest), "its smallest gap was %.3g%s", (double)results->pairs[p].gap_min,
                               UnitsText(verdict->units, UNIT_LENGTH)));

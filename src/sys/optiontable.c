@@ -191,8 +191,14 @@ static const KnownOption options[] = {
      "second, or the one whose surface is finer where they may touch; or a value for each pair, with commas"},
     {"contact", OPTION_OF_RUN, "contact_type", "schwarz|force|penalty|lagrange|augmented_lagrangian",
      "contact method, default schwarz; force: also where contact nodes have mass, as in sheets and plates, with friction too"},
-    {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded|coulomb",
-     "what surfaces do to each other, default frictionless; bonded: they stick once they have met; coulomb: friction"},
+    {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded|spring|coulomb",
+     "what surfaces do to each other, default frictionless; bonded: they stick once they have met; spring: glued by springs, with "
+     "-contact_type force; coulomb: friction"},
+    {"contact", OPTION_OF_RUN, "contact_law_<pair>", "frictionless|tied|bonded|spring|coulomb",
+     "the same of one pair, which is named as in -contact_pairs; pairs of different laws need -contact_type force"},
+    {"contact", OPTION_OF_RUN, "contact_spring_stiffness", "k",
+     "stiffness per unit of area of the springs of all pairs that have none of their own [N/m^3]"},
+    {"contact", OPTION_OF_RUN, "contact_spring_stiffness_<pair>", "k", "the same of one pair, which is named as in -contact_pairs"},
     {"contact", OPTION_OF_RUN, "contact_friction", "mu", "coefficient of friction of all pairs that have none of their own"},
     {"contact", OPTION_OF_RUN, "contact_friction_<pair>", "mu", "coefficient of friction of a pair, which is named as in -contact_pairs"},
     {"contact", OPTION_OF_RUN, "contact_friction_kinetic", "mu",
@@ -202,9 +208,8 @@ static const KnownOption options[] = {
      "rows in contact up to which steps with friction have dense matrices, default 300, and 2000 where products take longer; beyond, "
      "forces come from GMRES. Not with -contact_type force"},
     {"contact", OPTION_OF_RUN, "contact_separation", "true|false",
-     "whether surfaces that have met may come apart again, default true; false, of frictionless ones under schwarz: they slide on each "
-     "other, "
-     "pushed or pulled"},
+     "whether surfaces that have met may come apart again, default true; false, of frictionless ones under schwarz or force: they slide on "
+     "each other, pushed or pulled"},
     {"contact", OPTION_OF_RUN, "contact_tie_distance", "d",
      "gap or overlap at the start up to which nodes are tied, in parts of a face, default 0.01; more is an error"},
     {"contact", OPTION_OF_RUN, "contact_constraint", "gap|gap_rate|both", "what contact forces keep from becoming negative, default gap"},

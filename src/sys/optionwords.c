@@ -45,7 +45,8 @@ static const struct {
     {"contact_pairs", "pairs contact_surfaces"},
     {"contact_type", "contact_method"},
     {"contact_rule", "sheet thin plate shell impulse restitution inelastic"},
-    {"contact_law", "tie glue bond coulomb"},
+    {"contact_law", "tie glue bond coulomb spring"},
+    {"contact_spring_stiffness", "adhesive interface_stiffness glue_stiffness"},
     {"contact_friction", "friction mu friction_coefficient coefficient_of_friction"},
     {"contact_penalty", "penalty_parameter"},
     {"obstacles", "wall floor ground plane"},
@@ -69,6 +70,7 @@ static const struct {
   const char *begin, *other, *values, *standard;
 } needs[] = {
     {OPTION_OF_RUN, "contact_friction", "contact_law", "coulomb", "frictionless"},
+    {OPTION_OF_RUN, "contact_spring_stiffness", "contact_law", "spring", "frictionless"},
     {OPTION_OF_RUN, "contact_penalty", "contact_type", "penalty", "schwarz"},
     {OPTION_OF_RUN, "penalty_", "contact_type", "penalty", "schwarz"},
     {OPTION_OF_RUN, "lagrange_", "contact_type", "lagrange", "schwarz"},

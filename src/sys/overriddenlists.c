@@ -78,6 +78,8 @@ PetscErrorCode OptionsFindOverridden(const char option[], PetscInt n, const char
   PetscCall(Try("bodies", "", option, text, size));
   PetscCall(Try("obstacles", "", option, text, size));
   PetscCall(Try("contact_pairs", "contact_friction_", option, text, size));
+  PetscCall(Try("contact_pairs", "contact_law_", option, text, size));
+  PetscCall(Try("contact_pairs", "contact_spring_stiffness_", option, text, size));
   for (PetscInt b = 0; b < n && !text[0]; b++)
     for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists); i++) {
       char list[PETSC_MAX_OPTION_NAME], begin[PETSC_MAX_OPTION_NAME];

@@ -58,7 +58,7 @@ typedef struct {
   PetscInt       begin, end;   /* rows of this rank: begin to end - 1 */
   PetscInt       shift[2];     /* row i of this rank has the number i - shift[side] among those of the body on that side */
   PetscReal      normal[3];    /* mean outward normal of the body that has the rows */
-  PetscBool      bonded;       /* a node of it sticks already, see src/contact/rows/bonded.c */
+  PetscBool      bonded;       /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
   PetscBool      keeps_mass;   /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool      by_force;     /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
   PetscBool      rests;        /* one of its bodies has no inertia */
@@ -66,6 +66,9 @@ typedef struct {
   PetscInt       intervals;    /* of the controller step, between whose ends its force is linear */
   PetscBool      own_friction; /* it has a coefficient of friction of its own */
   PetscReal      friction;     /* that */
+  PetscBool      own_law;      /* it has a law of its own */
+  ContactLaw     law;          /* what its surfaces do to each other */
+  PetscReal      stiffness;    /* of springs between them, per unit of area; less than 0: that of all pairs [N/m^3] */
 } ContactPair;
 
 /* A surface of a body, for all pairs that have the same */
@@ -106,7 +109,7 @@ typedef enum {
 
 /* What the user chooses */
 typedef struct {
-  ContactLaw           law;
+  ContactLaw           law; /* of pairs that have none of their own */
   ContactConstraint    constraint;
   ContactStabilization stabilization;
   ContactRowSide       row_side;         /* which body of a pair has the rows, unless the pair says otherwise */
@@ -126,6 +129,7 @@ typedef struct {
   PetscReal            friction_kinetic; /* of those that slide fast; less than 0: the same */
   PetscReal            friction_decay;   /* how fast it falls to that with the speed [s/m] */
   PetscInt             friction_dense;   /* rows up to which the matrices of steps with friction are dense; less than 0: as costs say */
+  PetscReal spring_stiffness; /* of the springs of pairs that have none of their own, per unit of area; less than 0: not set [N/m^3] */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -471,6 +475,7 @@ struct _p_Contact {
   ContactScale    scale;
   /* What goes between contact and bodies */
   PetscBool         prescribes; /* the method prescribes displacements on Dirichlet sides */
+  PetscBool         each_law;   /* the method takes pairs of different laws, and all laws */
   PetscInt         *order;      /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */
   BodyTraces       *traces;     /* per body; the last ones are those of all obstacles, which do not move */
   ContactBodyRows  *body_rows;  /* per body */
@@ -517,12 +522,42 @@ static inline PetscInt ContactSign(const ContactPair *pair, PetscInt body)
   return (pair->body[1] == body) - (pair->body[0] == body);
 }
 
-/* Whether a row lies across the normal of a node and has a force by friction alone */
-static inline PetscBool ContactRowRubs(Contact contact, PetscInt i)
+/* The first row of the node that row i belongs to: that along its normal, unless the node is tied */
+static inline PetscInt ContactFirstRow(Contact contact, PetscInt i)
 {
   const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
-  return (PetscBool)(contact->options.law == CONTACT_LAW_FRICTION && (i - pair->begin) % pair->components > 0);
+  return i - (i - pair->begin) % pair->components;
+}
+
+/* Whether a row lies across the normal of a node and has a force by friction alone */
+static inline PetscBool ContactRowRubs(Contact contact, PetscInt i)
+{
+  return (PetscBool)(contact->pairs[contact->rows.pair[i]].law == CONTACT_LAW_FRICTION && i != ContactFirstRow(contact, i));
+}
+
+/* Whether nodes of a pair that lie on the partner at the start are held there, rigidly or by springs: their rows are along the axes */
+static inline PetscBool ContactPairTies(const ContactPair *pair)
+{
+  return (PetscBool)(pair->law == CONTACT_LAW_TIED || pair->law == CONTACT_LAW_SPRING);
+}
+
+/* Whether any pair has a law; where there are none at present, those to come */
+static inline PetscBool ContactAnyPairHas(Contact contact, ContactLaw law)
+{
+  if (!contact->n_pairs) return (PetscBool)(contact->options.law == law);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].law == law) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
+/* The same of all pairs: whether they tie what lies on each other at the start */
+static inline PetscBool ContactAllPairsTie(Contact contact)
+{
+  if (!contact->n_pairs) return (PetscBool)(contact->options.law == CONTACT_LAW_TIED || contact->options.law == CONTACT_LAW_SPRING);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!ContactPairTies(&contact->pairs[p])) return PETSC_FALSE;
+  return PETSC_TRUE;
 }
 
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;
@@ -546,6 +581,7 @@ PETSC_EXTERN PetscErrorCode ContactComputeGaps(Contact);
 PETSC_EXTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactOr(Contact, int *);
 PETSC_EXTERN PetscReal      ContactStoresNothing(Contact, PetscInt, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSumStored(Contact);
 
 /* Whether the controller step under way cannot be made; the same on every rank */
 static inline PetscBool ContactFailed(Contact contact)

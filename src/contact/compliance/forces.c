@@ -90,7 +90,7 @@ PetscErrorCode ForcesBeginStep(Contact contact, Forces *forces, PetscBool *in_co
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(contact->end.active, contact->start.active, contact->rows.n));
   PetscCall(ContactAny(contact, PETSC_FALSE, in_contact));
-  if (contact->options.law == CONTACT_LAW_TIED) *in_contact = PETSC_TRUE;
+  if (ContactAllPairsTie(contact)) *in_contact = PETSC_TRUE;
   if (!*in_contact) PetscCall(ContactIntegrateFree(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++)

@@ -13,6 +13,19 @@ PetscReal ContactStoresNothing(Contact contact, PetscInt row, PetscReal gap)
   return 0;
 }
 
+/* What springs hold at the end of the step [J]; collective */
+PetscErrorCode ContactSumStored(Contact contact)
+{
+  PetscReal energy = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) energy += (*contact->ops->stored)(contact, i, contact->end.gap[i]);
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  contact->resultants.penalty_energy = energy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether forces act on any row of body b in the step */
 static PetscBool IsLoaded(Contact contact, PetscInt b)
 {

@@ -58,6 +58,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   (*contact)->options.friction         = -1;
   (*contact)->options.friction_kinetic = -1;
   (*contact)->options.friction_dense   = -1;
+  (*contact)->options.spring_stiffness = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,7 +131,7 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
   PetscTryTypeMethod(contact, destroy);
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
   contact->data       = NULL;
-  contact->prescribes = PETSC_FALSE;
+  contact->prescribes = contact->each_law = PETSC_FALSE;
   PetscCall((*create)(contact));
   PetscCall(PetscObjectChangeTypeName((PetscObject)contact, type));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -354,8 +355,11 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  all pairs have rows all the time, also of bodies that are far apart, since %s\n",
                                      contact->neighbours.stay));
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)
-    PetscCall(PetscViewerASCIIPrintf(
-        viewer, "  law %s\n", contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law]));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactNameLaw(contact, contact->options.law)));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].own_law)
+      PetscCall(
+          PetscViewerASCIIPrintf(viewer, "  law of %s: %s\n", contact->pairs[p].name, ContactNameLaw(contact, contact->pairs[p].law)));
   if (!contact->options.separation)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  surfaces that have met slide on each other and do not come apart\n"));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP)

@@ -125,7 +125,7 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
     const PetscInt     node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
     PetscReal          along = k == 0;
 
-    if (contact->options.law == CONTACT_LAW_TIED) {
+    if (ContactPairTies(pair)) {
       TransferRows rows;
 
       PetscCall(TransferGetRows(pair->transfer, &rows));

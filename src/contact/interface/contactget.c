@@ -131,7 +131,7 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
 }
 
 /*@
-  ContactGetPenaltyEnergy - energy stored in the penalty springs, 0 with other methods
+  ContactGetPenaltyEnergy - energy stored in springs between surfaces: of penalty methods, and of `CONTACT_LAW_SPRING`
 
   Not Collective
 

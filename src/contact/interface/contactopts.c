@@ -3,28 +3,6 @@
 #include <sys/names.h>
 #include <sys/optionvalues.h>
 
-/* The law: one of the enumeration, or one of the registry of friction laws */
-static PetscErrorCode ReadLaw(Contact contact)
-{
-  const char *const *laws = NULL;
-  const char *names[64], *now = contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law];
-  PetscInt    n = 0, chosen = 0;
-  int         n_laws = 0;
-  PetscBool   set;
-
-  PetscFunctionBegin;
-  for (ContactLaw law = CONTACT_LAW_FRICTIONLESS; law < CONTACT_LAW_FRICTION; law = (ContactLaw)(law + 1)) names[n++] = ContactLaws[law];
-  PetscCall(PetscFunctionListGet(ContactLawList, (const char ***)&laws, &n_laws));
-  for (int k = 0; k < n_laws && n < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(names); k++) names[n++] = laws[k];
-  PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEList("-contact_law", "What the surfaces do to each other", "ContactSetLaw", names, n, now, &chosen, &set));
-  PetscOptionsEnd();
-  if (set && chosen >= CONTACT_LAW_FRICTION) PetscCall(ContactSetFrictionLaw(contact, names[chosen]));
-  else if (set) contact->options.law = (ContactLaw)chosen;
-  PetscCall(PetscFree(laws));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* -contact_balance: on where it has no value */
 static PetscErrorCode ReadBalance(Contact contact, const char value[])
 {
@@ -198,7 +176,9 @@ static PetscErrorCode ReadRowSides(Contact contact)
 . -contact_type (schwarz|force|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
-. -contact_law (frictionless|tied|bonded|coulomb)               - what the surfaces do to each other
+. -contact_law (frictionless|tied|bonded|spring|coulomb)        - what the surfaces do to each other
+. -contact_law_<pair> (frictionless|tied|bonded|spring|coulomb) - the same of one pair
+. -contact_spring_stiffness k, -contact_spring_stiffness_<pair> k - of springs, per unit of area [N/m^3]
 . -contact_friction mu, -contact_friction_<pair> mu             - coefficient of friction of all pairs; of one
 . -contact_friction_kinetic mu, -contact_friction_decay d       - what it falls to with the speed v of sliding, as exp(-d v)
 . -contact_friction_dense_limit n                               - rows up to which steps with friction have dense matrices
@@ -223,8 +203,8 @@ static PetscErrorCode ReadRowSides(Contact contact)
   What the program has set before holds where the options are silent: pairs of the options come after those that have been added, and
   the two bodies are a pair by themselves only where none has been.
 
-.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetConstraint()`,
-          `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
+.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetPairLaw()`,
+`ContactSetConstraint()`, `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
           `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`,
           `ContactSetTieDistance()`, `ContactSetSeparation()`, `ContactSetBalance()`, `ContactSetRowSide()`
 @*/
@@ -239,11 +219,13 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(PetscOptionsFList("-contact_type", "Contact method", "ContactSetType", ContactList, type, type, sizeof(type), NULL));
   PetscOptionsEnd();
   PetscCall(ReadSettings(contact));
-  PetscCall(ReadLaw(contact));
+  PetscCall(ContactReadLaw(contact, -1));
   PetscCall(ReadObstacles(contact));
   PetscCall(ReadPairs(contact));
   PetscCall(ReadRowSides(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactReadLaw(contact, p));
   PetscCall(ContactReadFriction(contact));
+  PetscCall(ContactReadSprings(contact));
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);

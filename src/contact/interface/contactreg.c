@@ -1,4 +1,5 @@
 /* The registry of contact methods, and the package of the class. */
+#include <contact/laws/rowlaw.h>
 #include <contact/parts.h>
 #include <sys/package.h>
 
@@ -49,6 +50,7 @@ PetscErrorCode ContactRegisterAll(void)
   PetscCall(ContactRegister(CONTACT_AUGMENTED_LAGRANGIAN, ContactCreate_AugmentedLagrangian));
   PetscCall(ContactRegister(CONTACT_FORCE, ContactCreate_Force));
   PetscCall(ContactLawRegisterAll());
+  PetscCall(RowLawRegisterAll());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -90,6 +92,7 @@ PetscErrorCode ContactFinalizePackage(void)
   PetscFunctionBegin;
   PetscCall(PetscFunctionListDestroy(&ContactList));
   PetscCall(PetscFunctionListDestroy(&ContactLawList));
+  PetscCall(RowLawDestroyList());
   ContactPackageInitialized = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,60 +2,7 @@
 #include <contact/parts.h>
 #include <sys/units.h>
 
-const char *const ContactLaws[]        = {"frictionless", "tied", "bonded", "friction", "ContactLaw", "CONTACT_LAW_", NULL};
 const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
-
-/*@
-  ContactSetLaw - sets what contact surfaces do to each other
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- law - a `ContactLaw`, `CONTACT_LAW_FRICTIONLESS` by default; `CONTACT_LAW_FRICTION` by `ContactSetFrictionLaw()`
-
-  Options Database Key:
-. -contact_law (frictionless|tied|bonded|coulomb) - the law
-
-  Level: beginner
-
-.seealso: `Contact`, `ContactGetLaw()`, `ContactSetFrictionLaw()`, `ContactSetFromOptions()`
-@*/
-PetscErrorCode ContactSetLaw(Contact contact, ContactLaw law)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveEnum(contact, law, 2);
-  ContactCheckNotSetUp(contact);
-  PetscCheck((int)law >= 0 && law <= CONTACT_LAW_BONDED, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no contact law %d", (int)law);
-  contact->options.law = law;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetLaw - what contact surfaces do to each other
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. law - see `ContactSetLaw()`
-
-  Level: beginner
-
-.seealso: `Contact`, `ContactSetLaw()`
-@*/
-PetscErrorCode ContactGetLaw(Contact contact, ContactLaw *law)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(law, 2);
-  *law = contact->options.law;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /*@
   ContactSetConstraint - sets what contact forces keep from becoming negative

@@ -92,10 +92,11 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   if (contact->surfaces_known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
-  if (contact->options.law == CONTACT_LAW_FRICTION) contact->prescribes = PETSC_FALSE; /* forces are what it finds */
+  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) contact->prescribes = PETSC_FALSE; /* forces are what it finds */
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
   PetscCall(ContactChooseAllPairs(contact));
+  PetscCall(ContactCheckLaws(contact));
   PetscCall(ContactOrderBodies(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StatusLineTell("elements of body %s", ((PetscObject)contact->bodies[b])->name);
@@ -127,14 +128,6 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSetUpSurfaces(contact));
-  PetscCheck(contact->options.law != CONTACT_LAW_BONDED || contact->prescribes, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_law bonded works with -contact_type schwarz alone, not with %s; choose that, or -contact_law frictionless or tied",
-             ((PetscObject)contact)->type_name);
-  PetscCheck(contact->options.separation || (contact->prescribes && contact->options.law == CONTACT_LAW_FRICTIONLESS),
-             PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_separation false works with -contact_type schwarz and -contact_law frictionless alone, not with %s and %s",
-             ((PetscObject)contact)->type_name,
-             contact->options.law == CONTACT_LAW_FRICTION ? contact->friction.name : ContactLaws[contact->options.law]);
   PetscCall(ContactSetUpScales(contact));
   PetscCall(ShareControllerStep(contact));
   PetscCall(ContactSetUpSprings(contact));
@@ -156,9 +149,9 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpFriction(contact));
   PetscCall(ContactSetUpStabilization(contact));
   /* friction is set up even where no bodies are near yet, and says at once what it cannot do */
-  if (contact->rows.n_all || (contact->neighbours.come_and_go && contact->options.law == CONTACT_LAW_FRICTION))
+  if (contact->rows.n_all || (contact->neighbours.come_and_go && ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)))
     PetscTryTypeMethod(contact, setup);
-  for (PetscInt o = 0; o < contact->n_obstacles && contact->options.law != CONTACT_LAW_FRICTION; o++) {
+  for (PetscInt o = 0; o < contact->n_obstacles && !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION); o++) {
     const char *name;
     PetscBool   moves;
 
@@ -167,7 +160,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCheck(!moves, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-%s_velocity: bodies feel the velocity of an obstacle by friction alone; set -contact_law coulomb", name);
   }
-  PetscCheck(contact->options.law != CONTACT_LAW_FRICTION || contact->friction.steps || !contact->rows.n_all,
+  PetscCheck(!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || contact->friction.steps || !contact->rows.n_all,
              PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law %s: -contact_type %s has no friction; choose schwarz, force, lagrange, penalty or augmented_lagrangian",
              contact->friction.name, ((PetscObject)contact)->type_name);

@@ -30,13 +30,12 @@ static PetscErrorCode LeastElement(Contact contact, const ContactPair *pair, Pet
 PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
 {
   PetscFunctionBegin;
-  if (contact->options.law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
     TransferRows       rows;
     PetscReal          least;
 
-    if (pair->obstacle) continue;
+    if (pair->obstacle || ContactPairTies(pair)) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
     PetscCall(LeastElement(contact, pair, &least));
     for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
@@ -51,19 +50,32 @@ PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a pair is that of two bodies, in ascending order, or of a body and an obstacle, whose number is beyond those of bodies */
+static PetscBool IsPairOf(Contact contact, const ContactPair *pair, PetscInt body, PetscInt other)
+{
+  if (other >= contact->n_bodies)
+    return (PetscBool)(pair->body[0] == body && pair->obstacle == contact->obstacles[other - contact->n_bodies]);
+  return (PetscBool)(!pair->obstacle && PetscMin(pair->body[0], pair->body[1]) == body && PetscMax(pair->body[0], pair->body[1]) == other);
+}
+
 /* Whether a body may touch another, or an obstacle: `other` counts obstacles after all bodies */
 static PetscBool MayTouch(Contact contact, PetscInt body, PetscInt other)
 {
   if (contact->neighbours.come_and_go) return PETSC_TRUE;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    if (other >= contact->n_bodies
-            ? pair->body[0] == body && pair->obstacle == contact->obstacles[other - contact->n_bodies]
-            : !pair->obstacle && PetscMin(pair->body[0], pair->body[1]) == body && PetscMax(pair->body[0], pair->body[1]) == other)
-      return PETSC_TRUE;
-  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (IsPairOf(contact, &contact->pairs[p], body, other)) return PETSC_TRUE;
   return PETSC_FALSE;
+}
+
+/* Whether the pairs of two bodies tie them; of bodies that are no pair, whether all pairs do */
+static PetscBool AreTied(Contact contact, PetscInt body, PetscInt other)
+{
+  PetscBool tied = PETSC_FALSE;
+
+  if (!MayTouch(contact, body, other)) return ContactAllPairsTie(contact);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (IsPairOf(contact, &contact->pairs[p], body, other) && ContactPairTies(&contact->pairs[p])) tied = PETSC_TRUE;
+  return tied;
 }
 
 /* The whole boundary of a body, not moved */
@@ -189,9 +201,10 @@ static PetscErrorCode RefuseOverlaps(Contact contact, PetscBool of_state, PetscI
     depth = -states[p].gap;
   }
   PetscCall(PetscFree(states));
-  for (PetscInt i = 0; i < n && !refused && !of_state && contact->options.law != CONTACT_LAW_TIED; i++) {
+  for (PetscInt i = 0; i < n && !refused && !of_state; i++) {
     const PetscInt *of = depths[i].surfaces;
 
+    if (AreTied(contact, of[0], of[1])) continue;
     if (depths[i].depth > NO_START * depths[i].size && of[1] < contact->n_bodies && MayTouch(contact, of[0], of[1])) refused = &depths[i];
   }
   if (inside) PetscCall(ContactRefuseInside(contact, inside, depth));
@@ -217,7 +230,7 @@ PetscErrorCode ContactStartOverlaps(Contact contact, PetscBool of_state)
     const PetscInt *of = depths[i].surfaces;
 
     if (depths[i].depth == 0) continue;
-    if (contact->options.law != CONTACT_LAW_TIED) {
+    if (!AreTied(contact, of[0], of[1])) {
       if (depths[i].depth <= CONTACT_OVERLAP * depths[i].size) continue;
       if (of[1] < contact->n_bodies && MayTouch(contact, of[0], of[1])) continue;
       depths[i].depth = PETSC_MAX_REAL;

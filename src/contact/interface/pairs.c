@@ -51,6 +51,8 @@ static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair
   *pair = &contact->pairs[contact->n_pairs++];
   PetscCall(PetscMemzero(*pair, sizeof(**pair)));
   PetscCall(PetscStrallocpy(name, &(*pair)->name));
+  (*pair)->law       = contact->options.law;
+  (*pair)->stiffness = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

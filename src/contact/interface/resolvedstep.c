@@ -139,7 +139,7 @@ PetscErrorCode ContactGetResolvedStep(Contact contact, PetscReal *step, size_t s
   PetscAssertPointer(reason, 4);
   *step     = PETSC_INFINITY;
   reason[0] = 0;
-  if (contact->options.law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS); /* no row joins or leaves */
+  if (ContactAllPairsTie(contact)) PetscFunctionReturn(PETSC_SUCCESS); /* no row joins or leaves */
   if (contact->neighbours.come_and_go) {
     PetscCall(GetNeighboursStep(contact, step, size, reason));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,7 +156,7 @@ PetscErrorCode ContactGetResolvedStep(Contact contact, PetscReal *step, size_t s
       PetscCall(BodyIsStatic(contact->bodies[pair->body[s]], &is_static));
       if (is_static) inertia = PETSC_FALSE;
     }
-    if (!inertia) continue;
+    if (!inertia || ContactPairTies(pair)) continue;
     PetscCall(GetPairStep(contact, pair, &of_pair, sizeof(why), why));
     if (of_pair >= *step) continue;
     *step = of_pair;

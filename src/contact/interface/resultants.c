@@ -80,7 +80,7 @@ static PetscErrorCode SumNormalForces(Contact contact, const ContactPair *pair, 
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
 
-    *force += (contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0) * row[i];
+    *force += (ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0) * row[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -250,7 +250,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   PetscCall(TransferGetRows(pair->transfer, &rows));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
-    const PetscReal along = contact->options.law == CONTACT_LAW_TIED ? rows.normals[contact->dim * node + k] : k == 0;
+    const PetscReal along = ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0;
 
     sums[SUM_FORCE] += along * contact->end.force[i];
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);

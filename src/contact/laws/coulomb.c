@@ -25,6 +25,7 @@ static PetscErrorCode SetUp(Contact contact, void *data)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
+    if (pair->law != CONTACT_LAW_FRICTION) continue;
     PetscCheck(GetStatic(contact, pair) >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_law coulomb needs the coefficient of friction of the pair %s: set -contact_friction mu for all pairs, or "
                "-contact_friction_%s mu for this one",
@@ -52,8 +53,9 @@ static PetscErrorCode View(Contact contact, const void *data, PetscViewer viewer
   PetscFunctionBegin;
   (void)data;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  coefficient of friction of %s: %g\n", contact->pairs[p].name,
-                                     (double)GetStatic(contact, &contact->pairs[p])));
+    if (contact->pairs[p].law == CONTACT_LAW_FRICTION)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  coefficient of friction of %s: %g\n", contact->pairs[p].name,
+                                       (double)GetStatic(contact, &contact->pairs[p])));
   if (contact->options.friction_kinetic >= 0)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  falls to %g as exp(-%g%s times the speed of sliding)\n",
                                      (double)contact->options.friction_kinetic, (double)contact->options.friction_decay,

@@ -73,7 +73,7 @@ PetscErrorCode ContactGetObstacleWork(Contact contact, PetscReal *work)
 PetscErrorCode ContactRefuseFriction(Contact contact, const char why[])
 {
   PetscFunctionBegin;
-  PetscCheck(contact->options.law != CONTACT_LAW_FRICTION, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_law %s: %s",
+  PetscCheck(!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_law %s: %s",
              contact->friction.name, why);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -94,7 +94,7 @@ PetscErrorCode ContactSetUpFriction(Contact contact)
   const PetscInt   n        = contact->rows.n;
 
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_FRICTION || (!contact->n_pairs && !contact->neighbours.come_and_go))
+  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || (!contact->n_pairs && !contact->neighbours.come_and_go))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DestroyRows(friction));
   PetscCall(PetscCalloc7(PetscMax(n, 1), &friction->slip, n, &friction->drive, n, &friction->step_loss, n, &friction->loss, n,
@@ -151,9 +151,10 @@ void ContactCarryFriction(Contact contact)
 {
   const PetscReal *old = contact->saved.normal, *now = contact->rows.normal;
 
-  for (PetscInt i = 0; i + 2 < contact->rows.n && contact->dim == 3 && contact->options.law == CONTACT_LAW_FRICTION; i += 3) {
+  for (PetscInt i = 0; i + 2 < contact->rows.n && contact->dim == 3; i++) {
     PetscReal *force = contact->start.force + i, v[3];
 
+    if (!ContactRowRubs(contact, i + 1) || ContactRowRubs(contact, i)) continue; /* the first row of a node with friction */
     if (!contact->work.moved[i] || !contact->rows.opposite[i]) continue;
     for (PetscInt d = 0; d < 3; d++) v[d] = force[1] * old[3 * (i + 1) + d] + force[2] * old[3 * (i + 2) + d];
     TurnAlong(old + 3 * i, now + 3 * i, v);
@@ -204,7 +205,7 @@ PetscErrorCode ContactDriveFriction(Contact contact)
     Vec                positions, u;
 
     if (pair->obstacle) PetscCall(ObstacleGetVelocity(pair->obstacle, NULL, 0, NULL, &moves));
-    if (!moves) continue;
+    if (!moves || pair->law != CONTACT_LAW_FRICTION) continue;
     PetscCall(BodyGetStartTime(contact->bodies[pair->body[0]], &time));
     PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
     PetscCall(BodyGetSolution(contact->bodies[pair->body[0]], &u, NULL, NULL));
@@ -326,6 +327,7 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
 
     friction->pair_loss[p] += friction->pair_step[p];
     friction->pair_driven[p] += friction->pair_work[p];
+    if (pair->law != CONTACT_LAW_FRICTION) continue;
     for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
       PetscReal way = 0;
 

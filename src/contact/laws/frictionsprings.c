@@ -52,19 +52,6 @@ PetscErrorCode FrictionComputeSlips(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What springs hold at the end of the step [J] */
-PetscErrorCode FrictionSumStored(Contact contact)
-{
-  PetscReal energy = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) energy += (*contact->ops->stored)(contact, i, contact->end.gap[i]);
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  contact->resultants.penalty_energy = energy;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Nothing is remembered from step to step but what contact itself has in a checkpoint, springs as the rows had them, and what is known of
    the compliance of rows that are too many for a matrix */
 PetscErrorCode FrictionVisit(Contact contact, Checkpoint checkpoint)

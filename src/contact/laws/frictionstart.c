@@ -62,7 +62,8 @@ PetscErrorCode ContactJudgeRubbing(Contact contact, const PetscReal slip[], Pets
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) largest = PetscMax(largest, PetscAbsReal(contact->end.force[i]));
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt first = 0; first < contact->rows.n; first += contact->dim) {
+  for (PetscInt first = 0; first + 1 < contact->rows.n; first++) {
+    if (!ContactRowRubs(contact, first + 1) || ContactRowRubs(contact, first)) continue; /* the first row of a node with friction */
     if (contact->end.active[first]) {
       any |= JudgeNode(contact, first, SAME_FORCE * largest, slip, sticks, given);
       continue;

@@ -233,7 +233,7 @@ static PetscErrorCode Step(Contact contact)
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   if (!contact->energy.again) PetscCall(FrictionProblemIsAmbiguous(&step->problem, &ambiguous));
   if (!contact->energy.again && ambiguous) contact->counts.ambiguous_steps++;
-  PetscCall(FrictionSumStored(contact));
+  PetscCall(ContactSumStored(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -36,6 +36,5 @@ PETSC_INTERN PetscErrorCode FrictionSetUpSprings(Contact);
 PETSC_INTERN PetscReal      FrictionStoredEnergy(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscReal      FrictionGive(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode FrictionComputeSlips(Contact);
-PETSC_INTERN PetscErrorCode FrictionSumStored(Contact);
 PETSC_INTERN PetscErrorCode FrictionVisit(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode FrictionViewSprings(Contact, PetscViewer);

@@ -39,6 +39,35 @@ PetscErrorCode ContactLawRegisterAll(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forgets the friction law */
+PetscErrorCode ContactDestroyFrictionLaw(Contact contact)
+{
+  PetscFunctionBegin;
+  if (contact->friction.law.destroy) PetscCall((*contact->friction.law.destroy)(contact->friction.law.data));
+  PetscCall(PetscMemzero(&contact->friction.law, sizeof(contact->friction.law)));
+  PetscCall(PetscFree(contact->friction.name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Takes a friction law of the registry */
+static PetscErrorCode TakeLaw(Contact contact, const char name[])
+{
+  PetscErrorCode (*create)(Contact, ContactFrictionLaw *);
+
+  PetscFunctionBegin;
+  PetscCall(PetscFunctionListFind(ContactLawList, name, &create));
+  if (!create) {
+    char known[1024];
+
+    PetscCall(NamesOfRegistry(ContactLawList, sizeof(known), known));
+    SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown friction law '%s'; known: %s", name, known);
+  }
+  PetscCall(ContactDestroyFrictionLaw(contact));
+  PetscCall((*create)(contact, &contact->friction.law));
+  PetscCall(PetscStrallocpy(name, &contact->friction.name));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@C
   ContactSetFrictionLaw - lets contact surfaces resist sliding
 
@@ -60,33 +89,48 @@ PetscErrorCode ContactLawRegisterAll(void)
 @*/
 PetscErrorCode ContactSetFrictionLaw(Contact contact, const char name[])
 {
-  PetscErrorCode (*create)(Contact, ContactFrictionLaw *);
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(name, 2);
   ContactCheckNotSetUp(contact);
-  PetscCall(PetscFunctionListFind(ContactLawList, name, &create));
-  if (!create) {
-    char known[1024];
-
-    PetscCall(NamesOfRegistry(ContactLawList, sizeof(known), known));
-    SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown friction law '%s'; known: %s", name, known);
-  }
-  PetscCall(ContactDestroyFrictionLaw(contact));
-  PetscCall((*create)(contact, &contact->friction.law));
-  PetscCall(PetscStrallocpy(name, &contact->friction.name));
-  contact->options.law = CONTACT_LAW_FRICTION;
+  PetscCall(TakeLaw(contact, name));
+  ContactSpreadLaw(contact, CONTACT_LAW_FRICTION);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forgets the friction law */
-PetscErrorCode ContactDestroyFrictionLaw(Contact contact)
+/*@C
+  ContactSetPairFrictionLaw - lets the surfaces of a pair resist sliding
+
+  Logically Collective
+
+  Input Parameters:
++ contact - the `Contact`, not yet set up
+. pair    - 0 to the number of pairs - 1
+- name    - the law: `coulomb`, or one that has been added by `ContactLawRegister()`; the same for all pairs that have friction
+
+  Options Database Key:
+. -contact_law_<pair> coulomb - Coulomb friction
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactSetFrictionLaw()`, `ContactSetPairLaw()`, `ContactSetPairFriction()`
+@*/
+PetscErrorCode ContactSetPairFrictionLaw(Contact contact, PetscInt pair, const char name[])
 {
+  PetscBool same = PETSC_FALSE;
+
   PetscFunctionBegin;
-  if (contact->friction.law.destroy) PetscCall((*contact->friction.law.destroy)(contact->friction.law.data));
-  PetscCall(PetscMemzero(&contact->friction.law, sizeof(contact->friction.law)));
-  PetscCall(PetscFree(contact->friction.name));
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(name, 3);
+  ContactCheckNotSetUp(contact);
+  ContactCheckPair(contact, pair);
+  if (contact->friction.name) PetscCall(PetscStrcmp(contact->friction.name, name, &same));
+  PetscCheck(same || !contact->friction.name, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_law_%s %s: other pairs have the friction law %s, and all pairs with friction have the same",
+             contact->pairs[pair].name, name, contact->friction.name);
+  if (!same) PetscCall(TakeLaw(contact, name));
+  contact->pairs[pair].law     = CONTACT_LAW_FRICTION;
+  contact->pairs[pair].own_law = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -228,7 +272,7 @@ PetscErrorCode ContactReadFriction(Contact contact)
   PetscBool set, set_decay;
 
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_FRICTION) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_friction", "Coefficient of friction", "ContactSetFriction", mu, &mu, &set));
   if (set) PetscCall(ContactSetFriction(contact, mu));
@@ -245,6 +289,7 @@ PetscErrorCode ContactReadFriction(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     char option[PETSC_MAX_PATH_LEN];
 
+    if (contact->pairs[p].law != CONTACT_LAW_FRICTION) continue; /* an option that stays unread is an error */
     PetscCall(PetscSNPrintf(option, sizeof(option), "-contact_friction_%s", contact->pairs[p].name));
     PetscCall(PetscOptionsReal(option, "Coefficient of friction of a pair", "ContactSetPairFriction", mu, &mu, &set));
     if (set) PetscCall(ContactSetPairFriction(contact, p, mu));

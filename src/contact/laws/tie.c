@@ -10,4 +10,11 @@ static void Project(PetscInt n, const PetscReal limit[2], const PetscReal p[], P
   }
 }
 
-const RowLaw RowLawTie = {.reads = ROW_LAW_READS_END, .project = Project};
+PetscErrorCode RowLawCreate_Tie(RowLaw *law)
+{
+  PetscFunctionBegin;
+  law->reads   = ROW_LAW_READS_END;
+  law->pulls   = PETSC_TRUE;
+  law->project = Project;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -27,4 +27,10 @@ static void Project(PetscInt n, const PetscReal limit[2], const PetscReal p[], P
   }
 }
 
-const RowLaw RowLawUnilateral = {.reads = ROW_LAW_READS_CLOSED, .project = Project};
+PetscErrorCode RowLawCreate_Unilateral(RowLaw *law)
+{
+  PetscFunctionBegin;
+  law->reads   = ROW_LAW_READS_CLOSED;
+  law->project = Project;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -170,6 +170,13 @@ static PetscErrorCode SuitsBalance(Contact contact, const ContactPair *pair, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static PetscBool AllSlide(Contact contact)
+{
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].law != CONTACT_LAW_FRICTIONLESS) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
+
 /* Whether gaps are turned where neither the user nor the program has said so. Surfaces are known, but not how they are to be moved. */
 PetscErrorCode ContactChooseBalance(Contact contact)
 {
@@ -178,7 +185,7 @@ PetscErrorCode ContactChooseBalance(Contact contact)
   PetscFunctionBegin;
   if (!contact->options.auto_balance) PetscFunctionReturn(PETSC_SUCCESS);
   contact->options.balance = PETSC_FALSE;
-  if (contact->dim == 1 || contact->options.law != CONTACT_LAW_FRICTIONLESS || contact->options.constraint != CONTACT_CONSTRAINT_GAP ||
+  if (contact->dim == 1 || !AllSlide(contact) || contact->options.constraint != CONTACT_CONSTRAINT_GAP ||
       contact->options.stabilization != CONTACT_STABILIZATION_NONE || !contact->options.shared_times || contact->neighbours.come_and_go ||
       !contact->n_pairs || contact->n_pairs > MOST_PAIRS || !contact->ops->maybalance)
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -203,7 +210,7 @@ PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
   if (!contact->options.balance) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_SCHWARZ, &schwarz));
   PetscCheck(schwarz, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_balance goes with -contact_type schwarz");
-  PetscCheck(contact->dim > 1 && !pair->obstacle && contact->options.law == CONTACT_LAW_FRICTIONLESS, PetscObjectComm((PetscObject)contact),
+  PetscCheck(contact->dim > 1 && !pair->obstacle && pair->law == CONTACT_LAW_FRICTIONLESS, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_balance: pair %s is not a frictionless one of two bodies in two or three dimensions",
              pair->name);
   for (PetscInt side = 0; side < 2; side++) {

@@ -34,6 +34,16 @@ void ContactGetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscRe
   }
 }
 
+/* Whether a body has rows along the axes that are to be turned to directions */
+PetscBool ContactBodyBonds(Contact contact, PetscInt b)
+{
+  const ContactBodyRows *of = &contact->body_rows[b];
+
+  for (PetscInt k = 0; k < of->n_pairs && contact->dim > 1; k++)
+    if (contact->pairs[of->pairs[k]].law == CONTACT_LAW_BONDED) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Replaces the rows of the matrix of a body, which are along the axes, by those along the directions of the rows */
 PetscErrorCode ContactTurnMatrix(Contact contact, PetscInt b)
 {
@@ -41,14 +51,15 @@ PetscErrorCode ContactTurnMatrix(Contact contact, PetscInt b)
   Mat                    turn, turned;
 
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_BONDED || contact->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactBodyBonds(contact, b)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)contact), of->n, of->n, of->n_all, of->n_all, contact->dim, NULL, 0, NULL, &turn));
   for (PetscInt k = 0; k < of->n; k++) {
     const PetscInt     i    = of->rows[k];
     const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
     const PetscInt     node = k - (i - pair->begin) % pair->components;
 
-    for (PetscInt d = 0; d < contact->dim; d++)
+    if (pair->law != CONTACT_LAW_BONDED) PetscCall(MatSetValue(turn, of->begin + k, of->begin + k, 1, INSERT_VALUES));
+    for (PetscInt d = 0; d < contact->dim && pair->law == CONTACT_LAW_BONDED; d++)
       PetscCall(MatSetValue(turn, of->begin + k, of->begin + node + d, contact->rows.normal[3 * i + d], INSERT_VALUES));
   }
   PetscCall(MatAssemblyBegin(turn, MAT_FINAL_ASSEMBLY));
@@ -81,11 +92,11 @@ static PetscErrorCode BondNode(Contact contact, const ContactPair *pair, PetscIn
 PetscErrorCode ContactBond(Contact contact)
 {
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_BONDED) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     int          any  = pair->bonded;
 
+    if (pair->law != CONTACT_LAW_BONDED) continue;
     for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
       if (contact->rows.tied[i] || !contact->start.active[i] || contact->start.force[i] <= 0) continue;
       PetscCall(BondNode(contact, pair, i));
@@ -113,7 +124,8 @@ PetscErrorCode ContactBond(Contact contact)
   Level: intermediate
 
   Note:
-  `PETSC_FALSE` needs `CONTACT_SCHWARZ` and `CONTACT_LAW_FRICTIONLESS`. Other programs call this contact without separation, or sliding.
+  `PETSC_FALSE` needs `CONTACT_SCHWARZ` or `CONTACT_FORCE`, and frictionless pairs. Ties beside them stay as they are. Other programs call
+  this contact without separation, or sliding.
 
 .seealso: `Contact`, `ContactSetLaw()`, `ContactGetSeparation()`, `ContactSetFromOptions()`
 @*/
@@ -155,6 +167,6 @@ PetscErrorCode ContactGetSeparation(Contact contact, PetscBool *separation)
    pulled, along their normal alone. A row that has no partner opposite any more has been let go. */
 void ContactHoldTogether(Contact contact)
 {
-  if (contact->options.separation) return;
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.tied[i] = contact->start.active[i];
+  for (PetscInt i = 0; i < contact->rows.n && !contact->options.separation; i++)
+    if (contact->pairs[contact->rows.pair[i]].law == CONTACT_LAW_FRICTIONLESS) contact->rows.tied[i] = contact->start.active[i];
 }

@@ -45,7 +45,7 @@ static PetscErrorCode FindSuspects(Contact contact, Mat gram, PetscInt *n, Petsc
     const PetscScalar *values;
     PetscInt           n_columns;
 
-    if (!contact->rows.tied[i]) continue;
+    if (!contact->rows.tied[i] || contact->pairs[contact->rows.pair[i]].law != CONTACT_LAW_TIED) continue; /* springs share their force */
     PetscCall(MatGetRow(gram, row, &n_columns, &columns, &values));
     for (PetscInt k = 0; k < n_columns; k++)
       if (values[k] != 0 && contact->ranks.row_pair[columns[k]] != contact->rows.pair[i]) marks[row] = 1;

@@ -23,13 +23,13 @@ typedef enum { ROW_AREA, ROW_GAP, ROW_NORMAL } RowNumber;
 /* Such a number of all rows of this rank, before any are merged; of normals the component d */
 static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec vec)
 {
-  const PetscBool tied = (PetscBool)(contact->options.law == CONTACT_LAW_TIED);
-  PetscScalar    *values;
+  PetscScalar *values;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(vec, &values));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
+    const PetscBool    tied = ContactPairTies(pair);
     TransferRows       rows;
 
     PetscCall(TransferGetRows(pair->transfer, &rows));
@@ -49,15 +49,14 @@ static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec 
 /* A matrix of rows by rows, with ones where the nodes of two rows have an edge in common and, if rows may open, parallel surfaces there */
 static PetscErrorCode CreateNeighbours(Contact contact, Mat *neighbours)
 {
-  const PetscReal slope = contact->options.law == CONTACT_LAW_TIED ? PETSC_MAX_REAL : PARALLEL;
-
   PetscFunctionBegin;
   PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), neighbours));
   PetscCall(MatSetSizes(*neighbours, contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all));
   PetscCall(MatSetType(*neighbours, MATAIJ));
   PetscCall(MatSetUp(*neighbours));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+    const ContactPair *pair  = &contact->pairs[p];
+    const PetscReal    slope = ContactPairTies(pair) ? PETSC_MAX_REAL : PARALLEL;
 
     if (!pair->obstacle)
       PetscCall(TransferSetNeighbours(pair->transfer, contact->rows.begin + pair->begin, pair->components, slope, *neighbours));

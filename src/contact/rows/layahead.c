@@ -88,7 +88,7 @@ PetscErrorCode ContactLayAhead(Contact contact, PetscInt pass, PetscReal *last, 
   PetscFunctionBegin;
   *again = PETSC_FALSE;
   /* what changes the start of the step cannot be made again */
-  if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || contact->attempt.moves_start) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->dim == 1 || ContactAllPairsTie(contact) || contact->attempt.moves_start) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MeasurePairs(contact, off));
   for (PetscInt p = 0; p < contact->n_pairs; p++) most = PetscMax(most, off[p]);
   *again = (PetscBool)(most > 1 && pass < MOST_PASSES && (!pass || most < LESS * *last));

@@ -18,11 +18,20 @@ static PetscErrorCode CountEntries(Contact contact, PetscInt b, PetscInt entries
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a body has rows whose entries the transfers do not count */
+static PetscBool HasTies(Contact contact, PetscInt b)
+{
+  const ContactBodyRows *of = &contact->body_rows[b];
+
+  for (PetscInt k = 0; k < of->n_pairs; k++)
+    if (ContactPairTies(&contact->pairs[of->pairs[k]]) || contact->pairs[of->pairs[k]].law == CONTACT_LAW_BONDED) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
 {
-  const ContactLaw law = contact->options.law;
-  Vec              positions;
-  PetscInt         n;
+  Vec      positions;
+  PetscInt n;
 
   PetscFunctionBegin;
   PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
@@ -31,7 +40,7 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
   PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), &contact->interfaces[b]));
   PetscCall(MatSetSizes(contact->interfaces[b], contact->body_rows[b].n, n, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
-  if (contact->ranks.size == 1 && (law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION)) {
+  if (contact->ranks.size == 1 && !HasTies(contact, b)) {
     PetscCall(CountEntries(contact, b, contact->work.intervals)); /* or PETSc collects them in a hash table */
     PetscCall(MatSeqAIJSetPreallocation(contact->interfaces[b], 0, contact->work.intervals));
   } else PetscCall(MatSetUp(contact->interfaces[b]));
@@ -42,11 +51,9 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
 /* Whether one of several ranks has all of a body, and which. The same on every rank, as is whether all rows are there too. */
 static PetscErrorCode IsWhole(Contact contact, PetscInt b, PetscBool *whole, PetscBool *at_home, PetscMPIInt *rank)
 {
-  const ContactLaw law = contact->options.law;
-
   PetscFunctionBegin;
   *whole = *at_home = PETSC_FALSE;
-  if (contact->ranks.size == 1 || !(law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->ranks.size == 1 || HasTies(contact, b)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactIsAtHome(contact, b, rank, at_home));
   *whole = (PetscBool)(*rank >= 0 && contact->body_rows[b].n_all);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -143,11 +150,10 @@ static void ChooseMatrix(Contact contact, PetscInt b)
    which is so until rows are built again. Rows that are merged or turned come from products of matrices, which are made anew. */
 PetscErrorCode ContactFillMatrices(Contact contact)
 {
-  const PetscBool product = (PetscBool)(contact->held.merger || (contact->options.law == CONTACT_LAW_BONDED && contact->dim > 1));
-
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    ContactBodyRows *of = &contact->body_rows[b];
+    ContactBodyRows *of      = &contact->body_rows[b];
+    const PetscBool  product = (PetscBool)(contact->held.merger || ContactBodyBonds(contact, b));
 
     if (!of->affected) continue;
     ChooseMatrix(contact, b);
@@ -168,7 +174,7 @@ PetscErrorCode ContactFillMatrices(Contact contact)
       rows[side] = contact->interfaces[pair->body[side]];
       any        = PETSC_TRUE;
     }
-    if (any && contact->options.law == CONTACT_LAW_FRICTION)
+    if (any && pair->law == CONTACT_LAW_FRICTION)
       PetscCall(TransferSetDirectedValues(pair->transfer, begin, pair->components, contact->rows.normal + 3 * pair->begin, rows));
     else if (any) PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
   }

@@ -30,8 +30,8 @@ PetscErrorCode ContactHasMany(Contact contact, PetscBool *many)
 static const char *FindUnsuited(Contact contact)
 {
   if (contact->options.facing) return "sides are faces that see another body: -contact_facing false lets pairs come and go";
-  if (contact->options.law != CONTACT_LAW_FRICTIONLESS && contact->options.law != CONTACT_LAW_FRICTION)
-    return "-contact_law ties or bonds them";
+  for (ContactLaw law = CONTACT_LAW_TIED; law < CONTACT_LAW_FRICTION; law = (ContactLaw)(law + 1))
+    if (ContactAnyPairHas(contact, law)) return "-contact_law ties or bonds them";
   if (contact->options.balance) return "of -contact_balance";
   if (contact->options.row_side != CONTACT_ROW_SIDE_FIRST) return "of -contact_rows, which is not first";
   if (contact->options.stabilization != CONTACT_STABILIZATION_NONE) return "of -contact_stabilization";

@@ -266,10 +266,10 @@ static PetscErrorCode SetOwner(Contact contact, const ContactPair *pair)
    between both normals is where that flat surface is, to first order in the curvatures, and what presses along normals of one side alone
    has a part along the surface that is not small beside friction. With inertia rows follow the surfaces; in three dimensions coarse balls
    lose six times the energy then if bends count, with normals that are means by areas. */
-static PetscBool IsCurved(Contact contact, PetscBool inertia, PetscBool linear)
+static PetscBool IsCurved(Contact contact, const ContactPair *pair, PetscBool inertia, PetscBool linear)
 {
-  if (contact->options.law == CONTACT_LAW_TIED) return PETSC_FALSE;
-  if (!inertia) return (PetscBool)(contact->options.law == CONTACT_LAW_FRICTION);
+  if (ContactPairTies(pair)) return PETSC_FALSE;
+  if (!inertia) return (PetscBool)(pair->law == CONTACT_LAW_FRICTION);
   return (PetscBool)(!linear && (contact->dim == 2 || contact->options.balance));
 }
 
@@ -334,11 +334,11 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
   PetscCall(TransferSetMoved(pair->transfer, PETSC_TRUE));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
   pair->rests = (PetscBool)!inertia;
-  PetscCall(TransferSetCurved(pair->transfer, IsCurved(contact, inertia, linear)));
+  PetscCall(TransferSetCurved(pair->transfer, IsCurved(contact, pair, inertia, linear)));
   PetscCall(GetNormalShare(contact, pair, &share));
   PetscCall(TransferSetNormalShare(pair->transfer, share));
   PetscCall(ContactSetUpBalance(contact, pair));
-  PetscCall(TransferSetGuards(pair->transfer, (PetscBool)(contact->options.law != CONTACT_LAW_TIED)));
+  PetscCall(TransferSetGuards(pair->transfer, (PetscBool)!ContactPairTies(pair)));
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2) && contact->setup; side++)
     PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
   PetscCall(TransferUpdate(pair->transfer, u[0], u[1], contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));

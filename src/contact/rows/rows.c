@@ -18,7 +18,8 @@ static PetscErrorCode CountRows(Contact contact)
     TransferRows rows;
 
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    pair->components = contact->options.law == CONTACT_LAW_FRICTIONLESS ? 1 : contact->dim;
+    pair->bonded     = (PetscBool)(pair->bonded || ContactPairTies(pair));
+    pair->components = pair->law == CONTACT_LAW_FRICTIONLESS ? 1 : contact->dim;
     pair->begin      = contact->rows.n;
     contact->rows.n += rows.n * pair->components;
     pair->end = contact->rows.n;
@@ -117,20 +118,19 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       contact->rows.area[i]        = rows.area[node];
       contact->rows.changed[i]     = rows.changed[node];
       contact->rows.followed[i]    = rows.followed[node];
-      if (contact->options.law == CONTACT_LAW_TIED) {
+      if (ContactPairTies(pair)) {
         contact->rows.tied[i]           = contact->ties.holds[i];
         contact->rows.initial_gap[i]    = contact->rows.tied[i] ? 0 : CONTACT_NO_GAP;
         contact->rows.normal[3 * i + k] = 1;
       } else ContactGetFrame(dim, rows.normals + dim * node, k, contact->rows.normal + 3 * i);
-      if (contact->options.law == CONTACT_LAW_FRICTION && k > 0) contact->rows.initial_gap[i] = CONTACT_NO_GAP;
-      if (contact->options.law == CONTACT_LAW_BONDED && k > 0) { /* until the node sticks */
+      if (pair->law == CONTACT_LAW_FRICTION && k > 0) contact->rows.initial_gap[i] = CONTACT_NO_GAP;
+      if (pair->law == CONTACT_LAW_BONDED && k > 0) { /* until the node sticks */
         contact->rows.opposite[i]    = PETSC_FALSE;
         contact->rows.initial_gap[i] = CONTACT_NO_GAP;
       }
       PetscCall(IsHeld(contact, pair, i, &held));
-      contact->held.dropped[i]    = (PetscBool)(held &&
-                                                (contact->options.law == CONTACT_LAW_TIED ? contact->rows.tied[i] : rows.opposite[node]) &&
-                                                !pair->obstacle && dim > 1 && contact->options.law != CONTACT_LAW_BONDED);
+      contact->held.dropped[i]    = (PetscBool)(held && (ContactPairTies(pair) ? contact->rows.tied[i] : rows.opposite[node]) &&
+                                                !pair->obstacle && dim > 1 && pair->law != CONTACT_LAW_BONDED);
       contact->held.merged_gap[i] = 0;
       if (!held) continue;
       contact->rows.opposite[i] = contact->rows.tied[i] = PETSC_FALSE;

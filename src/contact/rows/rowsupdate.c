@@ -65,10 +65,10 @@ static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const
 PetscErrorCode ContactDropShared(Contact contact)
 {
   PetscFunctionBegin;
-  if (contact->options.law == CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     TransferRows rows;
 
+    if (ContactPairTies(&contact->pairs[p])) continue;
     PetscCall(TransferGetRows(contact->pairs[p].transfer, &rows));
     for (PetscInt node = 0; node < rows.n; node++) {
       const PetscInt i = contact->pairs[p].begin + node * contact->pairs[p].components;
@@ -246,7 +246,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscBool any = PETSC_FALSE, built = PETSC_FALSE, logged;
 
   PetscFunctionBegin;
-  if (contact->dim == 1 || contact->options.law == CONTACT_LAW_TIED || (!contact->n_pairs && !contact->neighbours.come_and_go))
+  if (contact->dim == 1 || ContactAllPairsTie(contact) || (!contact->n_pairs && !contact->neighbours.come_and_go))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactMeasureReach(contact, &reach));
   PetscCall(ContactRenewNeighbours(contact, reach, PETSC_FALSE, &any));

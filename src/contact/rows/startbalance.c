@@ -63,8 +63,8 @@ static inline PetscBool IsSolved(const StartBalance *start, PetscInt i)
 {
   const Contact contact = start->contact;
 
-  if (!start->rubs || i % contact->dim == 0) return contact->end.active[i];
-  return (PetscBool)(start->sticks[i] && contact->end.active[i - i % contact->dim]);
+  if (!ContactRowRubs(contact, i)) return contact->end.active[i];
+  return (PetscBool)(start->sticks[i] && contact->end.active[ContactFirstRow(contact, i)]);
 }
 
 /* The force that a row has, whatever is found */
@@ -72,7 +72,7 @@ static inline PetscReal GetGiven(const StartBalance *start, PetscInt i)
 {
   const Contact contact = start->contact;
 
-  return start->rubs && !start->sticks[i] && contact->end.active[i - i % contact->dim] ? start->given[i] : 0;
+  return ContactRowRubs(contact, i) && !start->sticks[i] && contact->end.active[ContactFirstRow(contact, i)] ? start->given[i] : 0;
 }
 
 /* y = (S + springs) x on active rows; ones on the diagonal of the others */
@@ -270,7 +270,7 @@ static PetscErrorCode Create(Contact contact, StartBalance *start)
   PetscCall(PetscMemzero(start, sizeof(*start)));
   start->contact = contact;
   PetscCall(PetscCalloc5(n, &start->takes_part, n, &start->springs, n, &start->relaxed, n, &start->on_body, 3 * n, &start->moved));
-  start->rubs = (PetscBool)(contact->options.law == CONTACT_LAW_FRICTION);
+  start->rubs = ContactAnyPairHas(contact, CONTACT_LAW_FRICTION);
   PetscCall(PetscCalloc4(n, &start->sticks, n, &start->given, n, &start->put, n, &start->slip));
   PetscCall(FindRows(start));
   for (PetscInt i = 0; i < n; i++) start->springs[i] = SpringCompliance(contact, i);
@@ -321,7 +321,8 @@ static PetscErrorCode Finish(StartBalance *start)
   }
   PetscCall(ContactComputeStartGaps(contact));
   ContactAlignRubbingRows(contact);
-  for (PetscInt i = 0; i < n && start->rubs; i++) contact->end.active[i] = contact->end.active[i - i % contact->dim];
+  for (PetscInt i = 0; i < n; i++)
+    if (ContactRowRubs(contact, i)) contact->end.active[i] = contact->end.active[ContactFirstRow(contact, i)];
   PetscCall(PetscArraycpy(contact->start.force, contact->end.force, n));
   PetscCall(PetscArraycpy(contact->start.active, contact->end.active, n));
   PetscCall(PetscArraycpy(contact->energy.accepted_force, contact->end.force, n));

@@ -86,7 +86,7 @@ static PetscErrorCode LeaveOutExplicit(Contact contact)
 PetscErrorCode ContactChooseTiedMass(Contact contact)
 {
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_TIED || !contact->prescribes) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactAllPairsTie(contact) || !contact->prescribes) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CanKeepMass(contact, &contact->pairs[p], &contact->pairs[p].keeps_mass));
   PetscCall(LeaveOutExplicit(contact));
   PetscCall(LeaveOutMixed(contact));

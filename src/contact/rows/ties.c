@@ -87,7 +87,7 @@ PetscErrorCode ContactMeasureTies(Contact contact, const ContactPair *pair, Pets
   PetscReal   *gaps;
 
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactPairTies(pair)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TransferGetRows(pair->transfer, &rows));
   PetscCall(PetscMalloc1(rows.n, &gaps));
   for (PetscInt node = 0; node < rows.n; node++) gaps[node] = rows.opposite[node] ? rows.gap[node] : 0;
@@ -184,12 +184,12 @@ static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, c
     PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
     SETERRQ(comm, PETSC_ERR_USER_INPUT,
             "-contact_pairs %s: at the start %" PetscInt_FMT " of %" PetscInt_FMT " nodes of body '%s' opposite to the partner %s, and "
-            "-contact_law tied ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g%s, which "
+            "-contact_law %s ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g%s, which "
             "is %.3g of its face. Move one of the bodies (%s), name smaller surfaces in -contact_pairs, "
             "or set -contact_tie_distance, now %g of a face, above that number to tie them as they are",
             pair->name, summary->n[state],
             summary->n[TIE_HOLDS] + summary->n[TIE_OVERLAPS] + summary->n[TIE_TOO_FAR] + summary->n[TIE_APART], first,
-            state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", (double)x[0], (double)x[1], (double)x[2],
+            state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", ContactLaws[pair->law], (double)x[0], (double)x[1], (double)x[2],
             state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)(gap / size),
             moves, (double)contact->options.tie_distance);
   }
@@ -207,7 +207,7 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
     const ContactPair *pair     = &contact->pairs[p];
     const PetscBool    expected = (PetscBool)(!pair->chosen || !tied[pair->body[0]] || (!pair->obstacle && !tied[pair->body[1]]));
 
-    if (summaries[p].n[TIE_HOLDS] || !expected) continue;
+    if (!ContactPairTies(pair) || summaries[p].n[TIE_HOLDS] || !expected) continue;
     if (nearest < 0 || summaries[p].gap[TIE_APART] < summaries[nearest].gap[TIE_APART]) nearest = p;
   }
   if (nearest >= 0) {
@@ -218,16 +218,16 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
 
     PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
     PetscCheck(summary->n[TIE_APART], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_pairs %s: -contact_law tied ties nothing, since at the start no node of body '%s' lies opposite to the partner; "
+               "-contact_pairs %s: -contact_law %s ties nothing, since at the start no node of body '%s' lies opposite to the partner; "
                "place the bodies so that their surfaces lie on each other, or leave the pair out of -contact_pairs",
-               pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+               pair->name, ContactLaws[pair->law], ((PetscObject)contact->bodies[pair->body[0]])->name);
     SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-            "-contact_pairs %s: -contact_law tied ties nothing: at the start the node of body '%s' that is nearest to the partner, at "
+            "-contact_pairs %s: -contact_law %s ties nothing: at the start the node of body '%s' that is nearest to the partner, at "
             "(%g, %g, %g) before any displacement, has a gap of %g%s, which is %.3g of its face, and nodes are tied within "
             "-contact_tie_distance, now %g of a face; move one of the bodies (%s), or leave the pair out "
             "of -contact_pairs",
-            pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1], (double)x[2],
-            (double)summary->gap[TIE_APART], UnitsOf((PetscObject)contact, UNIT_LENGTH),
+            pair->name, ContactLaws[pair->law], ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1],
+            (double)x[2], (double)summary->gap[TIE_APART], UnitsOf((PetscObject)contact, UNIT_LENGTH),
             (double)(summary->gap[TIE_APART] / summary->size[TIE_APART - 1]), (double)contact->options.tie_distance, moves);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -244,6 +244,7 @@ static PetscErrorCode CheckTies(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
+    if (!ContactPairTies(pair)) continue;
     PetscCall(Summarize(contact, pair, &summaries[p]));
     for (PetscInt side = 0; side < 2; side++) tied[pair->body[side]] += summaries[p].n[TIE_HOLDS];
     PetscCall(CheckDistances(contact, pair, &summaries[p]));
@@ -266,6 +267,7 @@ static PetscErrorCode RebuildTies(Contact contact)
     Vec                u[2] = {NULL, NULL};
     PetscBool          rebuilt, changed = PETSC_FALSE;
 
+    if (!ContactPairTies(pair)) continue;
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
       PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
     PetscCall(TransferUpdate(pair->transfer, u[0], u[1], contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
@@ -275,7 +277,8 @@ static PetscErrorCode RebuildTies(Contact contact)
   PetscCall(ContactOr(contact, &any));
   PetscCall(CheckTies(contact));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (ContactPairTies(&contact->pairs[p])) PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.changed[i] = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
@@ -289,8 +292,11 @@ static PetscErrorCode RebuildTies(Contact contact)
    Call with the bodies set up. */
 PetscErrorCode ContactTie(Contact contact)
 {
+  PetscBool any = PETSC_FALSE;
+
   PetscFunctionBegin;
-  if (contact->options.law != CONTACT_LAW_TIED || !contact->n_pairs) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || ContactPairTies(&contact->pairs[p]));
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RebuildTies(contact));
   PetscCall(ContactComputeStartGaps(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {

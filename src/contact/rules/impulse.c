@@ -23,6 +23,14 @@ static PetscErrorCode Place(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A node that touched first in the last step has lost its rate along the normal. If it is bonded now, it loses that across as well, as rows
+   do that join: it sticks where half of its way in the step leads. */
+static void Bond(Contact contact, PetscInt i, PetscReal way)
+{
+  contact->rows.initial_gap[i] -= way + contact->start.gap[i];
+  contact->start.gap[i] = -way;
+}
+
 static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
   const PetscReal half = 0.5 * contact->step;
@@ -40,7 +48,9 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
       stepper->touches[i]   = touches;
       stepper->joins[i]     = (PetscBool)(touches && !carried);
       stepper->lets[i]      = carried ? 0 : way;
-      contact->end.force[i] = carried && (tied || !stepper->joined[i]) ? contact->start.force[i] : 0;
+      contact->end.force[i] = carried && !stepper->joined[i] ? contact->start.force[i] : 0;
+      if (tied && stepper->joined[i] && ContactStepperLaw(contact, stepper, i)->reads == ROW_LAW_READS_END)
+        Bond(contact, i, half * stepper->rate[i]);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -84,7 +94,8 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper, const Contac
   contact->energy.changed = PETSC_TRUE;
   for (PetscInt i = pair->begin; i < pair->end; i++)
     if (stepper->touches[i] && !ContactRowRubs(contact, i))
-      stepper->step_loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]);
+      stepper->step_loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]) +
+                            ContactStepperStored(contact, i, contact->end.gap[i]) - ContactStepperStored(contact, i, contact->start.gap[i]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

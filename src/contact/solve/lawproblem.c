@@ -91,7 +91,7 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
     PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
     GetTrial(problem, node, x, y, p);
-    (*problem->law->project)(rows, problem->limit + 2 * node, p, force, derivative);
+    (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, force, derivative);
     for (PetscInt k = 0; k < rows; k++) f[first + k] = x[first + k] - force[k];
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
@@ -146,7 +146,7 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
     PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
     GetTrial(problem, node, x, y, p);
-    (*problem->law->project)(rows, problem->limit + 2 * node, p, force, derivative);
+    (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, force, derivative);
     PetscCall(SetNode(problem, first, rows, derivative, J));
   }
   PetscCall(VecRestoreArrayRead(X, &x));
@@ -224,7 +224,7 @@ static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
       PetscReal p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
       GetTrial(problem, node, x, y, p);
-      (*problem->law->project)(rows, problem->limit + 2 * node, p, force, derivative);
+      (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, force, derivative);
       for (PetscInt k = 0; k < rows; k++) {
         const PetscScalar change = force[k] - x[first + k];
 
@@ -310,12 +310,12 @@ PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
   problem->n = n;
   if (n > problem->room) {
     PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-    PetscCall(PetscFree2(problem->diagonal, problem->weight));
+    PetscCall(PetscFree3(problem->diagonal, problem->weight, problem->law));
     problem->room = PetscMax(n, 2 * problem->room);
     PetscCall(PetscMalloc7(problem->room + 1, &problem->begin, 2 * problem->room, &problem->limit, problem->room, &problem->base,
                            problem->room, &problem->read, problem->room, &problem->centre, problem->room, &problem->force,
                            3 * problem->room, &problem->work));
-    PetscCall(PetscMalloc2(problem->room, &problem->diagonal, problem->room, &problem->weight));
+    PetscCall(PetscMalloc3(problem->room, &problem->diagonal, problem->room, &problem->weight, problem->room, &problem->law));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -438,7 +438,7 @@ PetscErrorCode LawProblemDestroy(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(DestroySolvers(problem));
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-  PetscCall(PetscFree2(problem->diagonal, problem->weight));
+  PetscCall(PetscFree3(problem->diagonal, problem->weight, problem->law));
   PetscCall(MatDestroy(&problem->S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,27 +4,27 @@
 #include <petscsnes.h>
 
 typedef struct {
-  PetscInt      n, n_nodes; /* rows; nodes, whose rows follow each other */
-  PetscInt     *begin;      /* per node: its first row; n_nodes + 1 */
-  const RowLaw *law;
-  PetscReal    *limit;       /* two numbers per node */
-  Mat           S;           /* what rows read by forces on them: dense, or sparse [m/N] */
-  PetscReal    *diagonal;    /* of S */
-  PetscReal    *weight;      /* per row: 1 / r of the trial force lambda - r y [m/N] */
-  PetscScalar  *base, *read; /* per row: a force [N], and what is read under it [m] */
-  PetscScalar  *centre;      /* per row: the force that the proximal term pulls to [N] */
-  PetscScalar  *force;       /* per row: the solution [N] */
-  PetscScalar  *work;        /* three numbers per row */
-  PetscReal     largest;     /* on the diagonal of S [m/N] */
-  PetscInt      room, rows;  /* rows that there is room for; of the solvers */
-  PetscInt      iterations;  /* of Newton's method, and node by node, in the last solution */
-  PetscBool     solved;      /* there is a solution since the last call */
-  PetscBool     by_nodes;    /* that was found node by node */
-  PetscBool     sparse;      /* S is */
-  Vec           x, f;
-  Vec           in, out; /* work space of products with S */
-  Mat           jacobian;
-  SNES          newton, nodes;
+  PetscInt       n, n_nodes;  /* rows; nodes, whose rows follow each other */
+  PetscInt      *begin;       /* per node: its first row; n_nodes + 1 */
+  const RowLaw **law;         /* per node; borrowed */
+  PetscReal     *limit;       /* two numbers per node */
+  Mat            S;           /* what rows read by forces on them, laws that give way included: dense, or sparse [m/N] */
+  PetscReal     *diagonal;    /* of S */
+  PetscReal     *weight;      /* per row: 1 / r of the trial force lambda - r y [m/N] */
+  PetscScalar   *base, *read; /* per row: a force [N], and what is read under it [m] */
+  PetscScalar   *centre;      /* per row: the force that the proximal term pulls to [N] */
+  PetscScalar   *force;       /* per row: the solution [N] */
+  PetscScalar   *work;        /* three numbers per row */
+  PetscReal      largest;     /* on the diagonal of S [m/N] */
+  PetscInt       room, rows;  /* rows that there is room for; of the solvers */
+  PetscInt       iterations;  /* of Newton's method, and node by node, in the last solution */
+  PetscBool      solved;      /* there is a solution since the last call */
+  PetscBool      by_nodes;    /* that was found node by node */
+  PetscBool      sparse;      /* S is */
+  Vec            x, f;
+  Vec            in, out; /* work space of products with S */
+  Mat            jacobian;
+  SNES           newton, nodes;
 } LawProblem;
 
 PETSC_INTERN PetscErrorCode LawProblemSetUp(LawProblem *);

@@ -166,6 +166,16 @@ static PetscErrorCode AddDiagonal(Contact contact, ContactStepper *stepper, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Adds how far laws give way under their own forces */
+static PetscErrorCode AddGive(Contact contact, ContactStepper *stepper, Mat S)
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) stepper->mine[i] = ContactStepperGive(contact, stepper, i);
+  PetscCall(ContactStepperGather(contact, stepper, stepper->mine, stepper->gathered));
+  for (PetscInt k = 0; k < stepper->problem.n; k++) PetscCall(MatSetValues(S, 1, &k, 1, &k, &stepper->gathered[k], ADD_VALUES));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Whether no node of any body answers to forces on others */
 static PetscErrorCode IsSparse(Contact contact, ContactStepper *stepper, PetscBool *sparse)
 {
@@ -209,6 +219,7 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
     PetscCall(AddDiagonal(contact, stepper, b, diagonal, S));
   }
   if (!sparse) PetscCall(MatDenseRestoreArrayWrite(S, &values));
+  if (stepper->gives) PetscCall(AddGive(contact, stepper, S));
   PetscCall(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
   PetscCall(LawProblemTakeS(&stepper->problem, &S));

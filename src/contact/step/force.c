@@ -1,6 +1,7 @@
 /* The contact type `force`: the one contact step, its rule and law. */
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
+#include <sys/units.h>
 
 /* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right. Linear bodies are to round-off. */
 #define RTOL        1e-6
@@ -35,7 +36,7 @@ static PetscErrorCode Check(Contact contact)
              PETSC_ERR_USER_INPUT,
              "-contact_type force has a rule of its own for closed rows and for nodes with mass (-contact_rule); leave -contact_constraint "
              "and -contact_stabilization out");
-  PetscCheck(contact->dim > 1 || contact->options.law != CONTACT_LAW_FRICTION, comm, PETSC_ERR_SUP,
+  PetscCheck(contact->dim > 1 || !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), comm, PETSC_ERR_SUP,
              "-contact_law %s: bars of one dimension cannot slide; choose frictionless", contact->friction.name);
   PetscCheck(
       contact->options.friction_dense < 0, comm, PETSC_ERR_USER_INPUT,
@@ -60,6 +61,58 @@ static PetscErrorCode Check(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of the springs of a pair, per unit of area [N/m^3] */
+static PetscReal GetStiffness(Contact contact, PetscInt p)
+{
+  return contact->pairs[p].stiffness > 0 ? contact->pairs[p].stiffness : contact->options.spring_stiffness;
+}
+
+/* Of the springs of a row [N/m] */
+static PetscReal GetRowStiffness(Contact contact, PetscInt i)
+{
+  const PetscInt p = contact->rows.pair[i];
+
+  return GetStiffness(contact, p) * contact->rows.area[i] * contact->resultants.cross_section[p];
+}
+
+/* How far the law of a row gives way under its force, in what it reads [m/N] */
+PetscReal ContactStepperGive(Contact contact, const ContactStepper *stepper, PetscInt i)
+{
+  const RowLaw *law = ContactStepperLaw(contact, stepper, i);
+
+  return law->compliance ? ContactStepperTimes(contact, stepper, i) * (*law->compliance)(GetRowStiffness(contact, i)) : 0;
+}
+
+/* What the law of a row stores at a gap [J] */
+PetscReal ContactStepperStored(Contact contact, PetscInt i, PetscReal gap)
+{
+  const RowLaw *law = ContactStepperLaw(contact, Stepper(contact), i);
+
+  return law->stored ? (*law->stored)(GetRowStiffness(contact, i), gap) : 0;
+}
+
+/* The laws of the nodes of each pair: while they may open, and once they are held */
+static PetscErrorCode ChooseLaws(Contact contact, ContactStepper *stepper)
+{
+  const char *const names[][2] = {[CONTACT_LAW_FRICTIONLESS] = {"unilateral", "hold"},
+                                  [CONTACT_LAW_TIED]         = {"unilateral", "tie"},
+                                  [CONTACT_LAW_BONDED]       = {"unilateral", "tie"},
+                                  [CONTACT_LAW_SPRING]       = {"unilateral", "spring"},
+                                  [CONTACT_LAW_FRICTION]     = {"unilateral", "hold"}};
+
+  PetscFunctionBegin;
+  PetscCall(PetscFree(stepper->laws));
+  PetscCall(PetscMalloc1(2 * contact->n_pairs, &stepper->laws));
+  stepper->gives = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (PetscInt held = 0; held < 2; held++) {
+      PetscCall(RowLawCreate(names[contact->pairs[p].law][held], &stepper->laws[2 * p + held]));
+      if (stepper->laws[2 * p + held].compliance) stepper->gives = PETSC_TRUE;
+    }
+  if (stepper->gives) contact->ops->stored = ContactStepperStored;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SetUp(Contact contact)
 {
   ContactStepper *stepper    = Stepper(contact);
@@ -73,12 +126,12 @@ static PetscErrorCode SetUp(Contact contact)
                          contact->n_bodies, &stepper->rests));
   PetscCall(PetscCalloc3(contact->n_bodies, &stepper->done, contact->n_bodies, &stepper->scale, contact->n_bodies, &stepper->off));
   PetscCall(ContactStepperSetUpRules(contact, stepper));
-  stepper->problem.law    = contact->options.law == CONTACT_LAW_TIED ? &RowLawTie : &RowLawUnilateral;
+  PetscCall(ChooseLaws(contact, stepper));
   contact->friction.steps = PETSC_TRUE;
   stepper->rtol           = any_static ? RTOL_STATIC : RTOL;
   stepper->atol           = CONTACT_POSITION_TOLERANCE * contact->scale.length;
   stepper->assembled      = -1;
-  if (contact->friction.law.setup && contact->options.law == CONTACT_LAW_FRICTION)
+  if (contact->friction.law.setup && ContactAnyPairHas(contact, CONTACT_LAW_FRICTION))
     PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
   PetscCall(ContactStepperCreateVecs(contact, stepper));
@@ -150,8 +203,12 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
   for (PetscInt b = 0; b < contact->n_bodies && !one; b++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  rule of body '%s' and what it may touch: %s\n", ((PetscObject)contact->bodies[b])->name,
                                      stepper->rules[b]->name));
-  if (contact->options.law == CONTACT_LAW_FRICTION && contact->friction.law.view)
+  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) && contact->friction.law.view)
     PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (stepper->laws[2 * p + 1].stored)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  springs of %s: %g%s\n", contact->pairs[p].name, (double)GetStiffness(contact, p),
+                                       UnitsOf((PetscObject)contact, UNIT_STIFFNESS_ON_AREA)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,6 +221,7 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(SNESDestroy(&stepper->outer));
   PetscCall(ContactStepperDestroyVecs(stepper));
   PetscCall(LawProblemDestroy(&stepper->problem));
+  PetscCall(PetscFree(stepper->laws));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));
@@ -204,6 +262,7 @@ PetscErrorCode ContactCreate_Force(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscNew(&stepper));
   contact->data                = stepper;
+  contact->each_law            = PETSC_TRUE;
   contact->ops->setfromoptions = SetFromOptions;
   contact->ops->setup          = SetUp;
   contact->ops->layrows        = LayRows;

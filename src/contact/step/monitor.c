@@ -32,11 +32,11 @@ static void CountNodes(Contact contact, const ContactStepper *stepper, PetscInt 
 
     if (ContactStepperGroup(contact, stepper, first) != g) continue;
     counts->nodes++;
-    if (!(normal > 0) && problem->law->reads != ROW_LAW_READS_END) continue;
+    if (!(normal > 0) && !problem->law[node]->pulls) continue;
     counts->push++;
     for (PetscInt i = first + 1; i < end; i++) across += PetscSqr(PetscRealPart(problem->force[i]));
     if (end == first + 1) continue;
-    if (problem->law->reads == ROW_LAW_READS_END || PetscSqrtReal(across) < bound * (1 - PETSC_SQRT_MACHINE_EPSILON)) counts->stick++;
+    if (problem->law[node]->pulls || PetscSqrtReal(across) < bound * (1 - PETSC_SQRT_MACHINE_EPSILON)) counts->stick++;
     else counts->slide++;
   }
 }

@@ -16,10 +16,14 @@ static ContactStepper *Stepper(Contact contact)
 /* What a row reads, less what it may: by the law */
 static PetscReal Reading(Contact contact, const ContactStepper *stepper, PetscInt i)
 {
-  const PetscBool rubs = ContactRowRubs(contact, i);
+  const RowLaw *law = ContactStepperLaw(contact, stepper, i);
 
-  if (stepper->problem.law->reads == ROW_LAW_READS_END) return contact->end.gap[i];
-  return (rubs ? contact->friction.slip[i] : contact->end.gap[i] - contact->start.gap[i]) - stepper->lets[i];
+  if (law->reads == ROW_LAW_READS_END) return contact->end.gap[i];
+  if (law->reads == ROW_LAW_READS_MEAN)
+    return contact->end.gap[i] + (ContactStepperTimes(contact, stepper, i) - 1) * contact->start.gap[i] +
+           ContactStepperGive(contact, stepper, i) * contact->end.force[i];
+  if (!contact->rows.opposite[i]) return 0; /* across the normal of a node that may be bonded yet */
+  return (ContactRowRubs(contact, i) ? contact->friction.slip[i] : contact->end.gap[i] - contact->start.gap[i]) - stepper->lets[i];
 }
 
 /* After the first solution of the law in a step: rows that join may move less than their rule has said at first */

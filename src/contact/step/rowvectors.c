@@ -64,7 +64,8 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
   PetscInt           n = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) stepper->mine[i] = stepper->touches[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    stepper->mine[i] = stepper->touches[i] ? 1 + contact->rows.tied[ContactFirstRow(contact, i)] : 0; /* which law it has */
   PetscCall(Scatter(contact, stepper, stepper->mine));
   PetscCall(VecGetArrayRead(stepper->of_all, &touches));
   for (PetscInt i = 0; i < contact->rows.n_all; i++) n += touches[i] != 0;
@@ -76,8 +77,10 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
     if (touches[i] == 0) continue;
     /* the rows of a node follow each other, and touch all together */
     if (!problem->n_nodes || n - problem->begin[problem->n_nodes - 1] == pair->components ||
-        contact->ranks.row_pair[i] != contact->ranks.row_pair[stepper->rows[n - 1]])
+        contact->ranks.row_pair[i] != contact->ranks.row_pair[stepper->rows[n - 1]]) {
+      problem->law[problem->n_nodes]     = &stepper->laws[2 * contact->ranks.row_pair[i] + (touches[i] > 1)];
       problem->begin[problem->n_nodes++] = n;
+    }
     stepper->rows[n++] = i;
   }
   problem->begin[problem->n_nodes] = n;

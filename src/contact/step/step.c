@@ -36,12 +36,14 @@ static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(problem->limit, 2 * problem->n_nodes));
-  if (contact->options.law != CONTACT_LAW_FRICTION) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
   PetscCall(PetscArrayzero(stepper->before, contact->rows.n));
-  for (PetscInt i = 0; i < contact->rows.n; i += contact->dim)
-    (*contact->friction.law.getlimit)(contact, contact->friction.law.data, i, contact->friction.speed[i], &stepper->mine[i],
-                                      &stepper->before[i]);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end && contact->pairs[p].law == CONTACT_LAW_FRICTION;
+         i += contact->dim)
+      (*contact->friction.law.getlimit)(contact, contact->friction.law.data, i, contact->friction.speed[i], &stepper->mine[i],
+                                        &stepper->before[i]);
   for (PetscInt k = 0; k < 2; k++) {
     PetscCall(ContactStepperGather(contact, stepper, k ? stepper->before : stepper->mine, stepper->gathered));
     for (PetscInt node = 0; node < problem->n_nodes; node++)
@@ -84,6 +86,7 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
     }
     if (rule->end) PetscCall((*rule->end)(contact, stepper, pair));
   }
+  if (stepper->gives) PetscCall(ContactSumStored(contact));
   if (!contact->energy.takes) PetscFunctionReturn(PETSC_SUCCESS);
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stepper->step_loss, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));

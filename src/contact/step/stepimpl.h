@@ -35,6 +35,8 @@ struct _ContactStepper {
   SNES                outer; /* its unknowns are the forces of all rows */
   LawProblem          problem;
   const ContactRule **rules; /* per body: that of its set */
+  RowLaw             *laws;  /* two per pair: of nodes that may open, and of those that are held */
+  PetscBool           gives; /* a law gives way */
   VecScatter          to_all;
   /* state between steps, per row of this rank */
   PetscBool *joined; /* its node has touched first in the last accepted step */
@@ -71,6 +73,8 @@ struct _ContactStepper {
 
 PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
+PETSC_INTERN PetscReal      ContactStepperGive(Contact, const ContactStepper *, PetscInt);
+PETSC_INTERN PetscReal      ContactStepperStored(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor *);
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
@@ -97,3 +101,15 @@ static inline const ContactRule *ContactStepperRule(const ContactStepper *steppe
 }
 
 extern const ContactRule ContactRuleImpulse, ContactRuleLinear;
+
+/* A constant force does its work on the mean gap of the step, of which laws read twice; one that is linear in time, on that at each time */
+static inline PetscReal ContactStepperTimes(Contact contact, const ContactStepper *stepper, PetscInt i)
+{
+  return ContactStepperRule(stepper, &contact->pairs[contact->rows.pair[i]])->shape == BODY_FORCE_CONSTANT ? 2 : 1;
+}
+
+/* The law of a row of this rank */
+static inline const RowLaw *ContactStepperLaw(Contact contact, const ContactStepper *stepper, PetscInt i)
+{
+  return &stepper->laws[2 * contact->rows.pair[i] + contact->rows.tied[ContactFirstRow(contact, i)]];
+}

@@ -225,7 +225,7 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
       "-contact_type lagrange: where the contact nodes of both sides have mass, multipliers at the end of the step swing and gain energy; "
       "set "
       "-<body>_mass_redistribute true, or choose -contact_stabilization contact_stabilized, or -contact_type schwarz"));
-  PetscCheck(contact->options.law != CONTACT_LAW_TIED, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+  PetscCheck(!ContactAllPairsTie(contact), PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and "
              "without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");
   PetscCall(PetscNew(&lagrange));

@@ -29,7 +29,7 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
     PetscCall(ContactRefuseFriction(contact, "forward-increment Lagrange multipliers have no friction, since their forces are not those at "
                                              "the end of the step; leave -<body>_mass_redistribute at true, or choose -contact_law "
                                              "frictionless"));
-  if (contact->options.law == CONTACT_LAW_FRICTION) {
+  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) {
     PetscCall(ContactStepByFriction(contact, NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -52,7 +52,7 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
    rows it may have is known at the start. */
 static PetscBool MayReplaceRows(Contact contact)
 {
-  return (PetscBool)(contact->options.law == CONTACT_LAW_FRICTION);
+  return ContactAnyPairHas(contact, CONTACT_LAW_FRICTION);
 }
 
 /*MC

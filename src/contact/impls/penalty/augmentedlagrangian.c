@@ -40,7 +40,7 @@ static PetscErrorCode ContactSetUp_AugmentedLagrangian(Contact contact)
   PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_constraint %s: -contact_type augmented_lagrangian closes the gap only; choose -contact_type lagrange or penalty",
              ContactConstraints[contact->options.constraint]);
-  if (contact->options.law != CONTACT_LAW_FRICTION) PetscCall(ForcesCheckBodies(contact, CONTACT_AUGMENTED_LAGRANGIAN));
+  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscCall(ForcesCheckBodies(contact, CONTACT_AUGMENTED_LAGRANGIAN));
   if (penalty->augmentation_tolerance == (PetscReal)PETSC_DEFAULT)
     penalty->augmentation_tolerance = CONTACT_AUGMENTATION_TOLERANCE * contact->scale.length;
   PetscCall(PenaltySetUp(contact));

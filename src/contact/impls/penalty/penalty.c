@@ -170,7 +170,7 @@ PetscErrorCode PenaltySetUp(Contact contact)
   PetscBool      line_search;
 
   PetscFunctionBegin;
-  if (contact->options.law == CONTACT_LAW_FRICTION) {
+  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) {
     PetscCall(PenaltyStepByFriction(contact));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -181,7 +181,7 @@ PetscErrorCode SchwarzChooseMode(Contact contact)
   PetscBool   prescribes, has, many = PETSC_FALSE;
 
   PetscFunctionBegin;
-  contact->ties.by_mean = (PetscBool)(contact->options.law == CONTACT_LAW_TIED && contact->options.shared_times &&
+  contact->ties.by_mean = (PetscBool)(ContactAllPairsTie(contact) && contact->options.shared_times &&
                                       schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN &&
                                       schwarz->waveform == SCHWARZ_WAVEFORM_LINEAR);
   PetscCall(PrescribesMass(contact, &prescribes));

@@ -24,7 +24,7 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   /* with friction none of them has an effect */
-  if (contact->options.law == CONTACT_LAW_FRICTION) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "ContactSchwarzSetTransmission", Transmissions,
                              (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
@@ -115,7 +115,7 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SCHWARZ));
-  if (contact->options.law == CONTACT_LAW_FRICTION) {
+  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) {
     PetscCall(ContactStepByFriction(contact, NULL));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -157,7 +157,7 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
   Schwarz        *schwarz = (Schwarz *)contact->data;
   const PetscBool robin   = (PetscBool)(schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
   const PetscBool tied    = (PetscBool)(schwarz->transmission == SCHWARZ_TRANSMISSION_ROBIN && schwarz->robin_parameter == 0 &&
-                                        contact->options.law == CONTACT_LAW_TIED);
+                                        ContactAllPairsTie(contact));
   PetscReal      *stiffness;
 
   PetscFunctionBegin;
