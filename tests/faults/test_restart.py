@@ -65,16 +65,29 @@ QUICK = list(VARIANTS)[::6]
 # The contact step, with mass at contact nodes and without
 STEP = "-contact_type force "
 KEPT = STEP + "-left_mass_redistribute false -right_mass_redistribute false "
+SPRINGS = "-right_translate 1,0.1 -contact_law spring -contact_spring_stiffness 1e11"
 STEPS = {
     "step, linear": BLOCKS + STEP,
     "step, linear, nonlinear bodies, substeps, cut steps": BLOCKS + NONLINEAR + SUBSTEPS + STEP + "-time_step 4e-5 " + CONTACT["friction"],
     "step, impulse, friction": BLOCKS + KEPT + CONTACT["friction"],
     "step, impulse, explicit, nonlinear bodies": BLOCKS + NONLINEAR + EXPLICIT + KEPT,
     "step, impulse, substeps, cut steps": BLOCKS + NONLINEAR + SUBSTEPS + KEPT + "-time_step 1e-4 -schwarz_snes_max_it 2 ",
+    "step, impulse, bonded, substeps": BLOCKS + SUBSTEPS + KEPT + CONTACT["bonded"],
+    "step, impulse, held together, nonlinear bodies": BLOCKS + NONLINEAR + KEPT + CONTACT["held together"],
+    "step, linear, bonded": BLOCKS + STEP + CONTACT["bonded"] + " -right_translate 1.005,0 -left_initial_velocity 20,0",  # all nodes at once
+    "step, linear, held together, explicit": BLOCKS + EXPLICIT + STEP + CONTACT["held together"],
+    "step, impulse, springs, substeps": BLOCKS + SUBSTEPS + KEPT + SPRINGS,
+    "step, linear, springs, nonlinear bodies": BLOCKS + NONLINEAR + STEP + SPRINGS,
     "step, impulse, rows on the second, edge, turned": BLOCKS + KEPT + "-contact_rows second -contact_facing false -left_rotate 12 -right_translate 0.98,0.1",
 }
 VARIANTS |= STEPS
-QUICK += list(STEPS)[:4:3]
+QUICK += [*list(STEPS)[:4:3], "step, impulse, bonded, substeps", "step, impulse, springs, substeps"]
+# Both are glued to each other, and the right one hits a wall
+LAWS = (
+    BLOCKS + KEPT + "-right_translate 1,0.1 -obstacles wall -wall_obstacle_type plane -wall_point 2.002,0 -wall_normal -1,0 "
+    "-contact_pairs left.xmax:right.xmin,right.xmax:wall -contact_law_left.xmax:right.xmin spring -contact_spring_stiffness 1e11 "
+)
+SHORT.append((LAWS, 1, 0.55))
 TAYLOR = "-options_file options/taylor-bar.opts -rod_rod_divisions 2 -rod_rod_elements 12 -time_step 1e-7 -time_end 2e-5 "
 VARIANTS |= {
     "balance, rows on the second": BLOCKS + NONLINEAR + "-contact_balance true -contact_rows second",
@@ -262,6 +275,9 @@ RANKS_AMID = {
     "slides": ("-options_file options/sliding-flat.opts -block_boundary_displacement_ymax 0.5*max(0,t-0.1),-5e-6*min(1,10*t)", 1, 3, 0.55),
     "discs": ("-options_file options/discs.opts -time_end 3.3e-4", 1, 3, 0.9095),
     "friction": ("-options_file options/slope.opts", 1, 2, 0.55),
+    "laws of pairs": (LAWS, 1, 3, 0.55),
+    "bonded by the step": (BLOCKS + KEPT + CONTACT["bonded"], 3, 1, 0.55),
+    "held together by the step": (BLOCKS + STEP + CONTACT["held together"], 1, 3, 0.55),
     "sides swapped, an odd step": (HEAD_ON, 3, 1, 0.557),
 }
 # What is nothing but round-off in some of these is measured by what it is made of, with a lever or a path of 1 m

@@ -1,6 +1,7 @@
 /* Laws of the rows of a node: each is a projection on the forces that the law allows, and its derivative is that of its values. */
 #include "support.h"
 #include <contact/laws/rowlaw.h>
+#include <impakt/contact.h>
 
 #define POINTS 2000
 #define STEP   1e-6 /* of differences: cuts 1e-12 off smooth pieces of size 1, and divides round-off of 2e-16 to 1e-10 */
@@ -21,6 +22,8 @@ static PetscReal Across(PetscInt n, const PetscReal p[])
   for (PetscInt i = 1; i < n; i++) sum += PetscSqr(p[i]);
   return PetscSqrtReal(sum);
 }
+
+static RowLaw unilateral, tie, hold, spring; /* of the registry, see take_laws() */
 
 /* Bounds: none, Coulomb's, one that does not depend on the normal force, both */
 static const PetscReal limits[][2] = {{0, 0}, {0, 0.4}, {0.3, 0}, {0.2, 0.7}};
@@ -44,8 +47,8 @@ static void unilateral_is_in_the_cone(void **state)
         PetscReal p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], again[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS], bound, work = 0;
 
         (void)Draw(&seed, n, limits[l], p);
-        RowLawUnilateral.project(n, limits[l], p, force, derivative);
-        RowLawUnilateral.project(n, limits[l], force, again, derivative);
+        unilateral.project(n, limits[l], p, force, derivative);
+        unilateral.project(n, limits[l], force, again, derivative);
         for (PetscInt i = 0; i < n; i++) near(again[i], force[i], 1e-15); /* a quotient of nearly equal numbers is off by its round-off */
         assert_true(force[0] == PetscMax(p[0], 0));
         if (p[0] <= 0) {
@@ -81,7 +84,7 @@ static void unilateral_is_the_nearest_point(void **state)
 
     (void)Draw(&seed, n, limits[3], p);
     (void)Draw(&seed, n, limits[3], other);
-    RowLawUnilateral.project(n, limits[3], p, force, derivative);
+    unilateral.project(n, limits[3], p, force, derivative);
     bound = p[0] > 0 ? limits[3][0] + limits[3][1] * p[0] : 0;
     size  = Across(n, other);
     for (PetscInt i = 1; i < n; i++) product += (p[i] - force[i]) * (other[i] * PetscMin(1, bound / size) - force[i]);
@@ -108,7 +111,7 @@ static void CheckDerivative(const RowLaw *law, PetscInt n, const PetscReal limit
 
 static void derivatives_are_those_of_differences(void **state)
 {
-  const RowLaw *const laws[] = {&RowLawUnilateral, &RowLawTie};
+  const RowLaw *const laws[] = {&unilateral, &tie, &hold, &spring};
   unsigned            seed   = 3;
   PetscInt            count  = 0;
 
@@ -134,7 +137,7 @@ static void tie_is_the_identity(void **state)
   for (PetscInt n = 1; n <= ROW_LAW_ROWS; n++) {
     PetscReal force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
-    RowLawTie.project(n, limits[1], p, force, derivative);
+    tie.project(n, limits[1], p, force, derivative);
     for (PetscInt i = 0; i < n; i++) {
       assert_true(force[i] == p[i]);
       for (PetscInt j = 0; j < n; j++) assert_true(derivative[i * n + j] == (i == j));
@@ -146,18 +149,53 @@ static void tie_is_the_identity(void **state)
 static void laws_read_what_they_hold(void **state)
 {
   (void)state;
-  assert_int_equal(RowLawTie.reads, ROW_LAW_READS_END);
-  assert_int_equal(RowLawUnilateral.reads, ROW_LAW_READS_CLOSED);
+  assert_int_equal(tie.reads, ROW_LAW_READS_END);
+  assert_int_equal(unilateral.reads, ROW_LAW_READS_CLOSED);
+  assert_int_equal(hold.reads, ROW_LAW_READS_CLOSED);
+  assert_int_equal(spring.reads, ROW_LAW_READS_MEAN);
+  assert_true(!unilateral.pulls && tie.pulls && hold.pulls && spring.pulls);
+}
+
+/* A spring of 4 N/m that is pulled by 3 N gives way by 0.75 m, and stores the work of a force that grows to that, 1.125 J; the others are
+ * rigid */
+static void springs_give_way(void **state)
+{
+  (void)state;
+  near(3 * spring.compliance(4), 0.75, 1e-15);
+  near(spring.stored(4, -0.75), 1.125, 1e-15);
+  assert_true(!unilateral.compliance && !tie.compliance && !hold.compliance && !unilateral.stored && !tie.stored && !hold.stored);
+}
+
+/* A name that is none names those that there are */
+static void laws_have_names(void **state)
+{
+  RowLaw law;
+
+  (void)state;
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'glue'|unilateral|tie|hold|spring", RowLawCreate("glue", &law));
+}
+
+static void take_laws(void **state)
+{
+  (void)state;
+  ok(ContactInitializePackage());
+  ok(RowLawCreate("unilateral", &unilateral));
+  ok(RowLawCreate("tie", &tie));
+  ok(RowLawCreate("hold", &hold));
+  ok(RowLawCreate("spring", &spring));
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(take_laws), /* first */
       cmocka_unit_test(unilateral_is_in_the_cone),
       cmocka_unit_test(unilateral_is_the_nearest_point),
       cmocka_unit_test(derivatives_are_those_of_differences),
       cmocka_unit_test(tie_is_the_identity),
       cmocka_unit_test(laws_read_what_they_hold),
+      cmocka_unit_test(springs_give_way),
+      cmocka_unit_test(laws_have_names),
   };
 
   return impakt_main(argc, argv, tests);

@@ -8,6 +8,15 @@
 #define ROWS  12   /* at most */
 #define CLOSE 1e-9 /* solutions have round-off of 1e-13 times the condition of S, which is at most 1e3 here: measured 2e-12 */
 
+static RowLaw unilateral, tie; /* see take_laws() */
+
+static void take_laws(void **state)
+{
+  (void)state;
+  ok(RowLawCreate_Unilateral(&unilateral));
+  ok(RowLawCreate_Tie(&tie));
+}
+
 /* S by columns */
 static PetscScalar *entries(const LawProblem *problem)
 {
@@ -51,9 +60,9 @@ static PetscReal Random(unsigned *seed)
 static void Fill(LawProblem *problem, const RowLaw *law, PetscInt n, PetscInt rows, PetscInt places, PetscReal add, unsigned seed,
                  PetscReal B[])
 {
-  problem->law = law;
   resize(problem, n);
   problem->n_nodes = n / rows;
+  for (PetscInt node = 0; node < problem->n_nodes; node++) problem->law[node] = law;
   for (PetscInt node = 0; node <= problem->n_nodes; node++) problem->begin[node] = node * rows;
   for (PetscInt k = 0; k < n * places; k++) B[k] = Random(&seed);
   for (PetscInt i = 0; i < n; i++)
@@ -138,7 +147,7 @@ static void without_friction_it_is_the_one_solution(void **state)
       PetscInt    found = 0;
       PetscBool   solved;
 
-      Fill(&problem, &RowLawUnilateral, n, 1, n, 0.01, seed, B);
+      Fill(&problem, &unilateral, n, 1, n, 0.01, seed, B);
       for (PetscInt i = 0; i < n; i++) problem.force[i] = seed % 2; /* from no forces, and from any */
       solved = solve(&problem);
       assert_true(solved);
@@ -174,7 +183,7 @@ static void base_is_where_readings_were_taken(void **state)
     PetscScalar first[4];
     PetscBool   solved;
 
-    Fill(&problem, &RowLawUnilateral, 4, 1, 4, 0.1, seed, B);
+    Fill(&problem, &unilateral, 4, 1, 4, 0.1, seed, B);
     solved = solve(&problem);
     assert_true(solved);
     for (PetscInt i = 0; i < 4; i++) first[i] = problem.force[i];
@@ -202,7 +211,7 @@ static void with_friction_the_law_holds(void **state)
       for (unsigned seed = 1; seed <= 100; seed++) {
         PetscBool solved;
 
-        Fill(&problem, &RowLawUnilateral, ROWS, rows, ROWS + 4, 0.5, seed, B);
+        Fill(&problem, &unilateral, ROWS, rows, ROWS + 4, 0.5, seed, B);
         for (PetscInt k = 0; k < 2 * problem.n_nodes; k++) problem.limit[k] = limits[l][k % 2];
         solved = solve(&problem);
         if (!solved) {
@@ -226,7 +235,7 @@ static void a_node_sticks_and_slips_as_by_hand(void **state)
 
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(readings); k++) {
-    Fill(&problem, &RowLawUnilateral, 2, 2, 1, 0, 1, B);
+    Fill(&problem, &unilateral, 2, 2, 1, 0, 1, B);
     entries(&problem)[0] = entries(&problem)[3] = 1;
     entries(&problem)[1] = entries(&problem)[2] = 0;
     problem.limit[1]                            = 0.3;
@@ -251,7 +260,7 @@ static void ties_are_linear_equations(void **state)
       PetscScalar x[ROWS];
       PetscBool   solved;
 
-      Fill(&problem, &RowLawTie, 6, rows, 6, 0.1, seed, B);
+      Fill(&problem, &tie, 6, rows, 6, 0.1, seed, B);
       solved = solve(&problem);
       assert_true(solved && !problem.by_nodes);
       assert_true(SolveRows(&problem, (1 << 6) - 1, x));
@@ -261,11 +270,39 @@ static void ties_are_linear_equations(void **state)
   ok(LawProblemDestroy(&problem));
 }
 
+/* Each node has its own law: the second of three is tied, the others push; where both of these are pulled, the tie alone has forces */
+static void nodes_have_laws_of_their_own(void **state)
+{
+  LawProblem problem = {0};
+  PetscReal  B[ROWS * ROWS];
+
+  (void)state;
+  for (unsigned seed = 1; seed <= 40; seed++)
+    for (PetscInt open = 0; open < 2; open++) {
+      PetscBool solved;
+
+      Fill(&problem, &unilateral, 3, 1, 3, 0.1, seed, B);
+      problem.law[1] = &tie;
+      if (open) problem.read[0] = problem.read[2] = 100;
+      solved = solve(&problem);
+      assert_true(solved);
+      near(Reads(&problem, 1), 0, CLOSE);
+      for (PetscInt i = 0; i < 3; i += 2) {
+        const PetscReal force = PetscRealPart(problem.force[i]), gap = Reads(&problem, i);
+
+        assert_true(force >= -CLOSE && gap >= -CLOSE && PetscAbsReal(force * gap) <= CLOSE);
+        if (open) near(force, 0, CLOSE);
+      }
+      if (open) near(PetscRealPart(problem.force[1]), -PetscRealPart(problem.read[1] / entries(&problem)[4]), CLOSE);
+    }
+  ok(LawProblemDestroy(&problem));
+}
+
 /* Each row stands twice, as where nodes of both sides say the same: single forces are not unique, what bodies get of them is that of the
    rows that stand once */
 static void doubled_rows_give_bodies_the_same(void **state)
 {
-  const RowLaw *const laws[] = {&RowLawUnilateral, &RowLawTie};
+  const RowLaw *const laws[] = {&unilateral, &tie};
   LawProblem          once = {0}, twice = {0};
 
   (void)state;
@@ -313,7 +350,7 @@ static void sweeps_help_where_newton_cycles(void **state)
   PetscBool         solved;
 
   (void)state;
-  Fill(&problem, &RowLawUnilateral, 3, 1, 1, 0, 1, B);
+  Fill(&problem, &unilateral, 3, 1, 1, 0, 1, B);
   for (PetscInt k = 0; k < 9; k++) entries(&problem)[k] = S[k];
   for (PetscInt i = 0; i < 3; i++) problem.read[i] = read[i];
   solved = solve(&problem);
@@ -334,7 +371,7 @@ static void what_has_no_solution_is_not_solved(void **state)
 
   (void)state;
   for (PetscInt law = 0; law < 2; law++) {
-    Fill(&problem, law ? &RowLawTie : &RowLawUnilateral, 2, 1, 1, 0, 1, B);
+    Fill(&problem, law ? &tie : &unilateral, 2, 1, 1, 0, 1, B);
     entries(&problem)[0] = entries(&problem)[3] = 1;
     entries(&problem)[1] = entries(&problem)[2] = -1;
     problem.read[0] = problem.read[1] = -1;
@@ -343,8 +380,8 @@ static void what_has_no_solution_is_not_solved(void **state)
     assert_true(problem.iterations < 100000); /* sweeps are limited: 5120, Newton's method between them */
   }
   entries(&problem)[0] = NAN;
-  problem.law          = &RowLawUnilateral;
-  solved               = solve(&problem);
+  problem.law[0] = problem.law[1] = &unilateral;
+  solved                          = solve(&problem);
   assert_false(solved);
   entries(&problem)[0] = 1;
   problem.read[0]      = NAN;
@@ -364,7 +401,7 @@ static void units_do_not_matter(void **state)
     PetscScalar first[ROWS];
     PetscBool   solved;
 
-    Fill(&problem, &RowLawUnilateral, 8, 2, 8, 0.1, seed, B);
+    Fill(&problem, &unilateral, 8, 2, 8, 0.1, seed, B);
     for (PetscInt node = 0; node < 4; node++) problem.limit[2 * node + 1] = 0.3;
     solved = solve(&problem);
     assert_true(solved);
@@ -385,11 +422,13 @@ static void units_do_not_matter(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
+      cmocka_unit_test(take_laws), /* first */
       cmocka_unit_test(without_friction_it_is_the_one_solution),
       cmocka_unit_test(base_is_where_readings_were_taken),
       cmocka_unit_test(with_friction_the_law_holds),
       cmocka_unit_test(a_node_sticks_and_slips_as_by_hand),
       cmocka_unit_test(ties_are_linear_equations),
+      cmocka_unit_test(nodes_have_laws_of_their_own),
       cmocka_unit_test(doubled_rows_give_bodies_the_same),
       cmocka_unit_test(sweeps_help_where_newton_cycles),
       cmocka_unit_test(what_has_no_solution_is_not_solved),

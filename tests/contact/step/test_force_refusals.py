@@ -14,8 +14,7 @@ FRICTION = "-contact_law coulomb -contact_friction 0.3"
 STATIC = "-left_ts_type static -left_boundary_displacement xmin -left_boundary_displacement_xmin 0,0 -right_mass_redistribute false -left_initial_velocity 0,0"
 
 REFUSED = {
-    "bonded": ("-contact_law bonded", ["-contact_law bonded", "schwarz", "not with force", "tied"]),
-    "separation": ("-contact_separation false", ["-contact_separation false", "schwarz", "not with force"]),
+    "separation": (f"{FRICTION} -contact_separation false", ["-contact_separation false", "schwarz or force", "frictionless", "coulomb"]),
     "constraint": ("-contact_constraint gap_rate", ["-contact_type force", "-contact_constraint", "-contact_rule", "leave"]),
     "stabilization": (f"{MASS} -contact_stabilization naive", ["-contact_type force", "-contact_stabilization", "-contact_rule", "leave"]),
     "static": (STATIC, ["-contact_rule impulse", "'left'", "static", "-left_ts_type alpha2", "-<body>_mass_redistribute true"]),
