@@ -241,6 +241,69 @@ static void plate(void **state)
   expect_equal(&options, &code);
 }
 
+/* Two blocks that are glued to each other; the lower one falls on a floor with friction. Each pair has its law */
+static void laws_of_pairs(void **state)
+{
+  const PetscInt  faces[2]     = {3, 3};
+  const PetscReal corners[][2] = {{0, 0}, {1, 1}, {0, 1}, {1, 2}}, velocity[2] = {0.5, -1};
+  const PetscReal point[3] = {0, -0.001, 0}, normal[3] = {0, 1, 0};
+  Controller      controller;
+  Contact         contact;
+  Obstacle        floor_plane;
+  ContactLaw      law;
+  PetscBool       has;
+  End             options, code;
+  Body            low, high;
+
+  (void)state;
+  AddOptions("-bodies low,high -time_end 4e-3 -time_step 1e-4 -obstacles floor -floor_obstacle_type plane -floor_point 0,-0.001 "
+             "-floor_normal 0,1 -contact_type force -contact_pairs low.ymax:high.ymin,low.ymin:floor "
+             "-contact_law_low.ymax:high.ymin spring -contact_spring_stiffness 1 -contact_spring_stiffness_low.ymax:high.ymin 1e7 "
+             "-contact_law_low.ymin:floor coulomb -contact_friction 0.3");
+  AddOptions("-low_dm_plex_dim 2 -low_dm_plex_box_faces 3,3 -low_density 1000 -low_youngs_modulus 1e7 -low_initial_velocity 0.5,-1 "
+             "-high_dm_plex_dim 2 -high_dm_plex_box_lower 0,1 -high_dm_plex_box_upper 1,2 -high_dm_plex_box_faces 3,3 -high_density 1000 "
+             "-high_youngs_modulus 1e7 -high_initial_velocity 0.5,-1");
+  run_options(&options);
+  ok(PetscOptionsClear(NULL));
+
+  ok(ControllerCreate(PETSC_COMM_WORLD, &controller));
+  low  = body("low", box(2, faces, corners[0], corners[1]), material(MATERIAL_LINEAR_ELASTIC, 1000, 1e7, 0));
+  high = body("high", box(2, faces, corners[2], corners[3]), material(MATERIAL_LINEAR_ELASTIC, 1000, 1e7, 0));
+  ok(BodySetInitialVelocity(low, velocity));
+  ok(BodySetInitialVelocity(high, velocity));
+  add(controller, low);
+  add(controller, high);
+  ok(ControllerSetTimes(controller, 0, 4e-3, 1e-4));
+  ok(ControllerGetContact(controller, &contact));
+  ok(ObstacleCreate(PETSC_COMM_WORLD, "floor", &floor_plane));
+  ok(ObstacleSetPlane(floor_plane, point, normal));
+  ok(ContactAddObstacle(contact, floor_plane));
+  ok(ObstacleDestroy(&floor_plane));
+  ok(ContactSetType(contact, CONTACT_FORCE));
+  ok(ContactAddPair(contact, "low.ymax:high.ymin"));
+  ok(ContactAddPair(contact, "low.ymin:floor"));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 2", ContactSetPairLaw(contact, 2, CONTACT_LAW_TIED));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no contact law", ContactSetPairLaw(contact, 0, CONTACT_LAW_FRICTION));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'sand'|coulomb", ContactSetPairFrictionLaw(contact, 1, "sand"));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness_low.ymax:high.ymin -1|positive", ContactSetPairSpringStiffness(contact, 0, -1));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness 0|positive", ContactSetSpringStiffness(contact, 0));
+  ok(ContactSetPairLaw(contact, 0, CONTACT_LAW_SPRING));
+  ok(ContactSetSpringStiffness(contact, 1));
+  ok(ContactSetPairSpringStiffness(contact, 0, 1e7));
+  ok(ContactSetPairFrictionLaw(contact, 1, "coulomb"));
+  ok(ContactSetFriction(contact, 0.3));
+  ok(ContactSetLaw(contact, CONTACT_LAW_TIED)); /* of pairs that have none of their own: there are none */
+  ok(ContactGetPairLaw(contact, 0, &law));
+  assert_int_equal(law, CONTACT_LAW_SPRING);
+  ok(ContactGetPairLaw(contact, 1, &law));
+  assert_int_equal(law, CONTACT_LAW_FRICTION);
+  ok(ContactHasLaw(contact, CONTACT_LAW_TIED, &has));
+  assert_false(has);
+  ok(ControllerSetUp(controller));
+  run(controller, &code);
+  expect_equal(&options, &code);
+}
+
 /* What a program has set holds where the options are silent, and gives way where they speak */
 static void options_come_over_the_program(void **state)
 {
@@ -560,6 +623,7 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
       simulation_test(bars),
       simulation_test(plate),
+      simulation_test(laws_of_pairs),
       simulation_test(options_come_over_the_program),
       simulation_test(what_comes_too_late_is_refused),
       simulation_test(mesh_and_material_are_shared),
