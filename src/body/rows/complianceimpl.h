@@ -7,13 +7,14 @@
 struct _BodyCompliance {
   Compliance
       matrices; /* a level for each substep: displacement k substeps after a hat of force, of 1 N at the end of the first one [m/N] */
-  Compliance     nodal;         /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
-  BodyForceShape nodal_shape;   /* the forces that it is for */
-  PetscReal      nodal_step;    /* the substep that it is of [s] */
-  Vec            diagonal;      /* see BodyGetNodalDiagonal(); or NULL */
-  PetscReal      diagonal_step; /* the substep that it is of [s] */
-  PetscInt       n_kept;        /* known rows that stay when a step fails */
-  PetscScalar   *mine;          /* work space: of the rows of this rank, for each substep; behind base_displacement and base_force */
+  Compliance        nodal;       /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
+  BodyForceShape    nodal_shape; /* the forces that it is for */
+  PetscReal         nodal_step;  /* the substep that it is of [s] */
+  struct _BodySlab *slab;        /* that tells it, see slab.c; NULL: controller steps do */
+  Vec               diagonal;    /* see BodyGetNodalDiagonal(); or NULL */
+  PetscReal         diagonal_step; /* the substep that it is of [s] */
+  PetscInt          n_kept;        /* known rows that stay when a step fails */
+  PetscScalar      *mine;          /* work space: of the rows of this rank, for each substep; behind base_displacement and base_force */
   /* an integration from which changes are counted: this rank's rows, for each substep */
   PetscScalar *base_displacement, *base_force;
   PetscBool    has_base, base_gathered; /* known_displacement and known_force are those, at the matrices' state `gathered_state` */
@@ -33,3 +34,6 @@ struct _BodyCompliance {
   PetscBool    told; /* inputs are those that BodyRespond() is to answer */
   PetscScalar *rhs;
 };
+
+PETSC_INTERN PetscErrorCode BodySlabProbe(Body, BodyForceShape, PetscInt, const PetscInt[], struct _BodySlab **, Compliance);
+PETSC_INTERN PetscErrorCode BodySlabDestroy(struct _BodySlab **);

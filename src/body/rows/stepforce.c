@@ -5,6 +5,8 @@
 */
 #include "complianceimpl.h"
 
+#define MANY 100 /* displacements, from which on a slab at the surface tells how they answer */
+
 /*@
   BodySetConstantForces - has forces act along the rows throughout the controller step, in place of those that the last one ended with
 
@@ -46,6 +48,13 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a slab tells how so many displacements answer: a column by a controller step costs more than the passes that correct it. Without
+   inertia a body has no scale beyond which forces are not felt. */
+static PetscBool MayTakeSlab(Body body, PetscInt n)
+{
+  return (PetscBool)(n > MANY && body->integrator->has_inertia && body->integrator->deforms);
+}
+
 /*@
   BodyGetNodalCompliance - displacements at the end of the controller step under unit forces on nodes
 
@@ -65,36 +74,49 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
   Level: developer
 
   Note:
-  Each new one costs a controller step of the body, linearized about its undeformed state.
+  Each new one costs a controller step of the body, linearized about its undeformed state. Of more than 100 the columns are approximate, as
+  a slab at the surface answers: each costs a small solution.
 
 .seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`
 @*/
 PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], const PetscInt *place[],
                                       PetscInt *leading, const PetscScalar *matrix[])
 {
-  Compliance *nodal   = &body->compliance->nodal;
-  PetscInt    unknown = 0, local, begin, all;
+  struct _BodyCompliance *compliance = body->compliance;
+  Compliance             *nodal      = &compliance->nodal;
+  PetscInt                unknown = 0, known = 0, local, begin, all;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(place, 5);
   PetscAssertPointer(leading, 6);
   PetscAssertPointer(matrix, 7);
-  if (*nodal && (body->compliance->nodal_step != body->time.step || body->compliance->nodal_shape != shape))
-    PetscCall(ComplianceDestroy(nodal));
+  if (*nodal) {
+    ComplianceGetRows(*nodal, &known, NULL, NULL);
+    for (PetscInt i = 0; i < n; i++) unknown += !ComplianceKnows(*nodal, dofs[i]);
+    if (compliance->nodal_step != body->time.step || compliance->nodal_shape != shape ||
+        (!compliance->slab && MayTakeSlab(body, known + unknown))) {
+      PetscCall(ComplianceDestroy(nodal));
+      PetscCall(BodySlabDestroy(&compliance->slab));
+    }
+  }
   if (!*nodal) {
-    body->compliance->nodal_step  = body->time.step;
-    body->compliance->nodal_shape = shape;
+    compliance->nodal_step  = body->time.step;
+    compliance->nodal_shape = shape;
     PetscCall(VecGetLocalSize(body->state.u, &local));
     PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
     PetscCall(VecGetSize(body->state.u, &all));
     PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, nodal));
+    unknown = n;
+    known   = 0;
   }
-  for (PetscInt i = 0; i < n; i++) unknown += !ComplianceKnows(*nodal, dofs[i]);
   if (unknown) {
     PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
+    PetscCall(PetscInfo(body, "%" PetscInt_FMT " new columns of nodal compliance beside %" PetscInt_FMT "%s\n", unknown, known,
+                        compliance->slab || MayTakeSlab(body, unknown) ? ", of a slab at the surface" : ""));
     PetscCall(ComplianceReserve(*nodal, unknown));
-    PetscCall(BodyProbeNodes(body, shape, n, dofs, *nodal));
+    if (compliance->slab || MayTakeSlab(body, unknown)) PetscCall(BodySlabProbe(body, shape, n, dofs, &compliance->slab, *nodal));
+    else PetscCall(BodyProbeNodes(body, shape, n, dofs, *nodal));
     PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   }
   ComplianceGetRows(*nodal, NULL, NULL, place);

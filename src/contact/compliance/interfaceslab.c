@@ -1,10 +1,6 @@
 /* The part of a body near its contact surfaces, with what it may do beyond: its matrix, and the rows on it. */
 #include "interfaceslab.h"
 
-/* Layers of elements beside the surface. With two there is an iteration more, with four half of one less at long steps, for which factors
-   take 1.3 times as long. */
-#define LAYERS 3
-
 /* What is added to the diagonal of P^T A P, in parts of it */
 #define SHIFT 1e-10
 
@@ -14,41 +10,6 @@ PetscErrorCode InterfaceSlabReset(InterfaceSlab *slab)
   PetscCall(MatDestroy(&slab->functions));
   PetscCall(MatDestroy(&slab->K));
   PetscCall(MatDestroy(&slab->rows));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Marks dofs of any rank */
-static PetscErrorCode Mark(IS dofs, Vec mark)
-{
-  const PetscInt *dof;
-  PetscInt        n;
-
-  PetscFunctionBegin;
-  PetscCall(ISGetLocalSize(dofs, &n));
-  PetscCall(ISGetIndices(dofs, &dof));
-  for (PetscInt i = 0; i < n; i++) PetscCall(VecSetValue(mark, dof[i], 1, INSERT_VALUES));
-  PetscCall(ISRestoreIndices(dofs, &dof));
-  PetscCall(VecAssemblyBegin(mark));
-  PetscCall(VecAssemblyEnd(mark));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The marked dofs of this rank */
-static PetscErrorCode ListMarked(Vec mark, IS *is)
-{
-  PetscInt           count = 0, *dofs, begin, n;
-  const PetscScalar *values;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(mark, &n));
-  PetscCall(VecGetOwnershipRange(mark, &begin, NULL));
-  PetscCall(VecGetArrayRead(mark, &values));
-  PetscCall(PetscMalloc1(n, &dofs));
-  for (PetscInt i = 0; i < n; i++)
-    if (values[i] != 0) dofs[count++] = begin + i;
-  PetscCall(VecRestoreArrayRead(mark, &values));
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)mark), count, dofs, PETSC_COPY_VALUES, is));
-  PetscCall(PetscFree(dofs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,24 +42,14 @@ static PetscErrorCode ListSurfaces(Contact contact, PetscInt b, IS *is)
 /* P. A massless layer has its own numbers, and all of it counts. */
 static PetscErrorCode CreateFunctions(Contact contact, InterfaceSlab *slab, Mat A)
 {
-  IS  reach, dofs;
-  Vec mark, positions;
+  IS  dofs;
+  Vec positions;
 
   PetscFunctionBegin;
   if (slab->is_layer) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatCreateVecs(A, &mark, NULL));
-  PetscCall(VecZeroEntries(mark));
-  PetscCall(ListSurfaces(contact, slab->body, &reach));
-  PetscCall(Mark(reach, mark));
-  PetscCall(ISDestroy(&reach));
-  PetscCall(ListMarked(mark, &reach));
-  PetscCall(MatIncreaseOverlap(A, 1, &reach, LAYERS));
-  PetscCall(Mark(reach, mark));
-  PetscCall(ISDestroy(&reach));
-  PetscCall(ListMarked(mark, &dofs));
-  PetscCall(VecDestroy(&mark));
+  PetscCall(ListSurfaces(contact, slab->body, &dofs));
   PetscCall(BodyGetReferencePositions(contact->bodies[slab->body], &positions));
-  PetscCall(InterfaceFarCreate(A, positions, contact->dim, dofs, &slab->functions));
+  PetscCall(BodyCreateSlabFunctions(A, positions, contact->dim, dofs, &slab->functions));
   PetscCall(ISDestroy(&dofs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

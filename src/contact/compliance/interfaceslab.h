@@ -14,4 +14,3 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode InterfaceSlabUpdate(Contact, InterfaceSlab *, PetscBool *);
 PETSC_INTERN PetscErrorCode InterfaceSlabReset(InterfaceSlab *);
-PETSC_INTERN PetscErrorCode InterfaceFarCreate(Mat, Vec, PetscInt, IS, Mat *);

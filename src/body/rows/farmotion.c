@@ -1,7 +1,7 @@
 /*
-   What a body may do beyond the layers of elements that the slab has whole: displacements that are linear between the nodes of a coarse
-   grid on the box of the body. With the columns of P, one for each dof of the slab and one for each coarse node and component, the body
-   answers to forces on its surface with
+   What a body may do beyond the layers of elements that a slab at its surface has whole: displacements that are linear between the nodes of
+   a coarse grid on the box of the body. With the columns of P, one for each dof of the slab and one for each coarse node and component, the
+   body answers to forces on its surface with
 
      B P (P^T A P)^{-1} P^T B^T
 
@@ -9,7 +9,11 @@
    little from one coarse node to the next: what reaches far from the surface does. A slab whose far side is held lacks all that, and at
    steps in which waves cross the body that is most of what long waves on the surface answer with.
 */
-#include "interfaceslab.h"
+#include <body/layout/bodyimpl.h>
+
+/* Layers of elements beside the surface. With two there is an iteration more, with four half of one less at long steps, for which factors
+   take 1.3 times as long. */
+#define LAYERS 3
 
 /* Edge of a coarse cell, in edges of elements as they are on average */
 #define CELL 4
@@ -169,15 +173,88 @@ static PetscErrorCode FillFunctions(const Coarse *coarse, Vec positions, IS near
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* P, for a body with matrix A: the dofs of the slab, and what the coarse grid does beyond them */
-PetscErrorCode InterfaceFarCreate(Mat A, Vec positions, PetscInt dim, IS near, Mat *functions)
+/* Marks dofs of any rank */
+static PetscErrorCode Mark(IS dofs, Vec mark)
+{
+  const PetscInt *dof;
+  PetscInt        n;
+
+  PetscFunctionBegin;
+  PetscCall(ISGetLocalSize(dofs, &n));
+  PetscCall(ISGetIndices(dofs, &dof));
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecSetValue(mark, dof[i], 1, INSERT_VALUES));
+  PetscCall(ISRestoreIndices(dofs, &dof));
+  PetscCall(VecAssemblyBegin(mark));
+  PetscCall(VecAssemblyEnd(mark));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The marked dofs of this rank */
+static PetscErrorCode ListMarked(Vec mark, IS *is)
+{
+  PetscInt           count = 0, *dofs, begin, n;
+  const PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(mark, &n));
+  PetscCall(VecGetOwnershipRange(mark, &begin, NULL));
+  PetscCall(VecGetArrayRead(mark, &values));
+  PetscCall(PetscMalloc1(n, &dofs));
+  for (PetscInt i = 0; i < n; i++)
+    if (values[i] != 0) dofs[count++] = begin + i;
+  PetscCall(VecRestoreArrayRead(mark, &values));
+  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)mark), count, dofs, PETSC_COPY_VALUES, is));
+  PetscCall(PetscFree(dofs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The dofs of this rank within some layers of elements from dofs of any rank, which may come more than once */
+static PetscErrorCode FindNear(Mat A, IS surface, IS *near)
+{
+  IS  reach;
+  Vec mark;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreateVecs(A, &mark, NULL));
+  PetscCall(VecZeroEntries(mark));
+  PetscCall(Mark(surface, mark));
+  PetscCall(ListMarked(mark, &reach));
+  PetscCall(MatIncreaseOverlap(A, 1, &reach, LAYERS));
+  PetscCall(Mark(reach, mark));
+  PetscCall(ISDestroy(&reach));
+  PetscCall(ListMarked(mark, near));
+  PetscCall(VecDestroy(&mark));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyCreateSlabFunctions - the displacements near a surface, and what the body may do beyond them on a coarse grid
+
+  Collective
+
+  Input Parameters:
++ A         - matrix of the body, without entries beside the diagonal in rows of held dofs
+. positions - coordinates of its nodes [m]
+. dim       - of space
+- surface   - dofs of any rank: functions have those one by one that are within three layers of elements of them
+
+  Output Parameter:
+. functions - P: all dofs by functions, those near the surface first on each rank
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetNodalCompliance()`
+@*/
+PetscErrorCode BodyCreateSlabFunctions(Mat A, Vec positions, PetscInt dim, IS surface, Mat *functions)
 {
   MPI_Comm   comm   = PetscObjectComm((PetscObject)A);
   Coarse     coarse = {0};
   PetscBool *moved;
   PetscInt   n, n_near, n_coarse = PETSC_DECIDE;
+  IS         near;
 
   PetscFunctionBegin;
+  PetscCall(FindNear(A, surface, &near));
   PetscCall(MatGetLocalSize(A, &n, NULL));
   PetscCall(ISGetLocalSize(near, &n_near));
   PetscCall(PetscMalloc1(n, &moved));
@@ -190,6 +267,7 @@ PetscErrorCode InterfaceFarCreate(Mat A, Vec positions, PetscInt dim, IS near, M
   PetscCall(MatSetType(*functions, MATAIJ));
   PetscCall(MatSetUp(*functions));
   PetscCall(FillFunctions(&coarse, positions, near, moved, *functions));
+  PetscCall(ISDestroy(&near));
   PetscCall(PetscFree(coarse.numbers));
   PetscCall(PetscFree(moved));
   PetscFunctionReturn(PETSC_SUCCESS);
