@@ -77,7 +77,8 @@ PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscB
 PETSC_EXTERN PetscErrorCode TransferBeginUpdate(Transfer, Vec, Vec, PetscReal, PetscReal[TRANSFER_SUMS]);
 PETSC_EXTERN PetscErrorCode TransferCompareMotion(Transfer, const PetscReal[TRANSFER_SUMS], PetscBool, PetscReal[TRANSFER_LARGEST]);
 PETSC_EXTERN PetscErrorCode TransferEndUpdate(Transfer, Vec, Vec, PetscReal, const PetscReal[TRANSFER_LARGEST], PetscBool *);
-PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscReal, PetscReal, PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscBool, PetscReal, PetscReal,
+                                           PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSave(Transfer);
 PETSC_EXTERN PetscErrorCode TransferRestore(Transfer);
 PETSC_EXTERN PetscErrorCode TransferSetBalance(Transfer, PetscReal);

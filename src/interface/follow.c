@@ -15,6 +15,10 @@
    so that in the step it changes by 1/2 (B_0 + B) dx, the trapezoidal rule for the path of the gap. Then what forces do along rows that
    change, 1/2 (f_0 B_0 + f B) dx in a closed gap, adds up to nothing but for terms of second order in the step.
 
+   Surfaces may be where they are expected in the middle of the step instead, for forces that are the same throughout it: weights are those
+   of that place then, no slip ahead of it, and the gap changes by B dx in the step. It begins with what it has by the rows of the last
+   step, which is 1/2 (B - B_0) dx more in the middle.
+
    When a row is built again, other nodes of the partner come in, and its weights would jump, which loses energy. Its new weights are the
    goal, to which those that it has go as it slips on, by the slip after which rows are built.
 */
@@ -79,11 +83,11 @@ static PetscErrorCode Correct(Transfer transfer, PetscInt row, const PetscReal a
 }
 
 /* The weights go to their goals by the part of the way that the slip of this step is of the bound */
-static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal ahead[])
+static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal expected[], const PetscReal ahead[])
 {
   RowSet         *set   = &transfer->rows;
   const PetscInt  first = set->offsets[row], n = set->offsets[row + 1] - first;
-  const PetscReal slip = PetscSqrtReal(Dot(ahead, ahead)) / (transfer->slip_bound * transfer->dirichlet->data.sizes[row]);
+  const PetscReal slip = PetscSqrtReal(Dot(expected, expected)) / (transfer->slip_bound * transfer->dirichlet->data.sizes[row]);
   const PetscReal rest = PetscMax(set->rest[row] - slip, 0), part = set->rest[row] > 0 ? 1 - rest / set->rest[row] : 0;
   PetscReal       weights[FOLLOW_MAX];
 
@@ -116,30 +120,32 @@ static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still,
   return (PetscBool)(slip < PetscSqr(still * data->sizes[row]) && (!turns || turn < PetscSqr(still)));
 }
 
-/* New normal and weights of a row, and the gap without displacements that has its gap go on. `ratio`: of this step to the last one */
-static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, PetscReal ratio)
+/* New normal and weights of a row, and the gap without displacements that has its gap go on. `middle`: surfaces are where they will be in
+   the middle of the step; `ratio`: of this step to the last one */
+static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, PetscBool middle, PetscReal ratio)
 {
   const SurfaceData *data   = &transfer->dirichlet->data;
   Follow            *follow = &transfer->follow;
   RowSet            *set    = &transfer->rows;
   const PetscInt     dim    = transfer->dim;
-  PetscReal          gap, way, across[3] = {0}, before[3] = {0}, after[3] = {0}, ahead[3] = {0};
+  PetscReal          gap, way, across[3] = {0}, before[3] = {0}, after[3] = {0}, expected[3] = {0}, ahead[3] = {0};
 
   PetscFunctionBegin;
   gap = set->gap[row] - AlongRow(transfer, row, data->reference, transfer->column_reference) +
         SplitRow(transfer, row, data->positions, transfer->column_x, before);
   way = SplitRow(transfer, row, follow->moved, transfer->column_moved, across);
   ExpectSlip(transfer, row, across, ratio);
-  if (follow->known[row]) PetscCall(PetscArraycpy(ahead, follow->slip + 3 * row, dim));
+  if (follow->known[row]) PetscCall(PetscArraycpy(expected, follow->slip + 3 * row, dim));
+  if (!middle) PetscCall(PetscArraycpy(ahead, expected, dim));
   follow->known[row] = PETSC_TRUE;
   if (IsStill(transfer, row, still, turns, before, ahead)) {
     transfer->followed[row] = PETSC_FALSE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (turns) TransferPresentNormal(transfer, row, set->normals + dim * row);
-  PetscCall(Approach(transfer, row, ahead));
+  PetscCall(Approach(transfer, row, expected, ahead));
   way           = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
-  set->gap[row] = gap - 0.5 * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
+  set->gap[row] = gap + (middle ? 0.5 : -0.5) * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
                   SplitRow(transfer, row, data->positions, transfer->column_x, after);
   /* slips are counted from the last build on */
   for (PetscInt d = 0; d < dim; d++) transfer->built_slip[3 * row + d] += after[d] - before[d];
@@ -205,6 +211,7 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 . reach    - other rows follow if their gap is not larger than that [m]
 . still    - rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit
 . turns    - whether normals become those of the surface, which they else do where rows are built
+. middle   - whether the surfaces are where they are expected in the middle of the step, not where they are at its start
 . step     - until the next update [s]
 - last     - from the last update to this one [s]
 
@@ -220,7 +227,7 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 .seealso: `Transfer`, `TransferUpdate()`, `TransferRows`
 @*/
 PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns,
-                              PetscReal step, PetscReal last, PetscBool *any)
+                              PetscBool middle, PetscReal step, PetscReal last, PetscBool *any)
 {
   Follow     *follow = &transfer->follow;
   PetscBool   found  = PETSC_FALSE;
@@ -231,9 +238,10 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   PetscValidLogicalCollectiveReal(transfer, reach, 3);
   PetscValidLogicalCollectiveReal(transfer, still, 4);
   PetscValidLogicalCollectiveBool(transfer, turns, 5);
-  PetscValidLogicalCollectiveReal(transfer, step, 6);
-  PetscValidLogicalCollectiveReal(transfer, last, 7);
-  PetscAssertPointer(any, 8);
+  PetscValidLogicalCollectiveBool(transfer, middle, 6);
+  PetscValidLogicalCollectiveReal(transfer, step, 7);
+  PetscValidLogicalCollectiveReal(transfer, last, 8);
+  PetscAssertPointer(any, 9);
   PetscCheck(transfer->built && transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
              "Only rows between two surfaces in two or three dimensions follow, after TransferUpdate()");
   PetscCheck(step > 0 && last > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The steps %g s and %g s must be positive", (double)step,
@@ -249,7 +257,7 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (!transfer->followed[row]) continue;
     transfer->saved.same = PETSC_FALSE;
-    PetscCall(FollowRow(transfer, row, still, turns, step / last));
+    PetscCall(FollowRow(transfer, row, still, turns, middle, step / last));
     *any = (PetscBool)(*any || transfer->followed[row]);
   }
   follow->step = step;

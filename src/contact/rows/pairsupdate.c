@@ -32,8 +32,8 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   }
   for (PetscInt i = pair->begin; i < pair->end; i += pair->components)
     touches[(i - pair->begin) / pair->components] = contact->start.active[i];
-  PetscCall(TransferFollow(pair->transfer, touches, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear, contact->step,
-                           contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
+  PetscCall(TransferFollow(pair->transfer, touches, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear, contact->at_end[pair->body[0]],
+                           contact->step, contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
   if (contact->turns.n) PetscCall(TransferBalance(pair->transfer, contact->start.force + pair->begin, near, any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
