@@ -95,17 +95,18 @@ static PetscErrorCode AddNumbers(Verdict *verdict)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `always`: why contact cannot be kept from taking or bringing energy, or NULL */
+/* `always`: why contact cannot be kept from taking or bringing energy, or NULL; gain and loss are parts of `scale` [J] */
 static PetscErrorCode LookAtEnergy(Controller controller, Contact contact, const char *always, PetscReal gain, PetscReal loss,
-                                   Verdict *verdict)
+                                   PetscReal scale, Verdict *verdict)
 {
   const PetscBool lost    = (PetscBool)(loss > ENERGY_LOSS && loss > gain);
   const double    percent = (double)(100 * (lost ? -loss : gain));
   const char     *takes;
-  PetscReal       step, resolved;
+  PetscReal       step, resolved, unresolved;
 
   PetscFunctionBegin;
-  if (gain <= ENERGY_GAIN && loss <= ENERGY_LOSS) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactGetUnresolvedEnergy(contact, &unresolved));
+  if (PetscMax(gain, loss) * scale <= unresolved || (gain <= ENERGY_GAIN && loss <= ENERGY_LOSS)) PetscFunctionReturn(PETSC_SUCCESS);
   if (verdict->statics.all) { /* masses and waves are no matter there */
     if (verdict->statics.balanced)
       PetscCall(
@@ -148,7 +149,7 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   PetscCall(ContactGetEnergyCap(contact, NULL, &excess));
   PetscCall(ContactGetEnergyTolerance(contact, &tolerance));
   PetscCall(ContactGetUnlimitedReason(contact, &always, &reason));
-  PetscCall(LookAtEnergy(controller, contact, always, gain, loss, verdict));
+  PetscCall(LookAtEnergy(controller, contact, always, gain, loss, results->energy_scale, verdict));
   if (reason && results->momentum_error_max > MOMENTUM_ERROR)
     PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or -schwarz_transmission dirichlet_neumann",
                   (double)(100 * results->momentum_error_max), reason));

@@ -289,6 +289,7 @@ PetscErrorCode BodyIntegratorCreate_Rigid(BodyIntegrator integrator)
   integrator->ops.visit             = BodyRigidVisit;
   integrator->ops.copypoint         = BodyRigidCopyPoint;
   integrator->ops.compliancecolumn  = BodyRigidComputeColumn;
+  integrator->ops.nodalcolumns      = BodyRigidSetNodalColumns;
   integrator->ops.applycompliance   = BodyRigidApplyCompliance;
   integrator->ops.solvemass         = BodyRigidSolveMass;
   integrator->ops.start             = Start;

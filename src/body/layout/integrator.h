@@ -60,6 +60,9 @@ typedef struct {
                                                                         substeps x rows, after a hat of force on one row of any rank: 1 N at
                                                                         the end of the first substep, 0 at its start and at the end of the
                                                                         second [m]; may be set in setup() */
+  /* (NULL) the columns of some displacements of any rank, into a compliance, for the controller step that begins in the saved state, where
+     no step need be made for them; other states have others */
+  PetscErrorCode (*nodalcolumns)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
   /* (NULL) where body->solver does not have them: displacement of the rows at the end of a substep for forces on them at its end [m], to a
      vector from one [N] */
   PetscErrorCode (*applycompliance)(Body, Vec, Vec);

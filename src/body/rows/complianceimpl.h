@@ -10,6 +10,7 @@ struct _BodyCompliance {
   Compliance        nodal;       /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
   BodyForceShape    nodal_shape; /* the forces that it is for */
   PetscReal         nodal_step;  /* the substep that it is of [s] */
+  PetscReal         nodal_time;  /* where it is that of a state: when the step begins [s] */
   struct _BodySlab *slab;        /* that tells it, see slab.c; NULL: controller steps do */
   Vec               diagonal;    /* see BodyGetNodalDiagonal(); or NULL */
   PetscReal         diagonal_step; /* the substep that it is of [s] */
@@ -35,5 +36,6 @@ struct _BodyCompliance {
   PetscScalar *rhs;
 };
 
-PETSC_INTERN PetscErrorCode BodySlabProbe(Body, BodyForceShape, PetscInt, const PetscInt[], struct _BodySlab **, Compliance);
+PETSC_INTERN PetscErrorCode BodySlabCreate(Body, BodyForceShape, PetscInt, const PetscInt[], struct _BodySlab **);
+PETSC_INTERN PetscErrorCode BodySlabProbe(Body, const struct _BodySlab *, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode BodySlabDestroy(struct _BodySlab **);

@@ -76,7 +76,8 @@ static PetscErrorCode ListSurface(Body body, PetscInt n, const PetscInt dofs[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateSlab(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], struct _BodySlab **result)
+/* BodySlabCreate - the slab of a body at its rows and at some displacements, all of which may be asked for later */
+PetscErrorCode BodySlabCreate(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], struct _BodySlab **result)
 {
   struct _BodySlab *slab;
   Vec               diagonal;
@@ -167,16 +168,15 @@ static PetscErrorCode SolveColumns(Body body, const struct _BodySlab *slab, Pets
 }
 
 /* BodySlabProbe - columns of displacements, by their numbers on all ranks, at the end of a controller step */
-PetscErrorCode BodySlabProbe(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], struct _BodySlab **slab, Compliance nodal)
+PetscErrorCode BodySlabProbe(Body body, const struct _BodySlab *slab, PetscInt n, const PetscInt dofs[], Compliance nodal)
 {
   PetscInt some[COLUMNS], count = 0;
 
   PetscFunctionBegin;
-  if (!*slab) PetscCall(CreateSlab(body, shape, n, dofs, slab));
   for (PetscInt i = 0; i < n; i++) {
     if (!ComplianceKnows(nodal, dofs[i])) some[count++] = dofs[i];
     if (!count || (count < COLUMNS && i < n - 1)) continue;
-    PetscCall(SolveColumns(body, *slab, count, some, nodal));
+    PetscCall(SolveColumns(body, slab, count, some, nodal));
     count = 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -75,48 +75,55 @@ static PetscBool MayTakeSlab(Body body, PetscInt n)
 
   Note:
   Each new one costs a controller step of the body, linearized about its undeformed state. Of more than 100 the columns are approximate, as
-  a slab at the surface answers: each costs a small solution.
+  a slab at the surface answers: each costs a small solution. Those of a rigid body are found where it will be in the middle of the
+  controller step, anew for each, and cost next to nothing.
 
 .seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`
 @*/
 PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], const PetscInt *place[],
                                       PetscInt *leading, const PetscScalar *matrix[])
 {
-  struct _BodyCompliance *compliance = body->compliance;
-  Compliance             *nodal      = &compliance->nodal;
-  PetscInt                unknown = 0, known = 0, local, begin, all;
+  struct _BodyCompliance *compliance                                                    = body->compliance;
+  Compliance             *nodal                                                         = &compliance->nodal;
+  PetscErrorCode (*probe)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance) = body->integrator->ops.nodalcolumns;
+  PetscInt unknown = n, known = 0, local, begin, all;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(place, 5);
   PetscAssertPointer(leading, 6);
   PetscAssertPointer(matrix, 7);
+  if (!probe) probe = BodyProbeNodes;
   if (*nodal) {
     ComplianceGetRows(*nodal, &known, NULL, NULL);
+    unknown = 0;
     for (PetscInt i = 0; i < n; i++) unknown += !ComplianceKnows(*nodal, dofs[i]);
     if (compliance->nodal_step != body->time.step || compliance->nodal_shape != shape ||
+        (body->integrator->ops.nodalcolumns && compliance->nodal_time != body->saved.time) ||
         (!compliance->slab && MayTakeSlab(body, known + unknown))) {
       PetscCall(ComplianceDestroy(nodal));
       PetscCall(BodySlabDestroy(&compliance->slab));
+      unknown = n;
+      known   = 0;
     }
   }
   if (!*nodal) {
+    compliance->nodal_time  = body->saved.time;
     compliance->nodal_step  = body->time.step;
     compliance->nodal_shape = shape;
     PetscCall(VecGetLocalSize(body->state.u, &local));
     PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
     PetscCall(VecGetSize(body->state.u, &all));
     PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, nodal));
-    unknown = n;
-    known   = 0;
+    if (MayTakeSlab(body, n)) PetscCall(BodySlabCreate(body, shape, n, dofs, &compliance->slab));
   }
   if (unknown) {
     PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
     PetscCall(PetscInfo(body, "%" PetscInt_FMT " new columns of nodal compliance beside %" PetscInt_FMT "%s\n", unknown, known,
-                        compliance->slab || MayTakeSlab(body, unknown) ? ", of a slab at the surface" : ""));
+                        compliance->slab ? ", of a slab at the surface" : ""));
     PetscCall(ComplianceReserve(*nodal, unknown));
-    if (compliance->slab || MayTakeSlab(body, unknown)) PetscCall(BodySlabProbe(body, shape, n, dofs, &compliance->slab, *nodal));
-    else PetscCall(BodyProbeNodes(body, shape, n, dofs, *nodal));
+    if (compliance->slab) PetscCall(BodySlabProbe(body, compliance->slab, n, dofs, *nodal));
+    else PetscCall((*probe)(body, shape, n, dofs, *nodal));
     PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   }
   ComplianceGetRows(*nodal, NULL, NULL, place);

@@ -71,7 +71,8 @@ static PetscReal SumForces(Contact contact)
 
   Note:
   Of the step in which their sum was largest so far: gaps are known to the tolerance of penetration and that of the outer iteration. Where
-  bodies start at rest without strain, and loads grow slowly, there is less energy than that in the first steps.
+  bodies start at rest without strain, and loads grow slowly, there is less energy than that in the first steps. Where rows in contact hold
+  the change of their gaps, not these, it is that of all steps so far.
 
 .seealso: `Contact`, `ContactSetTolerance()`, `ContactSetEnergyCap()`
 @*/
@@ -80,7 +81,9 @@ PetscErrorCode ContactGetUnresolvedEnergy(Contact contact, PetscReal *energy)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(energy, 2);
-  *energy = contact->energy.known ? Resolution(contact) * PetscMax(contact->energy.largest_force, SumForces(contact)) : 0;
+  *energy = contact->energy.known || contact->energy.takes
+                ? Resolution(contact) * PetscMax(contact->energy.largest_force, SumForces(contact))
+                : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

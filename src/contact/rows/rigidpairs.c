@@ -1,4 +1,4 @@
-/* Pairs with a rigid body: it takes forces, and its partner has to give. */
+/* Pairs with a rigid body: it takes forces, and its partner has to give unless the method takes pairs of rigid bodies. */
 #include <contact/parts.h>
 
 /* The number of rigid bodies in a pair, and whether its first one is */
@@ -13,21 +13,21 @@ static PetscErrorCode CountRigid(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, which no step resolves. Nor do springs
-   of a penalty: a rigid disc on a rigid plate, both with default parameters, gained 5 % within 800 steps, and lost 35 % with softer springs
-   and friction. */
+/* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, which other methods do not have. Nor do
+   springs of a penalty: a rigid disc on a rigid plate, both with default parameters, gained 5 % within 800 steps, and lost 35 % with softer
+   springs and friction. */
 static PetscErrorCode RefuseRigid(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
   PetscCheck(
       !pair->obstacle, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-      "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: let the body deform, or put a body "
-      "that deforms in place of the obstacle",
+      "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: choose -contact_type force, let the "
+      "body deform, or put a body that deforms in place of the obstacle",
       pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
   SETERRQ(
       PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-      "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: let one of them deform, or leave the pair out (where "
-      "'auto' has chosen it, name the other pairs)",
+      "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: choose -contact_type force, let one of them deform, or "
+      "leave the pair out (where 'auto' has chosen it, name the other pairs)",
       pair->name);
 }
 
@@ -39,8 +39,9 @@ PetscErrorCode ContactTurnRigid(Contact contact, ContactPair *pair)
 
   PetscFunctionBegin;
   PetscCall(CountRigid(contact, pair, &n, &first));
-  if (n == 2 || (n && pair->obstacle)) PetscCall(RefuseRigid(contact, pair));
-  else if (first) {
+  if (n == 2 || (n && pair->obstacle)) {
+    if (!contact->takes_rigid) PetscCall(RefuseRigid(contact, pair));
+  } else if (first) {
     PetscCheck(
         pair->row_side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
         "-contact_rows second: the second body of pair %s, '%s', is rigid, and takes forces; rows lie on its partner. Leave the option "

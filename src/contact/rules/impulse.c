@@ -92,10 +92,13 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper, const Contac
   PetscCall(PetscArraycpy(contact->energy.last_force + pair->begin, stepper->last + pair->begin, n));
   PetscCall(PetscArraycpy(contact->start.force + pair->begin, contact->end.force + pair->begin, n));
   contact->energy.changed = PETSC_TRUE;
-  for (PetscInt i = pair->begin; i < pair->end; i++)
-    if (stepper->touches[i] && !ContactRowRubs(contact, i))
+  for (PetscInt i = pair->begin; i < pair->end; i++) {
+    if (!stepper->touches[i]) continue;
+    if (!ContactRowRubs(contact, i))
       stepper->step_loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]) +
                             ContactStepperStored(contact, i, contact->end.gap[i]) - ContactStepperStored(contact, i, contact->start.gap[i]);
+    stepper->step_force += PetscAbsReal(contact->end.force[i]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

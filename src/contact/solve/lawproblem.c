@@ -14,7 +14,6 @@
 #include "lawproblem.h"
 #include <sys/petsccompat.h>
 
-#define PROXIMAL         1e-10 /* of the diagonal of S */
 #define VANISHES         1e-12 /* of what rows read, by themselves or by their own force */
 #define MOST_PROXIMAL    20
 #define TOLERANCE        1e-13 /* of the largest force, and of the largest force that would close what is read */
@@ -72,7 +71,7 @@ static void FindWeights(LawProblem *problem)
 static void GetTrial(const LawProblem *problem, PetscInt node, const PetscScalar force[], const PetscScalar y[], PetscReal p[])
 {
   for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++)
-    p[i - problem->begin[node]] = PetscRealPart(force[i] - y[i] / problem->weight[i] - PROXIMAL * (force[i] - problem->centre[i]));
+    p[i - problem->begin[node]] = PetscRealPart(force[i] - y[i] / problem->weight[i] - problem->proximal * (force[i] - problem->centre[i]));
 }
 
 static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
@@ -121,7 +120,7 @@ static PetscErrorCode SetNode(const LawProblem *problem, PetscInt first, PetscIn
     PetscCall(MatRestoreRow(problem->S, i, &n, &columns, &values));
     for (PetscInt k = 0; k < rows; k++) {
       const PetscInt    row   = first + k;
-      const PetscScalar value = (row == i) - derivative[k * rows + l] * (1 - PROXIMAL);
+      const PetscScalar value = (row == i) - derivative[k * rows + l] * (1 - problem->proximal);
 
       PetscCall(MatSetValues(J, 1, &row, 1, &i, &value, ADD_VALUES));
     }
@@ -172,8 +171,8 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
                                       SNESConvergedReason *reason, void *ctx)
 {
   const LawProblem  *problem = (const LawProblem *)ctx;
-  const PetscScalar *x;
-  PetscReal          largest, atol, rtol;
+  const PetscScalar *x, *f;
+  PetscReal          allowed, atol, rtol;
   Vec                X, F;
 
   PetscFunctionBegin;
@@ -183,11 +182,15 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   *reason = SNES_CONVERGED_ITERATING;
   PetscCall(SNESGetSolution(snes, &X));
   PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
-  PetscCall(VecNorm(F, NORM_INFINITY, &largest));
   PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayRead(F, &f));
   PetscCall(SNESGetTolerances(snes, &atol, &rtol, NULL, NULL, NULL));
+  allowed = rtol * ForceScale(problem, x) + atol;
+  *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  for (PetscInt i = 0; i < problem->n; i++)
+    if (PetscAbsScalar(f[i]) > allowed + problem->resolution / problem->weight[i]) *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  else if (largest <= rtol * ForceScale(problem, x) + atol) *reason = SNES_CONVERGED_FNORM_RELATIVE;
+  PetscCall(VecRestoreArrayRead(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -401,34 +404,54 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the proximal term is nothing beside what rows read: where no forces close the rows it never is, and forces grow for ever */
-static PetscBool ProximalVanishes(const LawProblem *problem)
+/* Whether the proximal term is nothing beside a part of what rows read, or is as little as nobody knows of that: where no forces close the
+   rows it never is, and forces grow for ever */
+static PetscBool ProximalVanishes(const LawProblem *problem, PetscReal part)
 {
   PetscReal off = 0, scale = 0;
 
   for (PetscInt i = 0; i < problem->n; i++) {
-    off   = PetscMax(off, PROXIMAL * problem->weight[i] * PetscAbsScalar(problem->force[i] - problem->centre[i]));
+    off   = PetscMax(off, problem->proximal * problem->weight[i] * PetscAbsScalar(problem->force[i] - problem->centre[i]));
     scale = PetscMax(scale, PetscMax(PetscAbsScalar(problem->read[i]), PetscAbsScalar(problem->diagonal[i] * problem->force[i])));
   }
-  return (PetscBool)(off <= VANISHES * scale);
+  return (PetscBool)(off <= part * scale + problem->resolution);
 }
 
-/* The forces of all rows, from `force` on, and whether they have been found */
-PetscErrorCode LawProblemSolve(LawProblem *problem)
+/* The forces of all rows with one weight of the proximal term, from `force` on; whether it has vanished or can, and does so slowly */
+static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
 {
   PetscFunctionBegin;
-  problem->iterations = 0;
-  problem->by_nodes   = PETSC_FALSE;
-  FindWeights(problem);
+  *slow = PETSC_FALSE;
   for (PetscInt k = 0; k < MOST_PROXIMAL; k++) {
     PetscReal pull = 0;
 
     PetscCall(PetscArraycpy(problem->centre, problem->force, problem->n));
     PetscCall(SolveOnce(problem));
-    if (!problem->solved) break;
+    if (!problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
     for (PetscInt i = 0; i < problem->n; i++) pull = PetscMax(pull, PetscAbsScalar(problem->force[i] - problem->centre[i]));
-    if (PROXIMAL * pull <= TOLERANCE * ForceScale(problem, problem->force)) break;
-    if (k == MOST_PROXIMAL - 1) problem->solved = ProximalVanishes(problem);
+    if (problem->proximal * pull <= TOLERANCE * ForceScale(problem, problem->force) || ProximalVanishes(problem, 0))
+      PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  problem->solved = ProximalVanishes(problem, VANISHES);
+  *slow           = (PetscBool)!problem->solved;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces of all rows, from `force` on, and whether they have been found. Where a weight of the proximal term is too small for Newton's
+   method, or so large that the term does not vanish, which is where the stiffnesses of bodies are far apart, there are others. */
+PetscErrorCode LawProblemSolve(LawProblem *problem)
+{
+  const PetscReal proximal[] = {1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
+  PetscBool       slow       = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  problem->iterations = 0;
+  problem->by_nodes = problem->solved = PETSC_FALSE;
+  FindWeights(problem);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(proximal) && !problem->solved; k++) {
+    problem->proximal = proximal[k];
+    if (!slow) PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
+    PetscCall(SolveProximal(problem, &slow));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

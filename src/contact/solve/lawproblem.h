@@ -11,6 +11,8 @@ typedef struct {
   Mat            S;           /* what rows read by forces on them, laws that give way included: dense, or sparse [m/N] */
   PetscReal     *diagonal;    /* of S */
   PetscReal     *weight;      /* per row: 1 / r of the trial force lambda - r y [m/N] */
+  PetscReal      resolution;  /* what rows read is right to so much, by round-off of positions [m] */
+  PetscReal      proximal;    /* weight of the proximal term, in parts of the diagonal of S */
   PetscScalar   *base, *read; /* per row: a force [N], and what is read under it [m] */
   PetscScalar   *centre;      /* per row: the force that the proximal term pulls to [N] */
   PetscScalar   *force;       /* per row: the solution [N] */

@@ -6,6 +6,8 @@
 /* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right. Linear bodies are to round-off. */
 #define RTOL        1e-6
 #define RTOL_STATIC 1e-9 /* without inertia the balance is what is wanted */
+/* What rows read is right to so much, as positions are round-off, in parts of the size of the smallest body */
+#define RESOLUTION 2e-15
 
 static ContactStepper *Stepper(Contact contact)
 {
@@ -126,11 +128,13 @@ static PetscErrorCode SetUp(Contact contact)
                          contact->n_bodies, &stepper->rests));
   PetscCall(PetscCalloc3(contact->n_bodies, &stepper->done, contact->n_bodies, &stepper->scale, contact->n_bodies, &stepper->off));
   PetscCall(ContactStepperSetUpRules(contact, stepper));
+  PetscCall(ContactHasRigid(contact, &stepper->has_rigid));
   PetscCall(ChooseLaws(contact, stepper));
-  contact->friction.steps = PETSC_TRUE;
-  stepper->rtol           = any_static ? RTOL_STATIC : RTOL;
-  stepper->atol           = CONTACT_POSITION_TOLERANCE * contact->scale.length;
-  stepper->assembled      = -1;
+  contact->friction.steps     = PETSC_TRUE;
+  stepper->rtol               = any_static ? RTOL_STATIC : RTOL;
+  stepper->atol               = CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  stepper->assembled          = -1;
+  stepper->problem.resolution = RESOLUTION * contact->scale.length;
   if (contact->friction.law.setup && ContactAnyPairHas(contact, CONTACT_LAW_FRICTION))
     PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
@@ -176,6 +180,7 @@ static PetscErrorCode Accept(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(stepper->joined, stepper->joins, contact->rows.n));
   contact->counts.contact_loss += stepper->step_loss;
+  contact->energy.largest_force += stepper->step_force; /* changes of gaps add up, and what nobody knows of them does */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -263,6 +268,7 @@ PetscErrorCode ContactCreate_Force(Contact contact)
   PetscCall(PetscNew(&stepper));
   contact->data                = stepper;
   contact->each_law            = PETSC_TRUE;
+  contact->takes_rigid         = PETSC_TRUE;
   contact->ops->setfromoptions = SetFromOptions;
   contact->ops->setup          = SetUp;
   contact->ops->layrows        = LayRows;

@@ -73,8 +73,10 @@ static PetscErrorCode FindMore(Contact contact, ContactStepper *stepper, PetscBo
 /* States of rows at the end of the step, and what contact has taken */
 static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
 {
+  PetscReal sums[2];
+
   PetscFunctionBegin;
-  stepper->step_loss = 0;
+  stepper->step_loss = stepper->step_force = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
     const ContactRule *rule = ContactStepperRule(stepper, pair);
@@ -88,8 +90,12 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
   }
   if (stepper->gives) PetscCall(ContactSumStored(contact));
   if (!contact->energy.takes) PetscFunctionReturn(PETSC_SUCCESS);
+  sums[0] = stepper->step_loss;
+  sums[1] = stepper->step_force;
   if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &stepper->step_loss, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  stepper->step_loss  = sums[0];
+  stepper->step_force = sums[1];
   /* nobody else sums up what friction takes where the energy is not limited */
   PetscCall(ContactComputeFrictionLoss(contact, contact->start.force));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -103,6 +109,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
 
   PetscFunctionBegin;
   stepper->passes = 0;
+  if (stepper->has_rigid) stepper->state++;
   PetscCall(PetscArraycpy(stepper->last, contact->start.force, contact->rows.n));
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
   PetscCall(ContactStepperComputeRates(contact, stepper->rate));

@@ -34,9 +34,10 @@ struct _ContactStepper {
   /* set-up */
   SNES                outer; /* its unknowns are the forces of all rows */
   LawProblem          problem;
-  const ContactRule **rules; /* per body: that of its set */
-  RowLaw             *laws;  /* two per pair: of nodes that may open, and of those that are held */
-  PetscBool           gives; /* a law gives way */
+  const ContactRule **rules;     /* per body: that of its set */
+  RowLaw             *laws;      /* two per pair: of nodes that may open, and of those that are held */
+  PetscBool           gives;     /* a law gives way */
+  PetscBool           has_rigid; /* bodies whose compliance is another in each step, as they turn */
   VecScatter          to_all;
   /* state between steps, per row of this rank */
   PetscBool *joined; /* its node has touched first in the last accepted step */
@@ -59,6 +60,7 @@ struct _ContactStepper {
   PetscInt  passes;
   PetscBool has_told, corrected; /* there has been a pass with these rows; S has been corrected in the last one */
   PetscReal step_loss;           /* what contact takes of the energy in this step, friction apart [J] */
+  PetscReal step_force;          /* sum over the rows whose changes of gaps, not gaps, are held in this step [N] */
   /* S: counts of the changes of rows, for which S is another; now, and when S was assembled; the rows that it has */
   PetscInt64 state, assembled;
   PetscInt   n_assembled, *of_assembled;
