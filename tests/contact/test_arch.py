@@ -52,6 +52,14 @@ def test_limit_analysis():
     assert least_friction(BLOCKS, 0.3, FACETS) == pytest.approx(0.309215, rel=2e-3)  # measured: -1.1e-3
 
 
+@pytest.mark.parametrize(("factor", "expected"), [(1.02, True), *long((0.98, False))])
+def test_by_force(factor, expected, stands):
+    """The same bounds by -contact_type force."""
+    more = f"-contact_type force {'' if expected else '-controller_step_cuts 0'}"
+    stands(factor * least_thickness(BLOCKS, 0.6, FACETS), 0.6, expected, more=more)
+    stands(0.3, factor * least_friction(BLOCKS, 0.3, FACETS), expected, more=more)
+
+
 def test_steps_in_which_nothing_changes(impakt):
     """Under a load that stays nodes are at the brink of other states: the forces that hold are those of the first step, to round-off."""
     force = impakt(f"{ARCH} -time_step 0.1").history["contact/b10.right:b11.left/force_vector"][()]

@@ -197,7 +197,7 @@ PetscErrorCode BodySetUpSprings(Body body, PetscInt n_free, const PetscReal free
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* F += the force that the springs need to be where U has them */
+/* F += the force that the springs need to be where U has them. While the body is probed, from rest, they rest where it does. */
 PetscErrorCode BodyAddSpringForce(Body body, Vec U, Vec F)
 {
   const BodySprings *springs = &body->springs;
@@ -209,7 +209,7 @@ PetscErrorCode BodyAddSpringForce(Body body, Vec U, Vec F)
   PetscCall(VecGetArrayRead(U, &u));
   PetscCall(VecGetArray(F, &f));
   for (PetscInt k = 0; k < springs->n; k++)
-    if (springs->dof[k] >= 0) f[springs->dof[k]] += springs->stiffness * (u[springs->dof[k]] - springs->place[k]);
+    if (springs->dof[k] >= 0) f[springs->dof[k]] += springs->stiffness * (u[springs->dof[k]] - (body->unloaded ? 0 : springs->place[k]));
   PetscCall(VecRestoreArray(F, &f));
   PetscCall(VecRestoreArrayRead(U, &u));
   PetscFunctionReturn(PETSC_SUCCESS);
