@@ -148,8 +148,9 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpEnergy(contact));
   PetscCall(ContactSetUpFriction(contact));
   PetscCall(ContactSetUpStabilization(contact));
-  /* friction is set up even where no bodies are near yet, and says at once what it cannot do */
-  if (contact->rows.n_all || (contact->neighbours.come_and_go && ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)))
+  /* some are set up even where no bodies are near yet, and say at once what they cannot do: friction, and impulses */
+  if (contact->rows.n_all ||
+      (contact->neighbours.come_and_go && (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || contact->takes_rigid)))
     PetscTryTypeMethod(contact, setup);
   for (PetscInt o = 0; o < contact->n_obstacles && !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION); o++) {
     const char *name;
@@ -164,8 +165,8 @@ PetscErrorCode ContactSetUp(Contact contact)
              PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law %s: -contact_type %s has no friction; choose schwarz, force, lagrange, penalty or augmented_lagrangian",
              contact->friction.name, ((PetscObject)contact)->type_name);
-  PetscCheck(!contact->energy.takes || !contact->energy.unlimited || !contact->energy.asked, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "%s has no effect: %s, and no step is made again for what it takes; leave it out", contact->energy.asked,
+  PetscCheck(!contact->energy.takes || !contact->energy.unlimited || !contact->energy.asked, PetscObjectComm((PetscObject)contact),
+             PETSC_ERR_USER_INPUT, "%s has no effect: %s, and no step is made again for what it takes; leave it out", contact->energy.asked,
              contact->energy.unlimited);
   if (!contact->ops->stored && !contact->energy.unlimited) contact->energy.unlimited = "the method does not tell what its forces store";
   contact->setup = PETSC_TRUE;

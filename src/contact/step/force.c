@@ -2,6 +2,7 @@
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/units.h>
+#include <stddef.h>
 
 /* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right. Linear bodies are to round-off. */
 #define RTOL        1e-6
@@ -223,12 +224,19 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(Contact contact)
+/* Rows need no more than they have in all methods: what is lost is which of them have joined in the last step, for the guess */
+static PetscBool MayReplaceRows(Contact contact)
+{
+  (void)contact;
+  return PETSC_TRUE;
+}
+
+/* All but the options */
+static PetscErrorCode Reset(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerDestroy(&stepper->monitor.viewer));
   PetscCall(SNESDestroy(&stepper->outer));
   PetscCall(ContactStepperDestroyVecs(stepper));
   PetscCall(LawProblemDestroy(&stepper->problem));
@@ -237,6 +245,15 @@ static PetscErrorCode Destroy(Contact contact)
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));
   PetscCall(PetscFree3(stepper->done, stepper->scale, stepper->off));
+  PetscCall(PetscMemzero((char *)stepper + offsetof(ContactStepper, outer), sizeof(*stepper) - offsetof(ContactStepper, outer)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Destroy(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(Reset(contact));
+  PetscCall(PetscViewerDestroy(&Stepper(contact)->monitor.viewer));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -286,6 +303,8 @@ PetscErrorCode ContactCreate_Force(Contact contact)
   contact->ops->visit          = Visit;
   contact->ops->pack           = ContactStepperPack;
   contact->ops->unpack         = ContactStepperUnpack;
+  contact->ops->mayreplacerows = MayReplaceRows;
+  contact->ops->reset          = Reset;
   contact->ops->view           = View;
   contact->ops->destroy        = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -26,18 +26,15 @@ static void CountNodes(Contact contact, const ContactStepper *stepper, PetscInt 
 
   *counts = (NodeCounts){0, 0, 0, 0};
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
-    const PetscInt  first = problem->begin[node], end = problem->begin[node + 1];
-    const PetscReal normal = PetscRealPart(problem->force[first]), bound = problem->limit[2 * node] + problem->limit[2 * node + 1] * normal;
-    PetscReal       across = 0;
+    const PetscInt first = problem->begin[node];
 
     if (ContactStepperGroup(contact, stepper, first) != g) continue;
     counts->nodes++;
-    if (!(normal > 0) && !problem->law[node]->pulls) continue;
+    if (!(PetscRealPart(problem->force[first]) > 0) && !problem->law[node]->pulls) continue;
     counts->push++;
-    for (PetscInt i = first + 1; i < end; i++) across += PetscSqr(PetscRealPart(problem->force[i]));
-    if (end == first + 1) continue;
-    if (problem->law[node]->pulls || PetscSqrtReal(across) < bound * (1 - PETSC_SQRT_MACHINE_EPSILON)) counts->stick++;
-    else counts->slide++;
+    if (problem->begin[node + 1] == first + 1) continue;
+    if (ContactStepperSlides(problem, node)) counts->slide++;
+    else counts->stick++;
   }
 }
 

@@ -70,6 +70,23 @@ static PetscErrorCode FindMore(Contact contact, ContactStepper *stepper, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Which nodes of this rank slide at the end of the step, for those who look */
+static PetscErrorCode MarkSliding(Contact contact, const ContactStepper *stepper)
+{
+  const LawProblem *problem = &stepper->problem;
+
+  PetscFunctionBegin;
+  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArrayzero(contact->friction.slides, contact->rows.n));
+  for (PetscInt node = 0; problem->n && node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first, i = stepper->rows[first] - contact->rows.begin;
+
+    for (PetscInt k = 0; k < rows && i >= 0 && i < contact->rows.n && contact->end.force[i] > 0; k++)
+      contact->friction.slides[i + k] = ContactStepperSlides(problem, node);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* States of rows at the end of the step, and what contact has taken */
 static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
 {
@@ -88,6 +105,7 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
     }
     if (rule->end) PetscCall((*rule->end)(contact, stepper, pair));
   }
+  PetscCall(MarkSliding(contact, stepper));
   if (stepper->gives) PetscCall(ContactSumStored(contact));
   if (!contact->energy.takes) PetscFunctionReturn(PETSC_SUCCESS);
   sums[0] = stepper->step_loss;

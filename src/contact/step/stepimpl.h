@@ -31,7 +31,7 @@ struct _ContactStepper {
   ContactMonitor     monitor;
   const ContactRule *asked;      /* the rule of all sets; NULL: as bodies have mass on contact nodes or not */
   PetscReal          rtol, atol; /* tolerances of the outer iteration on what rows read [parts of the largest way; m] */
-  /* set-up */
+  /* set-up; what follows is for the rows that there are, see Reset() */
   SNES                outer; /* its unknowns are the forces of all rows */
   LawProblem          problem;
   const ContactRule **rules;     /* per body: that of its set */
@@ -72,6 +72,17 @@ struct _ContactStepper {
   PetscReal   *mine, *before;
   int         *moves; /* per body */
 };
+
+/* Whether a node that pushes slides, by the forces of the last solution */
+static inline PetscBool ContactStepperSlides(const LawProblem *problem, PetscInt node)
+{
+  const PetscInt  first = problem->begin[node], end = problem->begin[node + 1];
+  const PetscReal bound  = problem->limit[2 * node] + problem->limit[2 * node + 1] * PetscRealPart(problem->force[first]);
+  PetscReal       across = 0;
+
+  for (PetscInt i = first + 1; i < end; i++) across += PetscSqr(PetscRealPart(problem->force[i]));
+  return (PetscBool)(end > first + 1 && !problem->law[node]->pulls && PetscSqrtReal(across) >= bound * (1 - PETSC_SQRT_MACHINE_EPSILON));
+}
 
 PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
