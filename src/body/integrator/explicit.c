@@ -206,6 +206,22 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Forces throughout the step: da = M^{-1} B^T df at its start, and the way and the velocity at mid-step that follow */
+static PetscErrorCode RepeatConstantForces(Body body, const PetscScalar force[])
+{
+  const PetscReal dt = body->time.step, scales[] = {1, 0.5 * dt, 0.5 * dt * dt};
+  const Vec       vecs[] = {body->saved.a, body->state.v, body->state.u};
+
+  PetscFunctionBegin;
+  if (BodyAnswersByNodes(body)) PetscCall(BodyAddAnswerOfNodes(body, force, PETSC_FALSE, 3, scales, vecs));
+  else {
+    PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
+    for (PetscInt k = 0; k < 3; k++) PetscCall(VecAXPY(vecs[k], scales[k], body->work.nodes[2]));
+  }
+  if (body->state.damping) PetscCall(BodyMultiplyDamping(body, body->state.u, body->state.v, body->state.damping));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* da = M^{-1} B^T df, dv = dt / 2 da: forces at the end of the substep, where contact nodes have mass, do nothing else */
 static PetscErrorCode RepeatForces(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
@@ -213,6 +229,10 @@ static PetscErrorCode RepeatForces(Body body, const PetscScalar force[], const P
 
   PetscFunctionBegin;
   (void)displacement;
+  if (IsEarly(body)) {
+    PetscCall(RepeatConstantForces(body, force));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodySolveMassOfRows(body, force, change));
   PetscCall(VecAXPY(body->state.a, 1, change));
   PetscCall(VecAXPY(body->state.v, 0.5 * body->time.step, change));
@@ -386,6 +406,7 @@ static PetscErrorCode SetUp(Body body)
   } else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
   integrator->repeats_prescribed = (PetscBool)(body->model.linear || explicit->layer_alone);
+  integrator->repeats_constant   = (PetscBool)(body->time.substeps == 1 && !layer);
   if (body->time.substeps == 1) integrator->ops.compliancecolumn = ComputeComplianceColumn;
   else integrator->ops.compliancecolumns = BodyProbeBySubsteps; /* only making the substeps tells */
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -364,6 +364,7 @@ PetscErrorCode BodyDestroy(Body *body)
 
     PetscCall(BodyDestroyHistory(b));
     PetscCall(BodyDestroyRepeat(b));
+    PetscCall(BodyDestroyContactNodes(b));
     PetscCall(BodyIntegratorDestroy(b));
     PetscCall(BodyDestroyLevels(b));
     PetscCall(BodyDestroyProbe(b));

@@ -258,6 +258,12 @@ struct _p_Body {
     Vec       change;  /* work space of BodyTurnToMeanForce() [m/s^2]; NULL until BodySetMeanForces() */
     PetscBool changed; /* the saved acceleration is not that of the last step's end */
   } start;
+  /* of a body whose contact nodes answer by themselves, see contactnodes.c; empty until needed */
+  struct {
+    Vec       force; /* on contact nodes, zero but while it is divided by the mass [N] */
+    PetscInt  n;     /* owned displacements of contact nodes */
+    PetscInt *dofs;  /* rank numbering, ascending */
+  } nodes;
   /* interface */
   BodyRows                rows;
   BodyTraces              traces;
@@ -442,6 +448,10 @@ PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAddMassMatrix(Body, PetscReal, Mat);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[], Vec);
+PETSC_INTERN PetscBool      BodyAnswersByNodes(Body);
+PETSC_INTERN PetscErrorCode BodyCopyContactNodes(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyAddAnswerOfNodes(Body, const PetscScalar[], PetscBool, PetscInt, const PetscReal[], const Vec[]);
+PETSC_INTERN PetscErrorCode BodyDestroyContactNodes(Body);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);

@@ -41,6 +41,15 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* An acceleration, on the nodes that forces at the start can accelerate */
+static PetscErrorCode CopyAnswering(Body body, Vec from, Vec to)
+{
+  PetscFunctionBegin;
+  if (BodyAnswersByNodes(body)) PetscCall(BodyCopyContactNodes(body, from, to));
+  else PetscCall(VecCopy(from, to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodySetStartForce - lets the controller step begin with other contact forces than those that the last one ended with
 
@@ -68,9 +77,18 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const Pet
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->start.a) PetscCall(BodyCreateVec(body, &body->start.a));
-  if (body->start.changed) PetscCall(VecCopy(body->start.a, body->saved.a));
-  else PetscCall(VecCopy(body->saved.a, body->start.a));
+  if (body->start.changed) PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
+  else PetscCall(CopyAnswering(body, body->saved.a, body->start.a));
   body->start.changed = PETSC_TRUE;
+  if (BodyAnswersByNodes(body)) {
+    const PetscReal one = 1;
+
+    PetscCall(BodySetHandoverRest(body, rest));
+    PetscCall(BodyAddAnswerOfNodes(body, force, PETSC_TRUE, 1, &one, &body->saved.a));
+    if (body->state.step != body->saved.step) PetscCall(BodyRestore(body));
+    else PetscCall(BodyCopyContactNodes(body, body->saved.a, body->state.a));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodyRestore(body));
   PetscCall(BodySetHandoverRest(body, rest));
   PetscCall(ComputeChange(body, force, body->state.a));
@@ -96,7 +114,7 @@ PetscErrorCode BodyDropStartForce(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(body->start.a, body->saved.a));
+  PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
   PetscCall(BodySetHandoverRest(body, NULL));
   body->start.changed = PETSC_FALSE;
   PetscCall(BodyRestore(body));

@@ -41,6 +41,8 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
     PetscCall(TraceGetLevel(body->traces.force_in, level, &values));
     PetscCall(PetscArraycpy(values, force, body->rows.local));
   }
+  /* BodyRepeat() moves the end state by what these forces are more than those before */
+  if (body->repeats && body->rows.constant && body->integrator->repeats_constant) PetscFunctionReturn(PETSC_SUCCESS);
   body->rows.constant = PETSC_TRUE;
   change              = body->compliance->mine;
   for (PetscInt i = 0; i < body->rows.local; i++) change[i] = force[i] - last[i];

@@ -1,0 +1,83 @@
+/*
+   Forces on the rows of a body with lumped mass and without massless nodes. A contact node is accelerated by the forces on it and by no
+   others, so that all is done at the contact nodes: all nodes of a body may be fifty times as many.
+*/
+#include <body/layout/bodyimpl.h>
+
+/* Whether forces on rows accelerate the nodes that they act on alone */
+PetscBool BodyAnswersByNodes(Body body)
+{
+  return (PetscBool)(body->mass.inverse && body->integrator->has_inertia && !body->integrator->ops.solvemass && !body->layer.exists);
+}
+
+PetscErrorCode BodyDestroyContactNodes(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(VecDestroy(&body->nodes.force));
+  PetscCall(PetscFree(body->nodes.dofs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The displacements of contact nodes, and a vector of zeros for the forces on them */
+static PetscErrorCode SetUp(Body body)
+{
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  if (body->nodes.force) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyCreateVec(body, &body->nodes.force));
+  PetscCall(VecZeroEntries(body->nodes.force));
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) n += body->layer.contains[node] ? body->mesh.dim : 0;
+  PetscCall(PetscMalloc1(n, &body->nodes.dofs));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++)
+    if (body->layer.contains[i / body->mesh.dim]) body->nodes.dofs[body->nodes.n++] = i;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Contact nodes have in one vector what they have in the other */
+PetscErrorCode BodyCopyContactNodes(Body body, Vec from, Vec to)
+{
+  const PetscScalar *source;
+  PetscScalar       *target;
+
+  PetscFunctionBegin;
+  PetscCall(SetUp(body));
+  PetscCall(VecGetArrayRead(from, &source));
+  PetscCall(VecGetArray(to, &target));
+  for (PetscInt k = 0; k < body->nodes.n; k++) target[body->nodes.dofs[k]] = source[body->nodes.dofs[k]];
+  PetscCall(VecRestoreArray(to, &target));
+  PetscCall(VecRestoreArrayRead(from, &source));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* x = M^{-1} B^T force, one force for each row of this rank, and that of what does not go over from the rows of the last step where
+   `stopped`: vecs[k] += scales[k] x */
+PetscErrorCode BodyAddAnswerOfNodes(Body body, const PetscScalar force[], PetscBool stopped, PetscInt n, const PetscReal scales[],
+                                    const Vec vecs[])
+{
+  const PetscInt    *dofs;
+  const PetscScalar *inverse;
+  PetscScalar       *row, *x, *values;
+
+  PetscFunctionBegin;
+  PetscCall(SetUp(body));
+  dofs = body->nodes.dofs;
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  PetscCall(PetscArraycpy(row, force, body->rows.local));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTransposeAdd(body->rows.matrix, body->work.rows[0], body->nodes.force, body->nodes.force));
+  if (stopped) PetscCall(BodyAddStoppedHandover(body, body->nodes.force));
+  PetscCall(BodyZeroHeld(body, body->nodes.force));
+  PetscCall(VecGetArray(body->nodes.force, &x));
+  PetscCall(VecGetArrayRead(body->mass.inverse, &inverse));
+  for (PetscInt k = 0; k < body->nodes.n; k++) x[dofs[k]] *= inverse[dofs[k]];
+  PetscCall(VecRestoreArrayRead(body->mass.inverse, &inverse));
+  for (PetscInt v = 0; v < n; v++) {
+    PetscCall(VecGetArray(vecs[v], &values));
+    for (PetscInt k = 0; k < body->nodes.n; k++) values[dofs[k]] += scales[v] * x[dofs[k]];
+    PetscCall(VecRestoreArray(vecs[v], &values));
+  }
+  for (PetscInt k = 0; k < body->nodes.n; k++) x[dofs[k]] = 0;
+  PetscCall(VecRestoreArray(body->nodes.force, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
