@@ -12,6 +12,7 @@
    and the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976).
 */
 #include "lawproblem.h"
+#include <petsc/private/petscimpl.h>
 #include <sys/petsccompat.h>
 
 #define VANISHES         1e-12 /* of what rows read, by themselves or by their own force */
@@ -19,7 +20,9 @@
 #define TOLERANCE        1e-13 /* of the largest force, and of the largest force that would close what is read */
 #define MOST_NEWTON      50
 #define FIRST_SWEEPS     5
-#define SPARSE_TOLERANCE 1e-12 /* of linear iterations [parts of the residual] */
+#define SPARSE_TOLERANCE 1e-13 /* of linear iterations [parts of the residual] */
+#define ENOUGH           0.5   /* or this part of the tolerance of Newton's method */
+#define MOST_LINEAR      200   /* round-off may keep them from either */
 #define MOST_SWEEPS      5120
 #define NODE_ITERATIONS  10 /* for the rows of one node in a sweep */
 
@@ -98,57 +101,137 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of I - D (I - r (S + eps diag S)) for the rows of one node, D the derivative of P for it */
-static PetscErrorCode SetNode(const LawProblem *problem, PetscInt first, PetscInt rows, const PetscReal derivative[], Mat J)
+/* The pattern of a sparse matrix; of a dense one there is none */
+typedef struct {
+  const PetscInt *begin, *columns;
+} Pattern;
+
+static PetscErrorCode GetPattern(const LawProblem *problem, Mat A, Pattern *pattern)
 {
-  PetscScalar *line = problem->work + problem->n;
+  PetscInt  n;
+  PetscBool done;
 
   PetscFunctionBegin;
+  pattern->begin = pattern->columns = NULL;
+  if (problem->sparse) PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &pattern->begin, &pattern->columns, &done));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RestorePattern(const LawProblem *problem, Mat A, Pattern *pattern)
+{
+  PetscInt  n;
+  PetscBool done;
+
+  PetscFunctionBegin;
+  if (problem->sparse) PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &pattern->begin, &pattern->columns, &done));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The entries of S, for reading */
+static PetscErrorCode GetS(const LawProblem *problem, Pattern *pattern, const PetscScalar *values[])
+{
+  PetscFunctionBegin;
+  PetscCall(GetPattern(problem, problem->S, pattern));
+  if (problem->sparse) PetscCall(MatSeqAIJGetArrayRead(problem->S, values));
+  else PetscCall(MatDenseGetArrayRead(problem->S, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RestoreS(const LawProblem *problem, Pattern *pattern, const PetscScalar *values[])
+{
+  PetscFunctionBegin;
+  if (problem->sparse) PetscCall(MatSeqAIJRestoreArrayRead(problem->S, values));
+  else PetscCall(MatDenseRestoreArrayRead(problem->S, values));
+  PetscCall(RestorePattern(problem, problem->S, pattern));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds rows of I - D (I - r (S + eps diag S)) for the rows of one node, D the derivative of P for it. These have their entries in the same
+   columns of the Jacobian. A dense S is read by columns, which are its rows. */
+static void AddNode(const LawProblem *problem, PetscInt node, Pattern of_S, const PetscScalar S[], Pattern of_J, PetscScalar J[])
+{
+  const PetscInt   n = problem->n, first = problem->begin[node], rows = problem->begin[node + 1] - first;
+  const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
+  const PetscInt   next       = of_J.begin ? of_J.begin[first + 1] - of_J.begin[first] : 1; /* from a row of the node to the next one */
+  const PetscInt   step       = of_J.begin ? 1 : n;                                         /* from a column to the next one */
+
+  J += of_J.begin ? of_J.begin[first] : first;
   for (PetscInt l = 0; l < rows; l++) {
-    const PetscInt     i = first + l, *columns;
-    const PetscScalar *values;
-    PetscInt           n;
+    const PetscInt     i = first + l, count = of_S.begin ? of_S.begin[i + 1] - of_S.begin[i] : n;
+    const PetscInt    *columns = of_S.begin ? of_S.columns + of_S.begin[i] : NULL;
+    const PetscScalar *values  = S + (of_S.begin ? of_S.begin[i] : i * n);
+    PetscInt           at = 0, own = i;
 
-    PetscCall(MatGetRow(problem->S, i, &n, &columns, &values));
-    for (PetscInt k = 0; k < rows; k++) {
-      const PetscInt  row  = first + k;
-      const PetscReal part = derivative[k * rows + l] / problem->weight[i];
+    if (of_J.begin) {
+      const PetscInt *all = of_J.columns + of_J.begin[first];
 
-      for (PetscInt e = 0; e < n; e++) line[e] = part * values[e];
-      if (part != 0) PetscCall(MatSetValues(J, 1, &row, n, columns, line, ADD_VALUES));
-    }
-    PetscCall(MatRestoreRow(problem->S, i, &n, &columns, &values));
-    for (PetscInt k = 0; k < rows; k++) {
-      const PetscInt    row   = first + k;
-      const PetscScalar value = (row == i) - derivative[k * rows + l] * (1 - problem->proximal);
+      for (own = 0; all[own] != i; own++);
+      for (PetscInt e = 0; e < count; e++) {
+        while (all[at] != columns[e]) at++;
+        for (PetscInt k = 0; k < rows; k++) J[k * next + at] += derivative[k * rows + l] / problem->weight[i] * values[e];
+      }
+    } else
+      for (PetscInt k = 0; k < rows; k++) {
+        const PetscReal part = derivative[k * rows + l] / problem->weight[i];
 
-      PetscCall(MatSetValues(J, 1, &row, 1, &i, &value, ADD_VALUES));
-    }
+        for (PetscInt e = 0; e < n && part != 0; e++) J[e * step + k] += part * values[e];
+      }
+    for (PetscInt k = 0; k < rows; k++) J[k * next + own * step] += (k == l) - derivative[k * rows + l] * (1 - problem->proximal);
+  }
+}
+
+/* Whether the Jacobian is that of other derivatives of P than those at the trial forces, which become its own, or of another S */
+static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar force[], const PetscScalar y[], PetscBool *other)
+{
+  PetscObjectState state;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectStateGet((PetscObject)problem->S, &state));
+  *other               = (PetscBool)(state != problem->jacobian_of);
+  problem->jacobian_of = state;
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt rows = problem->begin[node + 1] - problem->begin[node];
+    PetscReal     *last = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
+    PetscReal      p[ROW_LAW_ROWS], projected[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
+    PetscBool      same;
+
+    GetTrial(problem, node, force, y, p);
+    (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, projected, derivative);
+    PetscCall(PetscArraycmp(derivative, last, rows * rows, &same));
+    if (same) continue;
+    PetscCall(PetscArraycpy(last, derivative, rows * rows));
+    *other = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* One that stays as it is keeps its factors */
 static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 {
   LawProblem        *problem = (LawProblem *)ctx;
-  const PetscScalar *x;
-  PetscScalar       *y = problem->work;
+  const PetscScalar *x, *S;
+  PetscScalar       *y = problem->work, *values;
+  Pattern            of_S, of_J;
+  PetscBool          other = PETSC_FALSE;
 
   PetscFunctionBegin;
   (void)snes;
   (void)P;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(Read(problem, x, y));
-  PetscCall(MatZeroEntries(J));
-  for (PetscInt node = 0; node < problem->n_nodes; node++) {
-    const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
-    PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
-
-    GetTrial(problem, node, x, y, p);
-    (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, force, derivative);
-    PetscCall(SetNode(problem, first, rows, derivative, J));
-  }
+  PetscCall(TakeDerivatives(problem, x, y, &other));
   PetscCall(VecRestoreArrayRead(X, &x));
+  if (!other) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatZeroEntries(J));
+  PetscCall(GetS(problem, &of_S, &S));
+  PetscCall(GetPattern(problem, J, &of_J));
+  if (problem->sparse) PetscCall(MatSeqAIJGetArray(J, &values));
+  else PetscCall(MatDenseGetArray(J, &values));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) AddNode(problem, node, of_S, S, of_J, values);
+  if (problem->sparse) PetscCall(MatSeqAIJRestoreArray(J, &values));
+  else PetscCall(MatDenseRestoreArray(J, &values));
+  PetscCall(RestorePattern(problem, J, &of_J));
+  PetscCall(RestoreS(problem, &of_S, &S));
   PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -196,28 +279,26 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 }
 
 /* y += a S_.i, which is a row of S too */
-static PetscErrorCode AddColumn(const LawProblem *problem, PetscInt i, PetscScalar a, PetscScalar y[])
+static void AddColumn(const LawProblem *problem, Pattern of_S, const PetscScalar S[], PetscInt i, PetscScalar a, PetscScalar y[])
 {
-  const PetscInt    *columns;
-  const PetscScalar *values;
-  PetscInt           n;
-
-  PetscFunctionBegin;
-  PetscCall(MatGetRow(problem->S, i, &n, &columns, &values));
-  for (PetscInt e = 0; e < n; e++) y[columns[e]] += a * values[e];
-  PetscCall(MatRestoreRow(problem->S, i, &n, &columns, &values));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  if (of_S.begin)
+    for (PetscInt e = of_S.begin[i]; e < of_S.begin[i + 1]; e++) y[of_S.columns[e]] += a * S[e];
+  else
+    for (PetscInt j = 0; j < problem->n; j++) y[j] += a * S[i * problem->n + j];
 }
 
 /* One sweep: the rows of each node, one node after the other */
 static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
 {
-  LawProblem  *problem = (LawProblem *)ctx;
-  PetscScalar *x, *y = problem->work;
+  LawProblem        *problem = (LawProblem *)ctx;
+  PetscScalar       *x, *y = problem->work;
+  const PetscScalar *S;
+  Pattern            of_S;
 
   PetscFunctionBegin;
   (void)snes;
   (void)B;
+  PetscCall(GetS(problem, &of_S, &S));
   PetscCall(VecGetArray(X, &x));
   PetscCall(Read(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
@@ -232,11 +313,12 @@ static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
         const PetscScalar change = force[k] - x[first + k];
 
         x[first + k] += change;
-        if (change != 0) PetscCall(AddColumn(problem, first + k, change, y));
+        if (change != 0) AddColumn(problem, of_S, S, first + k, change, y);
       }
     }
   }
   PetscCall(VecRestoreArray(X, &x));
+  PetscCall(RestoreS(problem, &of_S, &S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -266,14 +348,49 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Its entries are those of S, and those of the rows of one node */
+/* A sparse Jacobian has the entries of S in all rows of a node where any has them, and those of the rows of one node */
+static PetscErrorCode SetPattern(LawProblem *problem)
+{
+  PetscInt          *begin, *columns, room = 0;
+  const PetscScalar *S;
+  Pattern            of_S;
+
+  PetscFunctionBegin;
+  PetscCall(GetS(problem, &of_S, &S));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
+
+    room += (end - first) * (of_S.begin[end] - of_S.begin[first] + end - first);
+  }
+  PetscCall(PetscMalloc2(problem->n + 1, &begin, room, &columns));
+  begin[0] = 0;
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
+    PetscInt       n = of_S.begin[end] - of_S.begin[first], *mine = columns + begin[first];
+
+    PetscCall(PetscArraycpy(mine, of_S.columns + of_S.begin[first], n));
+    for (PetscInt i = first; i < end; i++) mine[n++] = i;
+    PetscCall(PetscSortRemoveDupsInt(&n, mine));
+    for (PetscInt i = first; i < end; i++) begin[i + 1] = begin[i] + n;
+    for (PetscInt i = first + 1; i < end; i++) PetscCall(PetscArraycpy(columns + begin[i], mine, n));
+  }
+  PetscCall(RestoreS(problem, &of_S, &S));
+  PetscCall(MatSeqAIJSetPreallocationCSR(problem->jacobian, begin, columns, NULL));
+  PetscCall(PetscFree2(begin, columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CreateJacobian(LawProblem *problem)
 {
   PetscFunctionBegin;
+  PetscCall(MatDestroy(&problem->jacobian));
   PetscCall(MatCreate(PETSC_COMM_SELF, &problem->jacobian));
   PetscCall(MatSetSizes(problem->jacobian, problem->n, problem->n, problem->n, problem->n));
   PetscCall(MatSetType(problem->jacobian, problem->sparse ? MATSEQAIJ : MATSEQDENSE));
-  PetscCall(MatSetUp(problem->jacobian));
+  if (problem->sparse) PetscCall(SetPattern(problem));
+  else PetscCall(MatSetUp(problem->jacobian));
+  PetscCall(SNESSetJacobian(problem->newton, problem->jacobian, problem->jacobian, ComputeJacobian, problem));
+  problem->jacobian_of = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -288,17 +405,21 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscCall(VecDuplicate(problem->x, &problem->f));
   PetscCall(VecDuplicate(problem->x, &problem->in));
   PetscCall(VecDuplicate(problem->x, &problem->out));
-  PetscCall(CreateJacobian(problem));
   PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->newton));
-  PetscCall(SNESSetJacobian(problem->newton, problem->jacobian, problem->jacobian, ComputeJacobian, problem));
+  PetscCall(CreateJacobian(problem));
   PetscCall(SNESGetLineSearch(problem->newton, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  /* a sparse S is nearly diagonal: a few iterations, to round-off, take a fraction of the time of factors */
+  /* a sparse S is nearly diagonal: a few iterations, to round-off, take a fraction of the time of factors, incomplete ones too */
   PetscCall(KSPSetType(ksp, problem->sparse ? KSPGMRES : KSPPREONLY));
-  PetscCall(PCSetType(pc, problem->sparse ? PCILU : PCLU));
-  PetscCall(KSPSetTolerances(ksp, SPARSE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT));
+  PetscCall(PCSetType(pc, problem->sparse ? PCSOR : PCLU));
+  if (problem->sparse) {
+    PetscCall(KSPGMRESSetPreAllocateVectors(ksp));
+    PetscCall(KSPSetPCSide(ksp, PC_RIGHT)); /* its residual is that of Newton's method */
+    PetscCall(SNESSetMaxLinearSolveFailures(problem->newton, PETSC_INT_MAX));
+  }
+  PetscCall(KSPSetTolerances(ksp, SPARSE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, MOST_LINEAR));
   PetscCall(SNESSetFromOptions(problem->newton));
   PetscCall(CreateSNES(problem, "law_nodes_", SNESNGS, MOST_SWEEPS, &problem->nodes));
   PetscCall(SNESSetNGS(problem->nodes, SweepNodes, problem));
@@ -313,12 +434,13 @@ PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
   problem->n = n;
   if (n > problem->room) {
     PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-    PetscCall(PetscFree3(problem->diagonal, problem->weight, problem->law));
+    PetscCall(PetscFree4(problem->diagonal, problem->weight, problem->law, problem->derivatives));
     problem->room = PetscMax(n, 2 * problem->room);
     PetscCall(PetscMalloc7(problem->room + 1, &problem->begin, 2 * problem->room, &problem->limit, problem->room, &problem->base,
                            problem->room, &problem->read, problem->room, &problem->centre, problem->room, &problem->force,
                            3 * problem->room, &problem->work));
-    PetscCall(PetscMalloc3(problem->room, &problem->diagonal, problem->room, &problem->weight, problem->room, &problem->law));
+    PetscCall(PetscMalloc4(problem->room, &problem->diagonal, problem->room, &problem->weight, problem->room, &problem->law,
+                           ROW_LAW_ROWS * ROW_LAW_ROWS * problem->room, &problem->derivatives));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -335,9 +457,11 @@ PetscErrorCode LawProblemSetUp(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* S of the rows there are, which the equations own from now on; solvers are those of its size and kind */
+/* S of the rows there are, which the equations own from now on: the one that they have with other values, or another; solvers are those of
+   its size and kind. `begin` is known. */
 PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S)
 {
+  const PetscBool    another = (PetscBool)(*S != problem->S);
   const PetscScalar *diagonal;
   PetscBool          dense;
 
@@ -346,12 +470,13 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S)
   problem->S = *S;
   *S         = NULL;
   PetscCall(PetscObjectTypeCompare((PetscObject)problem->S, MATSEQDENSE, &dense));
-  if (problem->n != problem->rows || problem->sparse == dense || problem->sparse) {
+  if (problem->n != problem->rows || problem->sparse == dense) {
     problem->sparse = (PetscBool)!dense;
     PetscCall(DestroySolvers(problem));
     PetscCall(CreateSolvers(problem));
     problem->rows = problem->n;
-  }
+  } else if (another && problem->sparse) PetscCall(CreateJacobian(problem));
+  if (another) problem->jacobian_of = -1;
   PetscCall(MatGetDiagonal(problem->S, problem->out));
   PetscCall(VecGetArrayRead(problem->out, &diagonal));
   for (PetscInt i = 0; i < problem->n; i++) problem->diagonal[i] = PetscRealPart(diagonal[i]);
@@ -385,8 +510,13 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscScalar        *start  = problem->work + problem->n;
   PetscInt            sweeps = FIRST_SWEEPS, most;
+  PetscReal           rtol;
+  KSP                 ksp;
 
   PetscFunctionBegin;
+  PetscCall(SNESGetKSP(problem->newton, &ksp));
+  PetscCall(SNESGetTolerances(problem->newton, NULL, &rtol, NULL, NULL, NULL));
+  PetscCall(KSPSetTolerances(ksp, PETSC_CURRENT, ENOUGH * rtol * ForceScale(problem, problem->force), PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(PetscArraycpy(start, problem->force, problem->n));
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
   PetscCall(SolveBy(problem, problem->newton, &reason));
@@ -449,7 +579,8 @@ PetscErrorCode LawProblemSolve(LawProblem *problem)
   problem->by_nodes = problem->solved = PETSC_FALSE;
   FindWeights(problem);
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(proximal) && !problem->solved; k++) {
-    problem->proximal = proximal[k];
+    problem->proximal    = proximal[k];
+    problem->jacobian_of = -1; /* it has this weight in it */
     if (!slow) PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
     PetscCall(SolveProximal(problem, &slow));
   }
@@ -461,7 +592,7 @@ PetscErrorCode LawProblemDestroy(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(DestroySolvers(problem));
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-  PetscCall(PetscFree3(problem->diagonal, problem->weight, problem->law));
+  PetscCall(PetscFree4(problem->diagonal, problem->weight, problem->law, problem->derivatives));
   PetscCall(MatDestroy(&problem->S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

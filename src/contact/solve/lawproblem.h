@@ -11,6 +11,7 @@ typedef struct {
   Mat            S;           /* what rows read by forces on them, laws that give way included: dense, or sparse [m/N] */
   PetscReal     *diagonal;    /* of S */
   PetscReal     *weight;      /* per row: 1 / r of the trial force lambda - r y [m/N] */
+  PetscReal     *derivatives; /* per node: those of P that the Jacobian has, ROW_LAW_ROWS^2 */
   PetscReal      resolution;  /* what rows read is right to so much, by round-off of positions [m] */
   PetscReal      proximal;    /* weight of the proximal term, in parts of the diagonal of S */
   PetscScalar   *base, *read; /* per row: a force [N], and what is read under it [m] */
@@ -26,6 +27,7 @@ typedef struct {
   Vec            x, f;
   Vec            in, out; /* work space of products with S */
   Mat            jacobian;
+  PetscInt64     jacobian_of; /* state of the S that it has; -1: none */
   SNES           newton, nodes;
 } LawProblem;
 

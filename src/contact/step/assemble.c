@@ -1,168 +1,296 @@
-/* S, what touching rows read by forces on them, from how bodies answer: S = sum of B_b W_b B_b^T, on every rank. */
+/*
+   S, what touching rows read by forces on them, from how bodies answer: S = sum of B_b W_b B_b^T, on every rank. Where no node of a body
+   answers to forces on others W_b is diagonal. The part of such bodies is the product R R^T of sparse matrices, R being the columns of all
+   B_b times the roots of the diagonals, side by side. R and its product stay the same matrices as long as rows have entries where they had
+   them.
+*/
 #include "stepimpl.h"
-
-/* The touching rows of a body as they are: entries of all ranks, row by row */
-typedef struct {
-  PetscInt     n;               /* rows */
-  PetscInt    *begin, *columns; /* per row: its first entry; per entry: the displacement */
-  PetscScalar *values;          /* per entry, with the sign by which the row's gap goes with the body */
-} Entries;
 
 #define FEW_ROWS 60 /* up to so many S is dense whatever it is made of */
 
-static PetscErrorCode DestroyEntries(Entries *entries)
+PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree(entries->begin));
-  PetscCall(PetscFree2(entries->columns, entries->values));
+  for (PetscInt b = 0; b < assembly->n_bodies; b++) {
+    StepperEntries *entries = &assembly->of_body[b];
+
+    PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
+    PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
+  }
+  PetscCall(PetscFree(assembly->of_body));
+  PetscCall(PetscFree2(assembly->begin, assembly->next));
+  PetscCall(PetscFree4(assembly->columns, assembly->body, assembly->places, assembly->values));
+  PetscCall(MatDestroy(&assembly->rows));
+  PetscCall(MatDestroy(&assembly->transpose));
+  PetscCall(MatDestroy(&assembly->product));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The touching rows of a body, by their numbers among its rows, and their places in the list of all */
-static PetscErrorCode ListBodyRows(Contact contact, ContactStepper *stepper, PetscInt b, PetscInt *n)
+static PetscErrorCode ListBodyRows(Contact contact, ContactStepper *stepper, PetscInt b)
 {
+  StepperEntries *entries = &stepper->assembly.of_body[b];
+
   PetscFunctionBegin;
-  *n = 0;
+  if (stepper->problem.n > entries->row_room) {
+    entries->row_room = 2 * stepper->problem.n;
+    PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
+    PetscCall(PetscMalloc3(entries->row_room, &entries->rows, entries->row_room, &entries->places, entries->row_room + 1, &entries->begin));
+  }
+  entries->n = 0;
   for (PetscInt k = 0; k < stepper->problem.n; k++) {
     const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]];
 
     if (pair->body[0] != b && pair->body[1] != b) continue;
-    PetscCall(PetscFindInt(stepper->rows[k], contact->body_rows[b].n_all, contact->body_rows[b].all, &stepper->of_body[*n]));
-    stepper->places[(*n)++] = k;
+    PetscCall(PetscFindInt(stepper->rows[k], contact->body_rows[b].n_all, contact->body_rows[b].all, &entries->rows[entries->n]));
+    entries->places[entries->n++] = k;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Brings the entries of rows to all ranks; each rank has those of its rows */
-static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, PetscInt b, Entries *entries)
+/* How many entries each of the touching rows of a body has, and room for them */
+static PetscErrorCode CountEntries(Contact contact, ContactStepper *stepper, PetscInt b)
 {
-  const Mat      B     = contact->interfaces[b];
-  const PetscInt begin = contact->body_rows[b].begin, end = begin + contact->body_rows[b].n;
-  PetscInt      *counts, total                            = 0;
+  StepperEntries *entries = &stepper->assembly.of_body[b];
+  const PetscInt  first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
+  PetscInt       *begin = entries->begin, total;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(entries->n + 1, &entries->begin));
-  PetscCall(PetscCalloc1(entries->n, &counts));
+  PetscCall(PetscArrayzero(begin, entries->n + 1));
   for (PetscInt k = 0; k < entries->n; k++) {
-    const PetscInt row = stepper->of_body[k];
-
-    if (row < begin || row >= end) continue;
-    PetscCall(MatGetRow(B, row, &counts[k], NULL, NULL));
-    PetscCall(MatRestoreRow(B, row, NULL, NULL, NULL));
+    if (entries->rows[k] < first || entries->rows[k] >= end) continue;
+    PetscCall(MatGetRow(contact->interfaces[b], entries->rows[k], &begin[k + 1], NULL, NULL));
+    PetscCall(MatRestoreRow(contact->interfaces[b], entries->rows[k], NULL, NULL, NULL));
   }
   if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, (PetscMPIInt)entries->n, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, begin + 1, (PetscMPIInt)entries->n, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt k = 0; k < entries->n; k++) begin[k + 1] += begin[k];
+  total = begin[entries->n];
+  if (total <= entries->room) PetscFunctionReturn(PETSC_SUCCESS);
+  entries->room = 2 * total;
+  PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
+  PetscCall(PetscMalloc4(entries->room, &entries->columns, entries->room, &entries->dofs, entries->room, &entries->values, entries->room,
+                         &entries->answers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Brings the entries of the touching rows of a body to all ranks; each rank has those of its rows */
+static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, PetscInt b)
+{
+  StepperEntries *entries = &stepper->assembly.of_body[b];
+  const PetscInt  first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
+  PetscMPIInt     total;
+
+  PetscFunctionBegin;
+  PetscCall(ListBodyRows(contact, stepper, b));
+  if (!entries->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CountEntries(contact, stepper, b));
+  PetscCall(PetscMPIIntCast(entries->begin[entries->n], &total));
+  PetscCall(PetscArrayzero(entries->columns, total));
+  PetscCall(PetscArrayzero(entries->values, total));
   for (PetscInt k = 0; k < entries->n; k++) {
-    entries->begin[k] = total;
-    total += counts[k];
-  }
-  entries->begin[entries->n] = total;
-  PetscCall(PetscCalloc2(total, &entries->columns, total, &entries->values));
-  for (PetscInt k = 0; k < entries->n; k++) {
-    const PetscInt     row  = stepper->of_body[k];
-    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[stepper->places[k]]]];
+    const PetscInt     row  = entries->rows[k];
+    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[entries->places[k]]]];
     const PetscInt    *columns;
     const PetscScalar *values;
     PetscInt           n;
 
-    if (row < begin || row >= end) continue;
-    PetscCall(MatGetRow(B, row, &n, &columns, &values));
+    if (row < first || row >= end) continue;
+    PetscCall(MatGetRow(contact->interfaces[b], row, &n, &columns, &values));
     for (PetscInt e = 0; e < n; e++) {
       entries->columns[entries->begin[k] + e] = columns[e];
       entries->values[entries->begin[k] + e]  = ContactSign(pair, b) * values[e];
     }
-    PetscCall(MatRestoreRow(B, row, &n, &columns, &values));
+    PetscCall(MatRestoreRow(contact->interfaces[b], row, &n, &columns, &values));
   }
-  if (contact->ranks.size > 1) {
-    PetscMPIInt n;
-
-    PetscCall(PetscMPIIntCast(total, &n));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->columns, n, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->values, n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  }
-  PetscCall(PetscFree(counts));
+  if (contact->ranks.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->columns, total, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->values, total, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds what one body does to a dense S */
+/* Adds what a body does whose nodes answer to each other: for each row, how the displacements go under a unit force along it */
 static PetscErrorCode AddBody(Contact contact, ContactStepper *stepper, PetscInt b, PetscScalar S[])
 {
-  const PetscInt     n = stepper->problem.n, *place;
-  const PetscScalar *W;
-  Entries            entries;
-  PetscInt           leading, *dofs, count;
+  const PetscInt        n       = stepper->problem.n, *place;
+  const StepperEntries *entries = &stepper->assembly.of_body[b];
+  PetscInt             *dofs = entries->dofs, *columns = entries->columns, leading, count;
+  PetscScalar          *moved = entries->answers;
+  const PetscScalar    *W;
 
   PetscFunctionBegin;
-  PetscCall(ListBodyRows(contact, stepper, b, &entries.n));
-  if (!entries.n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetEntries(contact, stepper, b, &entries));
-  count = entries.begin[entries.n];
-  PetscCall(PetscMalloc1(count, &dofs));
-  PetscCall(PetscArraycpy(dofs, entries.columns, count));
+  if (!entries->n) PetscFunctionReturn(PETSC_SUCCESS);
+  count = entries->begin[entries->n];
+  PetscCall(PetscArraycpy(dofs, columns, count));
   PetscCall(PetscSortRemoveDupsInt(&count, dofs));
   PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rules[b]->shape, count, dofs, &place, &leading, &W));
-  for (PetscInt k = 0; k < entries.n; k++)
-    for (PetscInt l = 0; l < entries.n; l++) {
-      PetscScalar sum = 0;
+  for (PetscInt e = 0; e < entries->begin[entries->n]; e++) PetscCall(PetscFindInt(columns[e], count, dofs, &columns[e]));
+  for (PetscInt d = 0; d < count; d++) dofs[d] = place[dofs[d]];
+  for (PetscInt l = 0; l < entries->n; l++) {
+    PetscScalar *column = S + entries->places[l] * n;
 
-      for (PetscInt e = entries.begin[k]; e < entries.begin[k + 1]; e++)
-        for (PetscInt f = entries.begin[l]; f < entries.begin[l + 1]; f++)
-          sum += entries.values[e] * entries.values[f] * W[place[entries.columns[f]] * leading + place[entries.columns[e]]];
-      S[stepper->places[l] * n + stepper->places[k]] += sum;
-    }
-  PetscCall(PetscFree(dofs));
-  PetscCall(DestroyEntries(&entries));
+    PetscCall(PetscArrayzero(moved, count));
+    for (PetscInt f = entries->begin[l]; f < entries->begin[l + 1]; f++)
+      for (PetscInt d = 0; d < count; d++) moved[d] += entries->values[f] * W[dofs[columns[f]] * leading + dofs[d]];
+    for (PetscInt k = 0; k < entries->n; k++)
+      for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++)
+        column[entries->places[k]] += entries->values[e] * moved[columns[e]];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds to a sparse S what a body does none of whose nodes answers to forces on others: rows are coupled that share a displacement */
-static PetscErrorCode AddDiagonal(Contact contact, ContactStepper *stepper, PetscInt b, Vec diagonal, Mat S)
+/* The entries that a body whose nodes answer to the forces on them alone has in R */
+static PetscErrorCode ScaleEntries(Contact contact, ContactStepper *stepper, PetscInt b, Vec diagonal)
 {
+  StepperEntries    *entries = &stepper->assembly.of_body[b];
   const PetscScalar *values;
-  PetscScalar       *answer;
-  PetscScalar       *block;
-  PetscInt           begin, end, count, most = 0, *order, *row, *rows;
-  Entries            entries;
+  PetscInt           begin, end, total;
 
   PetscFunctionBegin;
-  PetscCall(ListBodyRows(contact, stepper, b, &entries.n));
-  if (!entries.n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetEntries(contact, stepper, b, &entries));
-  count = entries.begin[entries.n];
-  PetscCall(PetscCalloc3(count, &answer, count, &order, count, &row));
+  if (!entries->n) PetscFunctionReturn(PETSC_SUCCESS);
+  total = entries->begin[entries->n];
   PetscCall(VecGetOwnershipRange(diagonal, &begin, &end));
   PetscCall(VecGetArrayRead(diagonal, &values));
-  for (PetscInt k = 0; k < entries.n; k++)
-    for (PetscInt e = entries.begin[k]; e < entries.begin[k + 1]; e++) {
-      order[e] = e;
-      row[e]   = stepper->places[k];
-      if (entries.columns[e] >= begin && entries.columns[e] < end) answer[e] = values[entries.columns[e] - begin];
-    }
+  for (PetscInt e = 0; e < total; e++)
+    entries->answers[e] = entries->columns[e] >= begin && entries->columns[e] < end ? values[entries->columns[e] - begin] : 0;
   PetscCall(VecRestoreArrayRead(diagonal, &values));
   if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, answer, (PetscMPIInt)count, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscCall(PetscSortIntWithPermutation(count, entries.columns, order));
-  for (PetscInt first = 0, last; first < count; first = last) {
-    for (last = first; last < count && entries.columns[order[last]] == entries.columns[order[first]]; last++);
-    most = PetscMax(most, last - first);
-  }
-  PetscCall(PetscMalloc2(most, &rows, most * most, &block));
-  for (PetscInt first = 0, last; first < count; first = last) {
-    PetscInt n;
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, entries->answers, (PetscMPIInt)total, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt e = 0; e < total; e++) entries->values[e] *= PetscSqrtScalar(entries->answers[e]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    for (last = first; last < count && entries.columns[order[last]] == entries.columns[order[first]]; last++);
-    n = last - first;
-    for (PetscInt k = 0; k < n; k++) {
-      const PetscInt e = order[first + k];
+/* Room for the rows of R, and where each begins; `same`: where they did */
+static PetscErrorCode CountRows(const ContactStepper *stepper, StepperAssembly *assembly, PetscBool *same)
+{
+  const PetscInt n = stepper->problem.n;
 
-      rows[k] = row[e];
-      for (PetscInt l = 0; l < n; l++) block[k * n + l] = entries.values[e] * entries.values[order[first + l]] * answer[e];
-    }
-    PetscCall(MatSetValues(S, n, rows, n, rows, block, ADD_VALUES));
+  PetscFunctionBegin;
+  *same = (PetscBool)(assembly->product && assembly->n == n);
+  if (n > assembly->row_room) {
+    assembly->row_room = 2 * n;
+    PetscCall(PetscFree2(assembly->begin, assembly->next));
+    PetscCall(PetscMalloc2(assembly->row_room + 1, &assembly->begin, assembly->row_room + 1, &assembly->next));
   }
-  PetscCall(PetscFree2(rows, block));
-  PetscCall(PetscFree3(answer, order, row));
-  PetscCall(DestroyEntries(&entries));
+  PetscCall(PetscArrayzero(assembly->next, n + 1));
+  for (PetscInt b = 0; b < assembly->n_bodies; b++) {
+    const StepperEntries *entries = &assembly->of_body[b];
+
+    for (PetscInt k = 0; entries->alone && k < entries->n; k++)
+      assembly->next[entries->places[k] + 1] += entries->begin[k + 1] - entries->begin[k];
+  }
+  for (PetscInt k = 0; k < n; k++) assembly->next[k + 1] += assembly->next[k];
+  if (*same) PetscCall(PetscArraycmp(assembly->next, assembly->begin, n + 1, same));
+  PetscCall(PetscArraycpy(assembly->begin, assembly->next, n + 1));
+  assembly->n = n;
+  if (assembly->begin[n] <= assembly->room) PetscFunctionReturn(PETSC_SUCCESS);
+  assembly->room = 2 * assembly->begin[n];
+  PetscCall(PetscFree4(assembly->columns, assembly->body, assembly->places, assembly->values));
+  PetscCall(PetscMalloc4(assembly->room, &assembly->columns, assembly->room, &assembly->body, assembly->room, &assembly->places,
+                         assembly->room, &assembly->values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Columns of R are the displacements in which rows have entries, those of one body behind those of another */
+static PetscErrorCode NumberColumns(StepperAssembly *assembly, PetscInt *n)
+{
+  PetscFunctionBegin;
+  *n = 0;
+  PetscCall(PetscArraycpy(assembly->next, assembly->begin, assembly->n + 1));
+  for (PetscInt b = 0; b < assembly->n_bodies; b++) {
+    const StepperEntries *entries = &assembly->of_body[b];
+    PetscInt              count   = entries->alone && entries->n ? entries->begin[entries->n] : 0;
+
+    if (!count) continue;
+    PetscCall(PetscArraycpy(entries->dofs, entries->columns, count));
+    PetscCall(PetscSortRemoveDupsInt(&count, entries->dofs));
+    for (PetscInt k = 0; k < entries->n; k++)
+      for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) {
+        PetscInt *place = &assembly->places[assembly->next[entries->places[k]]++];
+
+        PetscCall(PetscFindInt(entries->columns[e], count, entries->dofs, place));
+        *place += *n;
+      }
+    *n += count;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* R, and R R^T */
+static PetscErrorCode MultiplyRows(const ContactStepper *stepper, StepperAssembly *assembly)
+{
+  PetscBool same;
+
+  PetscFunctionBegin;
+  PetscCall(CountRows(stepper, assembly, &same));
+  PetscCall(PetscArraycpy(assembly->next, assembly->begin, assembly->n + 1));
+  for (PetscInt b = 0; b < assembly->n_bodies; b++) {
+    const StepperEntries *entries = &assembly->of_body[b];
+
+    for (PetscInt k = 0; entries->alone && k < entries->n; k++)
+      for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) {
+        const PetscInt at = assembly->next[entries->places[k]]++;
+
+        same                  = (PetscBool)(same && assembly->columns[at] == entries->columns[e] && assembly->body[at] == b);
+        assembly->columns[at] = entries->columns[e];
+        assembly->body[at]    = b;
+        assembly->values[at]  = entries->values[e];
+      }
+  }
+  if (!same) {
+    PetscInt columns;
+
+    PetscCall(MatDestroy(&assembly->rows));
+    PetscCall(MatDestroy(&assembly->transpose));
+    PetscCall(MatDestroy(&assembly->product));
+    PetscCall(NumberColumns(assembly, &columns));
+    PetscCall(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, assembly->n, columns, assembly->begin, assembly->places, assembly->values,
+                                        &assembly->rows));
+    PetscCall(MatTranspose(assembly->rows, MAT_INITIAL_MATRIX, &assembly->transpose));
+    PetscCall(MatMatMult(assembly->rows, assembly->transpose, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &assembly->product));
+  } else {
+    PetscCall(PetscObjectStateIncrease((PetscObject)assembly->rows));
+    PetscCall(MatTranspose(assembly->rows, MAT_REUSE_MATRIX, &assembly->transpose));
+    PetscCall(MatProductNumeric(assembly->product));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds R R^T to a dense S */
+static PetscErrorCode AddProduct(const StepperAssembly *assembly, PetscScalar S[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < assembly->n; i++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(assembly->product, i, &n, &columns, &values));
+    for (PetscInt e = 0; e < n; e++) S[columns[e] * assembly->n + i] += values[e];
+    PetscCall(MatRestoreRow(assembly->product, i, &n, &columns, &values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A dense S: the one there is, where it has the size */
+static PetscErrorCode AssembleDense(Contact contact, ContactStepper *stepper, PetscBool any_alone, Mat *S)
+{
+  const PetscInt n = stepper->problem.n;
+  PetscScalar   *values;
+  PetscInt       size = -1;
+
+  PetscFunctionBegin;
+  if (!stepper->problem.sparse) PetscCall(MatGetSize(stepper->problem.S, &size, NULL));
+  *S = stepper->problem.S;
+  if (size == n) PetscCall(PetscObjectReference((PetscObject)*S));
+  else PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
+  PetscCall(MatDenseGetArrayWrite(*S, &values));
+  PetscCall(PetscArrayzero(values, n * n));
+  if (any_alone) PetscCall(AddProduct(&stepper->assembly, values));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (!stepper->assembly.of_body[b].alone) PetscCall(AddBody(contact, stepper, b, values));
+  PetscCall(MatDenseRestoreArrayWrite(*S, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -173,55 +301,43 @@ static PetscErrorCode AddGive(Contact contact, ContactStepper *stepper, Mat S)
   for (PetscInt i = 0; i < contact->rows.n; i++) stepper->mine[i] = ContactStepperGive(contact, stepper, i);
   PetscCall(ContactStepperGather(contact, stepper, stepper->mine, stepper->gathered));
   for (PetscInt k = 0; k < stepper->problem.n; k++) PetscCall(MatSetValues(S, 1, &k, 1, &k, &stepper->gathered[k], ADD_VALUES));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether no node of any body answers to forces on others */
-static PetscErrorCode IsSparse(Contact contact, ContactStepper *stepper, PetscBool *sparse)
-{
-  PetscFunctionBegin;
-  *sparse = (PetscBool)(stepper->problem.n > FEW_ROWS);
-  for (PetscInt b = 0; b < contact->n_bodies && *sparse; b++) {
-    Vec diagonal;
-
-    if (!contact->body_rows[b].n_all) continue;
-    PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
-    *sparse = (PetscBool)(diagonal != NULL);
-  }
+  PetscCall(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* S of the rows that touch now, unless it is there */
 PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
 {
-  const PetscInt n    = stepper->problem.n;
-  PetscBool      same = (PetscBool)(stepper->assembled == stepper->state && stepper->n_assembled == n), sparse;
-  PetscScalar   *values;
-  Mat            S;
+  const PetscInt   n         = stepper->problem.n;
+  StepperAssembly *assembly  = &stepper->assembly;
+  PetscBool        same      = (PetscBool)(stepper->assembled == stepper->state && stepper->n_assembled == n);
+  PetscBool        all_alone = PETSC_TRUE, any_alone = PETSC_FALSE;
+  Mat              S;
 
   PetscFunctionBegin;
   if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
-  PetscCall(IsSparse(contact, stepper, &sparse));
-  PetscCall(MatCreate(PETSC_COMM_SELF, &S));
-  PetscCall(MatSetSizes(S, n, n, n, n));
-  PetscCall(MatSetType(S, sparse ? MATSEQAIJ : MATSEQDENSE));
-  PetscCall(MatSetUp(S));
-  if (!sparse) PetscCall(MatDenseGetArrayWrite(S, &values));
-  if (!sparse) PetscCall(PetscArrayzero(values, n * n));
+  if (!assembly->of_body) PetscCall(PetscCalloc1(contact->n_bodies, &assembly->of_body));
+  assembly->n_bodies = contact->n_bodies;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec diagonal;
 
-    if (!sparse) PetscCall(AddBody(contact, stepper, b, values));
-    if (!sparse || !contact->body_rows[b].n_all) continue;
+    PetscCall(GetEntries(contact, stepper, b));
+    if (!assembly->of_body[b].n) continue;
     PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
-    PetscCall(AddDiagonal(contact, stepper, b, diagonal, S));
+    assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
+    if (diagonal) PetscCall(ScaleEntries(contact, stepper, b, diagonal));
+    if (diagonal) any_alone = PETSC_TRUE;
+    else all_alone = PETSC_FALSE;
   }
-  if (!sparse) PetscCall(MatDenseRestoreArrayWrite(S, &values));
+  if (any_alone) PetscCall(MultiplyRows(stepper, assembly));
+  if (all_alone && n > FEW_ROWS) {
+    S = assembly->product;
+    PetscCall(PetscObjectReference((PetscObject)S));
+  } else PetscCall(AssembleDense(contact, stepper, any_alone, &S));
   if (stepper->gives) PetscCall(AddGive(contact, stepper, S));
-  PetscCall(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
   PetscCall(LawProblemTakeS(&stepper->problem, &S));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
   stepper->n_assembled = n;

@@ -239,6 +239,7 @@ static PetscErrorCode Reset(Contact contact)
   PetscFunctionBegin;
   PetscCall(SNESDestroy(&stepper->outer));
   PetscCall(ContactStepperDestroyVecs(stepper));
+  PetscCall(ContactStepperDestroyAssembly(&stepper->assembly));
   PetscCall(LawProblemDestroy(&stepper->problem));
   PetscCall(PetscFree(stepper->laws));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));

@@ -42,12 +42,13 @@ static void CountNodes(Contact contact, const ContactStepper *stepper, PetscInt 
 PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper)
 {
   const LawProblem *problem = &stepper->problem;
-  const char       *m       = UnitsOf((PetscObject)contact, UNIT_LENGTH);
   PetscViewer       viewer  = stepper->monitor.viewer;
+  const char       *m;
   PetscReal         time;
 
   PetscFunctionBegin;
   if (!viewer) PetscFunctionReturn(PETSC_SUCCESS);
+  m = UnitsOf((PetscObject)contact, UNIT_LENGTH);
   PetscCall(ForcesGetTime(contact, &time));
   StatusLineBreak();
   for (PetscInt g = 0; g < contact->n_bodies; g++) {

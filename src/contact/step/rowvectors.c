@@ -10,8 +10,7 @@ PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper
   PetscCall(VecDuplicate(stepper->x, &stepper->f));
   PetscCall(VecDuplicate(stepper->x, &stepper->field));
   PetscCall(VecScatterCreateToAll(stepper->x, &stepper->to_all, &stepper->of_all));
-  PetscCall(PetscMalloc5(n_all, &stepper->rows, n_all, &stepper->of_body, n_all, &stepper->places, n_all, &stepper->gathered, n_all,
-                         &stepper->of_assembled));
+  PetscCall(PetscMalloc4(n_all, &stepper->rows, n_all, &stepper->places, n_all, &stepper->gathered, n_all, &stepper->of_assembled));
   PetscCall(PetscMalloc1(2 * n_all, &stepper->told));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -24,7 +23,7 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
   PetscCall(VecDestroy(&stepper->field));
   PetscCall(VecDestroy(&stepper->of_all));
   PetscCall(VecScatterDestroy(&stepper->to_all));
-  PetscCall(PetscFree5(stepper->rows, stepper->of_body, stepper->places, stepper->gathered, stepper->of_assembled));
+  PetscCall(PetscFree4(stepper->rows, stepper->places, stepper->gathered, stepper->of_assembled));
   PetscCall(PetscFree(stepper->told));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,6 +26,28 @@ typedef struct {
   PetscViewerFormat format;
 } ContactMonitor;
 
+/* The touching rows of a body: entries of all ranks, row by row */
+typedef struct {
+  PetscBool    alone;             /* no node of the body answers to forces on others */
+  PetscInt     n, row_room, room; /* rows; room for rows, and for entries */
+  PetscInt    *rows, *places;     /* per row: its number among those of the body, and its place among the touching ones */
+  PetscInt    *begin;             /* per row: its first entry; n + 1 */
+  PetscInt    *columns, *dofs;    /* per entry: the displacement; work space */
+  PetscScalar *values, *answers;  /* per entry, with the sign by which the row's gap goes with the body; work space */
+} StepperEntries;
+
+/* What S is made of, see assemble.c */
+typedef struct {
+  PetscInt        n_bodies;
+  StepperEntries *of_body;
+  /* R, the rows of bodies whose nodes answer alone */
+  PetscInt     n, row_room, room;       /* rows; room for rows, and for entries */
+  PetscInt    *begin, *next;            /* per row: its first entry; n + 1; work space */
+  PetscInt    *columns, *body, *places; /* per entry: the displacement, of which body, and the column of R */
+  PetscScalar *values;
+  Mat          rows, transpose, product; /* R, R^T, R R^T */
+} StepperAssembly;
+
 struct _ContactStepper {
   /* options */
   ContactMonitor     monitor;
@@ -62,13 +84,14 @@ struct _ContactStepper {
   PetscReal step_loss;           /* what contact takes of the energy in this step, friction apart [J] */
   PetscReal step_force;          /* sum over the rows whose changes of gaps, not gaps, are held in this step [N] */
   /* S: counts of the changes of rows, for which S is another; now, and when S was assembled; the rows that it has */
-  PetscInt64 state, assembled;
-  PetscInt   n_assembled, *of_assembled;
+  StepperAssembly assembly;
+  PetscInt64      state, assembled;
+  PetscInt        n_assembled, *of_assembled;
   /* work space */
   Vec          x, f, field, of_all;
-  PetscInt    *of_body, *places; /* touching rows of a body, and their places in the list */
-  PetscScalar *gathered;         /* a number per touching row */
-  PetscReal   *none;             /* zeros */
+  PetscInt    *places;   /* of the rows of a group */
+  PetscScalar *gathered; /* a number per touching row */
+  PetscReal   *none;     /* zeros */
   PetscReal   *mine, *before;
   int         *moves; /* per body */
 };
@@ -95,6 +118,7 @@ PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperPack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpRules(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);
 PETSC_INTERN PetscInt       ContactStepperGroup(Contact, const ContactStepper *, PetscInt);

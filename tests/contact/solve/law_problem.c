@@ -419,6 +419,82 @@ static void units_do_not_matter(void **state)
   ok(LawProblemDestroy(&problem));
 }
 
+#define NODES 25 /* of a chain */
+#define CHAIN (3 * NODES)
+
+/* S = B B^T + I / 10 of a chain of nodes, of which the rows across the normal have entries at three places of their own node and of the
+   next one, and normal ones at the first of these alone: they are not coupled. Entries that are not zero; `dense`: all. */
+static Mat ChainMatrix(PetscBool dense, unsigned seed)
+{
+  PetscReal B[CHAIN][CHAIN + 3] = {{0}};
+  Mat       S;
+
+  for (PetscInt i = 0; i < CHAIN; i++)
+    for (PetscInt k = 0; k < 6; k++)
+      if ((k % 3 == 0) == (i % 3 == 0)) B[i][i - i % 3 + k] = Random(&seed);
+  if (dense) ok(MatCreateSeqDense(PETSC_COMM_SELF, CHAIN, CHAIN, NULL, &S));
+  else ok(MatCreateSeqAIJ(PETSC_COMM_SELF, CHAIN, CHAIN, 9, NULL, &S));
+  for (PetscInt i = 0; i < CHAIN; i++)
+    for (PetscInt j = 0; j < CHAIN; j++) {
+      PetscScalar sum = i == j ? 0.1 : 0;
+
+      for (PetscInt k = 0; k < CHAIN + 3; k++) sum += B[i][k] * B[j][k];
+      if (dense || sum != 0) ok(MatSetValue(S, i, j, sum, INSERT_VALUES));
+    }
+  ok(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
+  ok(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
+  return S;
+}
+
+/* Of the chain, with readings by chance; `S` is kept, and may have other values in the next call */
+static void SolveChain(LawProblem *problem, Mat S, unsigned seed)
+{
+  PetscBool solved;
+  Mat       taken = S;
+
+  ok(LawProblemResize(problem, CHAIN));
+  problem->law     = &RowLawUnilateral;
+  problem->n_nodes = NODES;
+  for (PetscInt node = 0; node <= NODES; node++) problem->begin[node] = 3 * node;
+  for (PetscInt node = 0; node < NODES; node++) problem->limit[2 * node] = 0, problem->limit[2 * node + 1] = 0.4;
+  ok(PetscObjectReference((PetscObject)S));
+  ok(LawProblemTakeS(problem, &taken));
+  for (PetscInt i = 0; i < CHAIN; i++) {
+    problem->read[i] = Random(&seed);
+    problem->base[i] = problem->force[i] = 0;
+  }
+  ok(LawProblemSolve(problem));
+  solved = problem->solved;
+  assert_true(solved);
+}
+
+/* Other values in the same matrix, and another matrix, are noticed */
+static void a_sparse_S_has_the_solution_of_a_dense_one(void **state)
+{
+  LawProblem one = {0}, other = {0};
+
+  (void)state;
+  for (unsigned seed = 1; seed <= 12; seed++) {
+    Mat      S[2] = {ChainMatrix(PETSC_TRUE, seed / 2), ChainMatrix(PETSC_FALSE, seed / 2)};
+    PetscInt push = 0;
+
+    for (PetscInt pass = 0; pass < 3; pass++) {
+      SolveChain(&one, S[0], seed);
+      SolveChain(&other, S[1], seed);
+      assert_true(other.sparse && !one.sparse);
+      for (PetscInt i = 0; i < CHAIN; i++) {
+        near(PetscRealPart(other.force[i]), PetscRealPart(one.force[i]), CLOSE);
+        push += PetscRealPart(one.force[i]) > 0 && i % 3 == 0;
+      }
+      for (PetscInt k = 0; k < 2; k++) ok(MatScale(S[k], 1.7));
+    }
+    between(push, 3, 3 * NODES - 3);
+    for (PetscInt k = 0; k < 2; k++) ok(MatDestroy(&S[k]));
+  }
+  ok(LawProblemDestroy(&one));
+  ok(LawProblemDestroy(&other));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -433,6 +509,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(sweeps_help_where_newton_cycles),
       cmocka_unit_test(what_has_no_solution_is_not_solved),
       cmocka_unit_test(units_do_not_matter),
+      cmocka_unit_test(a_sparse_S_has_the_solution_of_a_dense_one),
   };
 
   return impakt_main(argc, argv, tests);
