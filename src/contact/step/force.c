@@ -5,7 +5,7 @@
 #include <stddef.h>
 
 /* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right. Linear bodies are to round-off. */
-#define RTOL        1e-6
+#define RTOL        1e-7
 #define RTOL_STATIC 1e-9 /* without inertia the balance is what is wanted */
 /* Springs of bodies that contact alone holds find their rest from how the step changes with them, so that it has to be right to round-off:
    with the other tolerances linear stacks took 32 passes for 18. For nonlinear bodies each digit is a pass. */
@@ -139,7 +139,7 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(ChooseLaws(contact, stepper));
   contact->friction.steps     = PETSC_TRUE;
   stepper->rtol               = floating ? RTOL_FLOATING : any_static ? RTOL_STATIC : RTOL;
-  stepper->atol               = (floating ? ATOL_FLOATING : 1) * CONTACT_POSITION_TOLERANCE * contact->scale.length;
+  stepper->atol               = (floating ? ATOL_FLOATING * CONTACT_POSITION_TOLERANCE : RESOLUTION) * contact->scale.length;
   stepper->assembled          = -1;
   stepper->problem.resolution = RESOLUTION * contact->scale.length;
   if (contact->friction.law.setup && ContactAnyPairHas(contact, CONTACT_LAW_FRICTION))
