@@ -69,6 +69,7 @@ typedef struct {
   PetscReal uncounted_energy;         /* that part of it which `energy_change` leaves out: of penalty springs, which are no glue [J] */
   PetscReal obstacle_work;            /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
   PetscReal friction_loss;            /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
+  PetscReal contact_loss;             /* energy that contact has taken so far by its rule, see ContactGetLossReason() [J] */
   PetscReal energy_change;            /* of all bodies since the start, less work done on them, with what friction, damping and
                                          plastic flow have taken [J] */
   PetscReal energy_scale;             /* what that is relative to: the largest so far of kinetic energy, without that of the common motion

@@ -45,6 +45,7 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
                            .supports           = controller->supports,
                            .n_probes           = controller->n_probes,
                            .probes             = controller->probes};
+  ContactCounts   counts;
   PetscBool       logged, glued;
 
   PetscFunctionBegin;
@@ -67,6 +68,8 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   frame.uncounted_energy = glued ? 0 : frame.penalty_energy;
   PetscCall(ContactGetFrictionLoss(controller->contact, &frame.friction_loss));
   PetscCall(ContactGetObstacleWork(controller->contact, &frame.obstacle_work));
+  PetscCall(ContactGetCounts(controller->contact, &counts));
+  frame.contact_loss = counts.contact_loss;
   PetscCall(EnergyScaleAdd(&controller->scale, controller, &frame));
   PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)

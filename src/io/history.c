@@ -27,6 +27,7 @@ struct _n_History {
   PetscBool     *damped;          /* per body: it has Rayleigh damping */
   PetscBool      friction;        /* contact has friction */
   PetscBool      springs;         /* contact has penalty springs */
+  PetscBool      takes;           /* contact takes energy by its rule */
   PetscBool     *plastic;         /* per body: its material flows */
   PetscBool     *hourglasses;     /* per body: its elements have one point */
   PetscBool     *rigid;           /* per body */
@@ -61,7 +62,7 @@ static PetscErrorCode AddSeries(History history, const char group[], const char 
 static PetscErrorCode AddAllSeries(History history, Controller controller)
 {
   const Body              *bodies;
-  const char              *name;
+  const char              *name, *reason;
   Contact                  contact;
   PetscInt                 n_pairs, n_supports, n_probes;
   const ControllerSupport *supports;
@@ -78,12 +79,15 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
   PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &history->friction));
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &history->springs));
   if (!history->springs) PetscCall(ContactHasLaw(contact, CONTACT_LAW_SPRING, &history->springs));
-  PetscCall(PetscCalloc1(5 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(ContactGetLossReason(contact, &reason));
+  history->takes = (PetscBool)(reason != NULL);
+  PetscCall(PetscCalloc1(6 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", UNIT_TIME, 1));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", UNIT_ONE, 1));
   PetscCall(AddSeries(history, "/energy", "", "change", UNIT_ENERGY, 1));
   PetscCall(AddSeries(history, "/energy", "", "scale", UNIT_ENERGY, 1));
   if (history->springs) PetscCall(AddSeries(history, "/penalty_energy", "", "", UNIT_ENERGY, 1));
+  if (history->takes) PetscCall(AddSeries(history, "/contact_loss", "", "", UNIT_ENERGY, 1));
   for (PetscInt i = 0; i < n_pairs; i++) {
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
     PetscCall(AddSeries(history, "/contact/", name, "force", UNIT_FORCE, 1));
@@ -258,6 +262,7 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
   *next++ = frame->energy_change;
   *next++ = frame->energy_scale;
   if (history->springs) *next++ = frame->penalty_energy;
+  if (history->takes) *next++ = frame->contact_loss;
   for (PetscInt i = 0; i < frame->n_pairs; i++) {
     *next++ = frame->pairs[i].force;
     *next++ = frame->pairs[i].gap;
