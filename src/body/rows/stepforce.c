@@ -120,9 +120,9 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
     if (MayTakeSlab(body, n)) PetscCall(BodySlabCreate(body, shape, n, dofs, &compliance->slab));
   }
   if (unknown) {
+    PetscCall(PetscInfo(body, "%" PetscInt_FMT " new columns of the compliance of nodes of body '%s', each a %s\n", unknown,
+                        ((PetscObject)body)->name, compliance->slab ? "solution of a slab at the surface" : "controller step"));
     PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
-    PetscCall(PetscInfo(body, "%" PetscInt_FMT " new columns of nodal compliance beside %" PetscInt_FMT "%s\n", unknown, known,
-                        compliance->slab ? ", of a slab at the surface" : ""));
     PetscCall(ComplianceReserve(*nodal, unknown));
     if (compliance->slab) PetscCall(BodySlabProbe(body, compliance->slab, n, dofs, *nodal));
     else PetscCall((*probe)(body, shape, n, dofs, *nodal));

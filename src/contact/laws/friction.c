@@ -311,6 +311,9 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, friction->pair_step, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_SUM,
                                PetscObjectComm((PetscObject)contact)));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (friction->pair_step[p] != 0)
+      PetscCall(PetscInfo(contact, "friction of %s takes %g J in the step\n", contact->pairs[p].name, (double)friction->pair_step[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -40,6 +40,7 @@ static PetscErrorCode More(Contact contact, ContactStepper *stepper, const Conta
     for (PetscInt i = first; i < first + pair->components; i++) stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
     *more = PETSC_TRUE;
   }
+  if (*more) PetscCall(PetscInfo(contact, "rule linear: rows of %s that end inside their partner join\n", pair->name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

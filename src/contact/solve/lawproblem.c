@@ -521,6 +521,9 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
   PetscCall(SolveBy(problem, problem->newton, &reason));
   for (; reason < 0 && sweeps <= most; sweeps *= 4) {
+    PetscCall(PetscInfo(problem->newton,
+                        "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps node by node\n",
+                        problem->n, SNESConvergedReasons[reason], problem->iterations, sweeps));
     problem->by_nodes = PETSC_TRUE;
     PetscCall(PetscArraycpy(problem->force, start, problem->n));
     PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
@@ -561,6 +564,8 @@ static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
     for (PetscInt i = 0; i < problem->n; i++) pull = PetscMax(pull, PetscAbsScalar(problem->force[i] - problem->centre[i]));
     if (problem->proximal * pull <= TOLERANCE * ForceScale(problem, problem->force) || ProximalVanishes(problem, 0))
       PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(PetscInfo(problem->newton, "law of %" PetscInt_FMT " rows: forces of dependent rows change by %g N, solved again\n",
+                        problem->n, (double)pull));
   }
   problem->solved = ProximalVanishes(problem, VANISHES);
   *slow           = (PetscBool)!problem->solved;
@@ -579,8 +584,8 @@ PetscErrorCode LawProblemSolve(LawProblem *problem)
   problem->by_nodes = problem->solved = PETSC_FALSE;
   FindWeights(problem);
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(proximal) && !problem->solved; k++) {
-    problem->proximal    = proximal[k];
-    problem->jacobian_of = -1; /* it has this weight in it */
+    if (problem->proximal != proximal[k]) problem->jacobian_of = -1; /* it has this weight in it */
+    problem->proximal = proximal[k];
     if (!slow) PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
     PetscCall(SolveProximal(problem, &slow));
   }

@@ -340,6 +340,8 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   if (stepper->gives) PetscCall(AddGive(contact, stepper, S));
   PetscCall(LawProblemTakeS(&stepper->problem, &S));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
+  PetscCall(PetscInfo(contact, "S assembled: %s, %" PetscInt_FMT " rows of %" PetscInt_FMT " nodes\n",
+                      stepper->problem.sparse ? "sparse" : "dense", n, stepper->problem.n_nodes));
   stepper->n_assembled = n;
   stepper->assembled   = stepper->state;
   PetscCall(PetscLogEventEnd(CONTACT_Factor, contact, 0, 0, 0));

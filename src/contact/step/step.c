@@ -114,6 +114,7 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   stepper->step_loss  = sums[0];
   stepper->step_force = sums[1];
+  PetscCall(PetscInfo(contact, "closed rows take %g J in the step\n", (double)stepper->step_loss));
   /* nobody else sums up what friction takes where the energy is not limited */
   PetscCall(ContactComputeFrictionLoss(contact, contact->start.force));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -4,6 +4,7 @@ import re
 
 import numpy as np
 import pytest
+from contactstep import sheet_and_block
 
 PASS = re.compile(
     r"step that ends at (\S+) s, group of '\w+', pass (\d+): rows off by (\S+) m, \S+ of the way that forces make; (\d+) nodes may touch, (\d+) push \((\d+) stick, (\d+) slide\); "
@@ -45,3 +46,24 @@ def test_into_a_file(impakt):
 def test_no_loss_by_the_rule_linear(impakt):
     """Massless contact nodes lose nothing by it, and the history has no such record."""
     assert "contact_loss" not in impakt(f"{BLOCKS} -left_mass_redistribute true -right_mass_redistribute true").history
+
+
+NUMBER = r"[-+.\de]+"
+RUBS = "-contact_law coulomb -contact_friction 0.3 -left_initial_velocity 20,15 -time_end 5e-5"
+EXPLICIT = "-left_dm_plex_box_faces 10,70 -right_dm_plex_box_faces 10,60 -left_ts_type centraldifference -right_ts_type centraldifference -time_step 2e-7 -time_end 2e-6"
+INFO = {
+    "step": (BLOCKS, r"S assembled: dense, \d+ rows of \d+ nodes"),
+    "step, sparse": (f"{BLOCKS} {EXPLICIT}", "S assembled: sparse, 71 rows of 71 nodes"),
+    "bodies": (BLOCKS, r"\d+ new columns of the compliance of nodes of body 'left', each a controller step"),
+    "rules, impulse": (BLOCKS, rf"closed rows take {NUMBER} J in the step"),
+    "rules, linear": ("-options_file options/stack-static.opts -contact_type force", r"rule linear: rows of \S+ that end inside their partner join"),
+    "laws": (f"{BLOCKS} {RUBS}", rf"friction of left\S*:right\S* takes {NUMBER} J in the step"),
+    "solve": (f"{sheet_and_block(mu=0.6, step=5e-6, end=2e-4)} -law_snes_max_it 1", r"law of \d+ rows: DIVERGED_MAX_IT after 1 iterations, now 5 sweeps node by node"),
+}
+
+
+@pytest.mark.parametrize("name", INFO)
+def test_info(name, impakt):
+    options, line = INFO[name]
+    run = impakt(f"{options} -info :contact,body,snes")
+    assert re.search(line, run.stdout), run.stdout[-2000:]
