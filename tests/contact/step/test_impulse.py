@@ -12,6 +12,7 @@ from contactstep import (
     friction,
     impulse,
     integrator,
+    kept_error,
     momentum_error,
     pair_of,
     pressed_bars,
@@ -53,9 +54,9 @@ def test_sheet(kinds, mu, shared_run):
 
 @pytest.mark.long
 def test_impulse_of_small_steps(shared_run):
-    """Within 4 % of that of a tenth of the step; measured 3.1 %. At steps in between it goes up and down by 1.5 % with the steps in which nodes come on and leave."""
+    """Within 3 % of that of a tenth of the step; measured 1.8 %."""
     coarse, fine = (shared_run(sheet_and_block("II", 0.2, step=step)) for step in (1e-6, 1e-7))
-    np.testing.assert_allclose(impulse(coarse)[1], impulse(fine)[1], rtol=0.04)
+    np.testing.assert_allclose(impulse(coarse)[1], impulse(fine)[1], rtol=0.03)
     assert energy(fine).max() <= GAIN["implicit"] and energy(fine)[-1] > energy(coarse)[-1]  # fewer nodes hit at once: 2.1 against 4.0 %
 
 
@@ -68,15 +69,14 @@ def test_large_steps(step, off, shared_run):
     assert run.history["contact/block:sheet/gap"][()].min() >= -5 * step
 
 
-@pytest.mark.parametrize("kinds", ["II", *long("EE")])
-def test_free_sheet(kinds, shared_run):
-    """Momentum of both to round-off. Angular momentum of neo-Hookean bodies to 5e-5 of the largest of a body: measured 2.3e-5, 3.5e-6. The force on both sides of a
-    row has one line of action only where their gap is closed and points opposite to each other are where they were as the row was laid, in the middle of the step."""
-    options = sheet_and_block(kinds, 0.2, substeps=SUBSTEPS[kinds], end=1e-4, free=True)
-    run = shared_run(options.replace("linear_elastic", "neo_hookean"))
-    for name, tolerance in (("momentum", 1e-11), ("angular_momentum", 5e-5)):
-        of = [run.history[f"body/{body}/{name}"][()] for body in ("block", "sheet")]
-        assert np.abs(sum(of) - sum(of)[0]).max() <= tolerance * np.abs(of).max()
+@pytest.mark.parametrize(("kinds", "mu", "turning"), [("II", 0, 1e-6), ("EE", 0.2, 5e-5), *long(("II", 0.2, 5e-5), ("EE", 0, 1e-6))])
+def test_free_sheet(kinds, mu, turning, shared_run):
+    """Momentum of both to round-off. Angular momentum of neo-Hookean bodies: measured 2.7e-8 and 1.6e-9 of the largest of a body without friction, where rows lie in the
+    middle of the step, in which their forces act. Friction acts across the gap that rows are closed with, 5e-6 m or less here: 1.3e-5, in proportion to the step."""
+    options = sheet_and_block(kinds, mu, substeps=(7, 10) if kinds == "EE" else (1, 1), end=5e-5, free=True, of="neo_hookean")
+    run = shared_run(options)
+    for name, tolerance in (("momentum", 1e-12), ("angular_momentum", turning)):
+        assert kept_error(run, name, ("block", "sheet")) <= tolerance
     assert energy(run).max() <= gain_allowed(kinds)
     assert sweeps(run)[1] <= 4  # nonlinear: secants; measured 3
 
@@ -228,7 +228,7 @@ FRAMES = {
     "moving": {"frame": (10, 0)},
     "turned": {"turn": 30},
     "turned and moving": {"turn": 30, "frame": (10, -7)},
-    "in mm, t, s": {"units": MM_T_S, "more": "-units mm-t-s"},
+    "in mm, t, s": {"units": MM_T_S},
 }
 MOVED = [("II", "turned and moving"), ("II", "in mm, t, s")]
 
