@@ -4,11 +4,10 @@ import numpy as np
 import pytest
 from cases import joined, long
 from contactstep import (
-    STEEL,
+    cube_and_plate,
     energy,
     friction,
     impulse,
-    integrator,
     momentum_error,
     sweeps,
 )
@@ -40,17 +39,7 @@ def test_slides_straight(impakt):
 @pytest.mark.parametrize(("kinds", "step", "substeps", "ranks"), [("EE", 2e-6, (10, 10), 1), *long(("II", 4e-6, (1, 1), 1), ("IE", 4e-6, (1, 20), 1), ("EE", 2e-6, (10, 10), 3))])
 def test_plate(kinds, step, substeps, ranks, shared_run):
     """A plate one element thick, held at two sides, hit obliquely by a cube. It loses 6 to 13 %, of the nodes that hit: 2 mm of plate below elements of 5 mm."""
-    bodies = {"k": ((4, 4, 4), (-0.01, -0.01, 1e-5), (0.01, 0.01, 0.02001)), "p": ((20, 20, 1), (-0.05, -0.05, -0.002), (0.05, 0.05, 0))}
-    words = [
-        joined(box(name, *of), material(name, *STEEL), f"-{name}_material_type linear_elastic -{name}_mass_redistribute false", integrator(name, step, n, kind))
-        for (name, of), n, kind in zip(bodies.items(), substeps, kinds, strict=True)
-    ]
-    options = joined(
-        f"-bodies k,p -contact_type force -contact_pairs k:p -time_step {step} -time_end 2e-4",
-        *words,
-        "-k_initial_velocity 1,0.5,-5 -p_boundary_displacement xmin,xmax -p_boundary_displacement_xmin 0,0,0 -p_boundary_displacement_xmax 0,0,0",
-        friction(0.3),
-    )
+    options = cube_and_plate(kinds, 0.3, step, 2e-4, substeps)
     run = shared_run(options, ranks)
     change = energy(run)
     assert change.max() <= (1e-9 if kinds == "II" else 1e-3)  # measured 0

@@ -18,6 +18,7 @@ from contactstep import (
     energy,
     kept_error,
     momentum_error,
+    pair_of,
     pressed_bars,
     sheet_and_block,
     turned,
@@ -109,7 +110,7 @@ def check_energy(v, run, impakt):
 
 def check_momenta(v, run):
     """Implicit bodies have the round-off of their equations, whose largest number is (omega step)^2; massless nonlinear ones the tolerance of Newton's method."""
-    roundoff = 10 * np.finfo(float).eps * (WAVE * v.step / ELEMENT) ** 2 if "I" in v.kinds else 0
+    roundoff = 30 * np.finfo(float).eps * (WAVE * v.step / ELEMENT) ** 2 if "I" in v.kinds else 0
     newton = 1e-9 if v.rule == "linear" and v.of != "linear_elastic" else 0
     assert momentum_error(run, v.free[0]) <= max(1e-12, roundoff, newton)
     if len(v.free) == 1:
@@ -164,3 +165,20 @@ def test_variant(seed, impakt):
         check_loss(v, run, frames)
     if frames is not None:
         check_gaps(v, run, frames)
+
+
+LONG = [("II", (1, 1)), ("IE", (1, 19)), ("EI", (23, 1)), ("EE", (21, 20))]
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("at_rest", [True, False])
+@pytest.mark.parametrize(("kinds", "substeps"), LONG)
+def test_pressed_for_long(kinds, substeps, at_rest, impakt):
+    """10 ms, in which waves run 570 times through the bars: nothing is gained in any step, and nothing moves where all is at rest."""
+    step = 5e-6
+    run = impakt(pressed_bars(kinds, 0, step, 2000 * step, substeps, at_rest=at_rest))
+    scale = run.history["energy/scale"][()].max()
+    assert np.diff(run.history["contact_loss"][()]).min() >= -1e-13 * scale
+    assert energy(run).max() <= GAIN["linear" if kinds == "II" else "explicit"]
+    if at_rest:
+        assert np.abs(run.history[f"contact/{pair_of(run)}/gap"][()]).max() <= 2e-6 * ELEMENT
