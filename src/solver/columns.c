@@ -87,6 +87,32 @@ static PetscErrorCode SolveBlock(ConstrainedSolver s, PetscInt n, const PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* x = A^{-1} b for the columns of dense matrices, without constraints: together where MUMPS has factors on all ranks */
+PetscErrorCode ConstrainedSolverSolveFreeColumns(ConstrainedSolver s, Mat b, Mat x)
+{
+  PetscInt n;
+  Mat      factors;
+
+  PetscFunctionBegin;
+  if (s->block > 1 && !s->home) {
+    PetscCall(PCFactorGetMatrix(s->factors, &factors));
+    PetscCall(MatMumpsSetIcntl(factors, 27, (PetscInt)MAX_BLOCK));
+    PetscCall(MatMatSolve(factors, b, x));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MatGetSize(b, NULL, &n));
+  for (PetscInt k = 0; k < n; k++) {
+    Vec of_b, of_x;
+
+    PetscCall(MatDenseGetColumnVecRead(b, k, &of_b));
+    PetscCall(MatDenseGetColumnVecWrite(x, k, &of_x));
+    PetscCall(ConstrainedSolverSolveFree(s, of_b, of_x));
+    PetscCall(MatDenseRestoreColumnVecWrite(x, k, &of_x));
+    PetscCall(MatDenseRestoreColumnVecRead(b, k, &of_b));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode KeepColumn(ConstrainedSolver s, PetscInt j, Vec column)
 {
   PetscFunctionBegin;

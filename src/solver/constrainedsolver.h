@@ -25,6 +25,7 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverForgetUnknown(ConstrainedSolver
 PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyUnit(ConstrainedSolver, PetscInt, Vec, PetscScalar[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyCompliance(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFree(ConstrainedSolver, Vec, Vec);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFreeColumns(ConstrainedSolver, Mat, Mat);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverBringRows(ConstrainedSolver, PetscInt, const PetscInt[]);

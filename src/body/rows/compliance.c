@@ -21,7 +21,7 @@ PetscErrorCode BodyDestroyCompliance(Body body)
   PetscCall(DenseFactorDestroy(&c->factor));
   PetscCall(ComplianceDestroy(&c->matrices));
   PetscCall(ComplianceDestroy(&c->nodal));
-  PetscCall(BodySlabDestroy(&c->slab));
+  PetscCall(NodalMatrixDestroy(&c->nodal_matrix));
   PetscCall(VecDestroy(&c->diagonal));
   PetscCall(PetscFree(body->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);

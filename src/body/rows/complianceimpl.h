@@ -4,18 +4,20 @@
 #include <solver/densefactor.h>
 #include <body/layout/bodyimpl.h>
 
+typedef struct _NodalMatrix *NodalMatrix;
+
 struct _BodyCompliance {
   Compliance
       matrices; /* a level for each substep: displacement k substeps after a hat of force, of 1 N at the end of the first one [m/N] */
-  Compliance        nodal;       /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
-  BodyForceShape    nodal_shape; /* the forces that it is for */
-  PetscReal         nodal_step;  /* the substep that it is of [s] */
-  PetscReal         nodal_time;  /* where it is that of a state: when the step begins [s] */
-  struct _BodySlab *slab;        /* that tells it, see slab.c; NULL: controller steps do */
-  Vec               diagonal;    /* see BodyGetNodalDiagonal(); or NULL */
-  PetscReal         diagonal_step; /* the substep that it is of [s] */
-  PetscInt          n_kept;        /* known rows that stay when a step fails */
-  PetscScalar      *mine;          /* work space: of the rows of this rank, for each substep; behind base_displacement and base_force */
+  Compliance     nodal;         /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
+  BodyForceShape nodal_shape;   /* the forces that it is for */
+  PetscReal      nodal_step;    /* the substep that it is of [s] */
+  PetscReal      nodal_time;    /* where it is that of a state: when the step begins [s] */
+  NodalMatrix    nodal_matrix;  /* that tells it, see nodalmatrix.c; NULL: controller steps do */
+  Vec            diagonal;      /* see BodyGetNodalDiagonal(); or NULL */
+  PetscReal      diagonal_step; /* the substep that it is of [s] */
+  PetscInt       n_kept;        /* known rows that stay when a step fails */
+  PetscScalar   *mine;          /* work space: of the rows of this rank, for each substep; behind base_displacement and base_force */
   /* an integration from which changes are counted: this rank's rows, for each substep */
   PetscScalar *base_displacement, *base_force;
   PetscBool    has_base, base_gathered; /* known_displacement and known_force are those, at the matrices' state `gathered_state` */
@@ -36,6 +38,7 @@ struct _BodyCompliance {
   PetscScalar *rhs;
 };
 
-PETSC_INTERN PetscErrorCode BodySlabCreate(Body, BodyForceShape, PetscInt, const PetscInt[], struct _BodySlab **);
-PETSC_INTERN PetscErrorCode BodySlabProbe(Body, const struct _BodySlab *, PetscInt, const PetscInt[], Compliance);
-PETSC_INTERN PetscErrorCode BodySlabDestroy(struct _BodySlab **);
+PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], NodalMatrix *, PetscBool *);
+PETSC_INTERN PetscErrorCode NodalMatrixProbe(Body, const NodalMatrix, PetscInt, const PetscInt[], Compliance);
+PETSC_INTERN const char    *NodalMatrixDescribe(const NodalMatrix);
+PETSC_INTERN PetscErrorCode NodalMatrixDestroy(NodalMatrix *);

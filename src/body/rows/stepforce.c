@@ -5,8 +5,6 @@
 */
 #include "complianceimpl.h"
 
-#define MANY 100 /* displacements, from which on a slab at the surface tells how they answer */
-
 /*@
   BodySetConstantForces - has forces act along the rows throughout the controller step, in place of those that the last one ended with
 
@@ -50,13 +48,6 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a slab tells how so many displacements answer: a column by a controller step costs more than the passes that correct it. Without
-   inertia a body has no scale beyond which forces are not felt. */
-static PetscBool MayTakeSlab(Body body, PetscInt n)
-{
-  return (PetscBool)(n > MANY && body->integrator->has_inertia && body->integrator->deforms);
-}
-
 /*@
   BodyGetNodalCompliance - displacements at the end of the controller step under unit forces on nodes
 
@@ -76,8 +67,9 @@ static PetscBool MayTakeSlab(Body body, PetscInt n)
   Level: developer
 
   Note:
-  Each new one costs a controller step of the body, linearized about its undeformed state. Of more than 100 the columns are approximate, as
-  a slab at the surface answers: each costs a small solution. Those of a rigid body are found where it will be in the middle of the
+  Each new one costs a solution with a matrix where one tells, see nodalmatrix.c, else a controller step of the body, linearized about its
+  undeformed state. Of more than 100 displacements they are approximate, but for small linear bodies with
+  one substep, and explicit ones with massless contact nodes. Those of a rigid body are found where it will be in the middle of the
   controller step, anew for each, and cost next to nothing.
 
 .seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`
@@ -88,44 +80,44 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   struct _BodyCompliance *compliance                                                    = body->compliance;
   Compliance             *nodal                                                         = &compliance->nodal;
   PetscErrorCode (*probe)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance) = body->integrator->ops.nodalcolumns;
-  PetscInt unknown = n, known = 0, local, begin, all;
+  PetscInt  unknown = n, known = 0, local, begin, all;
+  PetscBool renewed;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(place, 5);
   PetscAssertPointer(leading, 6);
   PetscAssertPointer(matrix, 7);
-  if (!probe) probe = BodyProbeNodes;
+  if (*nodal && (compliance->nodal_step != body->time.step || compliance->nodal_shape != shape ||
+                 (probe && compliance->nodal_time != body->saved.time))) {
+    PetscCall(ComplianceDestroy(nodal));
+    PetscCall(NodalMatrixDestroy(&compliance->nodal_matrix));
+  }
   if (*nodal) {
     ComplianceGetRows(*nodal, &known, NULL, NULL);
     unknown = 0;
     for (PetscInt i = 0; i < n; i++) unknown += !ComplianceKnows(*nodal, dofs[i]);
-    if (compliance->nodal_step != body->time.step || compliance->nodal_shape != shape ||
-        (body->integrator->ops.nodalcolumns && compliance->nodal_time != body->saved.time) ||
-        (!compliance->slab && MayTakeSlab(body, known + unknown))) {
-      PetscCall(ComplianceDestroy(nodal));
-      PetscCall(BodySlabDestroy(&compliance->slab));
-      unknown = n;
-      known   = 0;
-    }
-  }
-  if (!*nodal) {
-    compliance->nodal_time  = body->saved.time;
-    compliance->nodal_step  = body->time.step;
-    compliance->nodal_shape = shape;
-    PetscCall(VecGetLocalSize(body->state.u, &local));
-    PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
-    PetscCall(VecGetSize(body->state.u, &all));
-    PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, nodal));
-    if (MayTakeSlab(body, n)) PetscCall(BodySlabCreate(body, shape, n, dofs, &compliance->slab));
   }
   if (unknown) {
-    PetscCall(PetscInfo(body, "%" PetscInt_FMT " new columns of the compliance of nodes of body '%s', each a %s\n", unknown,
-                        ((PetscObject)body)->name, compliance->slab ? "solution of a slab at the surface" : "controller step"));
     PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
+    PetscCall(NodalMatrixRenew(body, shape, known + unknown, n, dofs, &compliance->nodal_matrix, &renewed));
+    if (renewed) PetscCall(ComplianceDestroy(nodal));
+    if (!*nodal) {
+      compliance->nodal_time  = body->saved.time;
+      compliance->nodal_step  = body->time.step;
+      compliance->nodal_shape = shape;
+      PetscCall(VecGetLocalSize(body->state.u, &local));
+      PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
+      PetscCall(VecGetSize(body->state.u, &all));
+      PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, nodal));
+      unknown = n;
+    }
+    PetscCall(PetscInfo(body, "%" PetscInt_FMT " new columns of the compliance of nodes of body '%s', each a %s\n", unknown,
+                        ((PetscObject)body)->name, NodalMatrixDescribe(compliance->nodal_matrix)));
     PetscCall(ComplianceReserve(*nodal, unknown));
-    if (compliance->slab) PetscCall(BodySlabProbe(body, compliance->slab, n, dofs, *nodal));
-    else PetscCall((*probe)(body, shape, n, dofs, *nodal));
+    if (probe) PetscCall((*probe)(body, shape, n, dofs, *nodal));
+    else if (compliance->nodal_matrix) PetscCall(NodalMatrixProbe(body, compliance->nodal_matrix, n, dofs, *nodal));
+    else PetscCall(BodyProbeNodes(body, shape, n, dofs, *nodal));
     PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   }
   ComplianceGetRows(*nodal, NULL, NULL, place);

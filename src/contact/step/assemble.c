@@ -6,7 +6,8 @@
 */
 #include "stepimpl.h"
 
-#define FEW_ROWS 60 /* up to so many S is dense whatever it is made of */
+#define FEW_ROWS 60    /* up to so many S is dense whatever it is made of */
+#define ZERO     1e-14 /* what entries of rows are zero but for round-off; the largest are 1 or so */
 
 PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
 {
@@ -48,6 +49,12 @@ static PetscErrorCode ListBodyRows(Contact contact, ContactStepper *stepper, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rows along an axis have entries of zero along the others, each of which would ask for a column of the compliance */
+static PetscBool Counts(PetscScalar value)
+{
+  return (PetscBool)(PetscAbsScalar(value) > ZERO);
+}
+
 /* How many entries each of the touching rows of a body has, and room for them */
 static PetscErrorCode CountEntries(Contact contact, ContactStepper *stepper, PetscInt b)
 {
@@ -58,9 +65,13 @@ static PetscErrorCode CountEntries(Contact contact, ContactStepper *stepper, Pet
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(begin, entries->n + 1));
   for (PetscInt k = 0; k < entries->n; k++) {
+    const PetscScalar *values;
+    PetscInt           n;
+
     if (entries->rows[k] < first || entries->rows[k] >= end) continue;
-    PetscCall(MatGetRow(contact->interfaces[b], entries->rows[k], &begin[k + 1], NULL, NULL));
-    PetscCall(MatRestoreRow(contact->interfaces[b], entries->rows[k], NULL, NULL, NULL));
+    PetscCall(MatGetRow(contact->interfaces[b], entries->rows[k], &n, NULL, &values));
+    for (PetscInt e = 0; e < n; e++) begin[k + 1] += Counts(values[e]);
+    PetscCall(MatRestoreRow(contact->interfaces[b], entries->rows[k], &n, NULL, &values));
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, begin + 1, (PetscMPIInt)entries->n, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
@@ -93,13 +104,14 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
     const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[entries->places[k]]]];
     const PetscInt    *columns;
     const PetscScalar *values;
-    PetscInt           n;
+    PetscInt           n, at = entries->begin[k];
 
     if (row < first || row >= end) continue;
     PetscCall(MatGetRow(contact->interfaces[b], row, &n, &columns, &values));
     for (PetscInt e = 0; e < n; e++) {
-      entries->columns[entries->begin[k] + e] = columns[e];
-      entries->values[entries->begin[k] + e]  = ContactSign(pair, b) * values[e];
+      if (!Counts(values[e])) continue;
+      entries->columns[at]  = columns[e];
+      entries->values[at++] = ContactSign(pair, b) * values[e];
     }
     PetscCall(MatRestoreRow(contact->interfaces[b], row, &n, &columns, &values));
   }
@@ -317,7 +329,10 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
-  if (same) PetscFunctionReturn(PETSC_SUCCESS);
+  if (same) {
+    PetscCall(ContactStepperForgetSecants(stepper));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
   if (!assembly->of_body) PetscCall(PetscCalloc1(contact->n_bodies, &assembly->of_body));
   assembly->n_bodies = contact->n_bodies;
@@ -343,6 +358,7 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   PetscCall(PetscInfo(contact, "S assembled: %s, %" PetscInt_FMT " rows of %" PetscInt_FMT " nodes\n",
                       stepper->problem.sparse ? "sparse" : "dense", n, stepper->problem.n_nodes));
   stepper->n_assembled = n;
+  stepper->has_secants = PETSC_FALSE;
   stepper->assembled   = stepper->state;
   PetscCall(PetscLogEventEnd(CONTACT_Factor, contact, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -38,8 +38,36 @@ static PetscErrorCode CorrectGroup(ContactStepper *stepper, PetscInt n, const Pe
     }
     problem->diagonal[j] = PetscRealPart(S[j * problem->n + j]);
   }
-  stepper->assembled = -1;
-  stepper->corrected = PETSC_TRUE;
+  stepper->corrected = stepper->has_secants = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* S as it has been assembled */
+static PetscErrorCode StorePlain(ContactStepper *stepper)
+{
+  PetscInt size = -1;
+
+  PetscFunctionBegin;
+  if (stepper->plain) PetscCall(MatGetSize(stepper->plain, &size, NULL));
+  if (size != stepper->problem.n) {
+    PetscCall(MatDestroy(&stepper->plain));
+    PetscCall(MatDuplicate(stepper->problem.S, MAT_DO_NOT_COPY_VALUES, &stepper->plain));
+  }
+  PetscCall(MatCopy(stepper->problem.S, stepper->plain, SAME_NONZERO_PATTERN));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Secants are of one step: a run that is continued from a checkpoint has none */
+PetscErrorCode ContactStepperForgetSecants(ContactStepper *stepper)
+{
+  Mat S = stepper->problem.S;
+
+  PetscFunctionBegin;
+  if (!stepper->has_secants) PetscFunctionReturn(PETSC_SUCCESS);
+  stepper->has_secants = PETSC_FALSE;
+  PetscCall(MatCopy(stepper->plain, S, SAME_NONZERO_PATTERN));
+  PetscCall(PetscObjectReference((PetscObject)S));
+  PetscCall(LawProblemTakeS(&stepper->problem, &S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,6 +83,7 @@ PetscErrorCode ContactStepperCorrectS(Contact contact, ContactStepper *stepper)
   if (problem->sparse || !stepper->has_told) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < n; i++) stepper->gathered[i] = problem->base[i] - stepper->told[i];
   PetscCall(LawProblemMultiply(problem, stepper->gathered, stepper->gathered));
+  if (!stepper->has_secants) PetscCall(StorePlain(stepper));
   PetscCall(MatDenseGetArray(problem->S, &S));
   for (PetscInt g = 0; g < contact->n_bodies; g++) {
     PetscInt of_group = 0;

@@ -87,6 +87,8 @@ struct _ContactStepper {
   StepperAssembly assembly;
   PetscInt64      state, assembled;
   PetscInt        n_assembled, *of_assembled;
+  PetscBool       has_secants; /* S has been corrected since */
+  Mat             plain;       /* S as assembled, where it has */
   /* work space */
   Vec          x, f, field, of_all;
   PetscInt    *places;   /* of the rows of a group */
@@ -124,6 +126,7 @@ PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);
 PETSC_INTERN PetscInt       ContactStepperGroup(Contact, const ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperAdvance(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCorrectS(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperForgetSecants(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, const PetscReal[], PetscScalar[]);

@@ -54,7 +54,7 @@ EXPLICIT = "-left_dm_plex_box_faces 10,70 -right_dm_plex_box_faces 10,60 -left_t
 INFO = {
     "step": (BLOCKS, r"S assembled: dense, \d+ rows of \d+ nodes"),
     "step, sparse": (f"{BLOCKS} {EXPLICIT}", "S assembled: sparse, 71 rows of 71 nodes"),
-    "bodies": (BLOCKS, r"\d+ new columns of the compliance of nodes of body 'left', each a controller step"),
+    "bodies": (BLOCKS, r"\d+ new columns of the compliance of nodes of body 'left', each a solution with its own matrix"),
     "rules, impulse": (BLOCKS, rf"closed rows take {NUMBER} J in the step"),
     "rules, linear": ("-options_file options/stack-static.opts -contact_type force", r"rule linear: rows of \S+ that end inside their partner join"),
     "laws": (f"{BLOCKS} {RUBS}", rf"friction of left\S*:right\S* takes {NUMBER} J in the step"),

@@ -1,0 +1,319 @@
+/*
+   Displacements of nodes under unit forces on them, at the end of a controller step of one substep, by solutions with a matrix in place of
+   controller steps. Which matrix that is:
+
+   - the stiffness of the massless layer, of an explicit body whose forces grow from none: exact for linear bodies. Nodes with mass do not
+     feel what acts at the end of a step alone;
+   - the effective matrix A of an implicit body: exact for linear ones;
+   - that of a slab at the surface and what the body may do beyond it on a coarse grid, P^T A P: approximate. Whoever uses it corrects it by
+     what the body does.
+
+   Under a force f that grows from none an implicit body goes by A^{-1} f. One that is constant acts at the start as well, and the body goes
+   twice as far: but massless nodes, which have no start, by the static answer of their layer less.
+*/
+#include "complianceimpl.h"
+#include <solver/constrainedsolver.h>
+
+#define COLUMNS    64    /* that are solved for together */
+#define SHIFT      1e-10 /* what is added to the diagonal of P^T A P, in parts of it */
+#define MANY       100   /* displacements, from which on a slab is asked and not controller steps */
+#define SMALL_BODY 5000  /* displacements of a body whose own matrix is asked however many they are: a solution costs little then */
+
+typedef enum { BY_BODY, BY_LAYER, BY_SLAB } Kind;
+
+struct _NodalMatrix {
+  Kind           kind;
+  BodyForceShape shape;
+  NodalMatrix    layer;     /* of its massless nodes, where a constant force counts twice on all but them; else NULL */
+  Mat            functions; /* P; NULL: all displacements, one by one */
+  PetscInt       n_near;    /* its columns that are single displacements of this rank: the first ones */
+  PetscInt      *near;      /* which, rank numbering */
+  Mat            matrix;    /* P^T A P */
+  KSP            ksp;
+};
+
+PetscErrorCode NodalMatrixDestroy(NodalMatrix *nodal)
+{
+  PetscFunctionBegin;
+  if (!*nodal) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatDestroy(&(*nodal)->functions));
+  PetscCall(MatDestroy(&(*nodal)->matrix));
+  PetscCall(KSPDestroy(&(*nodal)->ksp));
+  PetscCall(NodalMatrixDestroy(&(*nodal)->layer));
+  PetscCall(PetscFree((*nodal)->near));
+  PetscCall(PetscFree(*nodal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What tells how n displacements answer; whether anything does but controller steps */
+static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *kind, PetscBool *any)
+{
+  const PetscBool is_explicit = (PetscBool)(body->integrator->staggered > 0);
+  PetscInt        all;
+
+  PetscFunctionBegin;
+  *any = PETSC_FALSE;
+  if (!body->integrator->deforms || body->time.substeps > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetSize(body->state.u, &all));
+  *kind = is_explicit ? BY_LAYER : body->model.linear && (n <= MANY || all <= SMALL_BODY) ? BY_BODY : BY_SLAB;
+  *any  = (PetscBool)(is_explicit ? shape == BODY_FORCE_LINEAR && body->layer.exists
+                                  : body->solver && body->integrator->has_inertia && (body->model.linear || n > MANY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The matrix of the whole undeformed body: its own effective matrix where it is linear and implicit */
+static PetscErrorCode GetMatrix(Body body, Kind kind, Mat *A)
+{
+  PetscFunctionBegin;
+  if (kind == BY_SLAB && body->model.linear) {
+    PetscCall(ConstrainedSolverGetMatrices(body->solver, A, NULL));
+    PetscCall(PetscObjectReference((PetscObject)*A));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(BodyCreateMatrix(body, A));
+  PetscCall(BodyAssembleTangent(body, NULL, *A));
+  if (kind == BY_SLAB) PetscCall(BodyAddMassMatrix(body, 4 / PetscSqr(body->time.step), *A));
+  PetscCall(BodyAddSpringStiffness(body, *A));
+  PetscCall(BodyEliminateHeld(body, *A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The dofs that rows of this rank have entries at, and those asked for */
+static PetscErrorCode ListSurface(Body body, PetscInt n, const PetscInt dofs[], IS *surface)
+{
+  PetscInt begin, end, count = n, *list = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRange(body->rows.matrix, &begin, &end));
+  for (PetscInt pass = 0; pass < 2; pass++) {
+    if (pass) {
+      PetscCall(PetscMalloc1(count, &list));
+      PetscCall(PetscArraycpy(list, dofs, n));
+      count = n;
+    }
+    for (PetscInt row = begin; row < end; row++) {
+      const PetscInt *columns;
+      PetscInt        entries;
+
+      PetscCall(MatGetRow(body->rows.matrix, row, &entries, &columns, NULL));
+      if (pass) PetscCall(PetscArraycpy(list + count, columns, entries));
+      count += entries;
+      PetscCall(MatRestoreRow(body->rows.matrix, row, &entries, &columns, NULL));
+    }
+  }
+  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), count, list, PETSC_OWN_POINTER, surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* P of a layer: its displacements, one by one */
+static PetscErrorCode CreateLayerFunctions(Body body, Mat *functions)
+{
+  PetscInt n, begin, column;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(body->state.u, &n));
+  PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
+  PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)body), n, body->layer.n_dofs, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL,
+                         functions));
+  PetscCall(MatGetOwnershipRangeColumn(*functions, &column, NULL));
+  for (PetscInt k = 0; k < body->layer.n_dofs; k++)
+    PetscCall(MatSetValue(*functions, begin + body->layer.dofs[k], column + k, 1, INSERT_VALUES));
+  PetscCall(MatAssemblyBegin(*functions, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*functions, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which columns of P are single displacements of this rank: those in front, see BodyCreateSlabFunctions() */
+static PetscErrorCode FindNear(NodalMatrix nodal)
+{
+  PetscInt begin, end, first, n;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRange(nodal->functions, &begin, &end));
+  PetscCall(MatGetOwnershipRangeColumn(nodal->functions, &first, &n));
+  PetscCall(PetscMalloc1(n - first, &nodal->near));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           entries;
+
+    PetscCall(MatGetRow(nodal->functions, row, &entries, &columns, &values));
+    if (entries == 1 && columns[0] == first + nodal->n_near && values[0] == 1) nodal->near[nodal->n_near++] = row - begin;
+    PetscCall(MatRestoreRow(nodal->functions, row, &entries, &columns, &values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Factor(Body body, NodalMatrix nodal, Mat A)
+{
+  Vec diagonal;
+  PC  pc;
+
+  PetscFunctionBegin;
+  PetscCall(MatPtAP(A, nodal->functions, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &nodal->matrix));
+  PetscCall(MatProductClear(nodal->matrix)); /* which would keep A */
+  if (nodal->kind == BY_SLAB) {
+    PetscCall(MatCreateVecs(nodal->matrix, &diagonal, NULL));
+    PetscCall(MatGetDiagonal(nodal->matrix, diagonal));
+    PetscCall(VecScale(diagonal, SHIFT));
+    PetscCall(MatDiagonalSet(nodal->matrix, diagonal, ADD_VALUES));
+    PetscCall(VecDestroy(&diagonal));
+  }
+  PetscCall(KSPCreate(PetscObjectComm((PetscObject)body), &nodal->ksp));
+  PetscCall(KSPSetType(nodal->ksp, KSPPREONLY));
+  PetscCall(KSPGetPC(nodal->ksp, &pc));
+  PetscCall(KSPSetOperators(nodal->ksp, nodal->matrix, nodal->matrix));
+  PetscCall(ConstrainedSolverChooseMUMPS(pc));
+  PetscCall(KSPSetUp(nodal->ksp));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt dofs[], NodalMatrix *result)
+{
+  NodalMatrix nodal;
+  IS          surface;
+  Mat         A;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&nodal));
+  *result     = nodal;
+  nodal->kind = kind;
+  if (kind == BY_BODY) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetMatrix(body, kind, &A));
+  if (kind == BY_LAYER) PetscCall(CreateLayerFunctions(body, &nodal->functions));
+  else {
+    PetscCall(ListSurface(body, n, dofs, &surface));
+    PetscCall(BodyCreateSlabFunctions(A, body->mesh.positions, body->mesh.dim, surface, &nodal->functions));
+    PetscCall(ISDestroy(&surface));
+  }
+  PetscCall(FindNear(nodal));
+  PetscCall(Factor(body, nodal, A));
+  PetscCall(MatDestroy(&A));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodalMatrixRenew - the matrix that tells how some displacements answer, of n in all, in place of one that does not any more; NULL:
+   controller steps have to. `renewed`: columns that are known belong to another one. */
+PetscErrorCode NodalMatrixRenew(Body body, BodyForceShape shape, PetscInt n, PetscInt n_dofs, const PetscInt dofs[], NodalMatrix *nodal,
+                                PetscBool *renewed)
+{
+  Kind      kind;
+  PetscBool has;
+
+  PetscFunctionBegin;
+  PetscCall(Choose(body, shape, n, &kind, &has));
+  *renewed = (PetscBool)(*nodal ? !has || (*nodal)->kind != kind : has);
+  if (!*renewed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(NodalMatrixDestroy(nodal));
+  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Create(body, kind, n_dofs, dofs, nodal));
+  (*nodal)->shape = shape;
+  if (shape == BODY_FORCE_CONSTANT && body->layer.exists) PetscCall(Create(body, BY_LAYER, n_dofs, dofs, &(*nodal)->layer));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Unit forces on some displacements, in terms of P */
+static PetscErrorCode FillForces(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Mat forces)
+{
+  PetscInt begin, end;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetOwnershipRange(body->state.u, &begin, &end));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           entries;
+
+    if (dofs[k] < begin || dofs[k] >= end) continue;
+    if (nodal->functions) PetscCall(MatGetRow(nodal->functions, dofs[k], &entries, &columns, &values));
+    if (nodal->functions) PetscCall(MatSetValues(forces, entries, columns, 1, &k, values, INSERT_VALUES));
+    else PetscCall(MatSetValue(forces, dofs[k], k, 1, INSERT_VALUES));
+    if (nodal->functions) PetscCall(MatRestoreRow(nodal->functions, dofs[k], &entries, &columns, &values));
+  }
+  PetscCall(MatAssemblyBegin(forces, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(forces, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacements under unit forces on some of them, at most COLUMNS: of all, or of those that P has one by one */
+static PetscErrorCode Solve(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Mat *answers)
+{
+  PetscInt local;
+  Mat      forces, factors;
+  PC       pc;
+
+  PetscFunctionBegin;
+  if (nodal->functions) PetscCall(MatGetLocalSize(nodal->matrix, &local, NULL));
+  else PetscCall(VecGetLocalSize(body->state.u, &local));
+  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)body), local, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &forces));
+  PetscCall(FillForces(body, nodal, n, dofs, forces));
+  PetscCall(MatDuplicate(forces, MAT_DO_NOT_COPY_VALUES, answers));
+  if (!nodal->functions) PetscCall(ConstrainedSolverSolveFreeColumns(body->solver, forces, *answers));
+  else {
+    PetscCall(KSPGetPC(nodal->ksp, &pc));
+    PetscCall(PCFactorGetMatrix(pc, &factors));
+    PetscCall(MatMumpsSetIcntl(factors, 27, COLUMNS));
+    PetscCall(MatMatSolve(factors, forces, *answers));
+  }
+  PetscCall(MatDestroy(&forces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds a multiple of the displacements to columns of this rank's */
+static PetscErrorCode AddAnswers(Body body, const NodalMatrix nodal, PetscReal factor, PetscInt n, const PetscInt dofs[], PetscScalar to[])
+{
+  const PetscScalar *u;
+  PetscInt           leading, local;
+  Mat                answers;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(body->state.u, &local));
+  PetscCall(Solve(body, nodal, n, dofs, &answers));
+  PetscCall(MatDenseGetLDA(answers, &leading));
+  PetscCall(MatDenseGetArrayRead(answers, &u));
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt i = 0; i < (nodal->functions ? nodal->n_near : local); i++)
+      to[k * local + (nodal->functions ? nodal->near[i] : i)] += factor * u[k * leading + i];
+  PetscCall(MatDenseRestoreArrayRead(answers, &u));
+  PetscCall(MatDestroy(&answers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Columns of some displacements, at most COLUMNS. Displacements far from the surface are not asked for, and stay zero. */
+static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Compliance compliance)
+{
+  PetscScalar *columns;
+  PetscInt     local;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(body->state.u, &local));
+  PetscCall(PetscCalloc1(n * local, &columns));
+  PetscCall(AddAnswers(body, nodal, nodal->shape == BODY_FORCE_CONSTANT ? 2 : 1, n, dofs, columns));
+  if (nodal->layer) PetscCall(AddAnswers(body, nodal->layer, -1, n, dofs, columns));
+  for (PetscInt k = 0; k < n; k++) PetscCall(ComplianceSetColumn(compliance, dofs[k], 1, columns + k * local));
+  PetscCall(PetscFree(columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* NodalMatrixProbe - columns of displacements, by their numbers on all ranks */
+PetscErrorCode NodalMatrixProbe(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Compliance compliance)
+{
+  PetscInt some[COLUMNS], count = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++) {
+    if (!ComplianceKnows(compliance, dofs[i])) some[count++] = dofs[i];
+    if (!count || (count < COLUMNS && i < n - 1)) continue;
+    PetscCall(SolveColumns(body, nodal, count, some, compliance));
+    count = 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How a column is found, for those who look */
+const char *NodalMatrixDescribe(const NodalMatrix nodal)
+{
+  const char *const names[] = {"solution with its own matrix", "solution with the massless layer", "solution with a slab at the surface"};
+
+  return nodal ? names[nodal->kind] : "controller step";
+}
