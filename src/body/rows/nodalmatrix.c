@@ -22,14 +22,15 @@
 typedef enum { BY_BODY, BY_LAYER, BY_SLAB } Kind;
 
 struct _NodalMatrix {
-  Kind           kind;
-  BodyForceShape shape;
-  NodalMatrix    layer;     /* of its massless nodes, where a constant force counts twice on all but them; else NULL */
-  Mat            functions; /* P; NULL: all displacements, one by one */
-  PetscInt       n_near;    /* its columns that are single displacements of this rank: the first ones */
-  PetscInt      *near;      /* which, rank numbering */
-  Mat            matrix;    /* P^T A P */
-  KSP            ksp;
+  Kind              kind;
+  BodyForceShape    shape;
+  NodalMatrix       layer;     /* of massless nodes, where a constant force counts twice on all but them; else NULL */
+  Mat               functions; /* P; NULL: all displacements, one by one */
+  PetscInt          n_near;    /* its columns that are single displacements of this rank: the first ones */
+  PetscInt         *near;      /* which, rank numbering */
+  ConstrainedSolver solver;    /* that the body has for the matrix; NULL: the following are */
+  Mat               matrix;    /* P^T A P */
+  KSP               ksp;
 };
 
 PetscErrorCode NodalMatrixDestroy(NodalMatrix *nodal)
@@ -56,16 +57,16 @@ static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *
   if (!body->integrator->deforms || body->time.substeps > 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetSize(body->state.u, &all));
   *kind = is_explicit ? BY_LAYER : body->model.linear && (n <= MANY || all <= SMALL_BODY) ? BY_BODY : BY_SLAB;
-  *any  = (PetscBool)(is_explicit ? shape == BODY_FORCE_LINEAR && body->layer.exists
+  *any  = (PetscBool)(is_explicit ? shape == BODY_FORCE_LINEAR && body->layer.exists && body->solver
                                   : body->solver && body->integrator->has_inertia && (body->model.linear || n > MANY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The matrix of the whole undeformed body: its own effective matrix where it is linear and implicit */
+/* The matrix of the whole undeformed body: the effective matrix of one that is linear, which on massless nodes is the stiffness */
 static PetscErrorCode GetMatrix(Body body, Kind kind, Mat *A)
 {
   PetscFunctionBegin;
-  if (kind == BY_SLAB && body->model.linear) {
+  if (body->model.linear) {
     PetscCall(ConstrainedSolverGetMatrices(body->solver, A, NULL));
     PetscCall(PetscObjectReference((PetscObject)*A));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -178,10 +179,16 @@ static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt do
   PetscCall(PetscNew(&nodal));
   *result     = nodal;
   nodal->kind = kind;
+  /* an explicit body has a solver for its layer alone */
+  if (kind == BY_BODY || body->integrator->staggered > 0) nodal->solver = body->solver;
   if (kind == BY_BODY) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetMatrix(body, kind, &A));
   if (kind == BY_LAYER) PetscCall(CreateLayerFunctions(body, &nodal->functions));
-  else {
+  if (nodal->solver) {
+    PetscCall(FindNear(nodal));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(GetMatrix(body, kind, &A));
+  if (kind == BY_SLAB) {
     PetscCall(ListSurface(body, n, dofs, &surface));
     PetscCall(BodyCreateSlabFunctions(A, body->mesh.positions, body->mesh.dim, surface, &nodal->functions));
     PetscCall(ISDestroy(&surface));
@@ -243,12 +250,12 @@ static PetscErrorCode Solve(Body body, const NodalMatrix nodal, PetscInt n, cons
   PC       pc;
 
   PetscFunctionBegin;
-  if (nodal->functions) PetscCall(MatGetLocalSize(nodal->matrix, &local, NULL));
+  if (nodal->functions) PetscCall(MatGetLocalSize(nodal->functions, NULL, &local));
   else PetscCall(VecGetLocalSize(body->state.u, &local));
   PetscCall(MatCreateDense(PetscObjectComm((PetscObject)body), local, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &forces));
   PetscCall(FillForces(body, nodal, n, dofs, forces));
   PetscCall(MatDuplicate(forces, MAT_DO_NOT_COPY_VALUES, answers));
-  if (!nodal->functions) PetscCall(ConstrainedSolverSolveFreeColumns(body->solver, forces, *answers));
+  if (nodal->solver) PetscCall(ConstrainedSolverSolveFreeColumns(nodal->solver, forces, *answers));
   else {
     PetscCall(KSPGetPC(nodal->ksp, &pc));
     PetscCall(PCFactorGetMatrix(pc, &factors));
@@ -259,39 +266,41 @@ static PetscErrorCode Solve(Body body, const NodalMatrix nodal, PetscInt n, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a multiple of the displacements to columns of this rank's */
-static PetscErrorCode AddAnswers(Body body, const NodalMatrix nodal, PetscReal factor, PetscInt n, const PetscInt dofs[], PetscScalar to[])
-{
-  const PetscScalar *u;
-  PetscInt           leading, local;
-  Mat                answers;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(body->state.u, &local));
-  PetscCall(Solve(body, nodal, n, dofs, &answers));
-  PetscCall(MatDenseGetLDA(answers, &leading));
-  PetscCall(MatDenseGetArrayRead(answers, &u));
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt i = 0; i < (nodal->functions ? nodal->n_near : local); i++)
-      to[k * local + (nodal->functions ? nodal->near[i] : i)] += factor * u[k * leading + i];
-  PetscCall(MatDenseRestoreArrayRead(answers, &u));
-  PetscCall(MatDestroy(&answers));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Columns of some displacements, at most COLUMNS. Displacements far from the surface are not asked for, and stay zero. */
 static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Compliance compliance)
 {
-  PetscScalar *columns;
-  PetscInt     local;
+  const NodalMatrix parts[]  = {nodal, nodal->layer};
+  const PetscReal   factor[] = {nodal->shape == BODY_FORCE_CONSTANT ? 2 : 1, -1};
+  const Vec         column   = body->work.nodes[0];
+  const PetscInt    n_parts  = nodal->layer ? 2 : 1;
+  Mat               answers[2];
+  PetscInt          local;
 
   PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(body->state.u, &local));
-  PetscCall(PetscCalloc1(n * local, &columns));
-  PetscCall(AddAnswers(body, nodal, nodal->shape == BODY_FORCE_CONSTANT ? 2 : 1, n, dofs, columns));
-  if (nodal->layer) PetscCall(AddAnswers(body, nodal->layer, -1, n, dofs, columns));
-  for (PetscInt k = 0; k < n; k++) PetscCall(ComplianceSetColumn(compliance, dofs[k], 1, columns + k * local));
-  PetscCall(PetscFree(columns));
+  for (PetscInt p = 0; p < n_parts; p++) PetscCall(Solve(body, parts[p], n, dofs, &answers[p]));
+  PetscCall(VecGetLocalSize(column, &local));
+  PetscCall(VecZeroEntries(column));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscScalar *values;
+
+    PetscCall(VecGetArray(column, &values));
+    for (PetscInt p = 0; p < n_parts; p++) {
+      const PetscScalar *u;
+      PetscInt           leading;
+
+      PetscCall(MatDenseGetLDA(answers[p], &leading));
+      PetscCall(MatDenseGetArrayRead(answers[p], &u));
+      for (PetscInt i = 0; i < (parts[p]->functions ? parts[p]->n_near : local); i++) {
+        const PetscInt at = parts[p]->functions ? parts[p]->near[i] : i;
+
+        values[at] = factor[p] * u[k * leading + i] + (p ? values[at] : 0);
+      }
+      PetscCall(MatDenseRestoreArrayRead(answers[p], &u));
+    }
+    PetscCall(ComplianceSetColumn(compliance, dofs[k], 1, values));
+    PetscCall(VecRestoreArray(column, &values));
+  }
+  for (PetscInt p = 0; p < n_parts; p++) PetscCall(MatDestroy(&answers[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

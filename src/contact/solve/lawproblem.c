@@ -20,6 +20,9 @@
 #define TOLERANCE        1e-13 /* of the largest force, and of the largest force that would close what is read */
 #define MOST_NEWTON      50
 #define FIRST_SWEEPS     5
+#define FEW_DENSE        500   /* rows of a dense S whose Jacobian is factored each time it changes */
+#define LAG_AFTER_NEXT   -2    /* for PETSc: the preconditioner is made anew once, and then stays */
+#define STALE            20    /* nodes whose derivatives have changed since, after which it is: about as many iterations it takes */
 #define SPARSE_TOLERANCE 1e-13 /* of linear iterations [parts of the residual] */
 #define ENOUGH           0.5   /* or this part of the tolerance of Newton's method */
 #define MOST_LINEAR      200   /* round-off may keep them from either */
@@ -180,6 +183,12 @@ static void AddNode(const LawProblem *problem, PetscInt node, Pattern of_S, cons
   }
 }
 
+/* Whether factors of an earlier Jacobian precondition */
+static PetscBool IsLagged(const LawProblem *problem)
+{
+  return (PetscBool)(!problem->sparse && problem->n > FEW_DENSE);
+}
+
 /* Whether the Jacobian is that of other derivatives of P than those at the trial forces, which become its own, or of another S */
 static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar force[], const PetscScalar y[], PetscBool *other)
 {
@@ -201,6 +210,7 @@ static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar for
     if (same) continue;
     PetscCall(PetscArraycpy(last, derivative, rows * rows));
     *other = PETSC_TRUE;
+    problem->changes++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -215,13 +225,14 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscBool          other = PETSC_FALSE;
 
   PetscFunctionBegin;
-  (void)snes;
   (void)P;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(Read(problem, x, y));
   PetscCall(TakeDerivatives(problem, x, y, &other));
   PetscCall(VecRestoreArrayRead(X, &x));
   if (!other) PetscFunctionReturn(PETSC_SUCCESS);
+  if (IsLagged(problem) && problem->changes > STALE) PetscCall(SNESSetLagPreconditioner(snes, LAG_AFTER_NEXT));
+  if (problem->changes > STALE) problem->changes = 0;
   PetscCall(MatZeroEntries(J));
   PetscCall(GetS(problem, &of_S, &S));
   PetscCall(GetPattern(problem, J, &of_J));
@@ -396,6 +407,8 @@ static PetscErrorCode CreateJacobian(LawProblem *problem)
 
 static PetscErrorCode CreateSolvers(LawProblem *problem)
 {
+  const PetscBool iterative = (PetscBool)(problem->sparse || IsLagged(problem));
+
   SNESLineSearch line_search;
   KSP            ksp;
   PC             pc;
@@ -411,10 +424,15 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  /* a sparse S is nearly diagonal: a few iterations, to round-off, take a fraction of the time of factors, incomplete ones too */
-  PetscCall(KSPSetType(ksp, problem->sparse ? KSPGMRES : KSPPREONLY));
+  /* a sparse S is nearly diagonal: a few iterations, to round-off, take a fraction of the time of factors, incomplete ones too; where a
+     dense one is large, those of an earlier Jacobian precondition */
+  PetscCall(KSPSetType(ksp, iterative ? KSPGMRES : KSPPREONLY));
   PetscCall(PCSetType(pc, problem->sparse ? PCSOR : PCLU));
-  if (problem->sparse) {
+  if (IsLagged(problem)) {
+    PetscCall(SNESSetLagPreconditioner(problem->newton, LAG_AFTER_NEXT));
+    PetscCall(SNESSetLagPreconditionerPersists(problem->newton, PETSC_TRUE));
+  }
+  if (iterative) {
     PetscCall(KSPGMRESSetPreAllocateVectors(ksp));
     PetscCall(KSPSetPCSide(ksp, PC_RIGHT)); /* its residual is that of Newton's method */
     PetscCall(SNESSetMaxLinearSolveFailures(problem->newton, PETSC_INT_MAX));

@@ -28,6 +28,7 @@ typedef struct {
   Vec            in, out; /* work space of products with S */
   Mat            jacobian;
   PetscInt64     jacobian_of; /* state of the S that it has; -1: none */
+  PetscInt       changes;     /* of derivatives at nodes, since the preconditioner was made */
   SNES           newton, nodes;
 } LawProblem;
 
