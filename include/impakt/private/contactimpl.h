@@ -474,16 +474,16 @@ struct _p_Contact {
   ContactOptions  options;
   ContactScale    scale;
   /* What goes between contact and bodies */
-  PetscBool         prescribes;  /* the method prescribes displacements on Dirichlet sides */
-  PetscBool         each_law;    /* the method takes pairs of different laws, and all laws */
-  PetscBool         takes_rigid; /* pairs may be of rigid bodies alone, or of one and an obstacle */
-  PetscInt         *order;       /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */
-  BodyTraces       *traces;      /* per body; the last ones are those of all obstacles, which do not move */
-  ContactBodyRows  *body_rows;   /* per body */
-  Mat              *interfaces;  /* per body: its rows */
-  Mat              *spares;      /* the same of other steps, to be filled next */
-  Vec              *ends;        /* per body: where rows are laid if not where it is, as where the last attempt at the step has ended */
-  PetscBool        *at_end;      /* per body: rows of all its pairs are laid there */
+  PetscBool prescribes; /* the method prescribes displacements on Dirichlet sides */
+  PetscBool sideless;   /* bodies answer to forces on rows, and no more is seen of them: pairs may go round in circles, have different laws,
+                           and be of rigid bodies alone */
+  PetscInt         *order;      /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */
+  BodyTraces       *traces;     /* per body; the last ones are those of all obstacles, which do not move */
+  ContactBodyRows  *body_rows;  /* per body */
+  Mat              *interfaces; /* per body: its rows */
+  Mat              *spares;     /* the same of other steps, to be filled next */
+  Vec              *ends;       /* per body: where rows are laid if not where it is, as where the last attempt at the step has ended */
+  PetscBool        *at_end;     /* per body: rows of all its pairs are laid there */
   ContactNodes      nodes;
   ContactRows       rows;
   ContactTurns      turns;

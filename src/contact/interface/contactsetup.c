@@ -149,8 +149,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   PetscCall(ContactSetUpFriction(contact));
   PetscCall(ContactSetUpStabilization(contact));
   /* some are set up even where no bodies are near yet, and say at once what they cannot do: friction, and impulses */
-  if (contact->rows.n_all ||
-      (contact->neighbours.come_and_go && (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || contact->takes_rigid)))
+  if (contact->rows.n_all || (contact->neighbours.come_and_go && (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || contact->sideless)))
     PetscTryTypeMethod(contact, setup);
   for (PetscInt o = 0; o < contact->n_obstacles && !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION); o++) {
     const char *name;

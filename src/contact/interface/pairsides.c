@@ -92,7 +92,7 @@ PetscBool ContactChooseSides(const ContactPreference *a, const ContactPreference
 }
 
 /* As many bodies as can be in an order in which every Dirichlet side comes before its Neumann side. Methods that prescribe nothing have the
-   user's order. */
+   user's order, those whose pairs have no sides any. */
 static PetscErrorCode FindOrder(Contact contact, PetscInt *done)
 {
   PetscBool moved = PETSC_TRUE, *placed;
@@ -109,7 +109,7 @@ static PetscErrorCode FindOrder(Contact contact, PetscInt *done)
         const ContactPair *pair  = &contact->pairs[p];
         const PetscInt     first = pair->turned && !contact->prescribes ? 1 : 0;
 
-        if (pair->body[1 - first] == b && !placed[pair->body[first]]) ready = PETSC_FALSE;
+        if (pair->body[1 - first] == b && !placed[pair->body[first]] && !contact->sideless) ready = PETSC_FALSE;
       }
       if (!ready) continue;
       contact->order[(*done)++] = b;

@@ -295,15 +295,15 @@ PetscErrorCode ContactCheckLaws(Contact contact)
   ContactLaw     law  = contact->n_pairs ? contact->pairs[0].law : contact->options.law;
 
   PetscFunctionBegin;
-  for (PetscInt p = 1; p < contact->n_pairs && !contact->each_law; p++)
+  for (PetscInt p = 1; p < contact->n_pairs && !contact->sideless; p++)
     PetscCheck(contact->pairs[p].law == law, comm, PETSC_ERR_SUP,
                "Pair %s has the law %s, and pair %s the law %s: -contact_type %s has one law for all pairs; choose -contact_type force, or "
                "leave -contact_law_<pair> out",
                contact->pairs[p].name, ContactNameLaw(contact, contact->pairs[p].law), contact->pairs[0].name, ContactNameLaw(contact, law),
                type);
-  PetscCheck(contact->each_law || !ContactAnyPairHas(contact, CONTACT_LAW_SPRING), comm, PETSC_ERR_SUP,
+  PetscCheck(contact->sideless || !ContactAnyPairHas(contact, CONTACT_LAW_SPRING), comm, PETSC_ERR_SUP,
              "-contact_law spring works with -contact_type force alone, not with %s; choose that, or -contact_law tied", type);
-  PetscCheck(contact->each_law || contact->prescribes || !ContactAnyPairHas(contact, CONTACT_LAW_BONDED), comm, PETSC_ERR_SUP,
+  PetscCheck(contact->sideless || contact->prescribes || !ContactAnyPairHas(contact, CONTACT_LAW_BONDED), comm, PETSC_ERR_SUP,
              "-contact_law bonded works with -contact_type schwarz or force alone, not with %s; choose one of these, or -contact_law "
              "frictionless or tied",
              type);
@@ -314,7 +314,7 @@ PetscErrorCode ContactCheckLaws(Contact contact)
   if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTIONLESS)) law = CONTACT_LAW_FRICTIONLESS;
   if (ContactAnyPairHas(contact, CONTACT_LAW_BONDED)) law = CONTACT_LAW_BONDED;
   if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) law = CONTACT_LAW_FRICTION;
-  PetscCheck((contact->each_law || contact->prescribes) && law == CONTACT_LAW_FRICTIONLESS, comm, PETSC_ERR_SUP,
+  PetscCheck((contact->sideless || contact->prescribes) && law == CONTACT_LAW_FRICTIONLESS, comm, PETSC_ERR_SUP,
              "-contact_separation false works with -contact_type schwarz or force and -contact_law frictionless alone, not with %s and %s",
              type, ContactNameLaw(contact, law));
   PetscFunctionReturn(PETSC_SUCCESS);

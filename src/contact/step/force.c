@@ -292,8 +292,7 @@ PetscErrorCode ContactCreate_Force(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscNew(&stepper));
   contact->data                = stepper;
-  contact->each_law            = PETSC_TRUE;
-  contact->takes_rigid         = PETSC_TRUE;
+  contact->sideless            = PETSC_TRUE;
   contact->ops->setfromoptions = SetFromOptions;
   contact->ops->setup          = SetUp;
   contact->ops->layrows        = LayRows;
