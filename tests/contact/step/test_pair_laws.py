@@ -20,10 +20,11 @@ def carried(laws=TIED, end=3e-4, faces=4, more=""):
     return joined(f"-bodies cube,cap {FORCE} {FLOOR} {PAIRS} -time_step 5e-7 -time_end {end}", cube, cap, laws, more)
 
 
-@pytest.mark.parametrize("more", ["", "-cube_ts_type centraldifference -cube_ts_time_step 2.5e-7"])
-def test_tied_and_contact(more, shared_run):
+@pytest.mark.parametrize(("more", "opens"), [("", 1e-12), ("-cube_ts_type centraldifference -cube_ts_time_step 2.5e-7", 1e-11)])
+def test_tied_and_contact(more, opens, shared_run):
     """The cap stays on the cube, pushed and pulled, and the cube bounces off the floor with what the whole had, as far as it does not vibrate. Measured: 1.4e-4 of the
-    energy as nodes come and go."""
+    energy as nodes come and go. The tie `opens` by so many elements at most, of 5 mm: by round-off where S is exact; with substeps a slab gives S to 3e-5, and the
+    third pass leaves 2.2e-14 m, where 1e-7 of the way in a step are 3e-13 m."""
     run = shared_run(carried(end=6e-4, more=more))
     floor, cap = (run.history[f"contact/{pair}"] for pair in ("cube.zmin:floor", "cube.zmax:cap.zmin"))
     assert run.summary["pairs"]["cube.zmin:floor"]["onsets"] >= 1
@@ -31,7 +32,7 @@ def test_tied_and_contact(more, shared_run):
     assert floor["force"][()].min() >= 0
     assert (cap["active"][1:] == 25).all()
     assert cap["force"][()].min() < -100 and cap["force"][()].max() > 100  # N
-    assert np.abs(cap["gap"][()]).max() <= 1e-12 * 5e-3
+    assert np.abs(cap["gap"][()]).max() <= opens * 5e-3
     assert run.history["body/cap/mean_velocity"][-1, 2] > 0.5
     assert worst_energy_error(run.summary) <= 1e-3
 

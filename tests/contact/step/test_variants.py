@@ -86,7 +86,7 @@ def variant(seed):
 
 
 GAIN = {"linear": 1e-9, "explicit": 1e-3, "cap": 1.2e-3}  # of DESIGN.md; that of the rule linear is what -contact_energy_cap allows, and what a step that ends its cuts brings beyond: measured 1.13e-3
-TOLERANCE = 1e-6  # of the outer iteration, to which the gaps of nonlinear bodies do not change: measured 4e-7 of the energy in a step
+TOLERANCE = 1e-7  # of the outer iteration, to which the gaps of nonlinear bodies do not change, nor those of explicit plates, whose S a slab gives: measured 7e-9 and 1e-13 of the energy in a step
 ELEMENT = 2.5e-3  # m, of the contact faces of block and bars, but for 5e-3 of the bars' first mesh
 
 
@@ -126,7 +126,8 @@ def check_loss(v, run, frames):
     a constant force takes that with it. Explicit bodies of one substep have no waves in it."""
     scale = run.history["energy/scale"][()].max()
     taken = np.diff(run.history["contact_loss"][()])
-    assert taken.min() >= -(1e-13 if v.of == "linear_elastic" else TOLERANCE) * scale
+    exact = v.of == "linear_elastic" and not (v.scene == "plate" and "E" in v.kinds)
+    assert taken.min() >= -(1e-13 if exact else TOLERANCE) * scale
     if frames is None:
         return
     metre, kilogram = v.units
