@@ -251,10 +251,10 @@ static const KnownOption options[] = {
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_type", "newtonls|anderson|nrichardson|ngmres|qn",
      "outer iteration, default newtonls; with -contact_type force nrichardson, and not newtonls"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_atol", "a",
-     "absolute tolerance on the change of position [m], default 4e-12 of the size of the smallest body"},
+     "absolute tolerance on the change of position [m], default 4e-12 of the size of the smallest body, with -contact_type force 2e-15"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_rtol", "r",
      "relative tolerance on it, default 1e-15; with -contact_type force in parts of the largest way that contact makes a row go in the "
-     "step, default 1e-6, and 1e-9 where a body is static"},
+     "step, default 1e-7, 1e-9 where a body is static, and 1e-13 where contact alone holds linear bodies"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_max_it", "n", "limit of outer iterations, default 50"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_linesearch_damping", "theta", "relaxation of nrichardson, default 1"},
     {"schwarz", OPTION_OF_RUN, "schwarz_relaxation", "fixed|aitken", "whether nrichardson adapts its relaxation, default fixed"},
@@ -293,7 +293,7 @@ static const KnownOption options[] = {
     {"rules", OPTION_OF_RUN, "contact_rule", "auto|impulse|linear",
      "how the force of a row runs within a step, and when the row is closed; impulse: constant, and its gap does not change, where contact "
      "nodes have mass; linear: from the last step's to the new one, and it has no gap at the end, where they are massless. Default auto: "
-     "impulse where some contact node has mass, else linear"},
+     "impulse for bodies that pairs connect and that have mass on some contact node, else linear"},
     {"rules", OPTION_OF_RUN, "law_snes_type", "newtonls|...", "solver of the law of all rows, default newtonls"},
     {"rules", OPTION_OF_RUN, "law_snes_rtol", "r",
      "its tolerance, in parts of the largest force, or of that which alone would close a row, default 1e-13"},

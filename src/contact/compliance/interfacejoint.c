@@ -10,7 +10,7 @@
    Rows that are not in contact have no spring, so that P is the inverse for those that are: with springs on all of them, and the others
    left out of what goes in and comes out, P would hold the gaps of the others as they are. So it is factored when rows or bodies have
    changed, and when rows join or leave, where that saves more than it takes; else all rows have springs. It hangs on nothing but the
-   present matrices and rows. What bodies do beyond the layers is in interfacefar.c.
+   present matrices and rows. What bodies do beyond the layers is in body/rows/farmotion.c.
 
    The Dirichlet preconditioner of FETI (C. Farhat, J. Mandel, The two-level FETI method for static and dynamic plate problems, Computer
    Methods in Applied Mechanics and Engineering 155, 1998) adds up what each body answers with by itself. That is the inverse where meshes

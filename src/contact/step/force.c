@@ -277,7 +277,8 @@ static PetscErrorCode Destroy(Contact contact)
 
    Notes:
    Contact nodes may have mass: sheets and plates, of which `CONTACT_SCHWARZ` would move the mass to inner nodes. With the rule impulse
-   contact never brings energy, and takes the kinetic energy of the contact nodes in the direction of the hit. A run has one rule.
+   contact never brings energy, and takes the kinetic energy of the contact nodes in the direction of the hit. Bodies that pairs connect,
+   directly or by others, have one rule.
 
    References:
 .  * - V. Acary, Energy conservation and dissipation properties of time-integration methods for nonsmooth elastodynamics with contact, ZAMM
