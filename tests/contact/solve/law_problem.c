@@ -453,10 +453,13 @@ static void SolveChain(LawProblem *problem, Mat S, unsigned seed)
   Mat       taken = S;
 
   ok(LawProblemResize(problem, CHAIN));
-  problem->law     = &RowLawUnilateral;
   problem->n_nodes = NODES;
   for (PetscInt node = 0; node <= NODES; node++) problem->begin[node] = 3 * node;
-  for (PetscInt node = 0; node < NODES; node++) problem->limit[2 * node] = 0, problem->limit[2 * node + 1] = 0.4;
+  for (PetscInt node = 0; node < NODES; node++) {
+    problem->law[node]           = &unilateral;
+    problem->limit[2 * node]     = 0;
+    problem->limit[2 * node + 1] = 0.4;
+  }
   ok(PetscObjectReference((PetscObject)S));
   ok(LawProblemTakeS(problem, &taken));
   for (PetscInt i = 0; i < CHAIN; i++) {
