@@ -63,9 +63,33 @@ static PetscErrorCode VisitConditions(Body body, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode VisitCompliance(struct _BodyCompliance *compliance, Checkpoint checkpoint)
+/* Columns are known in the order in which they have been asked for, and their last bits with them */
+static PetscErrorCode VisitNodal(Body body, struct _BodyCompliance *compliance, Checkpoint checkpoint)
+{
+  PetscBool has   = (PetscBool)(compliance->nodal != NULL);
+  PetscInt  shape = compliance->nodal_shape;
+
+  PetscFunctionBegin;
+  PetscCall(CheckpointVisitBools(checkpoint, "nodal", 1, &has));
+  if (CheckpointLoads(checkpoint)) {
+    PetscCall(ComplianceDestroy(&compliance->nodal));
+    PetscCall(NodalMatrixDestroy(&compliance->nodal_matrix));
+  }
+  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointVisitInts(checkpoint, "nodal kind", 1, &compliance->nodal_kind));
+  PetscCall(CheckpointVisitInts(checkpoint, "nodal shape", 1, &shape));
+  PetscCall(CheckpointVisitReals(checkpoint, "nodal step", 1, &compliance->nodal_step));
+  PetscCall(CheckpointVisitReals(checkpoint, "nodal time", 1, &compliance->nodal_time));
+  compliance->nodal_shape = (BodyForceShape)shape;
+  if (!compliance->nodal) PetscCall(BodyCreateNodalCompliance(body, &compliance->nodal));
+  PetscCall(ComplianceVisit(compliance->nodal, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode VisitCompliance(Body body, struct _BodyCompliance *compliance, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
+  PetscCall(VisitNodal(body, compliance, checkpoint));
   PetscCall(ComplianceVisit(compliance->matrices, checkpoint));
   PetscCall(CheckpointVisitInts(checkpoint, "kept rows", 1, &compliance->n_kept));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -91,7 +115,7 @@ static PetscErrorCode VisitLevel(Body body, PetscInt k, Checkpoint checkpoint)
   level = GetLevel(body, k);
   first = GetLevel(body, 0);
   if (body->integrator->ops.visit) PetscCall((*body->integrator->ops.visit)(body, k, checkpoint));
-  if (k == 0 || level.compliance != first.compliance) PetscCall(VisitCompliance(level.compliance, checkpoint));
+  if (k == 0 || level.compliance != first.compliance) PetscCall(VisitCompliance(body, level.compliance, checkpoint));
   if (level.solver && (k == 0 || level.solver != first.solver)) PetscCall(ConstrainedSolverVisit(level.solver, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

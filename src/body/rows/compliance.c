@@ -36,7 +36,8 @@ PetscErrorCode BodyCreateCompliance(Body body)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&body->compliance));
-  c = body->compliance;
+  c             = body->compliance;
+  c->nodal_kind = NODAL_BY_STEPS;
   PetscCall(
       ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->time.substeps, &c->matrices));
   PetscCall(PetscCalloc5(rows->local, &c->roles, 3 * levels, &c->base_displacement, rows->global, &c->all_roles, rows->global,

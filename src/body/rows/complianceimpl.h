@@ -4,6 +4,8 @@
 #include <solver/densefactor.h>
 #include <body/layout/bodyimpl.h>
 
+#define NODAL_BY_STEPS -1 /* columns by controller steps */
+
 typedef struct _NodalMatrix *NodalMatrix;
 
 struct _BodyCompliance {
@@ -14,6 +16,7 @@ struct _BodyCompliance {
   PetscReal      nodal_step;    /* the substep that it is of [s] */
   PetscReal      nodal_time;    /* where it is that of a state: when the step begins [s] */
   NodalMatrix    nodal_matrix;  /* that tells it, see nodalmatrix.c; NULL: controller steps do */
+  PetscInt       nodal_kind;    /* which kind of it has told what is known, see nodalmatrix.c */
   Vec            diagonal;      /* see BodyGetNodalDiagonal(); or NULL */
   PetscReal      diagonal_step; /* the substep that it is of [s] */
   PetscInt       n_kept;        /* known rows that stay when a step fails */
@@ -38,7 +41,9 @@ struct _BodyCompliance {
   PetscScalar *rhs;
 };
 
-PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], NodalMatrix *, PetscBool *);
+PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], PetscInt *, NodalMatrix *,
+                                             PetscBool *);
+PETSC_INTERN PetscErrorCode BodyCreateNodalCompliance(Body, Compliance *);
 PETSC_INTERN PetscErrorCode NodalMatrixProbe(Body, const NodalMatrix, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN const char    *NodalMatrixDescribe(const NodalMatrix);
 PETSC_INTERN PetscErrorCode NodalMatrixDestroy(NodalMatrix *);

@@ -200,20 +200,21 @@ static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt do
 }
 
 /* NodalMatrixRenew - the matrix that tells how some displacements answer, of n in all, in place of one that does not any more; NULL:
-   controller steps have to. `renewed`: columns that are known belong to another one. */
-PetscErrorCode NodalMatrixRenew(Body body, BodyForceShape shape, PetscInt n, PetscInt n_dofs, const PetscInt dofs[], NodalMatrix *nodal,
-                                PetscBool *renewed)
+   controller steps have to. `kind`: of the columns that are known, NODAL_BY_STEPS if by controller steps; `renewed`: they are of another
+   one. */
+PetscErrorCode NodalMatrixRenew(Body body, BodyForceShape shape, PetscInt n, PetscInt n_dofs, const PetscInt dofs[], PetscInt *kind,
+                                NodalMatrix *nodal, PetscBool *renewed)
 {
-  Kind      kind;
+  Kind      chosen;
   PetscBool has;
 
   PetscFunctionBegin;
-  PetscCall(Choose(body, shape, n, &kind, &has));
-  *renewed = (PetscBool)(*nodal ? !has || (*nodal)->kind != kind : has);
-  if (!*renewed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(NodalMatrixDestroy(nodal));
-  if (!has) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Create(body, kind, n_dofs, dofs, nodal));
+  PetscCall(Choose(body, shape, n, &chosen, &has));
+  *renewed = (PetscBool)(*kind != (has ? (PetscInt)chosen : NODAL_BY_STEPS));
+  if (*renewed) PetscCall(NodalMatrixDestroy(nodal));
+  *kind = has ? (PetscInt)chosen : NODAL_BY_STEPS;
+  if (!has || *nodal) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(Create(body, chosen, n_dofs, dofs, nodal));
   (*nodal)->shape = shape;
   if (shape == BODY_FORCE_CONSTANT && body->layer.exists) PetscCall(Create(body, BY_LAYER, n_dofs, dofs, &(*nodal)->layer));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -48,6 +48,19 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* BodyCreateNodalCompliance - one in which no displacement is known yet */
+PetscErrorCode BodyCreateNodalCompliance(Body body, Compliance *nodal)
+{
+  PetscInt local, begin, all;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(body->state.u, &local));
+  PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
+  PetscCall(VecGetSize(body->state.u, &all));
+  PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, nodal));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodyGetNodalCompliance - displacements at the end of the controller step under unit forces on nodes
 
@@ -80,7 +93,7 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   struct _BodyCompliance *compliance                                                    = body->compliance;
   Compliance             *nodal                                                         = &compliance->nodal;
   PetscErrorCode (*probe)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance) = body->integrator->ops.nodalcolumns;
-  PetscInt  unknown = n, known = 0, local, begin, all;
+  PetscInt  unknown = n, known = 0;
   PetscBool renewed;
 
   PetscFunctionBegin;
@@ -100,16 +113,13 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   }
   if (unknown) {
     PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
-    PetscCall(NodalMatrixRenew(body, shape, known + unknown, n, dofs, &compliance->nodal_matrix, &renewed));
+    PetscCall(NodalMatrixRenew(body, shape, known + unknown, n, dofs, &compliance->nodal_kind, &compliance->nodal_matrix, &renewed));
     if (renewed) PetscCall(ComplianceDestroy(nodal));
     if (!*nodal) {
       compliance->nodal_time  = body->saved.time;
       compliance->nodal_step  = body->time.step;
       compliance->nodal_shape = shape;
-      PetscCall(VecGetLocalSize(body->state.u, &local));
-      PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
-      PetscCall(VecGetSize(body->state.u, &all));
-      PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, nodal));
+      PetscCall(BodyCreateNodalCompliance(body, nodal));
       unknown = n;
     }
     PetscCall(PetscInfo(body, "%" PetscInt_FMT " new columns of the compliance of nodes of body '%s', each a %s\n", unknown,
