@@ -18,6 +18,15 @@
    efficient extension of a class of substructure based preconditioners to heterogeneous structural mechanics problems, International
    Journal for Numerical Methods in Engineering 44, 1999), and what short waves find on the coarser side remains. Two cubes of 12 and 10
    hexahedra take 11 iterations with one side, 7 or 8 with both and weights, 3 or 4 with P.
+
+   Most iterations of a step of Newton's method in partial contact where waves cross 3, 10 and 50 elements in a step, and beside them those
+   with four layers held on their far side and all rows: cubes of 16 and 12 elements 3, 5 and 6 for 7, 9 and 11; plates of 36 x 36 x 8 and
+   32 x 32 x 8 6, 9 and 12 for 6, 10 and 21, in full contact 6 for 15; the upper cube 100 times as stiff 4 for 18, tetrahedra 5 for 11,
+   cubes of 24 and 20 6 for 14, elements 13 times as long as they are high 7. The time loop of the cubes takes 1.2, 1.7 and 5.8 s for 3.5,
+   3.6 and 12.7 s, of the larger ones 33.6 for 46.2 s, of the plates 23.6 for 32.2 s. Bodies that are whole would leave 3 iterations
+   everywhere, with factors of their price; eight layers, held, leave 8. To begin with the projection on the last five solutions (P. F.
+   Fischer, Computer Methods in Applied Mechanics and Engineering 163, 1998) saves nothing: between waves in motion it leaves 3 to 60 % of
+   the right-hand side.
 */
 #include "interfacejoint.h"
 #include "interfaceslab.h"

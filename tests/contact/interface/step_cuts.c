@@ -238,8 +238,9 @@ static PetscInt Rebuilds(Simulation *simulation)
   return counts.rebuilds;
 }
 
-/* The same by the contact step, with friction: nodes join and leave, stick and slide. To round-off of values of size 1, which grows with
-   each step: where a step has failed, bodies find the same answer to several rows by other sums. Measured: some 1e-13. */
+/* The same by the contact step, with friction: nodes join and leave, stick and slide. To round-off, which grows with each step: where a
+   step has failed, bodies find the same answer to several rows by other sums. Positions of size 1 are right to 2e-16, and accelerations, in
+   steps of 0.005, to 2/dt^2 times as much, 2e-11. Measured: 1.5e-12. */
 static void rubbing_blocks(void **state)
 {
   Simulation       *simulation = (Simulation *)*state;
@@ -248,7 +249,7 @@ static void rubbing_blocks(void **state)
 
   AddOptions(BLOCKS);
   AddOptions("-contact_type force -contact_law coulomb -contact_friction 0.3 -left_initial_velocity 0.2,-0.1");
-  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWaysTo(simulation, STABLE, HALF, variants[i], 1e-12);
+  for (size_t i = 0; i < sizeof(variants) / sizeof(variants[0]); i++) CompareWaysTo(simulation, STABLE, HALF, variants[i], 1e-11);
 }
 
 /* The left block slides down along the right one. Rows are built again after a thousandth of a face, which each of the steps that fail does
