@@ -36,16 +36,17 @@ def test_slides_straight(impakt):
     assert energy(run).max() <= 1e-7  # 1e-8 measured with damping in proportion to the stiffness, 1e-14 without
 
 
-@pytest.mark.parametrize(("kinds", "step", "substeps", "ranks"), [("EE", 2e-6, (10, 10), 1), *long(("II", 4e-6, (1, 1), 1), ("IE", 4e-6, (1, 20), 1), ("EE", 2e-6, (10, 10), 3))])
-def test_plate(kinds, step, substeps, ranks, shared_run):
-    """A plate one element thick, held at two sides, hit obliquely by a cube. It loses 6 to 13 %, of the nodes that hit: 2 mm of plate below elements of 5 mm."""
+@pytest.mark.parametrize(("kinds", "step", "substeps", "ranks", "passes"), [("EE", 2e-6, (10, 10), 1, 2), *long(("II", 4e-6, (1, 1), 1, 3), ("IE", 4e-6, (1, 20), 1, 12), ("EE", 2e-6, (10, 10), 3, 2))])
+def test_plate(kinds, step, substeps, ranks, passes, shared_run):
+    """A plate one element thick, held at two sides, hit obliquely by a cube. It loses 6 to 13 %, of the nodes that hit: 2 mm of plate below elements of 5 mm. Passes are
+    measured: S of many displacements is that of a slab, which at 20 substeps in which waves cross 4 elements is off by a quarter of it."""
     options = cube_and_plate(kinds, 0.3, step, 2e-4, substeps)
     run = shared_run(options, ranks)
     change = energy(run)
     assert change.max() <= (1e-9 if kinds == "II" else 1e-3)  # measured 0
     assert -0.15 <= change[-1] < -0.03
     assert momentum_error(run, "k") <= 1e-11  # measured 8e-14
-    assert sweeps(run)[1] == 2
+    assert sweeps(run)[1] <= passes
     # what friction brings to a node that joins, see test_impulse.py: measured 2.2e-4 (IE), 1.7e-4 (II), 5e-7 (EE)
     assert run.summary["contact"]["friction_least"] >= -4e-4 * run.history["energy/scale"][0]
     if ranks > 1:
