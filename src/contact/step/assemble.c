@@ -2,12 +2,15 @@
    S, what touching rows read by forces on them, from how bodies answer: S = sum of B_b W_b B_b^T, on every rank. Where no node of a body
    answers to forces on others W_b is diagonal. The part of such bodies is the product R R^T of sparse matrices, R being the columns of all
    B_b times the roots of the diagonals, side by side. R and its product stay the same matrices as long as rows have entries where they had
-   them.
+   them. Each other body has a block, between all of its rows. Where these are a small part of a matrix of all rows by all rows, as those of
+   many bodies are, S is sparse.
 */
 #include "stepimpl.h"
 
-#define FEW_ROWS 60    /* up to so many S is dense whatever it is made of */
-#define ZERO     1e-14 /* what entries of rows are zero but for round-off; the largest are 1 or so */
+#define FEW_ROWS  60    /* up to so many S is dense whatever it is made of, */
+#define MANY_ROWS 150   /* and up to so many where bodies have blocks, whose LU factors are exact where bodies hang on soft springs */
+#define SPARSE    0.25  /* blocks of bodies that are at most this part of S make it sparse */
+#define ZERO      1e-14 /* what entries of rows are zero but for round-off; the largest are 1 or so */
 
 PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
 {
@@ -17,6 +20,7 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
 
     PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
     PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
+    PetscCall(PetscFree(entries->block));
   }
   PetscCall(PetscFree(assembly->of_body));
   PetscCall(PetscFree2(assembly->begin, assembly->next));
@@ -24,28 +28,6 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
   PetscCall(MatDestroy(&assembly->rows));
   PetscCall(MatDestroy(&assembly->transpose));
   PetscCall(MatDestroy(&assembly->product));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The touching rows of a body, by their numbers among its rows, and their places in the list of all */
-static PetscErrorCode ListBodyRows(Contact contact, ContactStepper *stepper, PetscInt b)
-{
-  StepperEntries *entries = &stepper->assembly.of_body[b];
-
-  PetscFunctionBegin;
-  if (stepper->problem.n > entries->row_room) {
-    entries->row_room = 2 * stepper->problem.n;
-    PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
-    PetscCall(PetscMalloc3(entries->row_room, &entries->rows, entries->row_room, &entries->places, entries->row_room + 1, &entries->begin));
-  }
-  entries->n = 0;
-  for (PetscInt k = 0; k < stepper->problem.n; k++) {
-    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]];
-
-    if (pair->body[0] != b && pair->body[1] != b) continue;
-    PetscCall(PetscFindInt(stepper->rows[k], contact->body_rows[b].n_all, contact->body_rows[b].all, &entries->rows[entries->n]));
-    entries->places[entries->n++] = k;
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,7 +75,6 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
   PetscMPIInt     total;
 
   PetscFunctionBegin;
-  PetscCall(ListBodyRows(contact, stepper, b));
   if (!entries->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CountEntries(contact, stepper, b));
   PetscCall(PetscMPIIntCast(entries->begin[entries->n], &total));
@@ -121,32 +102,36 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds what a body does whose nodes answer to each other: for each row, how the displacements go under a unit force along it */
-static PetscErrorCode AddBody(Contact contact, ContactStepper *stepper, PetscInt b, PetscScalar S[])
+/* B_b W_b B_b^T of a body whose nodes answer to each other: for each row, how the displacements go under a unit force along it */
+static PetscErrorCode MakeBlock(Contact contact, ContactStepper *stepper, PetscInt b)
 {
-  const PetscInt        n       = stepper->problem.n, *place;
-  const StepperEntries *entries = &stepper->assembly.of_body[b];
-  PetscInt             *dofs = entries->dofs, *columns = entries->columns, leading, count;
-  PetscScalar          *moved = entries->answers;
-  const PetscScalar    *W;
+  StepperEntries    *entries = &stepper->assembly.of_body[b];
+  const PetscInt     n       = entries->n, *place;
+  PetscInt          *dofs = entries->dofs, *columns = entries->columns, leading, count;
+  PetscScalar       *moved = entries->answers;
+  const PetscScalar *W;
 
   PetscFunctionBegin;
-  if (!entries->n) PetscFunctionReturn(PETSC_SUCCESS);
-  count = entries->begin[entries->n];
+  if (n * n > entries->block_room) {
+    entries->block_room = 2 * n * n;
+    PetscCall(PetscFree(entries->block));
+    PetscCall(PetscMalloc1(entries->block_room, &entries->block));
+  }
+  count = entries->begin[n];
   PetscCall(PetscArraycpy(dofs, columns, count));
   PetscCall(PetscSortRemoveDupsInt(&count, dofs));
   PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rules[b]->shape, count, dofs, &place, &leading, &W));
-  for (PetscInt e = 0; e < entries->begin[entries->n]; e++) PetscCall(PetscFindInt(columns[e], count, dofs, &columns[e]));
+  for (PetscInt e = 0; e < entries->begin[n]; e++) PetscCall(PetscFindInt(columns[e], count, dofs, &columns[e]));
   for (PetscInt d = 0; d < count; d++) dofs[d] = place[dofs[d]];
-  for (PetscInt l = 0; l < entries->n; l++) {
-    PetscScalar *column = S + entries->places[l] * n;
+  PetscCall(PetscArrayzero(entries->block, n * n));
+  for (PetscInt l = 0; l < n; l++) {
+    PetscScalar *column = entries->block + l * n;
 
     PetscCall(PetscArrayzero(moved, count));
     for (PetscInt f = entries->begin[l]; f < entries->begin[l + 1]; f++)
       for (PetscInt d = 0; d < count; d++) moved[d] += entries->values[f] * W[dofs[columns[f]] * leading + dofs[d]];
-    for (PetscInt k = 0; k < entries->n; k++)
-      for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++)
-        column[entries->places[k]] += entries->values[e] * moved[columns[e]];
+    for (PetscInt k = 0; k < n; k++)
+      for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) column[k] += entries->values[e] * moved[columns[e]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -286,7 +271,7 @@ static PetscErrorCode AddProduct(const StepperAssembly *assembly, PetscScalar S[
 }
 
 /* A dense S: the one there is, where it has the size */
-static PetscErrorCode AssembleDense(Contact contact, ContactStepper *stepper, PetscBool any_alone, Mat *S)
+static PetscErrorCode AssembleDense(ContactStepper *stepper, PetscBool any_alone, Mat *S)
 {
   const PetscInt n = stepper->problem.n;
   PetscScalar   *values;
@@ -300,9 +285,54 @@ static PetscErrorCode AssembleDense(Contact contact, ContactStepper *stepper, Pe
   PetscCall(MatDenseGetArrayWrite(*S, &values));
   PetscCall(PetscArrayzero(values, n * n));
   if (any_alone) PetscCall(AddProduct(&stepper->assembly, values));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (!stepper->assembly.of_body[b].alone) PetscCall(AddBody(contact, stepper, b, values));
+  for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) {
+    const StepperEntries *entries = &stepper->assembly.of_body[b];
+
+    for (PetscInt l = 0; l < entries->n && !entries->alone; l++)
+      for (PetscInt k = 0; k < entries->n; k++) values[entries->places[l] * n + entries->places[k]] += entries->block[l * entries->n + k];
+  }
   PetscCall(MatDenseRestoreArrayWrite(*S, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of how many entries the blocks of bodies are, in parts of those of S */
+static PetscReal BlockPart(const ContactStepper *stepper)
+{
+  PetscReal sum = 0;
+
+  for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) {
+    const StepperEntries *entries = &stepper->assembly.of_body[b];
+
+    if (!entries->alone) sum += (PetscReal)entries->n * entries->n;
+  }
+  return sum / ((PetscReal)stepper->problem.n * stepper->problem.n);
+}
+
+/* A sparse S that has the blocks of bodies, and R R^T where bodies answer node by node */
+static PetscErrorCode AssembleSparse(ContactStepper *stepper, PetscBool any_alone, Mat *S)
+{
+  const PetscInt         n        = stepper->problem.n;
+  const StepperAssembly *assembly = &stepper->assembly;
+  PetscInt              *counts; /* more than there are: two rows may share both of their bodies */
+
+  PetscFunctionBegin;
+  PetscCall(PetscCalloc1(n, &counts));
+  for (PetscInt b = 0; b < assembly->n_bodies; b++) {
+    const StepperEntries *entries = &assembly->of_body[b];
+
+    for (PetscInt k = 0; k < entries->n && !entries->alone; k++) counts[entries->places[k]] += entries->n;
+  }
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 0, counts, S));
+  PetscCall(PetscFree(counts));
+  for (PetscInt b = 0; b < assembly->n_bodies; b++) {
+    const StepperEntries *entries = &assembly->of_body[b];
+
+    if (entries->alone || !entries->n) continue;
+    PetscCall(MatSetValues(*S, entries->n, entries->places, entries->n, entries->places, entries->block, ADD_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(*S, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*S, MAT_FINAL_ASSEMBLY));
+  if (any_alone) PetscCall(MatAXPY(*S, 1, assembly->product, DIFFERENT_NONZERO_PATTERN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -329,13 +359,11 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
-  if (same) {
-    PetscCall(ContactStepperForgetSecants(stepper));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
   if (!assembly->of_body) PetscCall(PetscCalloc1(contact->n_bodies, &assembly->of_body));
   assembly->n_bodies = contact->n_bodies;
+  PetscCall(ContactStepperListBodyRows(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec diagonal;
 
@@ -345,20 +373,23 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
     assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
     if (diagonal) PetscCall(ScaleEntries(contact, stepper, b, diagonal));
     if (diagonal) any_alone = PETSC_TRUE;
-    else all_alone = PETSC_FALSE;
+    else {
+      all_alone = PETSC_FALSE;
+      PetscCall(MakeBlock(contact, stepper, b));
+    }
   }
   if (any_alone) PetscCall(MultiplyRows(stepper, assembly));
   if (all_alone && n > FEW_ROWS) {
     S = assembly->product;
     PetscCall(PetscObjectReference((PetscObject)S));
-  } else PetscCall(AssembleDense(contact, stepper, any_alone, &S));
+  } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, any_alone, &S));
+  else PetscCall(AssembleDense(stepper, any_alone, &S));
   if (stepper->gives) PetscCall(AddGive(contact, stepper, S));
   PetscCall(LawProblemTakeS(&stepper->problem, &S));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
   PetscCall(PetscInfo(contact, "S assembled: %s, %" PetscInt_FMT " rows of %" PetscInt_FMT " nodes\n",
                       stepper->problem.sparse ? "sparse" : "dense", n, stepper->problem.n_nodes));
   stepper->n_assembled = n;
-  stepper->has_secants = PETSC_FALSE;
   stepper->assembled   = stepper->state;
   PetscCall(PetscLogEventEnd(CONTACT_Factor, contact, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);

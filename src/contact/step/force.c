@@ -240,7 +240,6 @@ static PetscErrorCode Reset(Contact contact)
   PetscCall(SNESDestroy(&stepper->outer));
   PetscCall(ContactStepperDestroyVecs(stepper));
   PetscCall(ContactStepperDestroyAssembly(&stepper->assembly));
-  PetscCall(MatDestroy(&stepper->plain));
   PetscCall(LawProblemDestroy(&stepper->problem));
   PetscCall(PetscFree(stepper->laws));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));

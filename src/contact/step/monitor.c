@@ -54,8 +54,9 @@ PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper
   for (PetscInt g = 0; g < contact->n_bodies; g++) {
     NodeCounts counts;
 
+    if (stepper->group[g] != g || stepper->done[g]) continue;
     CountNodes(contact, stepper, g, &counts);
-    if (!counts.nodes || stepper->done[g]) continue;
+    if (!counts.nodes) continue;
     PetscCall(PetscViewerASCIIPrintf(
         viewer,
         "step that ends at %.9g%s, group of '%s', pass %" PetscInt_FMT

@@ -104,9 +104,6 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(ContactStepperCorrectS(contact, stepper));
   PetscCall(LawProblemSolve(problem));
   if (!stepper->passes++) PetscCall(LimitWays(contact, stepper));
-  PetscCall(PetscArraycpy(stepper->told, problem->base, n));
-  PetscCall(PetscArraycpy(stepper->told + n, problem->read, n));
-  stepper->has_told = PETSC_TRUE;
   PetscCall(MeasureGroups(contact, stepper));
   if (!problem->solved) {
     PetscCall(ContactRejectResidual(F));

@@ -10,8 +10,8 @@ PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper
   PetscCall(VecDuplicate(stepper->x, &stepper->f));
   PetscCall(VecDuplicate(stepper->x, &stepper->field));
   PetscCall(VecScatterCreateToAll(stepper->x, &stepper->to_all, &stepper->of_all));
-  PetscCall(PetscMalloc4(n_all, &stepper->rows, n_all, &stepper->places, n_all, &stepper->gathered, n_all, &stepper->of_assembled));
-  PetscCall(PetscMalloc1(2 * n_all, &stepper->told));
+  PetscCall(PetscMalloc3(n_all, &stepper->rows, n_all, &stepper->gathered, n_all, &stepper->of_assembled));
+  PetscCall(PetscMalloc3(3 * n_all, &stepper->told, 2 * n_all, &stepper->ends, 3 * n_all, &stepper->secant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -23,8 +23,8 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
   PetscCall(VecDestroy(&stepper->field));
   PetscCall(VecDestroy(&stepper->of_all));
   PetscCall(VecScatterDestroy(&stepper->to_all));
-  PetscCall(PetscFree4(stepper->rows, stepper->places, stepper->gathered, stepper->of_assembled));
-  PetscCall(PetscFree(stepper->told));
+  PetscCall(PetscFree3(stepper->rows, stepper->gathered, stepper->of_assembled));
+  PetscCall(PetscFree3(stepper->told, stepper->ends, stepper->secant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,5 +84,42 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
   }
   problem->begin[problem->n_nodes] = n;
   PetscCall(VecRestoreArrayRead(stepper->of_all, &touches));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The touching rows of each body, by their numbers among its rows, and their places in the list of all */
+PetscErrorCode ContactStepperListBodyRows(Contact contact, ContactStepper *stepper)
+{
+  StepperAssembly *assembly = &stepper->assembly;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) assembly->of_body[b].n = 0;
+  for (PetscInt fills = 0; fills < 2; fills++) {
+    for (PetscInt k = 0; k < stepper->problem.n; k++) {
+      const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]];
+
+      for (PetscInt side = 0; side < 2 && pair->body[side] < contact->n_bodies; side++) {
+        const PetscInt  b       = pair->body[side];
+        StepperEntries *entries = &assembly->of_body[b];
+
+        if (fills) {
+          PetscCall(PetscFindInt(stepper->rows[k], contact->body_rows[b].n_all, contact->body_rows[b].all, &entries->rows[entries->n]));
+          entries->places[entries->n] = k;
+        }
+        entries->n++;
+      }
+    }
+    for (PetscInt b = 0; b < contact->n_bodies && !fills; b++) {
+      StepperEntries *entries = &assembly->of_body[b];
+
+      if (entries->n > entries->row_room) {
+        entries->row_room = 2 * entries->n;
+        PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
+        PetscCall(
+            PetscMalloc3(entries->row_room, &entries->rows, entries->row_room, &entries->places, entries->row_room + 1, &entries->begin));
+      }
+      entries->n = 0;
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

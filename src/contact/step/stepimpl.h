@@ -34,6 +34,8 @@ typedef struct {
   PetscInt    *begin;             /* per row: its first entry; n + 1 */
   PetscInt    *columns, *dofs;    /* per entry: the displacement; work space */
   PetscScalar *values, *answers;  /* per entry, with the sign by which the row's gap goes with the body; work space */
+  PetscInt     block_room;        /* room for the block */
+  PetscScalar *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
 } StepperEntries;
 
 /* What S is made of, see assemble.c */
@@ -71,7 +73,7 @@ struct _ContactStepper {
   PetscReal *given;           /* force under which its bodies have been advanced [N] */
   /* the same, per touching row of all ranks */
   PetscInt    *rows; /* by their numbers, ascending */
-  PetscScalar *told; /* forces of the last pass, then what rows have read under them */
+  PetscScalar *told; /* forces of the last pass, then how their first bodies have gone along them, and their second ones */
   /* per body, and per group of bodies that touch, directly or by others, in the place of its first body */
   PetscInt  *group; /* the first body of its group */
   PetscBool *rests; /* it has been advanced under the forces that its rows have now */
@@ -87,12 +89,11 @@ struct _ContactStepper {
   StepperAssembly assembly;
   PetscInt64      state, assembled;
   PetscInt        n_assembled, *of_assembled;
-  PetscBool       has_secants; /* S has been corrected since */
-  Mat             plain;       /* S as assembled, where it has */
   /* work space */
   Vec          x, f, field, of_all;
-  PetscInt    *places;   /* of the rows of a group */
   PetscScalar *gathered; /* a number per touching row */
+  PetscScalar *ends;     /* two: how its first body has gone along it in the last pass, and its second one [m] */
+  PetscScalar *secant;   /* three for each row of a body */
   PetscReal   *none;     /* zeros */
   PetscReal   *mine, *before;
   int         *moves; /* per body */
@@ -126,11 +127,11 @@ PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);
 PETSC_INTERN PetscInt       ContactStepperGroup(Contact, const ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperAdvance(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCorrectS(Contact, ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperForgetSecants(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, const PetscReal[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode ContactStepperListRows(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperListBodyRows(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperIterate(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
 
