@@ -21,6 +21,8 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
     PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
     PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
     PetscCall(PetscFree(entries->block));
+    PetscCall(PetscFree(entries->kept_rows));
+    PetscCall(PetscFree(entries->kept));
   }
   PetscCall(PetscFree(assembly->of_body));
   PetscCall(PetscFree2(assembly->begin, assembly->next));
@@ -133,6 +135,7 @@ static PetscErrorCode MakeBlock(Contact contact, ContactStepper *stepper, PetscI
     for (PetscInt k = 0; k < n; k++)
       for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) column[k] += entries->values[e] * moved[columns[e]];
   }
+  PetscCall(ContactStepperAddKept(entries));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -361,8 +364,6 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
-  if (!assembly->of_body) PetscCall(PetscCalloc1(contact->n_bodies, &assembly->of_body));
-  assembly->n_bodies = contact->n_bodies;
   PetscCall(ContactStepperListBodyRows(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec diagonal;

@@ -134,6 +134,8 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(PetscCalloc4(contact->n_bodies, &stepper->rules, contact->n_bodies, &stepper->group, contact->n_bodies, &stepper->moves,
                          contact->n_bodies, &stepper->rests));
   PetscCall(PetscCalloc3(contact->n_bodies, &stepper->done, contact->n_bodies, &stepper->scale, contact->n_bodies, &stepper->off));
+  PetscCall(PetscCalloc1(contact->n_bodies, &stepper->assembly.of_body));
+  stepper->assembly.n_bodies = contact->n_bodies;
   PetscCall(ContactStepperSetUpRules(contact, stepper));
   PetscCall(ContactHasRigid(contact, &stepper->has_rigid));
   PetscCall(ChooseLaws(contact, stepper));
@@ -177,6 +179,7 @@ static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool go
   (void)level;
   (void)goes_on;
   Stepper(contact)->state++;
+  ContactStepperForgetKept(Stepper(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -197,6 +200,7 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitBools(checkpoint, "joined", contact->rows.n, stepper->joined));
+  PetscCall(ContactStepperVisitKept(contact, stepper, checkpoint));
   if (CheckpointLoads(checkpoint)) stepper->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
