@@ -49,16 +49,16 @@ PetscErrorCode NodalMatrixDestroy(NodalMatrix *nodal)
 /* What tells how n displacements answer; whether anything does but controller steps */
 static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *kind, PetscBool *any)
 {
-  const PetscBool is_explicit = (PetscBool)(body->integrator->staggered > 0);
+  const PetscBool is_explicit = (PetscBool)(body->integrator->staggered > 0), inertia = body->integrator->has_inertia;
   PetscInt        all;
 
   PetscFunctionBegin;
   *any = PETSC_FALSE;
   if (!body->integrator->deforms || body->time.substeps > 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetSize(body->state.u, &all));
-  *kind = is_explicit ? BY_LAYER : body->model.linear && (n <= MANY || all <= SMALL_BODY) ? BY_BODY : BY_SLAB;
+  *kind = is_explicit ? BY_LAYER : body->model.linear && (n <= MANY || all <= SMALL_BODY || !inertia) ? BY_BODY : BY_SLAB;
   *any  = (PetscBool)(is_explicit ? shape == BODY_FORCE_LINEAR && body->layer.exists && body->solver
-                                  : body->solver && body->integrator->has_inertia && (body->model.linear || n > MANY));
+                                  : body->solver && (body->model.linear || (inertia && n > MANY)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

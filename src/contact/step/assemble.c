@@ -21,6 +21,7 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
     PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
     PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
     PetscCall(PetscFree(entries->block));
+    PetscCall(PetscFree(entries->own));
     PetscCall(PetscFree(entries->kept_rows));
     PetscCall(PetscFree(entries->kept));
   }
@@ -117,7 +118,9 @@ static PetscErrorCode MakeBlock(Contact contact, ContactStepper *stepper, PetscI
   if (n * n > entries->block_room) {
     entries->block_room = 2 * n * n;
     PetscCall(PetscFree(entries->block));
+    PetscCall(PetscFree(entries->own));
     PetscCall(PetscMalloc1(entries->block_room, &entries->block));
+    PetscCall(PetscMalloc1(entries->block_room, &entries->own));
   }
   count = entries->begin[n];
   PetscCall(PetscArraycpy(dofs, columns, count));
@@ -125,9 +128,9 @@ static PetscErrorCode MakeBlock(Contact contact, ContactStepper *stepper, PetscI
   PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rules[b]->shape, count, dofs, &place, &leading, &W));
   for (PetscInt e = 0; e < entries->begin[n]; e++) PetscCall(PetscFindInt(columns[e], count, dofs, &columns[e]));
   for (PetscInt d = 0; d < count; d++) dofs[d] = place[dofs[d]];
-  PetscCall(PetscArrayzero(entries->block, n * n));
+  PetscCall(PetscArrayzero(entries->own, n * n));
   for (PetscInt l = 0; l < n; l++) {
-    PetscScalar *column = entries->block + l * n;
+    PetscScalar *column = entries->own + l * n;
 
     PetscCall(PetscArrayzero(moved, count));
     for (PetscInt f = entries->begin[l]; f < entries->begin[l + 1]; f++)
@@ -135,7 +138,6 @@ static PetscErrorCode MakeBlock(Contact contact, ContactStepper *stepper, PetscI
     for (PetscInt k = 0; k < n; k++)
       for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) column[k] += entries->values[e] * moved[columns[e]];
   }
-  PetscCall(ContactStepperAddKept(entries));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -351,19 +353,14 @@ static PetscErrorCode AddGive(Contact contact, ContactStepper *stepper, Mat S)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* S of the rows that touch now, unless it is there */
-PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
+/* What S is made of, from the bodies */
+static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper, PetscBool *all_alone, PetscBool *any_alone)
 {
-  const PetscInt   n         = stepper->problem.n;
-  StepperAssembly *assembly  = &stepper->assembly;
-  PetscBool        same      = (PetscBool)(stepper->assembled == stepper->state && stepper->n_assembled == n);
-  PetscBool        all_alone = PETSC_TRUE, any_alone = PETSC_FALSE;
-  Mat              S;
+  StepperAssembly *assembly = &stepper->assembly;
 
   PetscFunctionBegin;
-  if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
-  if (same) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
+  *all_alone = PETSC_TRUE;
+  *any_alone = PETSC_FALSE;
   PetscCall(ContactStepperListBodyRows(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec diagonal;
@@ -373,25 +370,46 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
     PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
     assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
     if (diagonal) PetscCall(ScaleEntries(contact, stepper, b, diagonal));
-    if (diagonal) any_alone = PETSC_TRUE;
-    else {
-      all_alone = PETSC_FALSE;
-      PetscCall(MakeBlock(contact, stepper, b));
-    }
+    else PetscCall(MakeBlock(contact, stepper, b));
+    *any_alone = (PetscBool)(*any_alone || diagonal);
+    *all_alone = (PetscBool)(*all_alone && diagonal);
   }
-  if (any_alone) PetscCall(MultiplyRows(stepper, assembly));
-  if (all_alone && n > FEW_ROWS) {
+  if (*any_alone) PetscCall(MultiplyRows(stepper, assembly));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* S of the rows that touch now, unless it is there. Where it has been corrected alone, bodies need not be asked again. */
+PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
+{
+  const PetscInt   n        = stepper->problem.n;
+  StepperAssembly *assembly = &stepper->assembly;
+  PetscBool        same     = (PetscBool)(assembly->of_state == stepper->state && stepper->n_assembled == n);
+  Mat              S;
+
+  PetscFunctionBegin;
+  if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
+  if (same && stepper->assembled == stepper->state) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
+  if (!same) PetscCall(GetParts(contact, stepper, &assembly->all_alone, &assembly->any_alone));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    StepperEntries *entries = &assembly->of_body[b];
+
+    if (!entries->n || entries->alone) continue;
+    PetscCall(PetscArraycpy(entries->block, entries->own, entries->n * entries->n));
+    PetscCall(ContactStepperAddKept(entries));
+  }
+  if (assembly->all_alone && n > FEW_ROWS) {
     S = assembly->product;
     PetscCall(PetscObjectReference((PetscObject)S));
-  } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, any_alone, &S));
-  else PetscCall(AssembleDense(stepper, any_alone, &S));
+  } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, assembly->any_alone, &S));
+  else PetscCall(AssembleDense(stepper, assembly->any_alone, &S));
   if (stepper->gives) PetscCall(AddGive(contact, stepper, S));
   PetscCall(LawProblemTakeS(&stepper->problem, &S));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
   PetscCall(PetscInfo(contact, "S assembled: %s, %" PetscInt_FMT " rows of %" PetscInt_FMT " nodes\n",
                       stepper->problem.sparse ? "sparse" : "dense", n, stepper->problem.n_nodes));
   stepper->n_assembled = n;
-  stepper->assembled   = stepper->state;
+  stepper->assembled = assembly->of_state = stepper->state;
   PetscCall(PetscLogEventEnd(CONTACT_Factor, contact, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

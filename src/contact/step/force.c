@@ -136,6 +136,7 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(PetscCalloc3(contact->n_bodies, &stepper->done, contact->n_bodies, &stepper->scale, contact->n_bodies, &stepper->off));
   PetscCall(PetscCalloc1(contact->n_bodies, &stepper->assembly.of_body));
   stepper->assembly.n_bodies = contact->n_bodies;
+  stepper->assembly.of_state = -1;
   PetscCall(ContactStepperSetUpRules(contact, stepper));
   PetscCall(ContactHasRigid(contact, &stepper->has_rigid));
   PetscCall(ChooseLaws(contact, stepper));

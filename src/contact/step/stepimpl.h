@@ -36,6 +36,7 @@ typedef struct {
   PetscScalar *values, *answers;  /* per entry, with the sign by which the row's gap goes with the body; work space */
   PetscInt     block_room;        /* room for the block */
   PetscScalar *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
+  PetscScalar *own;               /* the same, as the body has it, without secants */
   /* what secants have corrected the block by, kept as long as its rows stay the same */
   PetscInt     n_kept, kept_room; /* rows, 0: nothing is kept; room for as many */
   PetscInt    *kept_rows;         /* their numbers among those of the body */
@@ -45,6 +46,8 @@ typedef struct {
 /* What S is made of, see assemble.c */
 typedef struct {
   PetscInt        n_bodies;
+  PetscInt64      of_state;             /* of rows, of which bodies have been asked last */
+  PetscBool       all_alone, any_alone; /* bodies whose nodes do not answer to forces on others: all that have rows, and any */
   StepperEntries *of_body;
   /* R, the rows of bodies whose nodes answer alone */
   PetscInt     n, row_room, room;       /* rows; room for rows, and for entries */
