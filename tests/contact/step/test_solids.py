@@ -36,7 +36,7 @@ def test_slides_straight(impakt):
     assert energy(run).max() <= 1e-7  # 1e-8 measured with damping in proportion to the stiffness, 1e-14 without
 
 
-@pytest.mark.parametrize(("kinds", "step", "substeps", "ranks", "passes"), [("EE", 2e-6, (10, 10), 1, 2), *long(("II", 4e-6, (1, 1), 1, 3), ("IE", 4e-6, (1, 20), 1, 12), ("EE", 2e-6, (10, 10), 3, 2))])
+@pytest.mark.parametrize(("kinds", "step", "substeps", "ranks", "passes"), [("EE", 2e-6, (10, 10), 1, 2), *long(("II", 4e-6, (1, 1), 1, 3), ("IE", 4e-6, (1, 20), 1, 3), ("EE", 2e-6, (10, 10), 3, 2))])
 def test_plate(kinds, step, substeps, ranks, passes, shared_run):
     """A plate one element thick, held at two sides, hit obliquely by a cube. It loses 6 to 13 %, of the nodes that hit: 2 mm of plate below elements of 5 mm. Passes are
     measured: S of many displacements is that of a slab, which at 20 substeps in which waves cross 4 elements is off by a quarter of it."""
