@@ -38,3 +38,18 @@ PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemMultiply(LawProblem *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemSolve(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemDestroy(LawProblem *);
+
+/* The pattern of a sparse matrix; of a dense one there is none */
+typedef struct {
+  const PetscInt *begin, *columns;
+} LawPattern;
+
+/* For the files of this folder */
+PETSC_INTERN PetscErrorCode LawProblemRead(LawProblem *, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN void           LawProblemFindWeights(LawProblem *);
+PETSC_INTERN void           LawProblemGetTrial(const LawProblem *, PetscInt, const PetscScalar[], const PetscScalar[], PetscReal[]);
+PETSC_INTERN PetscBool      LawProblemIsLagged(const LawProblem *);
+PETSC_INTERN PetscErrorCode LawProblemGetS(const LawProblem *, LawPattern *, const PetscScalar *[]);
+PETSC_INTERN PetscErrorCode LawProblemRestoreS(const LawProblem *, LawPattern *, const PetscScalar *[]);
+PETSC_INTERN PetscErrorCode LawProblemCreateJacobian(LawProblem *);
+PETSC_INTERN PetscReal      LawProblemForceScale(const LawProblem *, const PetscScalar[]);

@@ -1,0 +1,200 @@
+/* The Jacobian of the equations of laws, in known patterns and as matrices lie in memory; see lawproblem.c. */
+#include "lawproblem.h"
+#include <petsc/private/petscimpl.h>
+
+#define FEW_DENSE      500 /* rows of a dense S whose Jacobian is factored each time it changes */
+#define LAG_AFTER_NEXT -2  /* for PETSc: the preconditioner is made anew once, and then stays */
+#define STALE          20  /* nodes whose derivatives have changed since, after which it is: about as many iterations it takes */
+
+static PetscErrorCode GetPattern(const LawProblem *problem, Mat A, LawPattern *pattern)
+{
+  PetscInt  n;
+  PetscBool done;
+
+  PetscFunctionBegin;
+  pattern->begin = pattern->columns = NULL;
+  if (problem->sparse) PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &pattern->begin, &pattern->columns, &done));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RestorePattern(const LawProblem *problem, Mat A, LawPattern *pattern)
+{
+  PetscInt  n;
+  PetscBool done;
+
+  PetscFunctionBegin;
+  if (problem->sparse) PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &pattern->begin, &pattern->columns, &done));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The entries of S, for reading */
+PetscErrorCode LawProblemGetS(const LawProblem *problem, LawPattern *pattern, const PetscScalar *values[])
+{
+  PetscFunctionBegin;
+  PetscCall(GetPattern(problem, problem->S, pattern));
+  if (problem->sparse) PetscCall(MatSeqAIJGetArrayRead(problem->S, values));
+  else PetscCall(MatDenseGetArrayRead(problem->S, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LawProblemRestoreS(const LawProblem *problem, LawPattern *pattern, const PetscScalar *values[])
+{
+  PetscFunctionBegin;
+  if (problem->sparse) PetscCall(MatSeqAIJRestoreArrayRead(problem->S, values));
+  else PetscCall(MatDenseRestoreArrayRead(problem->S, values));
+  PetscCall(RestorePattern(problem, problem->S, pattern));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Adds rows of I - D (I - r (S + eps diag S)) for the rows of one node, D the derivative of P for it. These have their entries in the same
+   columns of the Jacobian. */
+static void AddNode(const LawProblem *problem, PetscInt node, LawPattern of_S, const PetscScalar S[], LawPattern of_J, PetscScalar J[])
+{
+  const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
+  const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
+  const PetscInt  *all        = of_J.columns + of_J.begin[first],
+                 next         = of_J.begin[first + 1] - of_J.begin[first]; /* to the next row of the node */
+
+  J += of_J.begin[first];
+  for (PetscInt l = 0; l < rows; l++) {
+    const PetscInt i  = first + l;
+    PetscInt       at = 0, own;
+
+    for (own = 0; all[own] != i; own++);
+    for (PetscInt e = of_S.begin[i]; e < of_S.begin[i + 1]; e++) {
+      while (all[at] != of_S.columns[e]) at++;
+      for (PetscInt k = 0; k < rows; k++) J[k * next + at] += derivative[k * rows + l] / problem->weight[i] * S[e];
+    }
+    for (PetscInt k = 0; k < rows; k++) J[k * next + own] += (k == l) - derivative[k * rows + l] * (1 - problem->proximal);
+  }
+}
+
+/* The same of a dense S for all nodes, column by column, as both matrices lie in memory */
+static void AddNodes(const LawProblem *problem, const PetscScalar S[], PetscScalar J[])
+{
+  for (PetscInt column = 0; column < problem->n; column++, S += problem->n, J += problem->n)
+    for (PetscInt node = 0; node < problem->n_nodes; node++) {
+      const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
+      const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
+
+      for (PetscInt l = 0; l < rows; l++) {
+        const PetscInt    i     = first + l;
+        const PetscScalar value = S[i] / problem->weight[i] - (i == column ? 1 - problem->proximal : 0);
+
+        for (PetscInt k = 0; k < rows; k++) J[first + k] += derivative[k * rows + l] * value;
+        J[i] += i == column;
+      }
+    }
+}
+
+/* Whether factors of an earlier Jacobian precondition */
+PetscBool LawProblemIsLagged(const LawProblem *problem)
+{
+  return (PetscBool)(!problem->sparse && problem->n > FEW_DENSE);
+}
+
+/* Whether the Jacobian is that of other derivatives of P than those at the trial forces, which become its own, or of another S */
+static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar force[], const PetscScalar y[], PetscBool *other)
+{
+  PetscObjectState state;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectStateGet((PetscObject)problem->S, &state));
+  *other               = (PetscBool)(state != problem->jacobian_of);
+  problem->jacobian_of = state;
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt rows = problem->begin[node + 1] - problem->begin[node];
+    PetscReal     *last = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
+    PetscReal      p[ROW_LAW_ROWS], projected[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
+    PetscBool      same;
+
+    LawProblemGetTrial(problem, node, force, y, p);
+    (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, projected, derivative);
+    PetscCall(PetscArraycmp(derivative, last, rows * rows, &same));
+    if (same) continue;
+    PetscCall(PetscArraycpy(last, derivative, rows * rows));
+    *other = PETSC_TRUE;
+    problem->changes++;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One that stays as it is keeps its factors */
+static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
+{
+  LawProblem        *problem = (LawProblem *)ctx;
+  const PetscScalar *x, *S;
+  PetscScalar       *y = problem->work, *values;
+  LawPattern         of_S, of_J;
+  PetscBool          other = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  (void)P;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(LawProblemRead(problem, x, y));
+  PetscCall(TakeDerivatives(problem, x, y, &other));
+  PetscCall(VecRestoreArrayRead(X, &x));
+  if (!other) PetscFunctionReturn(PETSC_SUCCESS);
+  if (LawProblemIsLagged(problem) && problem->changes > STALE) PetscCall(SNESSetLagPreconditioner(snes, LAG_AFTER_NEXT));
+  if (problem->changes > STALE) problem->changes = 0;
+  PetscCall(MatZeroEntries(J));
+  PetscCall(LawProblemGetS(problem, &of_S, &S));
+  PetscCall(GetPattern(problem, J, &of_J));
+  if (problem->sparse) PetscCall(MatSeqAIJGetArray(J, &values));
+  else PetscCall(MatDenseGetArray(J, &values));
+  if (!problem->sparse) AddNodes(problem, S, values);
+  for (PetscInt node = 0; node < problem->n_nodes && problem->sparse; node++) AddNode(problem, node, of_S, S, of_J, values);
+  if (problem->sparse) PetscCall(MatSeqAIJRestoreArray(J, &values));
+  else PetscCall(MatDenseRestoreArray(J, &values));
+  PetscCall(RestorePattern(problem, J, &of_J));
+  PetscCall(LawProblemRestoreS(problem, &of_S, &S));
+  PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A sparse Jacobian has the entries of S in all rows of a node where any has them, and those of the rows of one node */
+static PetscErrorCode SetPattern(LawProblem *problem)
+{
+  PetscInt          *begin, *columns, room = 0;
+  const PetscScalar *S;
+  LawPattern         of_S;
+
+  PetscFunctionBegin;
+  PetscCall(LawProblemGetS(problem, &of_S, &S));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
+
+    room += (end - first) * (of_S.begin[end] - of_S.begin[first] + end - first);
+  }
+  PetscCall(PetscMalloc2(problem->n + 1, &begin, room, &columns));
+  begin[0] = 0;
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
+    PetscInt       n = of_S.begin[end] - of_S.begin[first], *mine = columns + begin[first];
+
+    PetscCall(PetscArraycpy(mine, of_S.columns + of_S.begin[first], n));
+    for (PetscInt i = first; i < end; i++) mine[n++] = i;
+    PetscCall(PetscSortRemoveDupsInt(&n, mine));
+    for (PetscInt i = first; i < end; i++) begin[i + 1] = begin[i] + n;
+    for (PetscInt i = first + 1; i < end; i++) PetscCall(PetscArraycpy(columns + begin[i], mine, n));
+  }
+  PetscCall(LawProblemRestoreS(problem, &of_S, &S));
+  PetscCall(MatSeqAIJSetPreallocationCSR(problem->jacobian, begin, columns, NULL));
+  PetscCall(PetscFree2(begin, columns));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode LawProblemCreateJacobian(LawProblem *problem)
+{
+  PetscFunctionBegin;
+  PetscCall(MatDestroy(&problem->jacobian));
+  PetscCall(MatCreate(PETSC_COMM_SELF, &problem->jacobian));
+  PetscCall(MatSetSizes(problem->jacobian, problem->n, problem->n, problem->n, problem->n));
+  PetscCall(MatSetType(problem->jacobian, problem->sparse ? MATSEQAIJ : MATSEQDENSE));
+  if (problem->sparse) PetscCall(SetPattern(problem));
+  else PetscCall(MatSetUp(problem->jacobian));
+  PetscCall(SNESSetJacobian(problem->newton, problem->jacobian, problem->jacobian, ComputeJacobian, problem));
+  problem->jacobian_of = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -1,0 +1,118 @@
+/* How the equations of laws are solved: Newton's method, sweeps node by node, and the proximal term of singular S; see lawproblem.c. */
+#include "lawproblem.h"
+#include <sys/petsccompat.h>
+
+#define VANISHES      1e-12 /* of what rows read, by themselves or by their own force */
+#define MOST_PROXIMAL 20
+#define TOLERANCE     1e-13 /* of the largest force, and of the largest force that would close what is read */
+#define FIRST_SWEEPS  5
+#define ENOUGH        0.5 /* or this part of the tolerance of Newton's method */
+
+/* By one of the solvers, from `force` on */
+static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, SNESConvergedReason *reason)
+{
+  PetscScalar *x;
+  PetscInt     iterations;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(problem->x, &x));
+  PetscCall(PetscArraycpy(x, problem->force, problem->n));
+  PetscCall(VecRestoreArrayWrite(problem->x, &x));
+  PetscCall(SNESSolve(snes, NULL, problem->x));
+  PetscCall(SNESGetConvergedReason(snes, reason));
+  PetscCall(SNESGetIterationNumber(snes, &iterations));
+  problem->iterations += iterations;
+  PetscCall(VecGetArray(problem->x, &x));
+  PetscCall(PetscArraycpy(problem->force, x, problem->n));
+  PetscCall(VecRestoreArray(problem->x, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By Newton's method; where it goes round in a circle, from where a few sweeps node by node lead, more of them each time */
+static PetscErrorCode SolveOnce(LawProblem *problem)
+{
+  SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
+  PetscScalar        *start  = problem->work + problem->n;
+  PetscInt            sweeps = FIRST_SWEEPS, most;
+  PetscReal           rtol;
+  KSP                 ksp;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetKSP(problem->newton, &ksp));
+  PetscCall(SNESGetTolerances(problem->newton, NULL, &rtol, NULL, NULL, NULL));
+  PetscCall(
+      KSPSetTolerances(ksp, PETSC_CURRENT, ENOUGH * rtol * LawProblemForceScale(problem, problem->force), PETSC_CURRENT, PETSC_CURRENT));
+  PetscCall(PetscArraycpy(start, problem->force, problem->n));
+  PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
+  PetscCall(SolveBy(problem, problem->newton, &reason));
+  for (; reason < 0 && sweeps <= most; sweeps *= 4) {
+    PetscCall(PetscInfo(problem->newton,
+                        "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps node by node\n",
+                        problem->n, SNESConvergedReasons[reason], problem->iterations, sweeps));
+    problem->by_nodes = PETSC_TRUE;
+    PetscCall(PetscArraycpy(problem->force, start, problem->n));
+    PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
+    PetscCall(SolveBy(problem, problem->nodes, &reason));
+    if (reason == SNES_DIVERGED_NAN) break;
+    PetscCall(PetscArraycpy(start, problem->force, problem->n));
+    if (reason < 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, &reason));
+  }
+  PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
+  problem->solved = (PetscBool)(reason > 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the proximal term is nothing beside a part of what rows read, or is as little as nobody knows of that: where no forces close the
+   rows it never is, and forces grow for ever */
+static PetscBool ProximalVanishes(const LawProblem *problem, PetscReal part)
+{
+  PetscReal off = 0, scale = 0;
+
+  for (PetscInt i = 0; i < problem->n; i++) {
+    off   = PetscMax(off, problem->proximal * problem->weight[i] * PetscAbsScalar(problem->force[i] - problem->centre[i]));
+    scale = PetscMax(scale, PetscMax(PetscAbsScalar(problem->read[i]), PetscAbsScalar(problem->diagonal[i] * problem->force[i])));
+  }
+  return (PetscBool)(off <= part * scale + problem->resolution);
+}
+
+/* The forces of all rows with one weight of the proximal term, from `force` on; whether it has vanished or can, and does so slowly */
+static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
+{
+  PetscFunctionBegin;
+  *slow = PETSC_FALSE;
+  for (PetscInt k = 0; k < MOST_PROXIMAL; k++) {
+    PetscReal pull = 0;
+
+    PetscCall(PetscArraycpy(problem->centre, problem->force, problem->n));
+    PetscCall(SolveOnce(problem));
+    if (!problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
+    for (PetscInt i = 0; i < problem->n; i++) pull = PetscMax(pull, PetscAbsScalar(problem->force[i] - problem->centre[i]));
+    if (problem->proximal * pull <= TOLERANCE * LawProblemForceScale(problem, problem->force) || ProximalVanishes(problem, 0))
+      PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(PetscInfo(problem->newton, "law of %" PetscInt_FMT " rows: forces of dependent rows change by %g N, solved again\n",
+                        problem->n, (double)pull));
+  }
+  problem->solved = ProximalVanishes(problem, VANISHES);
+  *slow           = (PetscBool)!problem->solved;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces of all rows, from `force` on, and whether they have been found. Where a weight of the proximal term is too small for Newton's
+   method, or so large that the term does not vanish, which is where the stiffnesses of bodies are far apart, there are others. */
+PetscErrorCode LawProblemSolve(LawProblem *problem)
+{
+  const PetscReal proximal[] = {1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
+  PetscBool       slow       = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  problem->iterations = 0;
+  problem->by_nodes = problem->solved = PETSC_FALSE;
+  LawProblemFindWeights(problem);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(proximal) && !problem->solved; k++) {
+    if (problem->proximal != proximal[k]) problem->jacobian_of = -1; /* it has this weight in it */
+    problem->proximal = proximal[k];
+    if (!slow) PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
+    PetscCall(SolveProximal(problem, &slow));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
