@@ -342,8 +342,8 @@ RANKS_NONLINEAR = {
 
 @pytest.mark.parametrize("case", ["substeps", *long("edge, turned", "explicit", "multipliers, cut steps", *(case for case in RANKS_NONLINEAR if "step," in case)), *validate("implicit")])
 def test_other_ranks_nonlinear(run_in, folder, case):
-    """At most 8e-13 was seen, with the secants of the contact step 3e-11. A compliance and secants that are found anew made it 4.6e-10 (cut steps) to 4.5e-9 (implicit) on one rank and two."""
-    goes_on(run_in, folder, *RANKS_NONLINEAR[case], 1e-10 if "step" in case else 1e-11)
+    """At most 8e-13 was seen. A compliance and secants that are found anew made it 4.6e-10 (cut steps) to 4.5e-9 (implicit) on one rank and two."""
+    goes_on(run_in, folder, *RANKS_NONLINEAR[case], 1e-11)
 
 
 def test_other_ranks_refuse_fields(run_in, folder):

@@ -22,8 +22,6 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
     PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
     PetscCall(PetscFree(entries->block));
     PetscCall(PetscFree(entries->own));
-    PetscCall(PetscFree(entries->kept_rows));
-    PetscCall(PetscFree(entries->kept));
   }
   PetscCall(PetscFree(assembly->of_body));
   PetscCall(PetscFree2(assembly->begin, assembly->next));
@@ -396,7 +394,6 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
 
     if (!entries->n || entries->alone) continue;
     PetscCall(PetscArraycpy(entries->block, entries->own, entries->n * entries->n));
-    PetscCall(ContactStepperAddKept(entries));
   }
   if (assembly->all_alone && n > FEW_ROWS) {
     S = assembly->product;

@@ -180,7 +180,6 @@ static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool go
   (void)level;
   (void)goes_on;
   Stepper(contact)->state++;
-  ContactStepperForgetKept(Stepper(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,7 +200,6 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitBools(checkpoint, "joined", contact->rows.n, stepper->joined));
-  PetscCall(ContactStepperVisitKept(contact, stepper, checkpoint));
   if (CheckpointLoads(checkpoint)) stepper->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

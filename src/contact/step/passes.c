@@ -216,7 +216,6 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
   PetscCall(SNESSolve(stepper->outer, NULL, stepper->x));
   PetscCall(SNESGetConvergedReason(stepper->outer, &reason));
   PetscCall(ContactMonitorStep(contact, stepper, reason));
-  if (reason < 0) ContactStepperForgetKept(stepper);
   if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ForcesGetTime(contact, &time));
   if (!stepper->problem.solved) {

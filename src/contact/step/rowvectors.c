@@ -28,8 +28,8 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers of all rows, in `of_all`, from those of this rank */
-PetscErrorCode ContactStepperScatter(Contact contact, ContactStepper *stepper, const PetscReal mine[])
+/* The numbers of all rows, from those of this rank */
+static PetscErrorCode Scatter(Contact contact, ContactStepper *stepper, const PetscReal mine[])
 {
   PetscScalar *values;
 
@@ -48,7 +48,7 @@ PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, co
   const PetscScalar *values;
 
   PetscFunctionBegin;
-  PetscCall(ContactStepperScatter(contact, stepper, mine));
+  PetscCall(Scatter(contact, stepper, mine));
   PetscCall(VecGetArrayRead(stepper->of_all, &values));
   for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = values[stepper->rows[k]];
   PetscCall(VecRestoreArrayRead(stepper->of_all, &values));
@@ -65,7 +65,7 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++)
     stepper->mine[i] = stepper->touches[i] ? 1 + contact->rows.tied[ContactFirstRow(contact, i)] : 0; /* which law it has */
-  PetscCall(ContactStepperScatter(contact, stepper, stepper->mine));
+  PetscCall(Scatter(contact, stepper, stepper->mine));
   PetscCall(VecGetArrayRead(stepper->of_all, &touches));
   for (PetscInt i = 0; i < contact->rows.n_all; i++) n += touches[i] != 0;
   PetscCall(LawProblemResize(problem, n));

@@ -1,71 +1,13 @@
 /*
    What passes show of S: secants by the formula of Broyden, Fletcher, Goldfarb and Shanno. The displacements of a body depend on the forces
-   on its own rows alone, so that each has a secant of its own, for its block of S. What a block has been corrected by is kept from step to
-   step, as long as the body has the same touching rows: a body that is deformed answers in the next step nearly as in this one.
+   on its own rows alone, so that each has a secant of its own, for its block of S.
 
    C. G. Broyden, IMA Journal of Applied Mathematics 6 (1970) 76-90 and 222-231, and Fletcher, Goldfarb, Shanno in the same year.
 */
 #include "stepimpl.h"
-#include <checkpoint/checkpoint.h>
 
 #define CURVATURE 1e-10 /* a secant counts whose work is at least this part of what S tells of it */
 #define EXACT     1e-9  /* S has told right what differs by less than this part of it, and by the round-off of positions */
-
-/* Room for what is kept of n rows, of which there is nothing yet */
-PetscErrorCode ContactStepperKeep(StepperEntries *entries, PetscInt n)
-{
-  PetscFunctionBegin;
-  if (n > entries->kept_room) {
-    entries->kept_room = 2 * n;
-    PetscCall(PetscFree(entries->kept_rows));
-    PetscCall(PetscFree(entries->kept));
-    PetscCall(PetscMalloc1(entries->kept_room, &entries->kept_rows));
-    PetscCall(PetscMalloc1(entries->kept_room * entries->kept_room, &entries->kept));
-  }
-  entries->n_kept = n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A block that has been made anew gets what it had been corrected by; where rows are others, that is forgotten */
-PetscErrorCode ContactStepperAddKept(StepperEntries *entries)
-{
-  PetscBool same = (PetscBool)(entries->n_kept == entries->n);
-
-  PetscFunctionBegin;
-  if (!entries->n_kept) PetscFunctionReturn(PETSC_SUCCESS);
-  if (same) PetscCall(PetscArraycmp(entries->rows, entries->kept_rows, entries->n, &same));
-  if (!same) entries->n_kept = 0;
-  for (PetscInt k = 0; k < entries->n_kept * entries->n_kept; k++) entries->block[k] += entries->kept[k];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where steps have another length, or forces were not found, S is made of the bodies' own answers again */
-void ContactStepperForgetKept(ContactStepper *stepper)
-{
-  for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) stepper->assembly.of_body[b].n_kept = 0;
-  stepper->assembled = -1;
-}
-
-/* What is kept, for a checkpoint */
-PetscErrorCode ContactStepperVisitKept(Contact contact, ContactStepper *stepper, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    StepperEntries *entries = &stepper->assembly.of_body[b];
-    PetscInt        n       = entries->n_kept;
-    char            name[32];
-
-    PetscCall(PetscSNPrintf(name, sizeof(name), "kept %" PetscInt_FMT, b));
-    PetscCall(CheckpointVisitInts(checkpoint, name, 1, &n));
-    if (CheckpointLoads(checkpoint)) PetscCall(ContactStepperKeep(entries, n));
-    if (!n) continue;
-    PetscCall(PetscSNPrintf(name, sizeof(name), "kept rows %" PetscInt_FMT, b));
-    PetscCall(CheckpointVisitInts(checkpoint, name, n, entries->kept_rows));
-    PetscCall(PetscSNPrintf(name, sizeof(name), "kept values %" PetscInt_FMT, b));
-    PetscCall(CheckpointVisitReals(checkpoint, name, n * n, entries->kept));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* How the bodies of each touching row have gone along it in the last pass */
 static PetscErrorCode GatherEnds(Contact contact, ContactStepper *stepper)
@@ -114,17 +56,8 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     off     = PetscMax(off, PetscAbsScalar(gone[k] - product[k]));
     largest = PetscMax(largest, PetscAbsScalar(product[k]));
   }
-  if (!(told_work > 0) && largest > 0) { /* bodies have gone on since the block was corrected: not by what is kept of that */
-    entries->n_kept    = 0;
-    stepper->assembled = -1;
-  }
   if (off <= EXACT * largest + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0))
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (!entries->n_kept) {
-    PetscCall(ContactStepperKeep(entries, n));
-    PetscCall(PetscArraycpy(entries->kept_rows, entries->rows, n));
-    PetscCall(PetscArrayzero(entries->kept, n * n));
-  }
   for (PetscInt l = 0; l < n; l++) {
     const PetscInt    j       = entries->places[l];
     PetscScalar      *change  = force; /* of a column */
@@ -133,7 +66,6 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     for (PetscInt k = 0; k < n; k++) {
       change[k] = by_gone * gone[k] - by_product * product[k];
       entries->block[l * n + k] += change[k];
-      entries->kept[l * n + k] += change[k];
     }
     PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
     problem->diagonal[j] += PetscRealPart(change[l]);

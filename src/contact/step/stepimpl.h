@@ -37,10 +37,6 @@ typedef struct {
   PetscInt     block_room;        /* room for the block */
   PetscScalar *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
   PetscScalar *own;               /* the same, as the body has it, without secants */
-  /* what secants have corrected the block by, kept as long as its rows stay the same */
-  PetscInt     n_kept, kept_room; /* rows, 0: nothing is kept; room for as many */
-  PetscInt    *kept_rows;         /* their numbers among those of the body */
-  PetscScalar *kept;              /* n_kept by n_kept [m/N] */
 } StepperEntries;
 
 /* What S is made of, see assemble.c */
@@ -134,13 +130,8 @@ PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);
 PETSC_INTERN PetscInt       ContactStepperGroup(Contact, const ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperAdvance(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCorrectS(Contact, ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperKeep(StepperEntries *, PetscInt);
-PETSC_INTERN PetscErrorCode ContactStepperAddKept(StepperEntries *);
-PETSC_INTERN void           ContactStepperForgetKept(ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperVisitKept(Contact, ContactStepper *, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperScatter(Contact, ContactStepper *, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, const PetscReal[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode ContactStepperListRows(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperListBodyRows(Contact, ContactStepper *);

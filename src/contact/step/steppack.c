@@ -1,29 +1,15 @@
 /* What the contact step remembers from step to step, as tables by which a run is continued on another number of ranks: which nodes have
-   touched first in the last step, as their guess is another one, what secants have shown, and what contact has taken. */
+   touched first in the last step, as their guess is another one, and what contact has taken. */
 #include "stepimpl.h"
 #include <checkpoint/tables.h>
 
 #define LOSS_NAME "step/loss"
 
-/* The place of a row of this rank among those of the body on one side of its pair for which a secant is kept; -1: none */
-static PetscErrorCode FindKept(Contact contact, const ContactPair *pair, PetscInt side, PetscInt i, PetscReal *place)
-{
-  const PetscInt        b       = pair->body[side];
-  const StepperEntries *entries = b < contact->n_bodies ? &((const ContactStepper *)contact->data)->assembly.of_body[b] : NULL;
-  PetscInt              k       = -1;
-
-  PetscFunctionBegin;
-  if (entries && entries->n_kept)
-    PetscCall(PetscFindInt(contact->body_rows[b].begin + i - pair->shift[side], entries->n_kept, entries->kept_rows, &k));
-  *place = PetscMax(k, -1);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The rows of a node touch all together: a line for each node of the pair's first surface, to a table or back */
-static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, PetscReal *places[2], Tables tables)
+static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, Tables tables)
 {
   const ContactStepper *stepper = (const ContactStepper *)contact->data;
-  const PetscInt        n = (pair->end - pair->begin) / pair->components, width = TABLES_KEY + 1 + 2 * pair->components;
+  const PetscInt        n = (pair->end - pair->begin) / pair->components, width = TABLES_KEY + 1;
   const PetscReal      *values = NULL;
   const SurfaceData    *data;
   PetscReal            *packed;
@@ -46,109 +32,25 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
     }
     TablesCopyBool(back, joined, &next);
     for (PetscInt k = 1; k < pair->components; k++) joined[k] = joined[0];
-    for (PetscInt k = 0; k < 2 * pair->components; k++, next++) {
-      const PetscInt side = k % 2, of = pair->begin + i * pair->components + k / 2;
-
-      if (back) places[side][of] = *next;
-      else PetscCall(FindKept(contact, pair, side, of, next));
-    }
   }
   if (!back) PetscCall(TablesAdd(tables, name, n, width, packed));
   PetscCall(PetscFree(packed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers that are kept for a body: of how many rows, then these by each other */
-static PetscErrorCode KeptName(Contact contact, PetscInt b, size_t length, char name[])
-{
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(name, length, "step/kept/%s", ((PetscObject)contact->bodies[b])->name));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Takes back what is kept for the rows of a body, which have other numbers now. `places`: of all rows, on both sides */
-static PetscErrorCode TakeKept(Contact contact, PetscInt b, PetscReal *const places[2], Tables tables)
-{
-  StepperEntries  *entries = &((ContactStepper *)contact->data)->assembly.of_body[b];
-  const PetscReal *values;
-  PetscInt         n, *from, found = 0;
-  char             name[256];
-
-  PetscFunctionBegin;
-  PetscCall(KeptName(contact, b, sizeof(name), name));
-  PetscCall(TablesGetNumbers(tables, name, &n, &values));
-  PetscCheck(n == 1 + (PetscInt)values[0] * (PetscInt)values[0], PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
-             "The checkpoint has %" PetscInt_FMT " numbers of '%s' in place of 1 + %g^2: it is damaged", n, name, (double)values[0]);
-  n = (PetscInt)values[0];
-  PetscCall(ContactStepperKeep(entries, n));
-  PetscCall(PetscMalloc1(PetscMax(n, 1), &from));
-  for (PetscInt r = 0; r < contact->body_rows[b].n_all && n; r++) {
-    const PetscInt row   = contact->body_rows[b].all[r];
-    const PetscInt side  = contact->pairs[contact->ranks.row_pair[row]].body[1] == b;
-    const PetscInt place = (PetscInt)places[side][row];
-
-    if (place < 0 || found >= n) continue;
-    entries->kept_rows[found] = r;
-    from[found++]             = place;
-  }
-  if (found < n) entries->n_kept = 0;
-  for (PetscInt l = 0; l < entries->n_kept; l++)
-    for (PetscInt k = 0; k < n; k++) entries->kept[l * n + k] = values[1 + from[l] * n + from[k]];
-  PetscCall(PetscFree(from));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same, of all bodies, from the places of this rank's rows */
-static PetscErrorCode TakeAllKept(Contact contact, PetscReal *const mine[2], Tables tables)
-{
-  ContactStepper *stepper = (ContactStepper *)contact->data;
-  const PetscInt  n_all   = contact->rows.n_all;
-  PetscReal      *places[2];
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc2(n_all, &places[0], n_all, &places[1]));
-  for (PetscInt side = 0; side < 2; side++) {
-    const PetscScalar *all;
-
-    PetscCall(ContactStepperScatter(contact, stepper, mine[side]));
-    PetscCall(VecGetArrayRead(stepper->of_all, &all));
-    for (PetscInt i = 0; i < n_all; i++) places[side][i] = PetscRealPart(all[i]);
-    PetscCall(VecRestoreArrayRead(stepper->of_all, &all));
-  }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(TakeKept(contact, b, places, tables));
-  PetscCall(PetscFree2(places[0], places[1]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds the tables; collective */
 PetscErrorCode ContactStepperPack(Contact contact, Tables tables)
 {
-  const ContactStepper *stepper = (const ContactStepper *)contact->data;
-  char                  name[256];
-
   PetscFunctionBegin;
   PetscCall(TablesAddNumbers(tables, LOSS_NAME, 1, &contact->counts.contact_loss));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, NULL, tables));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const StepperEntries *entries = &stepper->assembly.of_body[b];
-    const PetscInt        n       = entries->n_kept;
-    PetscReal            *values;
-
-    PetscCall(PetscMalloc1(1 + n * n, &values));
-    values[0] = n;
-    PetscCall(PetscArraycpy(values + 1, entries->kept, n * n));
-    PetscCall(KeptName(contact, b, sizeof(name), name));
-    PetscCall(TablesAddNumbers(tables, name, 1 + n * n, values));
-    PetscCall(PetscFree(values));
-  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Takes them back, in a step that is as after its set-up; collective */
 PetscErrorCode ContactStepperUnpack(Contact contact, Tables tables)
 {
-  ContactStepper  *stepper   = (ContactStepper *)contact->data;
-  PetscReal       *places[2] = {stepper->mine, stepper->before};
+  ContactStepper  *stepper = (ContactStepper *)contact->data;
   const PetscReal *loss;
   PetscInt         n;
 
@@ -157,8 +59,7 @@ PetscErrorCode ContactStepperUnpack(Contact contact, Tables tables)
   PetscCheck(n == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
              "The checkpoint has %" PetscInt_FMT " losses of contact in place of one: it is of another problem", n);
   contact->counts.contact_loss = loss[0];
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, places, tables));
-  PetscCall(TakeAllKept(contact, places, tables));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
   stepper->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
