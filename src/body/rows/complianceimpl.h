@@ -4,7 +4,7 @@
 #include <solver/densefactor.h>
 #include <body/layout/bodyimpl.h>
 
-#define NODAL_BY_STEPS -1 /* columns by controller steps */
+#define NODAL_BY_STEPS (-1) /* columns by controller steps */
 
 typedef struct _NodalMatrix *NodalMatrix;
 

@@ -2,9 +2,9 @@
 #include "lawproblem.h"
 #include <petsc/private/petscimpl.h>
 
-#define FEW_DENSE      500 /* rows of a dense S whose Jacobian is factored each time it changes */
-#define LAG_AFTER_NEXT -2  /* for PETSc: the preconditioner is made anew once, and then stays */
-#define STALE          20  /* nodes whose derivatives have changed since, after which it is: about as many iterations it takes */
+#define FEW_DENSE      500  /* rows of a dense S whose Jacobian is factored each time it changes */
+#define LAG_AFTER_NEXT (-2) /* for PETSc: the preconditioner is made anew once, and then stays */
+#define STALE          20   /* nodes whose derivatives have changed since, after which it is: about as many iterations it takes */
 
 static PetscErrorCode GetPattern(const LawProblem *problem, Mat A, LawPattern *pattern)
 {

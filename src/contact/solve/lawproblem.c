@@ -16,7 +16,7 @@
 
 #define TOLERANCE        1e-13 /* of the largest force, and of the largest force that would close what is read */
 #define MOST_NEWTON      50
-#define LAG_AFTER_NEXT   -2    /* for PETSc: the preconditioner is made anew once, and then stays */
+#define LAG_AFTER_NEXT   (-2)  /* for PETSc: the preconditioner is made anew once, and then stays */
 #define SPARSE_TOLERANCE 1e-13 /* of linear iterations [parts of the residual] */
 #define MOST_LINEAR      200   /* round-off may keep them from either */
 #define MOST_SWEEPS      5120
