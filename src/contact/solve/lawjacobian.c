@@ -2,9 +2,8 @@
 #include "lawproblem.h"
 #include <petsc/private/petscimpl.h>
 
-#define FEW_DENSE      500  /* rows of a dense S whose Jacobian is factored each time it changes */
-#define LAG_AFTER_NEXT (-2) /* for PETSc: the preconditioner is made anew once, and then stays */
-#define STALE          20   /* nodes whose derivatives have changed since, after which it is: about as many iterations it takes */
+#define FEW_DENSE 500 /* rows of a dense S whose Jacobian is factored each time it changes */
+#define STALE     20  /* nodes whose derivatives have changed since, after which it is: about as many iterations it takes */
 
 static PetscErrorCode GetPattern(const LawProblem *problem, Mat A, LawPattern *pattern)
 {
@@ -135,7 +134,7 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscCall(TakeDerivatives(problem, x, y, &other));
   PetscCall(VecRestoreArrayRead(X, &x));
   if (!other) PetscFunctionReturn(PETSC_SUCCESS);
-  if (LawProblemIsLagged(problem) && problem->changes > STALE) PetscCall(SNESSetLagPreconditioner(snes, LAG_AFTER_NEXT));
+  if (LawProblemIsLagged(problem) && problem->changes > STALE) PetscCall(SNESSetLagPreconditioner(snes, LAW_LAG_AFTER_NEXT));
   if (problem->changes > STALE) problem->changes = 0;
   PetscCall(MatZeroEntries(J));
   PetscCall(LawProblemGetS(problem, &of_S, &S));

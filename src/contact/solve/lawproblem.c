@@ -14,9 +14,7 @@
 #include "lawproblem.h"
 #include <sys/petsccompat.h>
 
-#define TOLERANCE        1e-13 /* of the largest force, and of the largest force that would close what is read */
 #define MOST_NEWTON      50
-#define LAG_AFTER_NEXT   (-2)  /* for PETSc: the preconditioner is made anew once, and then stays */
 #define SPARSE_TOLERANCE 1e-13 /* of linear iterations [parts of the residual] */
 #define MOST_LINEAR      200   /* round-off may keep them from either */
 #define MOST_SWEEPS      5120
@@ -202,7 +200,7 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
   PetscCall(SNESSetOptionsPrefix(*snes, prefix));
   PetscCall(SNESSetFunction(*snes, problem->f, ComputeResidual, problem));
   PetscCall(SNESSetType(*snes, type));
-  PetscCall(SNESSetTolerances(*snes, 0, TOLERANCE, 0, most, PETSC_INT_MAX));
+  PetscCall(SNESSetTolerances(*snes, 0, LAW_TOLERANCE, 0, most, PETSC_INT_MAX));
   PetscCall(SNESSetConvergenceTest(*snes, TestConvergence, problem, NULL));
   PetscCall(SNESSetErrorIfNotConverged(*snes, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -232,7 +230,7 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscCall(KSPSetType(ksp, iterative ? KSPGMRES : KSPPREONLY));
   PetscCall(PCSetType(pc, problem->sparse ? PCSOR : PCLU));
   if (LawProblemIsLagged(problem)) {
-    PetscCall(SNESSetLagPreconditioner(problem->newton, LAG_AFTER_NEXT));
+    PetscCall(SNESSetLagPreconditioner(problem->newton, LAW_LAG_AFTER_NEXT));
     PetscCall(SNESSetLagPreconditionerPersists(problem->newton, PETSC_TRUE));
   }
   if (iterative) {

@@ -4,7 +4,6 @@
 
 #define VANISHES      1e-12 /* of what rows read, by themselves or by their own force */
 #define MOST_PROXIMAL 20
-#define TOLERANCE     1e-13 /* of the largest force, and of the largest force that would close what is read */
 #define FIRST_SWEEPS  5
 #define ENOUGH        0.5 /* or this part of the tolerance of Newton's method */
 
@@ -87,7 +86,7 @@ static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
     PetscCall(SolveOnce(problem));
     if (!problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
     for (PetscInt i = 0; i < problem->n; i++) pull = PetscMax(pull, PetscAbsScalar(problem->force[i] - problem->centre[i]));
-    if (problem->proximal * pull <= TOLERANCE * LawProblemForceScale(problem, problem->force) || ProximalVanishes(problem, 0))
+    if (problem->proximal * pull <= LAW_TOLERANCE * LawProblemForceScale(problem, problem->force) || ProximalVanishes(problem, 0))
       PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(PetscInfo(problem->newton, "law of %" PetscInt_FMT " rows: forces of dependent rows change by %g N, solved again\n",
                         problem->n, (double)pull));
