@@ -273,8 +273,18 @@ static PetscErrorCode AddProduct(const StepperAssembly *assembly, PetscScalar S[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether bodies with touching rows answer node by node (true), or have blocks (false) */
+static PetscBool AnyBody(const StepperAssembly *assembly, PetscBool alone)
+{
+  PetscBool any = PETSC_FALSE;
+
+  for (PetscInt b = 0; b < assembly->n_bodies; b++)
+    any = (PetscBool)(any || (assembly->of_body[b].n && assembly->of_body[b].alone == alone));
+  return any;
+}
+
 /* A dense S: the one there is, where it has the size */
-static PetscErrorCode AssembleDense(ContactStepper *stepper, PetscBool any_alone, Mat *S)
+static PetscErrorCode AssembleDense(ContactStepper *stepper, Mat *S)
 {
   const PetscInt n = stepper->problem.n;
   PetscScalar   *values;
@@ -287,7 +297,7 @@ static PetscErrorCode AssembleDense(ContactStepper *stepper, PetscBool any_alone
   else PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
   PetscCall(MatDenseGetArrayWrite(*S, &values));
   PetscCall(PetscArrayzero(values, n * n));
-  if (any_alone) PetscCall(AddProduct(&stepper->assembly, values));
+  if (AnyBody(&stepper->assembly, PETSC_TRUE)) PetscCall(AddProduct(&stepper->assembly, values));
   for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) {
     const StepperEntries *entries = &stepper->assembly.of_body[b];
 
@@ -312,7 +322,7 @@ static PetscReal BlockPart(const ContactStepper *stepper)
 }
 
 /* A sparse S that has the blocks of bodies, and R R^T where bodies answer node by node */
-static PetscErrorCode AssembleSparse(ContactStepper *stepper, PetscBool any_alone, Mat *S)
+static PetscErrorCode AssembleSparse(ContactStepper *stepper, Mat *S)
 {
   const PetscInt         n        = stepper->problem.n;
   const StepperAssembly *assembly = &stepper->assembly;
@@ -335,7 +345,7 @@ static PetscErrorCode AssembleSparse(ContactStepper *stepper, PetscBool any_alon
   }
   PetscCall(MatAssemblyBegin(*S, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*S, MAT_FINAL_ASSEMBLY));
-  if (any_alone) PetscCall(MatAXPY(*S, 1, assembly->product, DIFFERENT_NONZERO_PATTERN));
+  if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MatAXPY(*S, 1, assembly->product, DIFFERENT_NONZERO_PATTERN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -352,13 +362,11 @@ static PetscErrorCode AddGive(Contact contact, ContactStepper *stepper, Mat S)
 }
 
 /* What S is made of, from the bodies */
-static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper, PetscBool *all_alone, PetscBool *any_alone)
+static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
 {
   StepperAssembly *assembly = &stepper->assembly;
 
   PetscFunctionBegin;
-  *all_alone = PETSC_TRUE;
-  *any_alone = PETSC_FALSE;
   PetscCall(ContactStepperListBodyRows(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec diagonal;
@@ -369,10 +377,8 @@ static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper, PetscBo
     assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
     if (diagonal) PetscCall(ScaleEntries(contact, stepper, b, diagonal));
     else PetscCall(MakeBlock(contact, stepper, b));
-    *any_alone = (PetscBool)(*any_alone || diagonal);
-    *all_alone = (PetscBool)(*all_alone && diagonal);
   }
-  if (*any_alone) PetscCall(MultiplyRows(stepper, assembly));
+  if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MultiplyRows(stepper, assembly));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -388,18 +394,18 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
   if (same && stepper->assembled == stepper->state) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
-  if (!same) PetscCall(GetParts(contact, stepper, &assembly->all_alone, &assembly->any_alone));
+  if (!same) PetscCall(GetParts(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StepperEntries *entries = &assembly->of_body[b];
 
     if (!entries->n || entries->alone) continue;
     PetscCall(PetscArraycpy(entries->block, entries->own, entries->n * entries->n));
   }
-  if (assembly->all_alone && n > FEW_ROWS) {
+  if (!AnyBody(assembly, PETSC_FALSE) && n > FEW_ROWS) {
     S = assembly->product;
     PetscCall(PetscObjectReference((PetscObject)S));
-  } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, assembly->any_alone, &S));
-  else PetscCall(AssembleDense(stepper, assembly->any_alone, &S));
+  } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, &S));
+  else PetscCall(AssembleDense(stepper, &S));
   if (stepper->gives) PetscCall(AddGive(contact, stepper, S));
   PetscCall(LawProblemTakeS(&stepper->problem, &S));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));

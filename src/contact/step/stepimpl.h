@@ -42,8 +42,7 @@ typedef struct {
 /* What S is made of, see assemble.c */
 typedef struct {
   PetscInt        n_bodies;
-  PetscInt64      of_state;             /* of rows, of which bodies have been asked last */
-  PetscBool       all_alone, any_alone; /* bodies whose nodes do not answer to forces on others: all that have rows, and any */
+  PetscInt64      of_state; /* of rows, of which bodies have been asked last */
   StepperEntries *of_body;
   /* R, the rows of bodies whose nodes answer alone */
   PetscInt     n, row_room, room;       /* rows; room for rows, and for entries */
