@@ -92,7 +92,7 @@ static PetscErrorCode Refactor(LayerBalance layer, Body body)
   PetscFunctionBegin;
   PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
   PetscCall(KSPGetOperators(ksp, &K, NULL));
-  PetscCall(BodyAssembleLayer(body, layer->now.point, layer->now.history, layer->now.step, K));
+  PetscCall(BodyAssembleLayer(body, layer->now.point, layer->now.history, layer->now.step, NULL, K));
   PetscCall(ConstrainedSolverRefactor(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

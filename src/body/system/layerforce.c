@@ -309,14 +309,14 @@ PetscErrorCode BodySpreadLayer(Body body, Vec near, Vec u)
 }
 
 /* K = tangent stiffness of the layer at a displacement that BodyGatherLayer() has made [N/m], from a history that BodyLayerCopyHistory()
-   has given, with its step; NULL: that of the present substep. The first time collective; then, where one rank has the body, of that alone
- */
-PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[], PetscReal step, Mat K)
+   has given, with its step; NULL: that of the present substep. `tangents`: those of the elements that touch the layer, one after the
+   other, if not NULL. The first time collective; then, where one rank has the body, of that alone. */
+PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[], PetscReal step, PetscScalar tangents[], Mat K)
 {
   LayerElements      layer = body->layer.elements;
   const PetscInt     nodes = body->model.element->nodes, n = nodes * body->mesh.dim;
   PetscInt           dofs[ELEMENT_MAX_DOFS];
-  PetscScalar        element[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscScalar        one[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
   const PetscScalar *at;
   Mat                all = K;
 
@@ -330,6 +330,8 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[],
   PetscCall(MatZeroEntries(K));
   PetscCall(VecGetArrayRead(near, &at));
   for (PetscInt e = 0; e < layer->element->count; e++) {
+    PetscScalar *element = tangents ? tangents + e * n * n : one;
+
     for (PetscInt i = 0; i < n; i++)
       dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->mesh.dim] * body->mesh.dim + i % body->mesh.dim];
     PetscCall((*layer->element->ops->stiffness)(layer->element, e, at, element));
@@ -342,32 +344,35 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* f = tangent stiffness of the elements that touch the layer, at a displacement that BodyGatherLayer() has made, times du; both laid out as
-   displacements of the body, du being zero but on the layer [N] */
-PetscErrorCode BodyMultiplyLayerTangent(Body body, Vec near, Vec du, Vec f)
+/* How many numbers the tangents of all elements that touch the layer are */
+PetscInt BodyCountLayerTangents(Body body)
+{
+  return body->layer.elements->element->count * PetscSqr(body->model.element->nodes * body->mesh.dim);
+}
+
+/* f = tangent stiffness of the elements that touch the layer, as BodyAssembleLayer() has given it, times du; both laid out as displacements
+   of the body, du being zero but on the layer [N] */
+PetscErrorCode BodyMultiplyLayerTangent(Body body, const PetscScalar tangents[], Vec du, Vec f)
 {
   LayerElements      layer = body->layer.elements;
   const PetscInt     nodes = body->model.element->nodes, dim = body->mesh.dim, n = nodes * dim;
-  PetscScalar        K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], *product;
-  const PetscScalar *at, *change;
+  PetscScalar       *product;
+  const PetscScalar *change;
 
   PetscFunctionBegin;
-  PrepareHistory(body);
   PetscCall(BodyGatherLayer(body, du, layer->u));
-  PetscCall(VecGetArrayRead(near, &at));
   PetscCall(VecGetArrayRead(layer->u, &change));
   PetscCall(VecGetArrayWrite(layer->f, &product));
   PetscCall(PetscArrayzero(product, layer->n_dofs));
   for (PetscInt e = 0; e < layer->element->count; e++) {
-    const PetscInt *node = layer->connectivity + e * nodes;
+    const PetscInt    *node = layer->connectivity + e * nodes;
+    const PetscScalar *K    = tangents + e * n * n;
 
-    PetscCall((*layer->element->ops->stiffness)(layer->element, e, at, K));
     for (PetscInt i = 0; i < n; i++)
       for (PetscInt j = 0; j < n; j++) product[node[i / dim] * dim + i % dim] += K[i * n + j] * change[node[j / dim] * dim + j % dim];
   }
   PetscCall(VecRestoreArrayWrite(layer->f, &product));
   PetscCall(VecRestoreArrayRead(layer->u, &change));
-  PetscCall(VecRestoreArrayRead(near, &at));
   PetscCall(VecZeroEntries(f));
   PetscCall(VecScatterBegin(layer->gather, layer->f, f, ADD_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(layer->gather, layer->f, f, ADD_VALUES, SCATTER_REVERSE));
@@ -384,6 +389,6 @@ PetscErrorCode BodyCreateLayerMatrix(Body body, Mat *K)
   PetscCall(MatSetUp(*K));
   PetscCall(MatSetOption(*K, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(VecZeroEntries(body->layer.elements->u));
-  PetscCall(BodyAssembleLayer(body, body->layer.elements->u, NULL, 0, *K));
+  PetscCall(BodyAssembleLayer(body, body->layer.elements->u, NULL, 0, NULL, *K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,6 +15,10 @@ struct _n_LayerSolver {
   VecScatter        scatter;       /* from a vector of the body */
   ConstrainedSolver own;           /* factors, where the integrator has none */
   Mat               K;             /* what they are of */
+  PetscScalar      *tangents;      /* of the elements that touch the layer, at the point; NULL for linear bodies */
+  PetscObjectId     of;            /* the displacements that the point was taken of last, their state and the step then: they are asked */
+  PetscObjectState  of_state;      /* for in each pass over the bodies, and do not change before the next step */
+  PetscReal         of_step;
 };
 
 /* Factors of a layer whose integrator has none of its own */
@@ -26,7 +30,10 @@ static PetscErrorCode CreateFactors(Body body, LayerSolver layer)
   PetscFunctionBegin;
   if (!body->layer.elements) PetscCall(BodySetUpLayerElements(body, layer->rhs));
   PetscCall(BodyCreateLayerMatrix(body, &layer->K));
-  if (!body->model.linear) PetscCall(BodyCreateLayerVec(body, &layer->point));
+  if (!body->model.linear) {
+    PetscCall(BodyCreateLayerVec(body, &layer->point));
+    PetscCall(PetscMalloc1(BodyCountLayerTangents(body), &layer->tangents));
+  }
   PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)body), 0, body->layer.n_dofs, 0, PETSC_DETERMINE, 0, NULL, 0, NULL, &empty));
   PetscCall(MatAssemblyBegin(empty, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(empty, MAT_FINAL_ASSEMBLY));
@@ -62,14 +69,22 @@ static PetscErrorCode CreateLayerSolver(Body body)
    body with massless nodes on some rank. */
 PetscErrorCode BodyPrepareLayer(Body body, Vec u)
 {
-  LayerSolver layer = body->layer.solver;
+  LayerSolver      layer = body->layer.solver;
+  PetscObjectId    of;
+  PetscObjectState state;
 
   PetscFunctionBegin;
   if (!layer) PetscCall(CreateLayerSolver(body));
   layer = body->layer.solver;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscObjectGetId((PetscObject)u, &of));
+  PetscCall(PetscObjectStateGet((PetscObject)u, &state));
+  if (of == layer->of && state == layer->of_state && body->time.step == layer->of_step) PetscFunctionReturn(PETSC_SUCCESS);
+  layer->of       = of;
+  layer->of_state = state;
+  layer->of_step  = body->time.step;
   PetscCall(BodyGatherLayer(body, u, layer->point));
-  PetscCall(BodyAssembleLayer(body, layer->point, NULL, 0, layer->K));
+  PetscCall(BodyAssembleLayer(body, layer->point, NULL, 0, layer->tangents, layer->K));
   PetscCall(ConstrainedSolverRefactor(layer->own));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -98,7 +113,7 @@ PetscErrorCode BodySolveLayer(Body body, Vec u, Vec f, Vec du, Vec pull)
   PetscCall(BodyPrepareLayer(body, u));
   PetscCall(BodyApplyLayerCompliance(body, f, du));
   if (body->model.linear) PetscCall(BodyComputeInternalForce(body, du, pull));
-  else PetscCall(BodyMultiplyLayerTangent(body, body->layer.solver->point, du, pull));
+  else PetscCall(BodyMultiplyLayerTangent(body, body->layer.solver->tangents, du, pull));
   PetscCall(VecScale(pull, -1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -114,6 +129,7 @@ PetscErrorCode BodyLayerSolverDestroy(LayerSolver *layer)
   PetscCall(VecScatterDestroy(&(*layer)->scatter));
   PetscCall(ConstrainedSolverDestroy(&(*layer)->own));
   PetscCall(MatDestroy(&(*layer)->K));
+  PetscCall(PetscFree((*layer)->tangents));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
