@@ -18,10 +18,12 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
   for (PetscInt b = 0; b < assembly->n_bodies; b++) {
     StepperEntries *entries = &assembly->of_body[b];
 
-    PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
+    PetscCall(PetscFree4(entries->rows, entries->places, entries->begin, entries->product));
     PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
     PetscCall(PetscFree(entries->block));
     PetscCall(PetscFree(entries->own));
+    PetscCall(StepperSecantsDestroy(&entries->secants));
+    PetscCall(StepperSecantsDestroy(&entries->kept));
   }
   PetscCall(PetscFree(assembly->of_body));
   PetscCall(PetscFree2(assembly->begin, assembly->next));
@@ -126,6 +128,7 @@ static PetscErrorCode MakeBlock(Contact contact, ContactStepper *stepper, PetscI
   PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rules[b]->shape, count, dofs, &place, &leading, &W));
   for (PetscInt e = 0; e < entries->begin[n]; e++) PetscCall(PetscFindInt(columns[e], count, dofs, &columns[e]));
   for (PetscInt d = 0; d < count; d++) dofs[d] = place[dofs[d]];
+  entries->corrected = PETSC_FALSE;
   PetscCall(PetscArrayzero(entries->own, n * n));
   for (PetscInt l = 0; l < n; l++) {
     PetscScalar *column = entries->own + l * n;
@@ -398,8 +401,7 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StepperEntries *entries = &assembly->of_body[b];
 
-    if (!entries->n || entries->alone) continue;
-    PetscCall(PetscArraycpy(entries->block, entries->own, entries->n * entries->n));
+    if (entries->n && !entries->alone) PetscCall(StepperEntriesCorrect(entries));
   }
   if (!AnyBody(assembly, PETSC_FALSE) && n > FEW_ROWS) {
     S = assembly->product;

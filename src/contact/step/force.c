@@ -189,6 +189,7 @@ static PetscErrorCode Accept(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(stepper->joined, stepper->joins, contact->rows.n));
+  PetscCall(ContactStepperAcceptSecants(stepper));
   contact->counts.contact_loss += stepper->step_loss;
   contact->energy.largest_force += stepper->step_force; /* changes of gaps add up, and what nobody knows of them does */
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -200,6 +201,7 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitBools(checkpoint, "joined", contact->rows.n, stepper->joined));
+  PetscCall(ContactStepperVisitSecants(contact, stepper, checkpoint));
   if (CheckpointLoads(checkpoint)) stepper->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

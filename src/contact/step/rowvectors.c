@@ -11,7 +11,7 @@ PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper
   PetscCall(VecDuplicate(stepper->x, &stepper->field));
   PetscCall(VecScatterCreateToAll(stepper->x, &stepper->to_all, &stepper->of_all));
   PetscCall(PetscMalloc3(n_all, &stepper->rows, n_all, &stepper->gathered, n_all, &stepper->of_assembled));
-  PetscCall(PetscMalloc3(3 * n_all, &stepper->told, 2 * n_all, &stepper->ends, 3 * n_all, &stepper->secant));
+  PetscCall(PetscMalloc2(3 * n_all, &stepper->told, 2 * n_all, &stepper->ends));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -24,12 +24,12 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
   PetscCall(VecDestroy(&stepper->of_all));
   PetscCall(VecScatterDestroy(&stepper->to_all));
   PetscCall(PetscFree3(stepper->rows, stepper->gathered, stepper->of_assembled));
-  PetscCall(PetscFree3(stepper->told, stepper->ends, stepper->secant));
+  PetscCall(PetscFree2(stepper->told, stepper->ends));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers of all rows, from those of this rank */
-static PetscErrorCode Scatter(Contact contact, ContactStepper *stepper, const PetscReal mine[])
+/* The numbers of all rows, in `of_all`, from those of this rank */
+PetscErrorCode ContactStepperScatter(Contact contact, ContactStepper *stepper, const PetscReal mine[])
 {
   PetscScalar *values;
 
@@ -48,7 +48,7 @@ PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, co
   const PetscScalar *values;
 
   PetscFunctionBegin;
-  PetscCall(Scatter(contact, stepper, mine));
+  PetscCall(ContactStepperScatter(contact, stepper, mine));
   PetscCall(VecGetArrayRead(stepper->of_all, &values));
   for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = values[stepper->rows[k]];
   PetscCall(VecRestoreArrayRead(stepper->of_all, &values));
@@ -65,7 +65,7 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++)
     stepper->mine[i] = stepper->touches[i] ? 1 + contact->rows.tied[ContactFirstRow(contact, i)] : 0; /* which law it has */
-  PetscCall(Scatter(contact, stepper, stepper->mine));
+  PetscCall(ContactStepperScatter(contact, stepper, stepper->mine));
   PetscCall(VecGetArrayRead(stepper->of_all, &touches));
   for (PetscInt i = 0; i < contact->rows.n_all; i++) n += touches[i] != 0;
   PetscCall(LawProblemResize(problem, n));
@@ -114,9 +114,9 @@ PetscErrorCode ContactStepperListBodyRows(Contact contact, ContactStepper *stepp
 
       if (entries->n > entries->row_room) {
         entries->row_room = 2 * entries->n;
-        PetscCall(PetscFree3(entries->rows, entries->places, entries->begin));
-        PetscCall(
-            PetscMalloc3(entries->row_room, &entries->rows, entries->row_room, &entries->places, entries->row_room + 1, &entries->begin));
+        PetscCall(PetscFree4(entries->rows, entries->places, entries->begin, entries->product));
+        PetscCall(PetscMalloc4(entries->row_room, &entries->rows, entries->row_room, &entries->places, entries->row_room + 1,
+                               &entries->begin, 2 * entries->row_room, &entries->product));
       }
       entries->n = 0;
     }

@@ -1,13 +1,179 @@
 /*
    What passes show of S: secants by the formula of Broyden, Fletcher, Goldfarb and Shanno. The displacements of a body depend on the forces
-   on its own rows alone, so that each has a secant of its own, for its block of S.
+   on its own rows alone, so that each has secants of its own, for its block of S.
+
+   They are kept from step to step, as long as the body has the same touching rows: a body that is deformed answers in the next step nearly
+   as in this one. A step begins with those of accepted steps of its own size, or with none; its own join them when it is accepted. So a
+   step that has failed leaves no trace in those that are made in its place.
 
    C. G. Broyden, IMA Journal of Applied Mathematics 6 (1970) 76-90 and 222-231, and Fletcher, Goldfarb, Shanno in the same year.
 */
 #include "stepimpl.h"
+#include <checkpoint/checkpoint.h>
 
 #define CURVATURE 1e-10 /* a secant counts whose work is at least this part of what S tells of it */
 #define EXACT     1e-9  /* S has told right what differs by less than this part of it, and by the round-off of positions */
+#define SURE      1e3   /* a secant is kept where S has told wrong by more than this many times that round-off */
+#define MOST_KEPT 80    /* secants of a body; one more, and the older half of them goes */
+
+PetscErrorCode StepperSecantsDestroy(StepperSecants *secants)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(secants->rows));
+  PetscCall(PetscFree(secants->values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for so many secants of n rows; those that there are stay, if they are of as many */
+PetscErrorCode StepperSecantsResize(StepperSecants *secants, PetscInt n, PetscInt n_pairs)
+{
+  const PetscInt size = 2 * n * n_pairs, used = n == secants->n ? 2 * n * PetscMin(n_pairs, secants->n_pairs) : 0;
+
+  PetscFunctionBegin;
+  if (n > secants->row_room) {
+    secants->row_room = 2 * n;
+    PetscCall(PetscFree(secants->rows));
+    PetscCall(PetscMalloc1(secants->row_room, &secants->rows));
+  }
+  if (size > secants->room) {
+    PetscScalar *values;
+
+    secants->room = 2 * size;
+    PetscCall(PetscMalloc1(secants->room, &values));
+    PetscCall(PetscArraycpy(values, secants->values, used));
+    PetscCall(PetscFree(secants->values));
+    secants->values = values;
+  }
+  secants->n       = n;
+  secants->n_pairs = n_pairs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All but the first ones */
+static PetscErrorCode Copy(const StepperSecants *from, PetscInt first, StepperSecants *to)
+{
+  PetscFunctionBegin;
+  PetscCall(StepperSecantsResize(to, from->n, from->n_pairs - first));
+  PetscCall(PetscArraycpy(to->rows, from->rows, from->n));
+  PetscCall(PetscArraycpy(to->values, from->values + 2 * from->n * first, 2 * from->n * to->n_pairs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The secants that a step begins with */
+PetscErrorCode ContactStepperBeginSecants(Contact contact, ContactStepper *stepper)
+{
+  const PetscBool same_size = (PetscBool)(contact->attempt.level == contact->attempt.accepted_level);
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) {
+    StepperEntries *entries = &stepper->assembly.of_body[b];
+
+    PetscCall(Copy(&entries->kept, same_size ? 0 : entries->kept.n_pairs, &entries->secants));
+    if (!contact->attempt.again || !entries->n || entries->alone) continue;
+    entries->corrected = PETSC_FALSE; /* a step that has failed may have corrected it */
+    stepper->assembled = -1;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step is accepted */
+PetscErrorCode ContactStepperAcceptSecants(ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) {
+    StepperEntries *entries = &stepper->assembly.of_body[b];
+    const PetscInt  n       = entries->secants.n_pairs;
+    const PetscBool many    = (PetscBool)(n > MOST_KEPT);
+
+    PetscCall(Copy(&entries->secants, many ? n - MOST_KEPT / 2 : 0, &entries->kept));
+    if (many) entries->corrected = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Those that are kept, for a checkpoint */
+PetscErrorCode ContactStepperVisitSecants(Contact contact, ContactStepper *stepper, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    StepperSecants *kept    = &stepper->assembly.of_body[b].kept;
+    PetscInt        size[2] = {kept->n, kept->n_pairs};
+    char            name[32];
+
+    PetscCall(PetscSNPrintf(name, sizeof(name), "secants %" PetscInt_FMT, b));
+    PetscCall(CheckpointVisitInts(checkpoint, name, 2, size));
+    if (CheckpointLoads(checkpoint)) PetscCall(StepperSecantsResize(kept, size[0], size[1]));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "secant rows %" PetscInt_FMT, b));
+    PetscCall(CheckpointVisitInts(checkpoint, name, kept->n, kept->rows));
+    PetscCall(PetscSNPrintf(name, sizeof(name), "secant values %" PetscInt_FMT, b));
+    PetscCall(CheckpointVisitReals(checkpoint, name, 2 * kept->n * kept->n_pairs, kept->values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How the block has it that rows go under the forces of a secant, and the work of these by it */
+static PetscReal Multiply(const StepperEntries *entries, const PetscScalar force[], PetscScalar product[])
+{
+  const PetscInt n    = entries->n;
+  PetscReal      work = 0;
+
+  for (PetscInt k = 0; k < n; k++) product[k] = 0;
+  for (PetscInt l = 0; l < n; l++)
+    for (PetscInt k = 0; k < n && force[l] != 0; k++) product[k] += entries->block[l * n + k] * force[l];
+  for (PetscInt k = 0; k < n; k++) work += PetscRealPart(force[k] * product[k]);
+  return work;
+}
+
+/* Corrects the block by a secant, and S with it unless that is NULL; `product`: how the block has it */
+static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscReal told_work,
+                              LawProblem *problem)
+{
+  const PetscInt     n      = entries->n;
+  const PetscScalar *gone   = force + n;
+  PetscScalar       *change = product + n; /* of a column */
+  PetscReal          work   = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < n; k++) work += PetscRealPart(force[k] * gone[k]);
+  for (PetscInt l = 0; l < n; l++) {
+    const PetscInt    j       = entries->places[l];
+    const PetscScalar by_gone = gone[l] / work, by_product = product[l] / told_work;
+
+    for (PetscInt k = 0; k < n; k++) {
+      change[k] = by_gone * gone[k] - by_product * product[k];
+      entries->block[l * n + k] += change[k];
+    }
+    if (!problem) continue;
+    PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
+    problem->diagonal[j] += PetscRealPart(change[l]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A block of the touching rows, from the body's own one and secants, unless it is there. Those of other rows are forgotten. */
+PetscErrorCode StepperEntriesCorrect(StepperEntries *entries)
+{
+  const PetscInt  n       = entries->n;
+  StepperSecants *secants = &entries->secants;
+  PetscBool       same    = (PetscBool)(secants->n == n);
+
+  PetscFunctionBegin;
+  if (same) PetscCall(PetscArraycmp(secants->rows, entries->rows, n, &same));
+  if (!same) {
+    PetscCall(StepperSecantsResize(secants, n, 0));
+    PetscCall(PetscArraycpy(secants->rows, entries->rows, n));
+  }
+  if (same && entries->corrected) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
+  for (PetscInt j = 0; j < secants->n_pairs; j++) {
+    const PetscScalar *force     = secants->values + 2 * n * j;
+    const PetscReal    told_work = Multiply(entries, force, entries->product);
+
+    if (told_work > 0) PetscCall(Correct(entries, force, entries->product, told_work, NULL));
+  }
+  entries->corrected = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* How the bodies of each touching row have gone along it in the last pass */
 static PetscErrorCode GatherEnds(Contact contact, ContactStepper *stepper)
@@ -34,43 +200,39 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
 {
   LawProblem     *problem = &stepper->problem;
   StepperEntries *entries = &stepper->assembly.of_body[b];
-  const PetscInt  n = entries->n, all = problem->n;
-  PetscScalar    *force = stepper->secant, *gone = force + n, *product = gone + n;
-  PetscReal       work = 0, told_work = 0, off = 0, largest = 0;
+  StepperSecants *secants = &entries->secants;
+  const PetscInt  n = entries->n, all = problem->n, at = secants->n_pairs;
+  PetscReal       work = 0, told_work, off = 0, largest = 0;
+  PetscScalar    *force, *gone, *product = entries->product;
 
   PetscFunctionBegin;
+  PetscCall(StepperSecantsResize(secants, n, at + 1));
+  force = secants->values + 2 * n * at;
+  gone  = force + n;
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt     i    = entries->places[k];
     const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[i]]];
-    const PetscInt     at   = i + (pair->body[1] == b) * all;
+    const PetscInt     end  = i + (pair->body[1] == b) * all;
 
-    force[k]   = problem->base[i] - stepper->told[i];
-    gone[k]    = ContactSign(pair, b) * (stepper->ends[at] - stepper->told[all + at]);
-    product[k] = 0;
-  }
-  for (PetscInt l = 0; l < n; l++)
-    for (PetscInt k = 0; k < n && force[l] != 0; k++) product[k] += entries->block[l * n + k] * force[l];
-  for (PetscInt k = 0; k < n; k++) {
+    force[k] = problem->base[i] - stepper->told[i];
+    gone[k]  = ContactSign(pair, b) * (stepper->ends[end] - stepper->told[all + end]);
     work += PetscRealPart(force[k] * gone[k]);
-    told_work += PetscRealPart(force[k] * product[k]);
+  }
+  told_work = Multiply(entries, force, product);
+  for (PetscInt k = 0; k < n; k++) {
     off     = PetscMax(off, PetscAbsScalar(gone[k] - product[k]));
     largest = PetscMax(largest, PetscAbsScalar(product[k]));
   }
-  if (off <= EXACT * largest + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0))
+  if (off <= EXACT * largest + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0)) {
+    secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt l = 0; l < n; l++) {
-    const PetscInt    j       = entries->places[l];
-    PetscScalar      *change  = force; /* of a column */
-    const PetscScalar by_gone = gone[l] / work, by_product = product[l] / told_work;
-
-    for (PetscInt k = 0; k < n; k++) {
-      change[k] = by_gone * gone[k] - by_product * product[k];
-      entries->block[l * n + k] += change[k];
-    }
-    PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
-    problem->diagonal[j] += PetscRealPart(change[l]);
   }
+  PetscCall(Correct(entries, force, product, told_work, problem));
   stepper->assembled = -1;
+  if (off <= SURE * problem->resolution) { /* for this step alone: the next one makes the block anew */
+    secants->n_pairs   = at;
+    entries->corrected = PETSC_FALSE;
+  }
   stepper->corrected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -135,6 +135,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
+  PetscCall(ContactStepperBeginSecants(contact, stepper));
   while (more) {
     PetscCall(ContactStepperListRows(contact, stepper));
     if (stepper->problem.n) {

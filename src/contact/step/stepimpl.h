@@ -26,17 +26,27 @@ typedef struct {
   PetscViewerFormat format;
 } ContactMonitor;
 
+/* Secants of a body: forces on some of its rows, by which two passes differ, and how these rows have gone then */
+typedef struct {
+  PetscInt     n, row_room, *rows; /* their numbers among those of the body, ascending */
+  PetscInt     n_pairs, room;      /* of numbers */
+  PetscScalar *values;             /* per pair, in the order in which they were found: n forces [N], then n ways [m] */
+} StepperSecants;
+
 /* The touching rows of a body: entries of all ranks, row by row */
 typedef struct {
-  PetscBool    alone;             /* no node of the body answers to forces on others */
-  PetscInt     n, row_room, room; /* rows; room for rows, and for entries */
-  PetscInt    *rows, *places;     /* per row: its number among those of the body, and its place among the touching ones */
-  PetscInt    *begin;             /* per row: its first entry; n + 1 */
-  PetscInt    *columns, *dofs;    /* per entry: the displacement; work space */
-  PetscScalar *values, *answers;  /* per entry, with the sign by which the row's gap goes with the body; work space */
-  PetscInt     block_room;        /* room for the block */
-  PetscScalar *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
-  PetscScalar *own;               /* the same, as the body has it, without secants */
+  PetscBool      alone;             /* no node of the body answers to forces on others */
+  PetscInt       n, row_room, room; /* rows; room for rows, and for entries */
+  PetscInt      *rows, *places;     /* per row: its number among those of the body, and its place among the touching ones */
+  PetscInt      *begin;             /* per row: its first entry; n + 1 */
+  PetscScalar   *product;           /* work space: two per row */
+  PetscInt      *columns, *dofs;    /* per entry: the displacement; work space */
+  PetscScalar   *values, *answers;  /* per entry, with the sign by which the row's gap goes with the body; work space */
+  PetscInt       block_room;        /* room for the block */
+  PetscScalar   *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
+  PetscScalar   *own;               /* the same, as the body has it, without secants */
+  PetscBool      corrected;         /* `block` is `own` corrected by `secants`, and by no others */
+  StepperSecants secants, kept;     /* of this step and those before it; those of accepted steps */
 } StepperEntries;
 
 /* What S is made of, see assemble.c */
@@ -95,7 +105,6 @@ struct _ContactStepper {
   Vec          x, f, field, of_all;
   PetscScalar *gathered; /* a number per touching row */
   PetscScalar *ends;     /* two: how its first body has gone along it in the last pass, and its second one [m] */
-  PetscScalar *secant;   /* three for each row of a body */
   PetscReal   *none;     /* zeros */
   PetscReal   *mine, *before;
   int         *moves; /* per body */
@@ -129,8 +138,15 @@ PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);
 PETSC_INTERN PetscInt       ContactStepperGroup(Contact, const ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperAdvance(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCorrectS(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperBeginSecants(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperAcceptSecants(ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperVisitSecants(Contact, ContactStepper *, Checkpoint);
+PETSC_INTERN PetscErrorCode StepperEntriesCorrect(StepperEntries *);
+PETSC_INTERN PetscErrorCode StepperSecantsResize(StepperSecants *, PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode StepperSecantsDestroy(StepperSecants *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperScatter(Contact, ContactStepper *, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, const PetscReal[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode ContactStepperListRows(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperListBodyRows(Contact, ContactStepper *);

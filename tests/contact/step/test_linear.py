@@ -19,7 +19,7 @@ CASES = {
     "blocks, friction, IE": ("blocks", joined(RUBS, EXPLICIT.format("right")), "", 1e-10, 1.2),  # 1e-13
     "blocks, cut steps": ("blocks", "-time_step 5e-6", "", 1e-10, 1.2),  # 1e-14
     "blocks, larger steps": ("blocks", "-time_step 2e-5", "", 1e-10, 1.2),  # 2e-15
-    "blocks, neo-Hookean": ("blocks", NEO_HOOKEAN, "", 1e-6, 1.6),  # 3e-8; 5.0 passes, 3.5 of schwarz: the last digits are a pass
+    "blocks, neo-Hookean": ("blocks", NEO_HOOKEAN, "", 1e-6, 1.05),  # 3e-8; 3.50 passes, 3.52 of schwarz; 5.0 without secants of earlier steps
     "bars-high-speed": ("bars-high-speed", "", "", 1e-6, 2),  # 8e-8 as contact begins, by the tolerance of 1e-7; 1.89 passes to 1.00: a second finds the first right
     "three-bars": ("three-bars", "", "", 1e-6, 1.3),  # 8e-8; 1.98 passes to 1.67
     "discs": ("discs", "", "-contact_balance false", 1e-6, 1.3),  # 1e-7; 3.34 passes to 2.78; the balance, which type force has not, moves impulses by 0.3 %, the peak by 1.6 %
@@ -60,6 +60,17 @@ def test_as_schwarz(name, shared_run):
     assert force.summary["step_control"]["step_cuts"] == schwarz.summary["step_control"]["step_cuts"] and ("cut" not in name or force.summary["step_control"]["step_cuts"])
     old, new = (run.summary["schwarz"]["mean_contact_steps"] for run in (schwarz, force))
     assert new <= ratio * old
+
+
+# Blocks with massless nodes of rubber: fewer elements and larger steps; as they are, for which issue 37 asks at most 3.5 passes. Measured 3.65 and 3.12, and 4.78
+# and 4.29 where each step begins without the secants of those before it
+COARSE = "-left_dm_plex_box_faces 20,4 -right_dm_plex_box_faces 12,3 -time_end 1.6e-4 -time_step 4e-6"
+
+
+@pytest.mark.parametrize(("more", "most"), [(COARSE, 4), *long(("", 3.5))])
+def test_secants_of_earlier_steps(more, most, impakt):
+    run = impakt(joined(f"-options_file options/blocks.opts {NEO_HOOKEAN} -contact_type force -schwarz_snes_rtol 1e-6", more))
+    assert run.summary["schwarz"]["mean_contact_steps"] <= most
 
 
 def test_ties_with_mass_are_those_of_schwarz(shared_run):
