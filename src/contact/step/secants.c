@@ -111,15 +111,14 @@ PetscErrorCode ContactStepperVisitSecants(Contact contact, ContactStepper *stepp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How the block has it that rows go under the forces of a secant, and the work of these by it */
-static PetscReal Multiply(const StepperEntries *entries, const PetscScalar force[], PetscScalar product[])
+/* How a block has it that rows go under the forces of a secant, and the work of these by it */
+static PetscReal Multiply(PetscInt n, const PetscScalar block[], const PetscScalar force[], PetscScalar product[])
 {
-  const PetscInt n    = entries->n;
-  PetscReal      work = 0;
+  PetscReal work = 0;
 
   for (PetscInt k = 0; k < n; k++) product[k] = 0;
   for (PetscInt l = 0; l < n; l++)
-    for (PetscInt k = 0; k < n && force[l] != 0; k++) product[k] += entries->block[l * n + k] * force[l];
+    for (PetscInt k = 0; k < n && force[l] != 0; k++) product[k] += block[l * n + k] * force[l];
   for (PetscInt k = 0; k < n; k++) work += PetscRealPart(force[k] * product[k]);
   return work;
 }
@@ -167,7 +166,7 @@ PetscErrorCode StepperEntriesCorrect(StepperEntries *entries)
   PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
   for (PetscInt j = 0; j < secants->n_pairs; j++) {
     const PetscScalar *force     = secants->values + 2 * n * j;
-    const PetscReal    told_work = Multiply(entries, force, entries->product);
+    const PetscReal    told_work = Multiply(n, entries->block, force, entries->product);
 
     if (told_work > 0) PetscCall(Correct(entries, force, entries->product, told_work, NULL));
   }
@@ -195,14 +194,25 @@ static PetscErrorCode GatherEnds(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The block of a body is corrected by what the last two passes have shown of it, unless it has told right */
-static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, PetscInt b)
+/* By how much rows have gone otherwise under the forces of a secant than a block has it */
+static PetscReal Off(PetscInt n, const PetscScalar gone[], const PetscScalar product[])
+{
+  PetscReal off = 0;
+
+  for (PetscInt k = 0; k < n; k++) off = PetscMax(off, PetscAbsScalar(gone[k] - product[k]));
+  return off;
+}
+
+/* The block of a body is corrected by what the last two passes have shown of it, unless it has told right. Where secants of earlier steps
+   have made it worse than the body's own one they are forgotten. */
+static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool *forgets)
 {
   LawProblem     *problem = &stepper->problem;
   StepperEntries *entries = &stepper->assembly.of_body[b];
   StepperSecants *secants = &entries->secants;
-  const PetscInt  n = entries->n, all = problem->n, at = secants->n_pairs;
-  PetscReal       work = 0, told_work, off = 0, largest = 0;
+  const PetscInt  n = entries->n, all = problem->n;
+  PetscInt        at   = secants->n_pairs;
+  PetscReal       work = 0, told_work, off, largest = 0;
   PetscScalar    *force, *gone, *product = entries->product;
 
   PetscFunctionBegin;
@@ -218,11 +228,21 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     gone[k]  = ContactSign(pair, b) * (stepper->ends[end] - stepper->told[all + end]);
     work += PetscRealPart(force[k] * gone[k]);
   }
-  told_work = Multiply(entries, force, product);
-  for (PetscInt k = 0; k < n; k++) {
-    off     = PetscMax(off, PetscAbsScalar(gone[k] - product[k]));
-    largest = PetscMax(largest, PetscAbsScalar(product[k]));
+  told_work = Multiply(n, entries->block, force, product);
+  off       = Off(n, gone, product);
+  if (stepper->passes == 1 && at && Multiply(n, entries->own, force, product + n) > 0 && Off(n, gone, product + n) < off) {
+    PetscCall(PetscArraymove(secants->values, force, 2 * n));
+    PetscCall(StepperSecantsResize(secants, n, 1));
+    PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
+    at        = 0;
+    force     = secants->values;
+    gone      = force + n;
+    told_work = Multiply(n, entries->block, force, product);
+    off       = Off(n, gone, product);
+    *forgets = stepper->corrected = PETSC_TRUE;
+    stepper->assembled            = -1;
   }
+  for (PetscInt k = 0; k < n; k++) largest = PetscMax(largest, PetscAbsScalar(product[k]));
   if (off <= EXACT * largest + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0)) {
     secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -242,7 +262,7 @@ PetscErrorCode ContactStepperCorrectS(Contact contact, ContactStepper *stepper)
 {
   LawProblem    *problem = &stepper->problem;
   const PetscInt n       = problem->n;
-  PetscBool      any     = PETSC_FALSE;
+  PetscBool      any = PETSC_FALSE, forgets = PETSC_FALSE;
 
   PetscFunctionBegin;
   stepper->corrected = PETSC_FALSE;
@@ -251,11 +271,12 @@ PetscErrorCode ContactStepperCorrectS(Contact contact, ContactStepper *stepper)
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GatherEnds(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies && stepper->has_told; b++)
-    if (stepper->assembly.of_body[b].n && !stepper->assembly.of_body[b].alone) PetscCall(CorrectBody(contact, stepper, b));
+    if (stepper->assembly.of_body[b].n && !stepper->assembly.of_body[b].alone) PetscCall(CorrectBody(contact, stepper, b, &forgets));
   if (stepper->corrected) {
     PetscCall(MatAssemblyBegin(problem->S, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(problem->S, MAT_FINAL_ASSEMBLY));
   }
+  if (forgets) PetscCall(ContactStepperAssemble(contact, stepper));
   PetscCall(PetscArraycpy(stepper->told, problem->base, n));
   PetscCall(PetscArraycpy(stepper->told + n, stepper->ends, 2 * n));
   stepper->has_told = PETSC_TRUE;
