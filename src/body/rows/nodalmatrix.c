@@ -6,7 +6,8 @@
      feel what acts at the end of a step alone;
    - the effective matrix A of an implicit body: exact for linear ones;
    - that of a slab at the surface and what the body may do beyond it on a coarse grid, P^T A P: approximate. Whoever uses it corrects it by
-     what the body does.
+     what the body does;
+   - the stiffness of an explicit body with many substeps, for these where forces are felt: exact for linear bodies.
 
    Under a force f that grows from none an implicit body goes by A^{-1} f. One that is constant acts at the start as well, and the body goes
    twice as far: but massless nodes, which have no start, by the static answer of their layer less.
@@ -19,7 +20,7 @@
 #define MANY       100   /* displacements, from which on a slab is asked and not controller steps */
 #define SMALL_BODY 5000  /* displacements of a body whose own matrix is asked however many they are: a solution costs little then */
 
-typedef enum { BY_BODY, BY_LAYER, BY_SLAB } Kind;
+typedef enum { BY_BODY, BY_LAYER, BY_SLAB, BY_FRONT } Kind;
 
 struct _NodalMatrix {
   Kind              kind;
@@ -29,7 +30,7 @@ struct _NodalMatrix {
   PetscInt          n_near;    /* its columns that are single displacements of this rank: the first ones */
   PetscInt         *near;      /* which, rank numbering */
   ConstrainedSolver solver;    /* that the body has for the matrix; NULL: the following are */
-  Mat               matrix;    /* P^T A P */
+  Mat               matrix;    /* P^T A P, or the stiffness */
   KSP               ksp;
 };
 
@@ -50,10 +51,14 @@ PetscErrorCode NodalMatrixDestroy(NodalMatrix *nodal)
 static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *kind, PetscBool *any)
 {
   const PetscBool is_explicit = (PetscBool)(body->integrator->staggered > 0), inertia = body->integrator->has_inertia;
+  PetscMPIInt     size;
   PetscInt        all;
 
   PetscFunctionBegin;
-  *any = PETSC_FALSE;
+  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)body), &size));
+  *kind = BY_FRONT;
+  *any  = (PetscBool)(size == 1 && is_explicit && n > MANY && body->mass.inverse && !body->layer.exists && !body->damping);
+  if (!body->integrator->deforms) *any = PETSC_FALSE;
   if (!body->integrator->deforms || body->time.substeps > 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetSize(body->state.u, &all));
   *kind = is_explicit ? BY_LAYER : body->model.linear && (n <= MANY || all <= SMALL_BODY || !inertia) ? BY_BODY : BY_SLAB;
@@ -66,7 +71,7 @@ static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *
 static PetscErrorCode GetMatrix(Body body, Kind kind, Mat *A)
 {
   PetscFunctionBegin;
-  if (body->model.linear) {
+  if (body->model.linear && kind != BY_FRONT) {
     PetscCall(ConstrainedSolverGetMatrices(body->solver, A, NULL));
     PetscCall(PetscObjectReference((PetscObject)*A));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -181,7 +186,8 @@ static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt do
   nodal->kind = kind;
   /* an explicit body has a solver for its layer alone */
   if (kind == BY_BODY || body->integrator->staggered > 0) nodal->solver = body->solver;
-  if (kind == BY_BODY) PetscFunctionReturn(PETSC_SUCCESS);
+  if (kind == BY_FRONT) PetscCall(GetMatrix(body, kind, &nodal->matrix));
+  if (kind == BY_BODY || kind == BY_FRONT) PetscFunctionReturn(PETSC_SUCCESS);
   if (kind == BY_LAYER) PetscCall(CreateLayerFunctions(body, &nodal->functions));
   if (nodal->solver) {
     PetscCall(FindNear(nodal));
@@ -311,6 +317,10 @@ PetscErrorCode NodalMatrixProbe(Body body, const NodalMatrix nodal, PetscInt n, 
   PetscInt some[COLUMNS], count = 0;
 
   PetscFunctionBegin;
+  if (nodal->kind == BY_FRONT) {
+    PetscCall(FrontProbe(body, nodal->matrix, nodal->shape, n, dofs, compliance));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt i = 0; i < n; i++) {
     if (!ComplianceKnows(compliance, dofs[i])) some[count++] = dofs[i];
     if (!count || (count < COLUMNS && i < n - 1)) continue;
@@ -323,7 +333,8 @@ PetscErrorCode NodalMatrixProbe(Body body, const NodalMatrix nodal, PetscInt n, 
 /* How a column is found, for those who look */
 const char *NodalMatrixDescribe(const NodalMatrix nodal)
 {
-  const char *const names[] = {"solution with its own matrix", "solution with the massless layer", "solution with a slab at the surface"};
+  const char *const names[] = {"solution with its own matrix", "solution with the massless layer", "solution with a slab at the surface",
+                               "controller step where forces are felt"};
 
   return nodal ? names[nodal->kind] : "controller step";
 }

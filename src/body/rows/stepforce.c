@@ -81,9 +81,10 @@ PetscErrorCode BodyCreateNodalCompliance(Body body, Compliance *nodal)
 
   Note:
   Each new one costs a solution with a matrix where one tells, see nodalmatrix.c, else a controller step of the body, linearized about its
-  undeformed state. Of more than 100 displacements they are approximate, but for small linear bodies with
-  one substep, and explicit ones with massless contact nodes. Those of a rigid body are found where it will be in the middle of the
-  controller step, anew for each, and cost next to nothing.
+  undeformed state. Of more than 100 displacements of a body with one substep they are approximate, but for small linear bodies and
+  explicit ones with massless contact nodes. More than 100 of an explicit body of one rank, with substeps, lumped mass on all nodes and no
+  dashpots, are found 8 together by these substeps where forces are felt. Those of a rigid body are found where it will be in the middle of
+the controller step, anew for each, and cost next to nothing.
 
 .seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`
 @*/

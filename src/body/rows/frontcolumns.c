@@ -1,0 +1,179 @@
+/*
+   Displacements of nodes under unit forces on them, at the end of a controller step of many substeps of an explicit body, by these substeps
+   where they count alone. In each substep a force is felt one element farther, and what is far from the nodes asked for when the step ends
+   does not come back to them in time. Ahead of the wave displacements fall below round-off: nodes join as their neighbours have moved.
+*/
+#include "complianceimpl.h"
+
+#define STILL    1e-12 /* parts of the largest displacement: neighbours of a node that has moved no more do not move at all */
+#define TOGETHER 8     /* columns that are made at once: of nodes near each other, as neighbours in the numbering mostly are */
+
+typedef struct {
+  PetscInt           dim, n;           /* nodes */
+  const PetscInt    *begin, *columns;  /* of the stiffness, all rows of a node alike */
+  const PetscScalar *values, *inverse; /* of the stiffness; of the lumped mass */
+  PetscInt          *distance;         /* per node: elements to the nearest one asked for */
+  PetscInt           n_moved, *moved;  /* nodes that move, in the order in which they have joined */
+  PetscBool         *moves, *spreads;  /* per node: it does; its neighbours do */
+  PetscScalar       *u, *way, *a;      /* per displacement, for each column: itself; how it goes in a substep; its acceleration */
+} Front;
+
+static void Join(Front *front, PetscInt node)
+{
+  if (front->moves[node]) return;
+  front->moves[node]             = PETSC_TRUE;
+  front->moved[front->n_moved++] = node;
+}
+
+/* The largest displacement of a node in any column */
+static PetscReal Largest(const Front *front, PetscInt node)
+{
+  const PetscInt n       = front->dim * TOGETHER;
+  PetscReal      largest = 0;
+
+  for (PetscInt i = node * n; i < (node + 1) * n; i++) largest = PetscMax(largest, PetscAbsScalar(front->u[i]));
+  return largest;
+}
+
+/* Neighbours of nodes that have moved join, as long as they can act on nodes asked for in the substeps that are left */
+static void Spread(Front *front, PetscInt left, PetscReal least)
+{
+  const PetscInt dim = front->dim;
+
+  for (PetscInt k = 0, n = front->n_moved; k < n; k++) {
+    const PetscInt node = front->moved[k];
+
+    if (front->spreads[node] || front->distance[node] > left || Largest(front, node) <= least) continue;
+    front->spreads[node] = PETSC_TRUE;
+    for (PetscInt e = front->begin[node * dim]; e < front->begin[node * dim + 1]; e += dim) {
+      const PetscInt other = front->columns[e] / dim;
+
+      if (front->distance[other] < left) Join(front, other);
+    }
+  }
+}
+
+/* One substep from displacements that are there, under a force on one of them in each column */
+static void Step(Front *front, PetscInt left, PetscInt n, const PetscInt dofs[], PetscReal force, PetscReal dt)
+{
+  const PetscInt dim = front->dim;
+
+  for (PetscInt k = 0; k < front->n_moved; k++) {
+    const PetscInt node = front->moved[k];
+
+    for (PetscInt i = node * dim; i < (node + 1) * dim && front->distance[node] <= left; i++) {
+      PetscScalar balance[TOGETHER] = {0}, *a = front->a + i * TOGETHER;
+
+      for (PetscInt e = front->begin[i]; e < front->begin[i + 1]; e++) {
+        const PetscScalar value = front->values[e], *u = front->u + front->columns[e] * TOGETHER;
+
+        for (PetscInt c = 0; c < TOGETHER; c++) balance[c] -= value * u[c];
+      }
+      for (PetscInt c = 0; c < n; c++)
+        if (dofs[c] == i) balance[c] += force;
+      for (PetscInt c = 0; c < TOGETHER; c++) a[c] = balance[c] * front->inverse[i];
+    }
+  }
+  for (PetscInt k = 0; k < front->n_moved; k++) {
+    const PetscInt first = front->moved[k] * dim * TOGETHER;
+
+    for (PetscInt i = first; i < first + dim * TOGETHER && front->distance[front->moved[k]] <= left; i++) {
+      front->way[i] += PetscSqr(dt) * front->a[i];
+      front->u[i] += front->way[i];
+    }
+  }
+}
+
+/* The columns of some displacements, in `u`, where the nodes asked for are */
+static void MakeColumns(Front *front, PetscInt n, const PetscInt dofs[], BodyForceShape shape, PetscInt substeps, PetscReal dt)
+{
+  const PetscInt size = front->dim * TOGETHER;
+
+  for (PetscInt k = 0; k < front->n_moved; k++) {
+    const PetscInt node = front->moved[k];
+
+    front->moves[node] = front->spreads[node] = PETSC_FALSE;
+    for (PetscInt i = node * size; i < (node + 1) * size; i++) front->u[i] = front->way[i] = front->a[i] = 0;
+  }
+  front->n_moved = 0;
+  for (PetscInt c = 0; c < n; c++) {
+    const PetscInt i = dofs[c] * TOGETHER + c;
+
+    Join(front, dofs[c] / front->dim);
+    if (shape == BODY_FORCE_CONSTANT) front->u[i] = front->way[i] = 0.5 * PetscSqr(dt) * front->inverse[dofs[c]];
+  }
+  for (PetscInt k = 1; k < substeps; k++) {
+    PetscReal largest = 0;
+
+    for (PetscInt c = 0; c < n; c++) largest = PetscMax(largest, Largest(front, dofs[c] / front->dim));
+    Spread(front, substeps - k, STILL * largest);
+    Step(front, substeps - k, n, dofs, shape == BODY_FORCE_CONSTANT ? 1 : (PetscReal)k / (PetscReal)substeps, dt);
+  }
+}
+
+/* How many elements nodes are away from those of some displacements */
+static void FindDistances(Front *front, PetscInt n, const PetscInt dofs[])
+{
+  const PetscInt dim   = front->dim;
+  PetscInt       count = 0, *queue = front->moved;
+
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscInt node = dofs[i] / dim;
+
+    if (front->distance[node] == 0) continue;
+    front->distance[node] = 0;
+    queue[count++]        = node;
+  }
+  for (PetscInt k = 0; k < count; k++)
+    for (PetscInt e = front->begin[queue[k] * dim]; e < front->begin[queue[k] * dim + 1]; e += dim) {
+      const PetscInt other = front->columns[e] / dim;
+
+      if (front->distance[other] <= front->distance[queue[k]] + 1) continue;
+      front->distance[other] = front->distance[queue[k]] + 1;
+      queue[count++]         = other;
+    }
+}
+
+/* FrontProbe - columns of displacements, of a body on one rank with its stiffness, where all forces are but those on dashpots */
+PetscErrorCode FrontProbe(Body body, Mat stiffness, BodyForceShape shape, PetscInt n, const PetscInt dofs[], Compliance compliance)
+{
+  Front          front  = {.dim = body->mesh.dim, .n = body->mesh.owned_nodes};
+  const PetscInt n_dofs = front.n * front.dim, size = n_dofs * TOGETHER, *known;
+  const Vec      inverse = body->work.nodes[0], column = body->work.nodes[1];
+  PetscScalar   *values;
+  PetscInt       n_rows, n_known, some[TOGETHER], count = 0;
+  PetscBool      done;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetRowIJ(stiffness, 0, PETSC_FALSE, PETSC_FALSE, &n_rows, &front.begin, &front.columns, &done));
+  PetscCall(MatSeqAIJGetArrayRead(stiffness, &front.values));
+  PetscCall(VecCopy(body->mass.inverse, inverse));
+  PetscCall(BodyZeroHeld(body, inverse));
+  PetscCall(VecGetArrayRead(inverse, &front.inverse));
+  PetscCall(PetscCalloc3(size, &front.u, size, &front.way, size, &front.a));
+  PetscCall(PetscCalloc2(front.n, &front.moves, front.n, &front.spreads));
+  PetscCall(PetscMalloc2(front.n, &front.distance, front.n, &front.moved));
+  for (PetscInt i = 0; i < front.n; i++) front.distance[i] = PETSC_INT_MAX;
+  ComplianceGetRows(compliance, &n_known, &known, NULL);
+  FindDistances(&front, n_known, known);
+  FindDistances(&front, n, dofs);
+  for (PetscInt i = 0; i < n; i++) {
+    if (!ComplianceKnows(compliance, dofs[i])) some[count++] = dofs[i];
+    if (!count || (count < TOGETHER && i < n - 1)) continue;
+    MakeColumns(&front, count, some, shape, body->time.substeps, body->time.step);
+    PetscCall(VecGetArrayWrite(column, &values));
+    for (PetscInt c = 0; c < count; c++) {
+      for (PetscInt k = 0; k < n_dofs; k++) values[k] = front.u[k * TOGETHER + c];
+      PetscCall(ComplianceSetColumn(compliance, some[c], 1, values));
+    }
+    PetscCall(VecRestoreArrayWrite(column, &values));
+    count = 0;
+  }
+  PetscCall(PetscFree2(front.distance, front.moved));
+  PetscCall(PetscFree2(front.moves, front.spreads));
+  PetscCall(PetscFree3(front.u, front.way, front.a));
+  PetscCall(VecRestoreArrayRead(inverse, &front.inverse));
+  PetscCall(MatSeqAIJRestoreArrayRead(stiffness, &front.values));
+  PetscCall(MatRestoreRowIJ(stiffness, 0, PETSC_FALSE, PETSC_FALSE, &n_rows, &front.begin, &front.columns, &done));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
