@@ -290,7 +290,7 @@ PetscErrorCode ConstrainedSolverApplyUnit(ConstrainedSolver s, PetscInt j, Vec x
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* w = W f for forces f on all rows; neither may be a vector of the solver */
+/* w = W f for forces f on all rows; neither may be a vector of the solver. Leaves A^{-1} B^T f for the next call. */
 PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver s, Vec f, Vec w)
 {
   PetscFunctionBegin;
@@ -298,6 +298,12 @@ PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver s, Vec f, Vec 
   PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->product));
   PetscCall(MatMult(s->B, s->product, w));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A^{-1} B^T f of the last ConstrainedSolverApplyCompliance(), owned by the solver */
+Vec ConstrainedSolverGetProduct(ConstrainedSolver s)
+{
+  return s->product;
 }
 
 /* C_j = A^{-1} B^T e_j, and this rank's part of column j of W in the work space */

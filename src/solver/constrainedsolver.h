@@ -24,6 +24,7 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverReplaceRows(ConstrainedSolver, 
 PETSC_INTERN PetscErrorCode     ConstrainedSolverForgetUnknown(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyUnit(ConstrainedSolver, PetscInt, Vec, PetscScalar[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyCompliance(ConstrainedSolver, Vec, Vec);
+PETSC_INTERN Vec                ConstrainedSolverGetProduct(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFree(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFreeColumns(ConstrainedSolver, Mat, Mat);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);

@@ -121,6 +121,7 @@ PETSC_EXTERN PetscErrorCode BodyProposeRepeat(Body, BodyWord *);
 PETSC_EXTERN PetscErrorCode BodyBeginExchange(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyEndExchange(Body);
 PETSC_EXTERN PetscErrorCode BodyExpectRepeat(Body, const PetscScalar[], const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyExpectApplied(Body, Vec);
 PETSC_EXTERN PetscErrorCode BodyLeaveLayer(Body);
 PETSC_EXTERN PetscErrorCode BodyGetLayerMissing(Body, PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);

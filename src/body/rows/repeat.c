@@ -179,6 +179,35 @@ PetscErrorCode BodyExpectRepeat(Body body, const PetscScalar change[], const Pet
 }
 
 /*@
+  BodyExpectApplied - `BodyExpectRepeat()` for the forces of the last `BodyApplyCompliance()`
+
+  Not Collective, but all ranks that have rows of the body or parts of it have to call it
+
+  Input Parameters:
++ body   - the `Body`, linear, whose rows answer by a massless layer alone
+- change - the forces of that call, by which those on the rows change next [N]
+
+  Level: developer
+
+.seealso: `Body`, `BodyExpectRepeat()`, `BodyApplyCompliance()`
+@*/
+PetscErrorCode BodyExpectApplied(Body body, Vec change)
+{
+  const PetscScalar *force, *answer;
+  Vec                moved;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  moved = ConstrainedSolverGetProduct(body->solver);
+  PetscCall(VecGetArrayRead(change, &force));
+  PetscCall(VecGetArrayRead(moved, &answer));
+  PetscCall(BodyExpectRepeat(body, force, answer));
+  PetscCall(VecRestoreArrayRead(moved, &answer));
+  PetscCall(VecRestoreArrayRead(change, &force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyLeaveLayer - lets the next `BodyTryIntegrateRows()` leave the massless layer where it is, off balance
 
   Not Collective, but all ranks have to call it

@@ -26,22 +26,22 @@ static PetscErrorCode RestorePattern(const LawProblem *problem, Mat A, LawPatter
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The entries of S, for reading */
+/* The entries of S, or of what is near it, for reading */
 PetscErrorCode LawProblemGetS(const LawProblem *problem, LawPattern *pattern, const PetscScalar *values[])
 {
   PetscFunctionBegin;
-  PetscCall(GetPattern(problem, problem->S, pattern));
-  if (problem->sparse) PetscCall(MatSeqAIJGetArrayRead(problem->S, values));
-  else PetscCall(MatDenseGetArrayRead(problem->S, values));
+  PetscCall(GetPattern(problem, problem->entries, pattern));
+  if (problem->sparse) PetscCall(MatSeqAIJGetArrayRead(problem->entries, values));
+  else PetscCall(MatDenseGetArrayRead(problem->entries, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode LawProblemRestoreS(const LawProblem *problem, LawPattern *pattern, const PetscScalar *values[])
 {
   PetscFunctionBegin;
-  if (problem->sparse) PetscCall(MatSeqAIJRestoreArrayRead(problem->S, values));
-  else PetscCall(MatDenseRestoreArrayRead(problem->S, values));
-  PetscCall(RestorePattern(problem, problem->S, pattern));
+  if (problem->sparse) PetscCall(MatSeqAIJRestoreArrayRead(problem->entries, values));
+  else PetscCall(MatDenseRestoreArrayRead(problem->entries, values));
+  PetscCall(RestorePattern(problem, problem->entries, pattern));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,7 +98,7 @@ static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar for
   PetscObjectState state;
 
   PetscFunctionBegin;
-  PetscCall(PetscObjectStateGet((PetscObject)problem->S, &state));
+  PetscCall(PetscObjectStateGet((PetscObject)problem->entries, &state));
   *other               = (PetscBool)(state != problem->jacobian_of);
   problem->jacobian_of = state;
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
@@ -128,7 +128,7 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscBool          other = PETSC_FALSE;
 
   PetscFunctionBegin;
-  (void)P;
+  (void)J;
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(LawProblemRead(problem, x, y));
   PetscCall(TakeDerivatives(problem, x, y, &other));
@@ -136,19 +136,50 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   if (!other) PetscFunctionReturn(PETSC_SUCCESS);
   if (LawProblemIsLagged(problem) && problem->changes > STALE) PetscCall(SNESSetLagPreconditioner(snes, LAW_LAG_AFTER_NEXT));
   if (problem->changes > STALE) problem->changes = 0;
-  PetscCall(MatZeroEntries(J));
+  PetscCall(MatZeroEntries(P));
   PetscCall(LawProblemGetS(problem, &of_S, &S));
-  PetscCall(GetPattern(problem, J, &of_J));
-  if (problem->sparse) PetscCall(MatSeqAIJGetArray(J, &values));
-  else PetscCall(MatDenseGetArray(J, &values));
+  PetscCall(GetPattern(problem, P, &of_J));
+  if (problem->sparse) PetscCall(MatSeqAIJGetArray(P, &values));
+  else PetscCall(MatDenseGetArray(P, &values));
   if (!problem->sparse) AddNodes(problem, S, values);
   for (PetscInt node = 0; node < problem->n_nodes && problem->sparse; node++) AddNode(problem, node, of_S, S, of_J, values);
-  if (problem->sparse) PetscCall(MatSeqAIJRestoreArray(J, &values));
-  else PetscCall(MatDenseRestoreArray(J, &values));
-  PetscCall(RestorePattern(problem, J, &of_J));
+  if (problem->sparse) PetscCall(MatSeqAIJRestoreArray(P, &values));
+  else PetscCall(MatDenseRestoreArray(P, &values));
+  PetscCall(RestorePattern(problem, P, &of_J));
   PetscCall(LawProblemRestoreS(problem, &of_S, &S));
-  PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = J x, J = I - D (I - r (S + eps diag S)), where S is products */
+static PetscErrorCode Multiply(Mat J, Vec X, Vec Y)
+{
+  LawProblem        *problem;
+  const PetscScalar *x;
+  PetscScalar       *y, *read;
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(J, &problem));
+  read = problem->work;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(Y, &y));
+  PetscCall(LawProblemMultiply(problem, x, read));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
+    const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
+
+    for (PetscInt k = 0; k < rows; k++) {
+      y[first + k] = x[first + k];
+      for (PetscInt l = 0; l < rows; l++) {
+        const PetscInt i = first + l;
+
+        y[first + k] -= derivative[k * rows + l] * ((1 - problem->proximal) * x[i] - read[i] / problem->weight[i]);
+      }
+    }
+  }
+  PetscCall(VecRestoreArrayWrite(Y, &y));
+  PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,7 +224,13 @@ PetscErrorCode LawProblemCreateJacobian(LawProblem *problem)
   PetscCall(MatSetType(problem->jacobian, problem->sparse ? MATSEQAIJ : MATSEQDENSE));
   if (problem->sparse) PetscCall(SetPattern(problem));
   else PetscCall(MatSetUp(problem->jacobian));
-  PetscCall(SNESSetJacobian(problem->newton, problem->jacobian, problem->jacobian, ComputeJacobian, problem));
+  PetscCall(MatDestroy(&problem->operator));
+  if (LawProblemHasProducts(problem)) {
+    PetscCall(MatCreateShell(PETSC_COMM_SELF, problem->n, problem->n, problem->n, problem->n, problem, &problem->operator));
+    PetscCall(MatShellSetOperation(problem->operator, MATOP_MULT, (void (*)(void))Multiply));
+  }
+  PetscCall(SNESSetJacobian(problem->newton, problem->operator ? problem->operator : problem->jacobian, problem->jacobian, ComputeJacobian,
+                            problem));
   problem->jacobian_of = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

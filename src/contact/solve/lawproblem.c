@@ -12,6 +12,7 @@
    and the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976).
 */
 #include "lawproblem.h"
+#include <petsc/private/petscimpl.h>
 #include <sys/petsccompat.h>
 
 #define MOST_NEWTON      50
@@ -20,17 +21,24 @@
 #define MOST_SWEEPS      5120
 #define NODE_ITERATIONS  10 /* for the rows of one node in a sweep */
 
-/* out = S in */
+/* out = S in, which is there where the last product was this one */
 PetscErrorCode LawProblemMultiply(LawProblem *problem, const PetscScalar in[], PetscScalar out[])
 {
   const PetscScalar *product;
   PetscScalar       *x;
+  PetscObjectState   state;
+  PetscBool          same, zero = PETSC_TRUE;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(problem->in, &x));
+  for (PetscInt i = 0; i < problem->n && zero; i++) zero = (PetscBool)(in[i] == 0);
+  PetscCall(PetscObjectStateGet((PetscObject)problem->S, &state));
+  PetscCall(VecGetArray(problem->in, &x));
+  PetscCall(PetscArraycmp(x, in, problem->n, &same));
   PetscCall(PetscArraycpy(x, in, problem->n));
-  PetscCall(VecRestoreArrayWrite(problem->in, &x));
-  PetscCall(MatMult(problem->S, problem->in, problem->out));
+  PetscCall(VecRestoreArray(problem->in, &x));
+  if (zero) PetscCall(VecZeroEntries(problem->out));
+  else if (!same || problem->product_of != state) PetscCall(MatMult(problem->S, problem->in, problem->out));
+  problem->product_of = state;
   PetscCall(VecGetArrayRead(problem->out, &product));
   PetscCall(PetscArraycpy(out, product, problem->n));
   PetscCall(VecRestoreArrayRead(problem->out, &product));
@@ -186,6 +194,7 @@ static PetscErrorCode DestroySolvers(LawProblem *problem)
   PetscCall(SNESDestroy(&problem->newton));
   PetscCall(SNESDestroy(&problem->nodes));
   PetscCall(MatDestroy(&problem->jacobian));
+  PetscCall(MatDestroy(&problem->operator));
   PetscCall(VecDestroy(&problem->x));
   PetscCall(VecDestroy(&problem->f));
   PetscCall(VecDestroy(&problem->in));
@@ -219,6 +228,7 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscCall(VecDuplicate(problem->x, &problem->f));
   PetscCall(VecDuplicate(problem->x, &problem->in));
   PetscCall(VecDuplicate(problem->x, &problem->out));
+  problem->product_of = -1;
   PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->newton));
   PetscCall(LawProblemCreateJacobian(problem));
   PetscCall(SNESGetLineSearch(problem->newton, &line_search));
@@ -226,9 +236,10 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   /* a sparse S is nearly diagonal: a few iterations, to round-off, take a fraction of the time of factors, incomplete ones too; where a
-     dense one is large, those of an earlier Jacobian precondition */
-  PetscCall(KSPSetType(ksp, iterative ? KSPGMRES : KSPPREONLY));
-  PetscCall(PCSetType(pc, problem->sparse ? PCSOR : PCLU));
+     dense one is large, those of an earlier Jacobian precondition; where it is products, incomplete ones of that of a
+     matrix near it, whose entries fall off fast */
+  PetscCall(KSPSetType(ksp, LawProblemHasProducts(problem) ? KSPFGMRES : iterative ? KSPGMRES : KSPPREONLY));
+  PetscCall(PCSetType(pc, LawProblemHasProducts(problem) ? PCILU : problem->sparse ? PCSOR : PCLU));
   if (LawProblemIsLagged(problem)) {
     PetscCall(SNESSetLagPreconditioner(problem->newton, LAW_LAG_AFTER_NEXT));
     PetscCall(SNESSetLagPreconditionerPersists(problem->newton, PETSC_TRUE));
@@ -238,6 +249,7 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
     PetscCall(KSPSetPCSide(ksp, PC_RIGHT)); /* its residual is that of Newton's method */
     PetscCall(SNESSetMaxLinearSolveFailures(problem->newton, PETSC_INT_MAX));
   }
+  if (LawProblemHasProducts(problem)) PetscCall(KSPSetMinimumIterations(ksp, 1)); /* one row alone may miss its tolerance */
   PetscCall(KSPSetTolerances(ksp, SPARSE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, MOST_LINEAR));
   PetscCall(SNESSetFromOptions(problem->newton));
   PetscCall(CreateSNES(problem, "law_nodes_", SNESNGS, MOST_SWEEPS, &problem->nodes));
@@ -272,31 +284,37 @@ PetscErrorCode LawProblemSetUp(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(LawProblemResize(problem, 1));
   PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, 1, 1, NULL, &S));
-  PetscCall(LawProblemTakeS(problem, &S));
+  PetscCall(LawProblemTakeS(problem, &S, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* S of the rows there are, which the equations own from now on: the one that they have with other values, or another; solvers are those of
-   its size and kind. `begin` is known. */
-PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S)
+   its size and kind. `near`: (NULL where S has entries) a sparse matrix for S that is only multiplied with. `begin` is known. */
+PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
 {
+  const PetscBool    products = (PetscBool)(near != NULL), other = (PetscBool)(products != LawProblemHasProducts(problem));
   const PetscBool    another = (PetscBool)(*S != problem->S);
   const PetscScalar *diagonal;
   PetscBool          dense;
 
   PetscFunctionBegin;
+  if (!products) PetscCall(PetscObjectReference((PetscObject)*S));
   PetscCall(MatDestroy(&problem->S));
-  problem->S = *S;
-  *S         = NULL;
-  PetscCall(PetscObjectTypeCompare((PetscObject)problem->S, MATSEQDENSE, &dense));
-  if (problem->n != problem->rows || problem->sparse == dense) {
+  PetscCall(MatDestroy(&problem->entries));
+  problem->S       = *S;
+  problem->entries = products ? *near : *S;
+  *S               = NULL;
+  if (products) *near = NULL;
+  PetscCall(PetscObjectTypeCompare((PetscObject)problem->entries, MATSEQDENSE, &dense));
+  if (problem->n != problem->rows || problem->sparse == dense || other) {
     problem->sparse = (PetscBool)!dense;
     PetscCall(DestroySolvers(problem));
     PetscCall(CreateSolvers(problem));
     problem->rows = problem->n;
   } else if (another && problem->sparse) PetscCall(LawProblemCreateJacobian(problem));
   if (another) problem->jacobian_of = -1;
-  PetscCall(MatGetDiagonal(problem->S, problem->out));
+  problem->product_of = -1;
+  PetscCall(MatGetDiagonal(problem->entries, problem->out));
   PetscCall(VecGetArrayRead(problem->out, &diagonal));
   for (PetscInt i = 0; i < problem->n; i++) problem->diagonal[i] = PetscRealPart(diagonal[i]);
   PetscCall(VecRestoreArrayRead(problem->out, &diagonal));
@@ -310,5 +328,6 @@ PetscErrorCode LawProblemDestroy(LawProblem *problem)
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
   PetscCall(PetscFree4(problem->diagonal, problem->weight, problem->law, problem->derivatives));
   PetscCall(MatDestroy(&problem->S));
+  PetscCall(MatDestroy(&problem->entries));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

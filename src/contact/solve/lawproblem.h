@@ -8,8 +8,9 @@ typedef struct {
   PetscInt      *begin;       /* per node: its first row; n_nodes + 1 */
   const RowLaw **law;         /* per node; borrowed */
   PetscReal     *limit;       /* two numbers per node */
-  Mat            S;           /* what rows read by forces on them, laws that give way included: dense, or sparse [m/N] */
-  PetscReal     *diagonal;    /* of S */
+  Mat            S;           /* what rows read by forces on them, laws that give way included: dense, sparse, or products [m/N] */
+  Mat            entries;     /* S, or a sparse matrix near it where S is products alone */
+  PetscReal     *diagonal;    /* of the latter */
   PetscReal     *weight;      /* per row: 1 / r of the trial force lambda - r y [m/N] */
   PetscReal     *derivatives; /* per node: those of P that the Jacobian has, ROW_LAW_ROWS^2 */
   PetscReal      resolution;  /* what rows read is right to so much, by round-off of positions [m] */
@@ -23,18 +24,19 @@ typedef struct {
   PetscInt       iterations;  /* of Newton's method, and node by node, in the last solution */
   PetscBool      solved;      /* there is a solution since the last call */
   PetscBool      by_nodes;    /* that was found node by node */
-  PetscBool      sparse;      /* S is */
+  PetscBool      sparse;      /* the matrix of entries is */
   Vec            x, f;
-  Vec            in, out; /* work space of products with S */
-  Mat            jacobian;
-  PetscInt64     jacobian_of; /* state of the S that it has; -1: none */
-  PetscInt       changes;     /* of derivatives at nodes, since the preconditioner was made */
+  Vec            in, out;            /* the last product with S */
+  PetscInt64     product_of;         /* state of the S of that; -1: none */
+  Mat            jacobian, operator; /* by entries; products with it (NULL: it is right) */
+  PetscInt64     jacobian_of;        /* state of the entries that it has; -1: none */
+  PetscInt       changes;            /* of derivatives at nodes, since the preconditioner was made */
   SNES           newton, nodes;
 } LawProblem;
 
 PETSC_INTERN PetscErrorCode LawProblemSetUp(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemResize(LawProblem *, PetscInt);
-PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *);
+PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemMultiply(LawProblem *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemSolve(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemDestroy(LawProblem *);
@@ -43,6 +45,12 @@ PETSC_INTERN PetscErrorCode LawProblemDestroy(LawProblem *);
 typedef struct {
   const PetscInt *begin, *columns;
 } LawPattern;
+
+/* Whether S has no entries, and is only multiplied with */
+static inline PetscBool LawProblemHasProducts(const LawProblem *problem)
+{
+  return (PetscBool)(problem->entries != problem->S);
+}
 
 /* For the files of this folder */
 #define LAW_TOLERANCE      1e-13 /* of the largest force, and of the largest force that would close what is read */

@@ -5,7 +5,8 @@
 #define VANISHES      1e-12 /* of what rows read, by themselves or by their own force */
 #define MOST_PROXIMAL 20
 #define FIRST_SWEEPS  5
-#define ENOUGH        0.5 /* or this part of the tolerance of Newton's method */
+#define ENOUGH        0.5 /* linear iterations leave this part of the tolerance of Newton's method, */
+#define MEAN          0.2 /* or, in the mean, this part of what readings are right to */
 
 /* By one of the solvers, from `force` on */
 static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, SNESConvergedReason *reason)
@@ -33,18 +34,21 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
   PetscScalar        *start  = problem->work + problem->n;
   PetscInt            sweeps = FIRST_SWEEPS, most;
-  PetscReal           rtol;
+  PetscReal           rtol, enough;
   KSP                 ksp;
 
   PetscFunctionBegin;
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(SNESGetTolerances(problem->newton, NULL, &rtol, NULL, NULL, NULL));
-  PetscCall(
-      KSPSetTolerances(ksp, PETSC_CURRENT, ENOUGH * rtol * LawProblemForceScale(problem, problem->force), PETSC_CURRENT, PETSC_CURRENT));
+  enough = ENOUGH * rtol * LawProblemForceScale(problem, problem->force);
+  /* each product takes solutions with the bodies' matrices: no more of them than for what readings are right to, by a mean of rows */
+  if (LawProblemHasProducts(problem))
+    enough = PetscMax(enough, MEAN * PetscSqrtReal((PetscReal)problem->n) * problem->resolution / problem->largest);
+  PetscCall(KSPSetTolerances(ksp, PETSC_CURRENT, enough, PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(PetscArraycpy(start, problem->force, problem->n));
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
   PetscCall(SolveBy(problem, problem->newton, &reason));
-  for (; reason < 0 && sweeps <= most; sweeps *= 4) {
+  for (; reason < 0 && sweeps <= most && !LawProblemHasProducts(problem); sweeps *= 4) { /* sweeps take entries of S */
     PetscCall(PetscInfo(problem->newton,
                         "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps node by node\n",
                         problem->n, SNESConvergedReasons[reason], problem->iterations, sweeps));

@@ -24,6 +24,8 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
     PetscCall(PetscFree(entries->own));
     PetscCall(StepperSecantsDestroy(&entries->secants));
     PetscCall(StepperSecantsDestroy(&entries->kept));
+    PetscCall(VecDestroy(&entries->force));
+    PetscCall(VecDestroy(&entries->way));
   }
   PetscCall(PetscFree(assembly->of_body));
   PetscCall(PetscFree2(assembly->begin, assembly->next));
@@ -370,7 +372,6 @@ static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
   StepperAssembly *assembly = &stepper->assembly;
 
   PetscFunctionBegin;
-  PetscCall(ContactStepperListBodyRows(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Vec diagonal;
 
@@ -391,28 +392,34 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   const PetscInt   n        = stepper->problem.n;
   StepperAssembly *assembly = &stepper->assembly;
   PetscBool        same     = (PetscBool)(assembly->of_state == stepper->state && stepper->n_assembled == n);
-  Mat              S;
+  Mat              S, near = NULL;
 
   PetscFunctionBegin;
   if (same) PetscCall(PetscArraycmp(stepper->rows, stepper->of_assembled, n, &same));
   if (same && stepper->assembled == stepper->state) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
-  if (!same) PetscCall(GetParts(contact, stepper));
+  if (!same) PetscCall(ContactStepperListBodyRows(contact, stepper));
+  if (!same) PetscCall(ContactStepperChooseProducts(contact, stepper));
+  if (!same && !stepper->products) PetscCall(GetParts(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StepperEntries *entries = &assembly->of_body[b];
 
     if (entries->n && !entries->alone) PetscCall(StepperEntriesCorrect(entries));
   }
-  if (!AnyBody(assembly, PETSC_FALSE) && n > FEW_ROWS) {
+  if (stepper->products) PetscCall(ContactStepperCreateProducts(contact, stepper, &S, &near));
+  else if (!AnyBody(assembly, PETSC_FALSE) && n > FEW_ROWS) {
     S = assembly->product;
     PetscCall(PetscObjectReference((PetscObject)S));
   } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, &S));
   else PetscCall(AssembleDense(stepper, &S));
   if (stepper->gives) PetscCall(AddGive(contact, stepper, S));
-  PetscCall(LawProblemTakeS(&stepper->problem, &S));
+  PetscCall(LawProblemTakeS(&stepper->problem, &S, near ? &near : NULL));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
   PetscCall(PetscInfo(contact, "S assembled: %s, %" PetscInt_FMT " rows of %" PetscInt_FMT " nodes\n",
-                      stepper->problem.sparse ? "sparse" : "dense", n, stepper->problem.n_nodes));
+                      stepper->products         ? "as products"
+                      : stepper->problem.sparse ? "sparse"
+                                                : "dense",
+                      n, stepper->problem.n_nodes));
   stepper->n_assembled = n;
   stepper->assembled = assembly->of_state = stepper->state;
   PetscCall(PetscLogEventEnd(CONTACT_Factor, contact, 0, 0, 0));

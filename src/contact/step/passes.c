@@ -74,6 +74,7 @@ static PetscErrorCode MeasureGroups(Contact contact, ContactStepper *stepper)
   for (PetscInt g = 0; g < contact->n_bodies; g++) stepper->done[g] = (PetscBool)(stepper->off[g] <= rtol * stepper->scale[g] + atol);
   for (PetscInt i = 0; i < n; i++)
     if (stepper->done[ContactStepperGroup(contact, stepper, i)]) problem->force[i] = problem->base[i];
+  PetscCall(ContactStepperTellProducts(contact, stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,6 +104,13 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(PetscArraycpy(problem->force, problem->base, n));
   PetscCall(ContactStepperCorrectS(contact, stepper));
   PetscCall(LawProblemSolve(problem));
+  if (!problem->solved && stepper->products) { /* sweeps node by node may, which take the entries of S */
+    stepper->forms             = PETSC_TRUE;
+    stepper->assembly.of_state = -1;
+    PetscCall(PetscArraycpy(problem->force, problem->base, n));
+    PetscCall(ContactStepperAssemble(contact, stepper));
+    PetscCall(LawProblemSolve(problem));
+  }
   if (!stepper->passes++) PetscCall(LimitWays(contact, stepper));
   PetscCall(MeasureGroups(contact, stepper));
   if (!problem->solved) {

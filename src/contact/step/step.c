@@ -128,7 +128,8 @@ PetscErrorCode ContactStepperStep(Contact contact)
 
   PetscFunctionBegin;
   stepper->passes = 0;
-  if (stepper->has_rigid) stepper->state++;
+  if (stepper->has_rigid || stepper->forms) stepper->state++;
+  stepper->forms = PETSC_FALSE;
   PetscCall(PetscArraycpy(stepper->last, contact->start.force, contact->rows.n));
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
   PetscCall(ContactStepperComputeRates(contact, stepper->rate));

@@ -35,7 +35,7 @@ typedef struct {
 
 /* The touching rows of a body: entries of all ranks, row by row */
 typedef struct {
-  PetscBool      alone;             /* no node of the body answers to forces on others */
+  PetscBool      alone;             /* S needs no block of it: no node of the body answers to forces on others, or S is products */
   PetscInt       n, row_room, room; /* rows; room for rows, and for entries */
   PetscInt      *rows, *places;     /* per row: its number among those of the body, and its place among the touching ones */
   PetscInt      *begin;             /* per row: its first entry; n + 1 */
@@ -47,6 +47,7 @@ typedef struct {
   PetscScalar   *own;               /* the same, as the body has it, without secants */
   PetscBool      corrected;         /* `block` is `own` corrected by `secants`, and by no others */
   StepperSecants secants, kept;     /* of this step and those before it; those of accepted steps */
+  Vec            force, way;        /* work space of products: of all rows of the body, or NULL */
 } StepperEntries;
 
 /* What S is made of, see assemble.c */
@@ -94,6 +95,7 @@ struct _ContactStepper {
   PetscReal *off;   /* by how much rows still miss, after the last pass [m] */
   /* the step as a whole */
   PetscInt  passes;
+  PetscBool forms;               /* S has entries even where it might be products: Newton's method alone has not solved the law */
   PetscBool has_told, corrected; /* there has been a pass with these rows; S has been corrected in the last one */
   PetscReal step_loss;           /* what contact takes of the energy in this step, friction apart [J] */
   PetscReal step_force;          /* sum over the rows whose changes of gaps, not gaps, are held in this step [N] */
@@ -101,6 +103,7 @@ struct _ContactStepper {
   StepperAssembly assembly;
   PetscInt64      state, assembled;
   PetscInt        n_assembled, *of_assembled;
+  PetscBool       products; /* it is products, see products.c */
   /* work space */
   Vec          x, f, field, of_all;
   PetscScalar *gathered; /* a number per touching row */
@@ -132,6 +135,9 @@ PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperPack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperChooseProducts(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperTellProducts(Contact, const ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperCreateProducts(Contact, ContactStepper *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpRules(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);

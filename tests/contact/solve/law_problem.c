@@ -35,7 +35,7 @@ static void resize(LawProblem *problem, PetscInt n)
 
   ok(LawProblemResize(problem, n));
   ok(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, &S));
-  ok(LawProblemTakeS(problem, &S));
+  ok(LawProblemTakeS(problem, &S, NULL));
 }
 
 /* With the entries that S has now; whether there is a solution */
@@ -44,7 +44,7 @@ static PetscBool solve(LawProblem *problem)
   Mat S;
 
   ok(MatDuplicate(problem->S, MAT_COPY_VALUES, &S));
-  ok(LawProblemTakeS(problem, &S));
+  ok(LawProblemTakeS(problem, &S, NULL));
   ok(LawProblemSolve(problem));
   return problem->solved;
 }
@@ -446,11 +446,23 @@ static Mat ChainMatrix(PetscBool dense, unsigned seed)
   return S;
 }
 
-/* Of the chain, with readings by chance; `S` is kept, and may have other values in the next call */
-static void SolveChain(LawProblem *problem, Mat S, unsigned seed)
+/* S of the context */
+static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
 {
-  PetscBool solved;
-  Mat       taken = S;
+  Mat S;
+
+  PetscFunctionBegin;
+  PetscCall(MatShellGetContext(shell, &S));
+  PetscCall(MatMult(S, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of the chain, with readings by chance; `S` is kept, and may have other values in the next call. `products`: it is only multiplied with,
+   and what is near it has its diagonal alone */
+static void SolveChain(LawProblem *problem, Mat S, PetscBool products, unsigned seed)
+{
+  Mat taken = S, diagonal = NULL;
+  Vec values;
 
   ok(LawProblemResize(problem, CHAIN));
   problem->n_nodes = NODES;
@@ -461,20 +473,29 @@ static void SolveChain(LawProblem *problem, Mat S, unsigned seed)
     problem->limit[2 * node + 1] = 0.4;
   }
   ok(PetscObjectReference((PetscObject)S));
-  ok(LawProblemTakeS(problem, &taken));
+  if (products) {
+    ok(MatCreateVecs(S, &values, NULL));
+    ok(MatGetDiagonal(S, values));
+    ok(MatCreateSeqAIJ(PETSC_COMM_SELF, CHAIN, CHAIN, 1, NULL, &diagonal));
+    ok(MatDiagonalSet(diagonal, values, INSERT_VALUES));
+    ok(VecDestroy(&values));
+    ok(MatDestroy(&taken));
+    ok(MatCreateShell(PETSC_COMM_SELF, CHAIN, CHAIN, CHAIN, CHAIN, S, &taken));
+    ok(MatShellSetOperation(taken, MATOP_MULT, (void (*)(void))Multiply));
+  }
+  ok(LawProblemTakeS(problem, &taken, products ? &diagonal : NULL));
   for (PetscInt i = 0; i < CHAIN; i++) {
     problem->read[i] = Random(&seed);
     problem->base[i] = problem->force[i] = 0;
   }
   ok(LawProblemSolve(problem));
-  solved = problem->solved;
-  assert_true(solved);
 }
 
 /* Other values in the same matrix, and another matrix, are noticed */
-static void a_sparse_S_has_the_solution_of_a_dense_one(void **state)
+static void a_sparse_S_and_products_have_the_solution_of_a_dense_one(void **state)
 {
-  LawProblem one = {0}, other = {0};
+  LawProblem one = {0}, other = {0}, products = {0};
+  PetscInt   by_newton = 0;
 
   (void)state;
   for (unsigned seed = 1; seed <= 12; seed++) {
@@ -482,11 +503,15 @@ static void a_sparse_S_has_the_solution_of_a_dense_one(void **state)
     PetscInt push = 0;
 
     for (PetscInt pass = 0; pass < 3; pass++) {
-      SolveChain(&one, S[0], seed);
-      SolveChain(&other, S[1], seed);
-      assert_true(other.sparse && !one.sparse);
+      SolveChain(&one, S[0], PETSC_FALSE, seed);
+      SolveChain(&other, S[1], PETSC_FALSE, seed);
+      SolveChain(&products, S[1], PETSC_TRUE, seed);
+      assert_true(one.solved && other.solved && other.sparse && !one.sparse);
+      assert_true(products.solved || one.by_nodes); /* there are no sweeps without entries */
+      by_newton += products.solved;
       for (PetscInt i = 0; i < CHAIN; i++) {
         near(PetscRealPart(other.force[i]), PetscRealPart(one.force[i]), CLOSE);
+        if (products.solved) near(PetscRealPart(products.force[i]), PetscRealPart(one.force[i]), CLOSE);
         push += PetscRealPart(one.force[i]) > 0 && i % 3 == 0;
       }
       for (PetscInt k = 0; k < 2; k++) ok(MatScale(S[k], 1.7));
@@ -494,8 +519,10 @@ static void a_sparse_S_has_the_solution_of_a_dense_one(void **state)
     between(push, 3, 3 * NODES - 3);
     for (PetscInt k = 0; k < 2; k++) ok(MatDestroy(&S[k]));
   }
+  assert_true(by_newton >= 18);
   ok(LawProblemDestroy(&one));
   ok(LawProblemDestroy(&other));
+  ok(LawProblemDestroy(&products));
 }
 
 int main(int argc, char **argv)
@@ -512,7 +539,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(sweeps_help_where_newton_cycles),
       cmocka_unit_test(what_has_no_solution_is_not_solved),
       cmocka_unit_test(units_do_not_matter),
-      cmocka_unit_test(a_sparse_S_has_the_solution_of_a_dense_one),
+      cmocka_unit_test(a_sparse_S_and_products_have_the_solution_of_a_dense_one),
   };
 
   return impakt_main(argc, argv, tests);

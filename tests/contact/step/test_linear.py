@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from cases import joined, long
+from setups import box, material
 
 KEPT, MOVED = (" ".join(f"-{body}_mass_redistribute {moved}" for body in ("free", "clamped")) for moved in ("false", "true"))
 EXPLICIT = "-{0}_ts_type centraldifference -{0}_ts_time_step auto"
@@ -85,3 +86,25 @@ def test_ties_with_mass_are_those_of_schwarz(shared_run):
     (pair,) = force.history["contact"]
     ends, means = (run.history[f"contact/{pair}/force_vector"][:, 1] for run in (schwarz, force))
     np.testing.assert_allclose(means[1:], (ends[1:] + ends[:-1]) / 2, rtol=0, atol=1e-9 * np.abs(ends).max())
+
+
+def test_many_rows_of_layers_are_products(shared_run, impakt):
+    """More than 500 rows between linear explicit blocks: S is only multiplied with, and forces are those of schwarz (measured 2e-10), on three ranks and with a
+    monitor too. Nodes stick and slide."""
+    run = joined(
+        box("a", (24, 24, 2), (0, 0, 0), (0.1, 0.1, 0.01)),
+        box("b", (26, 26, 2), (0.003, 0.002, 0.0100001), (0.097, 0.098, 0.02)),
+        *(f"{material(name, 2e11, 0.3, 7800)} -{name}_material_type linear_elastic -{name}_ts_type centraldifference" for name in "ab"),
+        "-bodies a,b -contact_pairs b.zmin:a.zmax -a_initial_velocity 0,0,1 -b_initial_velocity 0.3,0.2,-1 -time_step 2.5e-7 -time_end 4e-6",
+        "-contact_law coulomb -contact_friction 0.2",
+    )
+    schwarz, force, ranks = shared_run(run), impakt(f"{run} -contact_type force -info :contact"), impakt(f"{run} -contact_type force", ranks=3)
+    assert "S assembled: as products" in force.stdout and "S assembled: dense" not in force.stdout
+    watched = impakt(f"{run} -contact_type force -contact_monitor")
+    (pair,) = force.history["contact"]
+    expected, found, other = (which.history[f"contact/{pair}/force_vector"][()] for which in (schwarz, force, ranks))
+    largest = np.abs(expected).max()
+    assert largest > 0
+    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-8 * largest)
+    np.testing.assert_allclose(other, found, rtol=0, atol=1e-10 * largest)
+    np.testing.assert_array_equal(watched.history[f"contact/{pair}/force_vector"][()], found)
