@@ -134,8 +134,11 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscCall(TakeDerivatives(problem, x, y, &other));
   PetscCall(VecRestoreArrayRead(X, &x));
   if (!other) PetscFunctionReturn(PETSC_SUCCESS);
-  if (LawProblemIsLagged(problem) && problem->changes > STALE) PetscCall(SNESSetLagPreconditioner(snes, LAW_LAG_AFTER_NEXT));
-  if (problem->changes > STALE) problem->changes = 0;
+  if (LawProblemIsLagged(problem)) { /* what is multiplied with is J as it is, and its entries are for the preconditioner alone */
+    if (problem->changes <= STALE) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(SNESSetLagPreconditioner(snes, LAW_LAG_AFTER_NEXT));
+    problem->changes = 0;
+  }
   PetscCall(MatZeroEntries(P));
   PetscCall(LawProblemGetS(problem, &of_S, &S));
   PetscCall(GetPattern(problem, P, &of_J));
@@ -152,7 +155,7 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = J x, J = I - D (I - r (S + eps diag S)), where S is products */
+/* y = J x, J = I - D (I - r (S + eps diag S)), of S by products or of a large dense one */
 static PetscErrorCode Multiply(Mat J, Vec X, Vec Y)
 {
   LawProblem        *problem;
@@ -225,12 +228,13 @@ PetscErrorCode LawProblemCreateJacobian(LawProblem *problem)
   if (problem->sparse) PetscCall(SetPattern(problem));
   else PetscCall(MatSetUp(problem->jacobian));
   PetscCall(MatDestroy(&problem->operator));
-  if (LawProblemHasProducts(problem)) {
+  if (LawProblemHasProducts(problem) || LawProblemIsLagged(problem)) {
     PetscCall(MatCreateShell(PETSC_COMM_SELF, problem->n, problem->n, problem->n, problem->n, problem, &problem->operator));
     PetscCall(MatShellSetOperation(problem->operator, MATOP_MULT, (void (*)(void))Multiply));
   }
   PetscCall(SNESSetJacobian(problem->newton, problem->operator ? problem->operator : problem->jacobian, problem->jacobian, ComputeJacobian,
                             problem));
   problem->jacobian_of = -1;
+  problem->changes     = STALE + 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -28,7 +28,7 @@ typedef struct {
   Vec            x, f;
   Vec            in, out;            /* the last product with S */
   PetscInt64     product_of;         /* state of the S of that; -1: none */
-  Mat            jacobian, operator; /* by entries; products with it (NULL: it is right) */
+  Mat            jacobian, operator; /* by entries; products with it, where entries precondition alone, or NULL */
   PetscInt64     jacobian_of;        /* state of the entries that it has; -1: none */
   PetscInt       changes;            /* of derivatives at nodes, since the preconditioner was made */
   SNES           newton, nodes;

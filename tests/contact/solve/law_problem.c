@@ -6,6 +6,7 @@
 #include <petscblaslapack.h>
 
 #define ROWS  12   /* at most */
+#define MANY  520  /* so many that factors of dense Jacobians are kept */
 #define CLOSE 1e-9 /* solutions have round-off of 1e-13 times the condition of S, which is at most 1e3 here: measured 2e-12 */
 
 static RowLaw unilateral, tie; /* see take_laws() */
@@ -525,6 +526,45 @@ static void a_sparse_S_and_products_have_the_solution_of_a_dense_one(void **stat
   ok(LawProblemDestroy(&products));
 }
 
+/* Readings by chance, of which a few or all change from one solution to the next: factors of earlier Jacobians, and new ones */
+static void a_large_dense_S_has_the_solution_of_a_sparse_one(void **state)
+{
+  LawProblem problems[2] = {{0}, {0}};
+  unsigned   seed        = 5;
+  PetscReal  read[MANY];
+
+  (void)state;
+  for (PetscInt k = 0; k < 2; k++) {
+    Mat S;
+
+    ok(LawProblemResize(&problems[k], MANY));
+    problems[k].n_nodes = MANY;
+    for (PetscInt i = 0; i <= MANY; i++) problems[k].begin[i] = i;
+    for (PetscInt i = 0; i < MANY; i++) problems[k].law[i] = &unilateral;
+    for (PetscInt i = 0; i < 2 * MANY; i++) problems[k].limit[i] = 0;
+    if (k) ok(MatCreateSeqAIJ(PETSC_COMM_SELF, MANY, MANY, 3, NULL, &S));
+    else ok(MatCreateSeqDense(PETSC_COMM_SELF, MANY, MANY, NULL, &S));
+    for (PetscInt i = 0; i < MANY; i++)
+      for (PetscInt j = PetscMax(0, i - 1); j <= PetscMin(MANY - 1, i + 1); j++) ok(MatSetValue(S, i, j, i == j ? 2 : 0.9, INSERT_VALUES));
+    ok(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
+    ok(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
+    ok(LawProblemTakeS(&problems[k], &S, NULL));
+  }
+  for (PetscInt pass = 0; pass < 6; pass++) {
+    for (PetscInt i = 0; i < MANY; i++)
+      if (pass % 2 == 0 || i < 8) read[i] = Random(&seed);
+    for (PetscInt k = 0; k < 2; k++) {
+      ok(PetscArrayzero(problems[k].base, MANY));
+      ok(PetscArrayzero(problems[k].force, MANY));
+      for (PetscInt i = 0; i < MANY; i++) problems[k].read[i] = read[i];
+      ok(LawProblemSolve(&problems[k]));
+      assert_true(problems[k].solved && problems[k].sparse == (k > 0));
+    }
+    for (PetscInt i = 0; i < MANY; i++) near(PetscRealPart(problems[0].force[i]), PetscRealPart(problems[1].force[i]), CLOSE);
+  }
+  for (PetscInt k = 0; k < 2; k++) ok(LawProblemDestroy(&problems[k]));
+}
+
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
@@ -540,6 +580,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(what_has_no_solution_is_not_solved),
       cmocka_unit_test(units_do_not_matter),
       cmocka_unit_test(a_sparse_S_and_products_have_the_solution_of_a_dense_one),
+      cmocka_unit_test(a_large_dense_S_has_the_solution_of_a_sparse_one),
   };
 
   return impakt_main(argc, argv, tests);
