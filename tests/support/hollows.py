@@ -18,12 +18,17 @@ def write(path, points, cells):
     return path
 
 
-def grid(path, solid, edge, origin):
-    """Squares or cubes of one edge where `solid` is true."""
+def bricks(path, solid, positions):
+    """Rectangles or bricks between these positions along each axis, where `solid` is true."""
     solid = np.array(solid, bool)
     number = np.arange(np.prod(np.array(solid.shape) + 1)).reshape(np.array(solid.shape) + 1)
-    points = origin + edge * np.array(list(itertools.product(*(range(n + 1) for n in solid.shape))))
+    points = np.array(list(itertools.product(*positions)))
     return write(path, points, np.array([[number[tuple(at + np.array(corner))] for corner in CORNERS[solid.ndim]] for at in np.argwhere(solid)]))
+
+
+def grid(path, solid, edge, origin):
+    """Squares or cubes of one edge where `solid` is true."""
+    return bricks(path, solid, [start + edge * np.arange(n + 1) for start, n in zip(np.broadcast_to(origin, np.ndim(solid)), np.shape(solid), strict=True)])
 
 
 def ring(path, inner, outer, faces, layers, height=None):
