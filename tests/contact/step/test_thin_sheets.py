@@ -56,7 +56,7 @@ def test_drawn_through_tools(kind, of, impakt):
     assert min(gap.min() for gap in gaps) >= -1e-6  # of a sheet of 1 mm, over 1000 steps
 
 
-def closing(run, parts=np.array([0.25, 0.5, 0.75, 1.0])):
+def closing(run, parts=(0.25, 0.5, 0.75, 1.0)):
     """Force of the plate, in the mean of a tenth of the run around these parts of it [N/m]."""
     force = run.history["contact/tube:plate/force"][()]
     n = len(force)
@@ -73,6 +73,6 @@ def test_crushed_tube(kind, layers, faces, impakt, tmp_path):
     run = impakt(crushed(tmp_path / "a.msh", layers, faces, kind=kind, step=1e-6 if kind == "E" else 1e-5), timeout=1000)
     np.testing.assert_allclose(closing(run), FINE, rtol=0.05 if layers == 1 else 1e-3)
     ring = E / (1 - NU**2) * WALL**3 / 12 / (0.1488 * TUBE**3)
-    assert closing(run, np.array([0.4])) == pytest.approx(ring * 0.012 * 0.35**2 * (2 - 0.35), rel=0.05)
+    assert closing(run, (0.4,)) == pytest.approx(ring * 0.012 * 0.35**2 * (2 - 0.35), rel=0.05)
     assert run.summary["contact"]["max_penetration"] <= 1e-2 * WALL
-    assert energy(run).max() <= 5e-3  # MEASURED
+    assert energy(run).max() <= 5e-3  # of the work of what leads the plate, in proportion to the step: measured 2.4e-3 (I), 2.4e-4 (E)
