@@ -485,6 +485,7 @@ PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
 PETSC_INTERN PetscErrorCode BodyProbeNodes(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode BodyAnswerAtStart(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyComputeForceChange(Body, PetscBool *, Vec);
 PETSC_INTERN PetscErrorCode BodyCreateTraces(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyTraces(Body);
 PETSC_INTERN PetscErrorCode BodyCreateRowArrays(Body);

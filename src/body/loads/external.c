@@ -81,6 +81,27 @@ PetscErrorCode BodySetUpWork(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Reactions at the start of a step are those that the last one ended with. Where contact forces are constant in it, they are others from
+   its start on, and so is what holds dofs, or leads the body, against them. */
+static PetscErrorCode SubtractForceChange(Body body, Vec change, Vec applied)
+{
+  const PetscScalar *force;
+  PetscScalar       *values;
+  PetscBool          any;
+
+  PetscFunctionBegin;
+  if (!body->rows.n_forced || (!body->held.any && !BodyIsLed(body))) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyComputeForceChange(body, &any, change));
+  if (any && BodyIsLed(body)) PetscCall(VecAXPY(applied, -1, change));
+  if (!any || BodyIsLed(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayRead(change, &force));
+  PetscCall(VecGetArray(applied, &values));
+  for (PetscInt i = 0; i < body->held.n; i++) values[body->held.dofs[i]] -= force[body->held.dofs[i]];
+  PetscCall(VecRestoreArray(applied, &values));
+  PetscCall(VecRestoreArrayRead(change, &force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The work from displacement `start` to the present one, by the trapezoidal rule; `applied`: what does it at the end [N] */
 static PetscErrorCode ComputeWork(Body body, Vec start, Vec applied, PetscReal *work)
 {
@@ -89,6 +110,7 @@ static PetscErrorCode ComputeWork(Body body, Vec start, Vec applied, PetscReal *
   PetscFunctionBegin;
   PetscCall(ComputeApplied(body, applied));
   PetscCall(VecWAXPY(sum, 1, body->state.applied, applied));
+  PetscCall(SubtractForceChange(body, way, sum));
   PetscCall(VecWAXPY(way, -1, start, body->state.u));
   if (body->local) PetscCall(BodyGetLocalDot(sum, way, work));
   else PetscCall(VecDot(sum, way, work));

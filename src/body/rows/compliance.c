@@ -23,6 +23,7 @@ PetscErrorCode BodyDestroyCompliance(Body body)
   PetscCall(ComplianceDestroy(&c->nodal));
   PetscCall(NodalMatrixDestroy(&c->nodal_matrix));
   PetscCall(VecDestroy(&c->diagonal));
+  PetscCall(PetscFree(c->change));
   PetscCall(PetscFree(body->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -45,6 +46,7 @@ PetscErrorCode BodyCreateCompliance(Body body)
   c->base_force = c->base_displacement + levels;
   c->mine       = c->base_force + levels;
   PetscCall(PetscMalloc2(rows->global, &c->solved, rows->global, &c->unknown));
+  PetscCall(PetscCalloc1(rows->local, &c->change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

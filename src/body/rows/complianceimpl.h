@@ -21,6 +21,7 @@ struct _BodyCompliance {
   PetscReal      diagonal_step; /* the substep that it is of [s] */
   PetscInt       n_kept;        /* known rows that stay when a step fails */
   PetscScalar   *mine;          /* work space: of the rows of this rank, for each substep; behind base_displacement and base_force */
+  PetscReal     *change;        /* of this rank's rows: how much more constant forces are than those at the end of the last step [N] */
   /* an integration from which changes are counted: this rank's rows, for each substep */
   PetscScalar *base_displacement, *base_force;
   PetscBool    has_base, base_gathered; /* known_displacement and known_force are those, at the matrices' state `gathered_state` */

@@ -26,7 +26,7 @@ gone.
 @*/
 PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const PetscReal last[], const PetscReal none[])
 {
-  PetscReal   *change;
+  PetscReal   *change = body->compliance->change;
   PetscScalar *values;
 
   PetscFunctionBegin;
@@ -39,12 +39,27 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
     PetscCall(TraceGetLevel(body->traces.force_in, level, &values));
     PetscCall(PetscArraycpy(values, force, body->rows.local));
   }
+  for (PetscInt i = 0; i < body->rows.local; i++) change[i] = force[i] - last[i];
   /* BodyRepeat() moves the end state by what these forces are more than those before */
   if (body->repeats && body->rows.constant && body->integrator->repeats_constant) PetscFunctionReturn(PETSC_SUCCESS);
   body->rows.constant = PETSC_TRUE;
-  change              = body->compliance->mine;
-  for (PetscInt i = 0; i < body->rows.local; i++) change[i] = force[i] - last[i];
   PetscCall(BodySetStartForce(body, change, none));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyComputeForceChange - how much more constant forces on the rows are at the start of a step than those that the last one ended with, on
+   the nodes; `any`: whether the substep that has been made last is the first one of such a step */
+PetscErrorCode BodyComputeForceChange(Body body, PetscBool *any, Vec change)
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  *any = (PetscBool)(body->rows.constant && body->state.step - body->saved.step == 1);
+  if (!*any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  PetscCall(PetscArraycpy(row, body->compliance->change, body->rows.local));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

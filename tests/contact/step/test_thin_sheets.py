@@ -75,4 +75,4 @@ def test_crushed_tube(kind, layers, faces, impakt, tmp_path):
     ring = E / (1 - NU**2) * WALL**3 / 12 / (0.1488 * TUBE**3)
     assert closing(run, (0.4,)) == pytest.approx(ring * 0.012 * 0.35**2 * (2 - 0.35), rel=0.05)
     assert run.summary["contact"]["max_penetration"] <= 1e-2 * WALL
-    assert energy(run).max() <= 5e-3  # of the work of what leads the plate, in proportion to the step: measured 2.4e-3 (I), 2.4e-4 (E)
+    assert -1e-5 <= energy(run)[-1] <= energy(run).max() <= 1e-8  # with the work of the plate, whose force is constant in a step
