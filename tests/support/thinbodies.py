@@ -3,10 +3,12 @@
 from itertools import pairwise
 
 import hollows
+import meshio
 import numpy as np
 from cases import joined
 from contactstep import STEEL, friction
 from setups import box, material, plane, words
+from solidmeshes import SIXTHS
 
 LEG, WIDTH, SHEET = 0.024, 0.045, 0.002  # m, of the bracket
 STABLE = 1.4e-7  # s, for cubes of steel of 1 mm: an explicit step
@@ -14,12 +16,21 @@ STABLE = 1.4e-7  # s, for cubes of steel of 1 mm: an explicit step
 FALLS = {"flat": None, "edge": (0, 1, 0, -45), "corner": (-1, 1.3, 0, -40)}
 
 
-def bracket(path, edge=1e-3, centre=(0, 0)):
-    """An L of sheet, cubes of an edge; its legs lie in the planes z = 0 and x = 0, and its middle above `centre`."""
+def bracket(path, edge=1e-3):
+    """An L of sheet, cubes of an edge; its legs lie in the planes z = 0 and x = 0, and its middle above the origin."""
     n, width, thick = (round(length / edge) for length in (LEG, WIDTH, SHEET))
     solid = np.zeros((n, width, n), bool)
     solid[:thick] = solid[:, :, :thick] = True
-    return hollows.grid(path, solid, edge, (centre[0] - LEG / 2, centre[1] - WIDTH / 2, 0))
+    return hollows.grid(path, solid, edge, (-LEG / 2, -WIDTH / 2, 0))
+
+
+def in_tetrahedra(mesh, path):
+    """Cubes as six tetrahedra each, about the same diagonal: `-<body>_element_formulation composite` makes tet10 of them."""
+    read = meshio.read(mesh)
+    cells = np.vstack([read.cells_dict["hexahedron"][:, part] for part in SIXTHS])
+    ones = np.ones(len(cells), int)
+    meshio.write(path, meshio.Mesh(read.points, [("tetra", cells)], cell_data={"gmsh:physical": [ones], "gmsh:geometrical": [ones]}), file_format="gmsh22", binary=False)
+    return path
 
 
 def turned(points, axis, degrees):
@@ -33,18 +44,18 @@ def model_formulation(of, kind):
     return "mean_dilatation" if of == "j2" else "enhanced" if kind == "I" else "reduced"
 
 
-def model(name, of, kind, e=STEEL[0], yields=3e8, nu=STEEL[1], density=STEEL[2]):
+def model(name, of, kind, e=STEEL[0], yields=3e8, nu=STEEL[1], density=STEEL[2], formulation=None):
     """Mass kept; elements that do not lock in bending, of implicit bodies (I) and explicit ones (E)."""
     flows = f"-{name}_yield_stress {yields:g} -{name}_hardening_modulus {e / 200:g}"
     return joined(
-        f"-{name}_material_type {of} -{name}_mass_redistribute false -{name}_element_formulation {model_formulation(of, kind)}",
+        f"-{name}_material_type {of} -{name}_mass_redistribute false -{name}_element_formulation {formulation or model_formulation(of, kind)}",
         material(name, e, nu, density),
         flows if of == "j2" else "",
         f"-{name}_ts_type centraldifference" if kind == "E" else "",
     )
 
 
-def drop(mesh, kind="E", of="neo_hookean", fall="flat", mu=0.3, speed=5.0, step=1e-6, end=1e-4, partner="plane", edge=1e-3, gap=1e-6, more=""):
+def drop(mesh, kind="E", of="neo_hookean", fall="flat", mu=0.3, speed=5.0, step=1e-6, end=1e-4, partner="plane", gap=1e-6, formulation=None, more=""):
     """The bracket falls on a plane, or on a block of 60 x 60 x 20 mm of 10 mm cubes, which is free, or on nothing (None)."""
     corners = np.array([(x, y, z) for x in (-LEG / 2, LEG / 2) for y in (-WIDTH / 2, WIDTH / 2) for z in (0, SHEET, LEG) if x < 0 or z < LEG])
     turn = FALLS[fall]
@@ -54,7 +65,7 @@ def drop(mesh, kind="E", of="neo_hookean", fall="flat", mu=0.3, speed=5.0, step=
         f"-bodies bracket{',block' if with_block else ''} -contact_type force -time_step {step:.17g} -time_end {end:.17g}",
         f"-bracket_dm_plex_filename {mesh} -bracket_initial_velocity 0,0,{-speed} -bracket_translate 0,0,{gap - low:.17g}",
         f"-bracket_rotate {words(turn)}" if turn else "",
-        model("bracket", of, kind),
+        model("bracket", of, kind, formulation=formulation),
         joined(box("block", (6, 6, 2), (-0.03, -0.03, -0.02), (0.03, 0.03, 0)), model("block", of, "I"), "-contact_pairs bracket:block") if with_block else "",
         f"-obstacles t {plane('t', (0, 0, 0), (0, 0, 1))} -contact_pairs bracket:t" if partner == "plane" else "",
         "-contact_pairs none" if partner is None else "",
@@ -87,11 +98,10 @@ def crushed(mesh, layers, faces, of="neo_hookean", kind="I", mu=0.3, closing=0.0
     hollows.ring(mesh, TUBE - WALL / 2, TUBE + WALL / 2, faces, layers)
     top = TUBE + WALL / 2
     way = f"0,-{closing:g}*(t/{end:g})^2*(2-t/{end:g})"
-    tube = model("tube", of, kind)
     return joined(
         f"-bodies tube,plate -obstacles t {plane('t', (0, -top - 1e-6), (0, 1))} -contact_type force -contact_pairs tube:t,tube:plate -contact_facing false",
         f"-time_step {step:.17g} -time_end {end:.17g} -tube_dm_plex_filename {mesh}",
-        tube if formulation is None else tube.replace(f"formulation {model_formulation(of, kind)}", f"formulation {formulation}"),
+        model("tube", of, kind, formulation=formulation),
         f"-tube_damping_mass 2000 {box('plate', (4, 1), (-0.03, top + 1e-6), (0.03, top + 0.005))} -plate_rigid true -plate_density 7800",
         f"-plate_rigid_displacement {way} -plate_rigid_rotation 0",
         friction(mu),

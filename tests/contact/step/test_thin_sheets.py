@@ -76,3 +76,13 @@ def test_crushed_tube(kind, layers, faces, impakt, tmp_path):
     assert closing(run, (0.4,)) == pytest.approx(ring * 0.012 * 0.35**2 * (2 - 0.35), rel=0.05)
     assert run.summary["contact"]["max_penetration"] <= 1e-2 * WALL
     assert -1e-5 <= energy(run)[-1] <= energy(run).max() <= 1e-8  # with the work of the plate, whose force is constant in a step
+
+
+@pytest.mark.validate
+def test_crushed_tube_flows(impakt, tmp_path):
+    """Two elements in the wall of a tube of J2 against four, once it flows: 5 %; measured -3.0, -2.7, -2.3 %. Before that `mean_dilatation` bends too easily, by 8 %; one element has
+    70 % of the force, and no other formulation keeps a history of flow without locking."""
+    run = impakt(crushed(tmp_path / "a.msh", 2, 240, "j2", "E", step=2e-6), timeout=600)
+    np.testing.assert_allclose(closing(run, (0.5, 0.75, 1.0)), (22334, 23421, 23414), rtol=0.05)  # of 4 elements in the wall and 200 round
+    assert run.history["body/tube/plastic_work"][-1] > 0.5 * run.history["energy/scale"][-1]
+    assert energy(run).max() <= 1e-8
