@@ -304,6 +304,9 @@ static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, PetscInt 
       }
       PetscCall(MatDenseRestoreArrayRead(answers[p], &u));
     }
+    PetscCall(VecRestoreArray(column, &values));
+    PetscCall(BodyZeroHeld(body, column)); /* the matrix has some stiffness there */
+    PetscCall(VecGetArray(column, &values));
     PetscCall(ComplianceSetColumn(compliance, dofs[k], 1, values));
     PetscCall(VecRestoreArray(column, &values));
   }
