@@ -174,6 +174,8 @@ PETSC_EXTERN PetscErrorCode BodyGetMass(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetInertia(Body, PetscReal[3], PetscReal[9]);
 PETSC_EXTERN PetscErrorCode BodySetMassRedistributeNear(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyGetMassRedistributeNear(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodySetMassExtrapolate(Body, PetscBool);
+PETSC_EXTERN PetscErrorCode BodyFindSpan(Body, PetscInt *, PetscInt *, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetForceOnMass(Body, const PetscReal[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetMassMoments(Body, BodyMassMoments);
 PETSC_EXTERN PetscErrorCode BodyAddProbe(Body, const PetscReal[]);

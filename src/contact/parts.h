@@ -120,6 +120,7 @@ PETSC_INTERN PetscErrorCode ContactGetBoundary(Contact, PetscInt, Surface *);
 PETSC_INTERN PetscErrorCode ContactStartOverlaps(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode ContactCreateFacing(Contact, const ContactPair *, Surface[2]);
 PETSC_INTERN PetscErrorCode ContactMarkNearNodes(Contact, const ContactPair *, PetscInt);
+PETSC_INTERN PetscErrorCode ContactFindMassless(Contact);
 PETSC_INTERN PetscErrorCode ContactDescribeRound(Contact, PetscInt, char[CONTACT_MOVES]);
 PETSC_INTERN PetscErrorCode ContactDescribeMoves(Contact, PetscInt, char[CONTACT_MOVES]);
 PETSC_INTERN PetscErrorCode ContactDestroyOverlaps(Contact);

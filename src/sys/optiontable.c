@@ -28,9 +28,10 @@ static const KnownOption options[] = {
      "whether it moves as a whole, without deforming, by the mass and inertia of its mesh; needs a density alone; default false"},
     {"bodies", OPTION_OF_BODY, "mass_type", "lumped|consistent|averaged",
      "mass matrix; averaged: the mean of the two others. Default averaged, but lumped for explicit bodies in 2-D and 3-D"},
-    {"bodies", OPTION_OF_BODY, "mass_redistribute", "true|false|near",
+    {"bodies", OPTION_OF_BODY, "mass_redistribute", "true|false|near|auto",
      "whether the mass of contact nodes moves to their inner neighbours, so that contact nodes are massless; default true; near: of those "
-     "alone that face a partner at the start, and an error where contact comes to others"},
+     "alone that face a partner at the start, and an error where contact comes to others; auto: massless contact nodes move as inner nodes "
+     "do, so that centre and moments of inertia stay, and keep their mass where inner nodes do not span the body"},
     {"bodies", OPTION_OF_BODY, "mass_moments", "total|centre|inertia",
      "what that keeps: the total mass, its centre too, or (default) the moments of inertia too, where positive masses allow"},
     {"bodies", OPTION_OF_BODY, "damping_mass", "alpha",

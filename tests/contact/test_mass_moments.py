@@ -68,7 +68,7 @@ def test_near(impakt):
     assert masses[1]["inertia_error"] == 0
 
 
-@pytest.mark.parametrize(("value", "message"), [("near", "-b_mass_redistribute near leaves mass"), ("far", "-b_mass_redistribute is true, false or near, not 'far'")])
+@pytest.mark.parametrize(("value", "message"), [("near", "-b_mass_redistribute near leaves mass"), ("far", "-b_mass_redistribute is true, false or near or auto, not 'far'")])
 def test_near_refuses(value, message, impakt):
     """Contact elsewhere, and what is no value."""
     assert message in impakt(f"{LANDING} -b_mass_redistribute {value}", expect_failure=True).stderr

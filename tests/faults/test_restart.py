@@ -44,6 +44,8 @@ BLOCKS = (
 NONLINEAR = "-left_material_type neo_hookean -right_material_type saint_venant_kirchhoff "
 SUBSTEPS = "-left_ts_type centraldifference -left_ts_time_step auto "
 EXPLICIT = SUBSTEPS + SUBSTEPS.replace("left", "right")
+# masses that are no matrices of elements
+SHORT.append((BLOCKS + SUBSTEPS + "-left_mass_redistribute auto -right_mass_redistribute auto", 1, 0.55))
 CONTACT = {
     "none": "",
     "held together": "-contact_separation false",

@@ -122,6 +122,7 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
+  PetscCheck(!body->mass.extrapolation, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodyFindSpan()");
   if (n) PetscAssertPointer(vertices, 3);
   PetscCall(BodySetUpDiscretization(body));
   PetscCall(BodyMarkNodes(body, n, vertices, body->layer.contains));
@@ -173,7 +174,7 @@ PetscErrorCode BodySetUpSteps(Body body)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->time.substeps) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodySetUpDiscretization(body));
+  PetscCall(BodyFindSpan(body, NULL, NULL, NULL));
   PetscCall(SetUpRows(body));
   if (body->mass.redistribute && (body->rows.global || body->rows.expected)) PetscCall(ImpaktCite(CITE_MASS_REDISTRIBUTION));
   PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->state));
@@ -380,6 +381,8 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->model.stiffness));
   PetscCall(MatDestroy(&b->mass.matrix));
   PetscCall(MatDestroy(&b->mass.product));
+  PetscCall(MatDestroy(&b->mass.of_nodes));
+  PetscCall(MatDestroy(&b->mass.extrapolation));
   PetscCall(PetscFree(b->mass.diagonals));
   PetscCall(MatDestroy(&b->rows.matrix));
   PetscCall(VecDestroy(&b->rows.free_dofs));

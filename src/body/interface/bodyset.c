@@ -367,6 +367,38 @@ PetscErrorCode BodySetMassRedistributeNear(Body body, PetscBool near)
 }
 
 /*@
+  BodySetMassExtrapolate - whether massless contact nodes move as the inner nodes around them do
+
+  Logically Collective
+
+  Input Parameters:
++ body        - the `Body`, before the contact is set up
+- extrapolate - `PETSC_FALSE` (default): their mass moves to inner nodes
+
+  Options Database Key:
+. -<body>_mass_redistribute auto - redistribution, and this
+
+  Level: intermediate
+
+  Notes:
+  The velocity of a massless node is the affine extrapolation of those of the nearest inner nodes, v = E v_inner, and the mass of the body
+is
+  E^T M E: total mass, centre of mass and moments of inertia are those of the full mass M. Contact nodes around which inner nodes do not span
+  the body, as in sheets of one or two elements, keep their mass, see `BodyFindSpan()`.
+
+.seealso: `Body`, `BodySetMassRedistribute()`, `BodyFindSpan()`
+@*/
+PetscErrorCode BodySetMassExtrapolate(Body body, PetscBool extrapolate)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscValidLogicalCollectiveBool(body, extrapolate, 2);
+  BodyCheckNotSetUp(body);
+  body->mass.extrapolate = extrapolate;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
   BodyGetMassRedistributeNear - whether contact nodes that face nothing at the start keep their mass
 
   Not Collective

@@ -64,20 +64,22 @@ typedef struct {
 } BodyModel;
 
 typedef struct {
-  BodyMassType      type;
-  PetscBool         redistribute; /* contact nodes become massless */
-  PetscBool         near;         /* but those that face no partner at the start, which keep their mass */
-  PetscBool         chosen;       /* program or options have said whether they do */
-  Vec               row_sum;      /* M 1: the lumped mass */
-  Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
-  Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
-  Mat               product;      /* the same for products with vectors */
-  PetscScalar      *diagonals;    /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
-  Vec               inverse;      /* of a diagonal one: 1/m, 0 on massless nodes */
-  ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
-  Vec               orphans;      /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
-  PetscReal         total;        /* [kg] */
-  PetscReal         centre[3];    /* of the undeformed body [m] */
+  BodyMassType type;
+  PetscBool    redistribute; /* contact nodes become massless */
+  PetscBool    near;         /* but those that face no partner at the start, which keep their mass */
+  PetscBool    extrapolate; /* massless nodes move as inner nodes do, see extrapolation.c; where these do not span, nodes keep their mass */
+  PetscBool    chosen;      /* program or options have said whether they do */
+  Vec          row_sum;     /* M 1: the lumped mass */
+  Vec          diagonal;    /* the mass matrix where it is diagonal, else NULL */
+  Mat          matrix;      /* the mass matrix where it is not diagonal, else NULL */
+  Mat          product;     /* the same for products with vectors */
+  Mat          of_nodes;    /* the same for nodes, where it couples nodes that share no element; else NULL */
+  PetscScalar *diagonals;   /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
+  Vec          inverse;     /* of a diagonal one: 1/m, 0 on massless nodes */
+  ConstrainedSolver solver; /* of one that is not diagonal; NULL until first needed */
+  Vec               orphans;   /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
+  PetscReal         total;     /* [kg] */
+  PetscReal         centre[3]; /* of the undeformed body [m] */
   PetscReal
       inverse_inertia[9]; /* inverse of the inertia tensor of the undeformed body about its centre; zero in one dimension [1/(kg m^2)] */
   /* of a body with a massless contact layer */
@@ -87,6 +89,11 @@ typedef struct {
   PetscReal       shift[3];                     /* how far the centre of mass is off that of the full mass; 0: it is kept [m] */
   PetscReal       inertia_error; /* largest relative change of a moment of inertia about an axis through the centre; 0: they are kept */
   PetscReal       turn_error;    /* the same of axes about which nothing that is held keeps the body from turning */
+  /* of a body that extrapolates, over all ranks */
+  Mat       extrapolation;     /* E, nodes x nodes: velocities from those of inner nodes; NULL until BodyFindSpan() */
+  PetscReal extrapolated_by;   /* the largest sum of the absolute weights of a node */
+  PetscInt  n_contact, n_keep; /* contact nodes; those around which inner nodes do not span the body, and which keep their mass */
+  PetscReal keeps_at[3];       /* where one of the latter is [m] */
 } BodyMass;
 
 /* The contact nodes, and those of their dofs that are massless */
@@ -358,11 +365,14 @@ PETSC_INTERN void           BodyFinishRotation(Body, const PetscReal[3], PetscRe
 PETSC_INTERN PetscErrorCode BodyGetElementMassParts(Body, PetscInt, PetscBool, PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
+PETSC_INTERN PetscErrorCode BodyCreateMassOfNodes(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyExtrapolateMass(Body);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyEndSolver(Body);
 PETSC_INTERN PetscErrorCode BodyBeginAssembly(Body, Mat, Mat *);
 PETSC_INTERN PetscErrorCode BodyEndAssembly(Mat, Mat);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
+PETSC_INTERN PetscErrorCode BodyCreateNodeGraph(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyNoteInverted(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyFindFirstElement(Body, PetscInt, PetscMPIInt *, PetscReal[3]);

@@ -1,6 +1,9 @@
 /* Mass: lumped, consistent or averaged, with the mass of the contact layer moved inside where asked. */
 #include <body/layout/bodyimpl.h>
 
+/* Entries of a matrix that are scaled at a time */
+#define MAX_COLUMNS 256
+
 const char *const BodyMassTypes[]        = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
 const char *const BodyMassMomentsNames[] = {"total", "centre", "inertia", "BodyMassMoments", "BODY_MASS_", NULL};
 
@@ -55,8 +58,8 @@ static PetscReal MeanFactor(Body body, const PetscInt nodes[])
   return inner ? sum / inner : 0;
 }
 
-/* The mass matrix of one element as the body uses it, nodes x nodes, the same for each component. What elements without inner nodes have
-   given to their neighbours is not in it. */
+/* The mass matrix of one element as the body uses it, nodes x nodes, the same for each component; its full mass where the body
+   extrapolates. What elements without inner nodes have given to their neighbours is not in it. */
 PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
 {
   const PetscInt  n     = body->model.element->nodes;
@@ -65,7 +68,7 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
   PetscReal       mean = 1;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetElementMassParts(body, e, body->mass.redistribute, lumped, M));
+  PetscCall(BodyGetElementMassParts(body, e, (PetscBool)(body->mass.redistribute && !body->mass.extrapolate), lumped, M));
   if (body->mass.factor) mean = MeanFactor(body, nodes);
   for (PetscInt i = 0; i < n * n && mean != 1; i++) M[i] *= mean;
   for (PetscInt a = 0; a < n; a++) M[a * n + a] += body->mass.factor ? body->mass.factor[nodes[a]] * lumped[a] : lumped[a];
@@ -146,12 +149,13 @@ PetscErrorCode BodySetUpMass(Body body)
 
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
-  if (body->mass.redistribute) {
+  if (body->mass.redistribute && !body->mass.extrapolate) {
     PetscCall(BodyFindOrphans(body));
     PetscCall(BodyFindMassFactor(body));
   }
   PetscCall(AssembleMass(body));
   if (body->mass.orphans) PetscCall(AddOrphans(body));
+  if (body->mass.redistribute && body->mass.extrapolate) PetscCall(BodyExtrapolateMass(body));
   PetscCall(BodySetUpMassProduct(body));
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));
@@ -197,6 +201,33 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A += scale M of a matrix with some of the entries of A */
+static PetscErrorCode AddRows(Mat M, PetscReal scale, Mat A)
+{
+  PetscScalar scaled[MAX_COLUMNS];
+  PetscInt    begin, end;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRange(M, &begin, &end));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(M, row, &n, &columns, &values));
+    for (PetscInt first = 0; first < n; first += MAX_COLUMNS) {
+      const PetscInt part = PetscMin(MAX_COLUMNS, n - first);
+
+      for (PetscInt k = 0; k < part; k++) scaled[k] = scale * values[first + k];
+      PetscCall(MatSetValues(A, 1, &row, part, columns + first, scaled, ADD_VALUES));
+    }
+    PetscCall(MatRestoreRow(M, row, &n, &columns, &values));
+  }
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A += scale M; held dofs and massless nodes too */
 PetscErrorCode BodyAddMassMatrix(Body body, PetscReal scale, Mat A)
 {
@@ -213,7 +244,8 @@ PetscErrorCode BodyAddMassMatrix(Body body, PetscReal scale, Mat A)
   }
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)A), &size));
   if (size < body->rows.size) PetscCall(MatMPIAIJGetSeqAIJ(mass, &mass, NULL, NULL)); /* A is the block of this rank */
-  PetscCall(MatAXPY(A, scale, mass, SAME_NONZERO_PATTERN));                           /* a subset would take memory in each call */
+  if (body->mass.of_nodes) PetscCall(AddRows(mass, scale, A));
+  else PetscCall(MatAXPY(A, scale, mass, SAME_NONZERO_PATTERN)); /* a subset would take memory in each call */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

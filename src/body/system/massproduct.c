@@ -36,9 +36,7 @@ static PetscErrorCode FindDiagonals(Body body)
 PetscErrorCode BodySetUpMassProduct(Body body)
 {
   const PetscInt dim = body->mesh.dim;
-  PetscInt       begin;
   Mat            of_nodes;
-  IS             first;
 
   PetscFunctionBegin;
   if (!body->mass.matrix) PetscFunctionReturn(PETSC_SUCCESS);
@@ -48,10 +46,7 @@ PetscErrorCode BodySetUpMassProduct(Body body)
     if (body->rows.size == 1) PetscCall(FindDiagonals(body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(MatGetOwnershipRange(body->mass.matrix, &begin, NULL));
-  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->mesh.owned_nodes, begin, dim, &first));
-  PetscCall(MatCreateSubMatrix(body->mass.matrix, first, first, MAT_INITIAL_MATRIX, &of_nodes));
-  PetscCall(ISDestroy(&first));
+  PetscCall(BodyCreateMassOfNodes(body, &of_nodes));
   PetscCall(MatCreateMAIJ(of_nodes, dim, &body->mass.product));
   /* on several ranks such a matrix takes memory in each product; another without the zeros between components does not */
   if (body->rows.size > 1) PetscCall(MatConvert(body->mass.product, MATAIJ, MAT_INPLACE_MATRIX, &body->mass.product));

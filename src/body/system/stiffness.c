@@ -42,8 +42,29 @@ PetscErrorCode BodyGetElementDofs(Body body, PetscInt e, PetscInt dofs[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which nodes share an element, as a matrix of nodes by nodes: far smaller than one of displacements, and quick to make */
-static PetscErrorCode CreateNodeGraph(Body body, Mat *graph)
+/* The nodes that the mass couples beyond the elements */
+static PetscErrorCode AddMassToGraph(Body body, Mat graph)
+{
+  PetscInt begin, end;
+
+  PetscFunctionBegin;
+  if (!body->mass.of_nodes) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetOwnershipRange(graph, &begin, &end));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt    *columns;
+    const PetscScalar *values;
+    PetscInt           n;
+
+    PetscCall(MatGetRow(body->mass.of_nodes, row, &n, &columns, &values));
+    PetscCall(MatSetValues(graph, 1, &row, n, columns, values, INSERT_VALUES));
+    PetscCall(MatRestoreRow(body->mass.of_nodes, row, &n, &columns, &values));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which nodes share an element, or have a mass in common, as a matrix of nodes by nodes: far smaller than one of displacements, and quick
+   to make */
+PetscErrorCode BodyCreateNodeGraph(Body body, Mat *graph)
 {
   const PetscInt n = body->model.element->nodes;
   PetscScalar    ones[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
@@ -60,13 +81,40 @@ static PetscErrorCode CreateNodeGraph(Body body, Mat *graph)
     for (PetscInt a = 0; a < n; a++) nodes[a] = dofs[a * body->mesh.dim] / body->mesh.dim;
     PetscCall(MatSetValues(*graph, n, nodes, n, nodes, ones, INSERT_VALUES));
   }
+  PetscCall(AddMassToGraph(body, *graph));
   PetscCall(MatAssemblyBegin(*graph, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*graph, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An empty matrix with room for what elements couple. DMPLEX's own count goes through the mesh entity by entity, which takes ten times
-   as long as that of the graph. */
+/* Zeros wherever elements or the mass have entries: what has none when a matrix is assembled first loses its room */
+static PetscErrorCode FillPattern(Body body, Mat A)
+{
+  const PetscInt dim = body->mesh.dim, n = body->model.element->nodes * dim;
+  PetscInt       dofs[ELEMENT_MAX_DOFS], begin, end;
+  PetscScalar    zeros[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS] = {0};
+
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < body->model.element->count; e++) {
+    PetscCall(BodyGetElementDofs(body, e, dofs));
+    PetscCall(MatSetValues(A, n, dofs, n, dofs, zeros, ADD_VALUES));
+  }
+  PetscCall(MatGetOwnershipRange(body->mass.matrix, &begin, &end));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt *columns;
+    PetscInt        n_columns;
+
+    PetscCall(MatGetRow(body->mass.matrix, row, &n_columns, &columns, NULL));
+    for (PetscInt k = 0; k < n_columns; k++) PetscCall(MatSetValue(A, row, columns[k], 0, ADD_VALUES));
+    PetscCall(MatRestoreRow(body->mass.matrix, row, &n_columns, &columns, NULL));
+  }
+  PetscCall(MatAssemblyBegin(A, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(A, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An empty matrix with room for what elements and the mass couple. DMPLEX's own count goes through the mesh entity by entity, which takes
+   ten times as long as that of the graph. */
 PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
 {
   const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes * dim;
@@ -74,7 +122,7 @@ PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
   Mat            graph;
 
   PetscFunctionBegin;
-  PetscCall(CreateNodeGraph(body, &graph));
+  PetscCall(BodyCreateNodeGraph(body, &graph));
   PetscCall(MatGetOwnershipRange(graph, &begin, &end));
   PetscCall(PetscCalloc2(n, &here, n, &elsewhere));
   for (PetscInt row = begin; row < end; row++) {
@@ -100,6 +148,7 @@ PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
   PetscCall(MatSetOption(*A, MAT_SYMMETRIC, PETSC_TRUE));
   PetscCall(MatSetOption(*A, MAT_SYMMETRY_ETERNAL, PETSC_TRUE));
   PetscCall(MatSetOption(*A, MAT_KEEP_NONZERO_PATTERN, PETSC_TRUE));
+  if (body->mass.of_nodes) PetscCall(FillPattern(body, *A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -47,16 +47,18 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the contact nodes of a body have mass */
+/* Whether contact nodes of a body have mass, all or some of them */
 PetscErrorCode ContactBodyHasMass(Body body, PetscBool *has)
 {
   PetscBool massless, without_inertia, rigid;
+  PetscInt  n_keep;
 
   PetscFunctionBegin;
   PetscCall(BodyIsRigid(body, &rigid));
   PetscCall(BodyIsRedistributed(body, &massless));
   PetscCall(BodyIsStatic(body, &without_inertia));
-  *has = (PetscBool)(!massless && !without_inertia && !rigid);
+  PetscCall(BodyFindSpan(body, NULL, &n_keep, NULL));
+  *has = (PetscBool)((!massless || n_keep) && !without_inertia && !rigid);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

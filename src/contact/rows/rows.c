@@ -194,6 +194,7 @@ PetscErrorCode ContactSetUpRows(Contact contact)
     PetscCall(ContactCreateTransfer(contact, &contact->pairs[p]));
     PetscCall(ContactMarkNodes(contact, &contact->pairs[p]));
   }
+  PetscCall(ContactFindMassless(contact));
   PetscCall(ContactLayOutRows(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscBool changed;
