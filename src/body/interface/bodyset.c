@@ -386,6 +386,9 @@ is
   E^T M E: total mass, centre of mass and moments of inertia are those of the full mass M. Contact nodes around which inner nodes do not span
   the body, as in sheets of one or two elements, keep their mass, see `BodyFindSpan()`.
 
+  Where a factor near one on the masses that are left keeps centre and moments of inertia to 1e-3, as in fine meshes, mass moves as with
+  `BodySetMassRedistribute()` alone: waves do not feel that, and lumped masses stay diagonal. `BodyView()` tells.
+
 .seealso: `Body`, `BodySetMassRedistribute()`, `BodyFindSpan()`
 @*/
 PetscErrorCode BodySetMassExtrapolate(Body body, PetscBool extrapolate)
