@@ -84,7 +84,8 @@ static PetscErrorCode Accelerate(Body body, PetscReal t, PetscBool known, Vec fo
   const PetscReal position   = GetPosition(body);
   const PetscBool prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
   /* contact forces that act on massless nodes alone accelerate nothing */
-  const PetscBool contact = (PetscBool)(known || !body->mass.inverse || !((BodyExplicit *)body->integrator->data)->layer_alone);
+  const PetscBool contact = (PetscBool)(known || (!body->mass.inverse && !body->mass.of_nodes) ||
+                                        !((BodyExplicit *)body->integrator->data)->layer_alone);
   PetscBool       outside = BodyHasOutsideForce(body, contact);
 
   PetscFunctionBegin;
@@ -382,7 +383,7 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionBegin;
   if (layer) PetscCall(LayerBalanceCreate(body, &explicit->layer));
   integrator->answers_by_layer = (PetscBool)(layer && body->time.substeps == 1 && (body->rows.global || body->rows.expected) &&
-                                             !body->rows.have_mass && !body->rows.tied_mass);
+                                             !body->rows.have_mass && !body->rows.tied_mass && !body->mass.n_keep);
   /* dashpots of a nonlinear body act by where the layer is, and by its velocity at mid-step */
   explicit->layer_alone = (PetscBool)(integrator->answers_by_layer && (body->model.linear || !BodyIsDamped(body)));
   if (body->mass.matrix) PetscCall(BodySetUpMassSolver(body));

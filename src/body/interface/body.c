@@ -378,6 +378,7 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscCall(BodyDestroyRowArrays(b));
   }
   PetscCall(ConstrainedSolverDestroy(&b->mass.solver));
+  PetscCall(BodyDestroyMassBlocks(&b->mass.blocks));
   PetscCall(MatDestroy(&b->model.stiffness));
   PetscCall(MatDestroy(&b->mass.matrix));
   PetscCall(MatDestroy(&b->mass.product));

@@ -9,6 +9,7 @@
 
 typedef struct _n_LayerElements *LayerElements;
 typedef struct _n_LayerSolver   *LayerSolver;
+typedef struct _n_MassBlocks    *MassBlocks;
 typedef struct _n_BodyGram      *BodyGram;
 typedef struct _n_BodyHistory   *BodyHistory;
 
@@ -77,6 +78,7 @@ typedef struct {
   PetscScalar *diagonals;   /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
   Vec          inverse;     /* of a diagonal one: 1/m, 0 on massless nodes */
   ConstrainedSolver solver; /* of one that is not diagonal; NULL until first needed */
+  MassBlocks        blocks; /* in its place where the matrix couples nodes near the surface alone, on one rank; NULL until first needed */
   Vec               orphans;   /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
   PetscReal         total;     /* [kg] */
   PetscReal         centre[3]; /* of the undeformed body [m] */
@@ -367,6 +369,9 @@ PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
 PETSC_INTERN PetscErrorCode BodyCreateMassOfNodes(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyExtrapolateMass(Body);
+PETSC_INTERN PetscErrorCode BodyCreateMassBlocks(Body, MassBlocks *);
+PETSC_INTERN PetscErrorCode BodySolveMassBlocks(Body, MassBlocks, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyDestroyMassBlocks(MassBlocks *);
 PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyEndSolver(Body);
 PETSC_INTERN PetscErrorCode BodyBeginAssembly(Body, Mat, Mat *);

@@ -176,7 +176,7 @@ static PetscErrorCode GetLayerPart(Body body, PetscReal *part)
 static PetscErrorCode ChooseFactor(Body body)
 {
   const BodyMass before = body->mass;
-  PetscReal      part = 0;
+  PetscReal      part   = 0;
 
   PetscFunctionBegin;
   PetscCall(GetLayerPart(body, &part));
@@ -241,6 +241,10 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscInt rstart;
 
   PetscFunctionBegin;
+  if (body->mass.of_nodes && body->rows.size == 1) {
+    if (!body->mass.blocks) PetscCall(BodyCreateMassBlocks(body, &body->mass.blocks));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(MatDuplicate(body->mass.matrix, MAT_COPY_VALUES, &solvable));
   PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
   for (PetscInt i = 0; i < body->layer.n_dofs; i++)
@@ -314,6 +318,10 @@ PetscErrorCode BodySolveMass(Body body, Vec f, Vec a)
   else if (body->mass.inverse) PetscCall(VecPointwiseMult(a, body->mass.inverse, f));
   else {
     if (!body->mass.solver) PetscCall(BodySetUpMassSolver(body));
+    if (body->mass.blocks) {
+      PetscCall(BodySolveMassBlocks(body, body->mass.blocks, f, a));
+      PetscFunctionReturn(PETSC_SUCCESS);
+    }
     PetscCall(ConstrainedSolverSolve(body->mass.solver, f, a));
     PetscCall(VecGetArray(a, &array));
     for (PetscInt i = 0; i < body->layer.n_dofs; i++) array[body->layer.dofs[i]] = 0;
