@@ -377,7 +377,7 @@ PETSC_INTERN PetscErrorCode BodyEndSolver(Body);
 PETSC_INTERN PetscErrorCode BodyBeginAssembly(Body, Mat, Mat *);
 PETSC_INTERN PetscErrorCode BodyEndAssembly(Mat, Mat);
 PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
-PETSC_INTERN PetscErrorCode BodyCreateNodeGraph(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyCreateNodeGraph(Body, const PetscBool[], Mat *);
 PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyNoteInverted(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyFindFirstElement(Body, PetscInt, PetscMPIInt *, PetscReal[3]);

@@ -58,11 +58,44 @@ static PetscErrorCode Gather(Vec from, IS dofs, Vec *to)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The elements that are looked through: those within MOST_RINGS of contact nodes */
+static PetscErrorCode MarkElements(Body body, PetscBool near[])
+{
+  const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim;
+  PetscBool         *reached;
+  PetscScalar       *sum;
+  const PetscScalar *sums;
+  Vec                counts, local;
+
+  PetscFunctionBegin;
+  PetscCall(BodyCreateVec(body, &counts));
+  PetscCall(PetscMalloc1(body->mesh.local_nodes, &reached));
+  PetscCall(PetscArraycpy(reached, body->layer.contains, body->mesh.local_nodes));
+  for (PetscInt ring = 0; ring < MOST_RINGS; ring++) {
+    PetscCall(BodyGetLocalSum(body, counts, &local, &sum));
+    for (PetscInt e = 0; e < body->model.element->count; e++) {
+      const PetscInt *nodes = body->mesh.connectivity + e * n;
+
+      for (PetscInt a = 0; a < n; a++)
+        if (reached[nodes[a]]) near[e] = PETSC_TRUE;
+      for (PetscInt a = 0; a < n && near[e]; a++) sum[nodes[a] * dim] += 1;
+    }
+    PetscCall(BodyRestoreLocalSum(body, counts, &local, &sum));
+    PetscCall(BodyGetLocalRead(body, counts, &local, &sums));
+    for (PetscInt i = 0; i < body->mesh.local_nodes; i++) reached[i] = (PetscBool)(PetscRealPart(sums[i * dim]) > 0);
+    PetscCall(BodyRestoreLocalRead(body, counts, &local, &sums));
+  }
+  PetscCall(PetscFree(reached));
+  PetscCall(VecDestroy(&counts));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CreateSurroundings(Body body, Surroundings *around)
 {
   const PetscInt  dim = body->mesh.dim;
   const PetscInt *indices;
   PetscInt        n = 0, begin, *layer;
+  PetscBool      *near;
   PetscScalar    *mark;
   Vec             marks;
   Mat             graph;
@@ -70,7 +103,10 @@ static PetscErrorCode CreateSurroundings(Body body, Surroundings *around)
 
   PetscFunctionBegin;
   *around = (Surroundings){.dim = dim, .n_wanted = 1 + (dim > 2 ? 9 : dim > 1 ? 3 : 1), .largest_sum = LargestSum(dim)};
-  PetscCall(BodyCreateNodeGraph(body, &graph));
+  PetscCall(PetscCalloc1(body->model.element->count, &near));
+  PetscCall(MarkElements(body, near));
+  PetscCall(BodyCreateNodeGraph(body, near, &graph));
+  PetscCall(PetscFree(near));
   PetscCall(MatGetOwnershipRange(graph, &begin, NULL));
   PetscCall(BodyCreateVec(body, &marks));
   PetscCall(VecZeroEntries(marks));

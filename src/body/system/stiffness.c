@@ -62,9 +62,9 @@ static PetscErrorCode AddMassToGraph(Body body, Mat graph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which nodes share an element, or have a mass in common, as a matrix of nodes by nodes: far smaller than one of displacements, and quick
-   to make */
-PetscErrorCode BodyCreateNodeGraph(Body body, Mat *graph)
+/* Which nodes share an element, of those that are marked (NULL: all), or have a mass in common, as a matrix of nodes by nodes: far smaller
+   than one of displacements, and quick to make */
+PetscErrorCode BodyCreateNodeGraph(Body body, const PetscBool marked[], Mat *graph)
 {
   const PetscInt n = body->model.element->nodes;
   PetscScalar    ones[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
@@ -77,6 +77,7 @@ PetscErrorCode BodyCreateNodeGraph(Body body, Mat *graph)
   PetscCall(MatSetType(*graph, MATAIJ));
   PetscCall(MatSetUp(*graph));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
+    if (marked && !marked[e]) continue;
     PetscCall(BodyGetElementDofs(body, e, dofs));
     for (PetscInt a = 0; a < n; a++) nodes[a] = dofs[a * body->mesh.dim] / body->mesh.dim;
     PetscCall(MatSetValues(*graph, n, nodes, n, nodes, ones, INSERT_VALUES));
@@ -122,7 +123,7 @@ PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
   Mat            graph;
 
   PetscFunctionBegin;
-  PetscCall(BodyCreateNodeGraph(body, &graph));
+  PetscCall(BodyCreateNodeGraph(body, NULL, &graph));
   PetscCall(MatGetOwnershipRange(graph, &begin, &end));
   PetscCall(PetscCalloc2(n, &here, n, &elsewhere));
   for (PetscInt row = begin; row < end; row++) {
