@@ -214,8 +214,8 @@ static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const c
   }
   if (PetscSqrtReal(square) > CENTRE_SHIFT * thickness)
     PetscCall(AddOfKind(verdict, VERDICT_CENTRE,
-                        "massless contact nodes move the centre of mass of body '%s' by %.3g%s, %.3g %% of its least extent: keep its mass "
-                        "(-contact_type force -%s_mass_redistribute false), or refine it across",
+                        "massless contact nodes move the centre of mass of body '%s' by %.3g%s, %.3g %% of its least extent: set "
+                        "-%s_mass_redistribute auto, which keeps it, or refine it across",
                         name, (double)PetscSqrtReal(square), UnitsText(verdict->units, UNIT_LENGTH),
                         (double)(100 * PetscSqrtReal(square) / thickness), name));
   else if (inertia > INERTIA_CHANGE) {
@@ -227,7 +227,7 @@ static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const c
           PetscSNPrintf(advice, sizeof(advice), ", or set -%s_mass_redistribute near, which leaves %.3g %%", name, (double)(100 * near)));
     PetscCall(AddOfKind(verdict, VERDICT_INERTIA,
                         "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; "
-                        "keep its mass (-contact_type force -%s_mass_redistribute false), or refine it across%s",
+                        "set -%s_mass_redistribute auto, which keeps them, or refine it across%s",
                         name, (double)(100 * inertia), name, advice));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

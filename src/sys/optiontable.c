@@ -29,9 +29,10 @@ static const KnownOption options[] = {
     {"bodies", OPTION_OF_BODY, "mass_type", "lumped|consistent|averaged",
      "mass matrix; averaged: the mean of the two others. Default averaged, but lumped for explicit bodies in 2-D and 3-D"},
     {"bodies", OPTION_OF_BODY, "mass_redistribute", "true|false|near|auto",
-     "whether the mass of contact nodes moves to their inner neighbours, so that contact nodes are massless; default true; near: of those "
-     "alone that face a partner at the start, and an error where contact comes to others; auto: massless contact nodes move as inner nodes "
-     "do, so that centre and moments of inertia stay, and keep their mass where inner nodes do not span the body"},
+     "whether contact nodes are massless. auto: their mass moves to inner neighbours in fine bodies, in coarse ones they move "
+     "as inner nodes do, and thin bodies and what may touch these keep it. true, the default: it moves; false: it stays; near: it moves "
+     "from nodes that "
+     "face a partner at the start, and contact that comes to others is an error"},
     {"bodies", OPTION_OF_BODY, "mass_moments", "total|centre|inertia",
      "what that keeps: the total mass, its centre too, or (default) the moments of inertia too, where positive masses allow"},
     {"bodies", OPTION_OF_BODY, "damping_mass", "alpha",

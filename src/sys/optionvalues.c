@@ -97,7 +97,7 @@ PetscErrorCode OptionsDescribeMissing(const char option[], char text[], size_t s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The value of a switch that may be another word as well, `other`, which the caller has looked for. `option` without its dash */
+/* The value of a switch that may be another word as well, as `other` says, which the caller has looked for. `option` without its dash */
 PetscErrorCode OptionsReadSwitch(MPI_Comm comm, const char option[], const char other[], const char value[], PetscBool *flag)
 {
   static const char *const words[] = {"true", "yes", "on", "1", "false", "no", "off", "0"};
@@ -109,7 +109,7 @@ PetscErrorCode OptionsReadSwitch(MPI_Comm comm, const char option[], const char 
     PetscCall(PetscStrcasecmp(value, words[i], &same));
     which = i;
   }
-  PetscCheck(same, comm, PETSC_ERR_USER_INPUT, "-%s is true, false or %s, not '%s'", option, other, value);
+  PetscCheck(same, comm, PETSC_ERR_USER_INPUT, "-%s is true, false%s, not '%s'", option, other, value);
   *flag = (PetscBool)(which < 4);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -75,7 +75,7 @@ def test_combs(ranks, tmp_path, impakt):
     assert sum(run.history[f"body/{name}/momentum"][-1, 0] for name in "ab") == pytest.approx(run.history["body/b/momentum"][0, 0], rel=1e-9)
     assert abs(run.summary["system"]["energy_error_final"]) <= 0.002  # measured: 0.00105
     assert not inside(run)
-    assert run.summary["contact"]["overlap"]["depth"] >= overlap.largest(run.folder / "fields.h5")
+    assert run.summary["contact"]["overlap"]["depth"] >= (1 - 1e-12) * overlap.largest(run.folder / "fields.h5")
 
 
 def walls(n, dim):
@@ -123,6 +123,6 @@ def test_starts(hollow, tmp_path, impakt):
     bodies, time = hollow(tmp_path)
     bodies = f"{CM.format('a', tmp_path / 'a.msh')} {bodies}"
     bodies = bodies.replace("-a_dm_plex_dim 2", f"-a_dm_plex_dim {3 if hollow in (tube, cup_in_space) else 2}")
-    run = impakt(f"-bodies a,b -contact_facing false {SOFT} {bodies} -time_step {time / 40} -time_end {1.05 * time}")
+    run = impakt(f"-bodies a,b -contact_facing false {SOFT} {bodies} -all_mass_redistribute true -time_step {time / 40} -time_end {1.05 * time}")
     assert run.summary["contact"]["onset_time"] == pytest.approx(time, rel=0.03 if hollow is gears else 1e-6)  # measured: 0.023, as rows are means over flanks that meet at an angle; 0
     assert not inside(run)

@@ -34,7 +34,7 @@ def test_free_flight(impakt, dim, simplex, layers, mass, ranks):
     """Linear momentum always, angular momentum where the moments of inertia are kept: plates of three layers in three dimensions cannot, and say
     so: measured up to 0.22 of the moment about the flattest axis. Tolerances are what the sums of some 100 nodes lose."""
     options = f"{COMMON} {box(dim, simplex, layers)} -b_mass_type {mass}"
-    moved, whole = impakt(options, ranks), impakt(f"{options} -b_mass_redistribute false", ranks)
+    moved, whole = (impakt(f"{options} -b_mass_redistribute {value}", ranks) for value in ("true", "false"))
     told, full = moved.summary["bodies"]["b"]["mass"], whole.summary["bodies"]["b"]["mass"]
     assert told["total"] == pytest.approx(full["total"], rel=1e-13)
     assert told["centre_shift"] == [0, 0, 0]
@@ -68,7 +68,7 @@ def test_near(impakt):
     assert masses[1]["inertia_error"] == 0
 
 
-@pytest.mark.parametrize(("value", "message"), [("near", "-b_mass_redistribute near leaves mass"), ("far", "-b_mass_redistribute is true, false or near or auto, not 'far'")])
+@pytest.mark.parametrize(("value", "message"), [("near", "-b_mass_redistribute near leaves mass"), ("far", "-b_mass_redistribute is true, false, near or auto, not 'far'")])
 def test_near_refuses(value, message, impakt):
     """Contact elsewhere, and what is no value."""
     assert message in impakt(f"{LANDING} -b_mass_redistribute {value}", expect_failure=True).stderr
@@ -85,7 +85,7 @@ def test_lands_on_a_corner(impakt):
 )
 def test_thin_plates_say_what_they_lose(impakt, layers, more, words):
     """Of two layers of triangles, of which one is beside the massless nodes, or both are: 13 % of the thickness, and 71 % of a moment of inertia."""
-    texts = [text for text in impakt(f"{COMMON} {box(2, 1, layers)} {more}").summary["warnings"] if "massless" in text]
+    texts = [text for text in impakt(f"{COMMON} {box(2, 1, layers)} -b_mass_redistribute true {more}").summary["warnings"] if "massless" in text]
     assert len(texts) == (words is not None)
     assert all(words in text and "refine it across" in text for text in texts)
 
@@ -99,7 +99,7 @@ FOUR = THREE.replace("roof,wall", "roof,wall,other").replace("b:wall", "b:wall,b
 def test_near_is_advised_where_it_helps(impakt, planes, ranks):
     """With what it leaves, which the run that follows has; not where all nodes face a plane, so that it changes nothing, nor where it is set already."""
     options = f"{COMMON} {box(2, 1, 2)} -contact_facing false {planes}"
-    run, near = (impakt(f"{options} {more}", ranks) for more in ("", "-b_mass_redistribute near"))
+    run, near = (impakt(f"{options} {more}", ranks) for more in ("-b_mass_redistribute true", "-b_mass_redistribute near"))
     before, after = (case.summary["bodies"]["b"]["mass"]["inertia_error"] for case in (run, near))
     texts = [text for text in run.summary["warnings"] if "moments of inertia" in text]
     assert len(texts) == 1
@@ -123,7 +123,7 @@ def test_planes_of_symmetry(impakt, held, warns):
     options = (
         "-bodies ball -obstacles floor -floor_obstacle_type plane -floor_point 0,0,0 -floor_normal 0,0,1 -contact_pairs ball.surface:floor -time_step 1e-4 "
         "-time_end 1e-4 -ball_dm_plex_dim 3 -ball_dm_plex_shape ball -ball_ball_centre 0,0,1.1 -ball_ball_part quarter -ball_ball_divisions 12 -ball_ball_grading 64 -ball_density 1000 "
-        f"-ball_youngs_modulus 1e9 {held}"
+        f"-ball_youngs_modulus 1e9 -ball_mass_redistribute true {held}"
     )
     run = impakt(options)
     assert run.summary["bodies"]["ball"]["mass"]["inertia_error"] > 0.2
@@ -139,7 +139,7 @@ def test_ranks_have_the_same_masses(impakt):
         f"-{name}_youngs_modulus {modulus} -{name}_ts_type centraldifference"
         for name, (faces, lower, upper, modulus) in blocks.items()
     )
-    options += " -bodies a,b,c -contact_pairs a:b,b:c -b_dm_plex_simplex true -time_step 1e-4 -time_end 1e-4"
+    options += " -bodies a,b,c -contact_pairs a:b,b:c -b_dm_plex_simplex true -b_mass_redistribute true -time_step 1e-4 -time_end 1e-4"
     one, two = (impakt(options, ranks).summary["bodies"]["b"]["mass"] for ranks in (1, 2))
     assert one["factor_min"] == pytest.approx(0.3)
     for figure in ("factor_min", "factor_max", "centre_shift", "inertia_error"):

@@ -1,4 +1,4 @@
-"""Thin bodies for tests of `-contact_type force`, which keep their mass: plates that are hit, brackets that fall, sheets in stacks and between tools, tubes."""
+"""Thin bodies, which keep their mass, so that `-contact_type force` makes the steps: plates that are hit, brackets that fall, sheets in stacks and between tools, tubes."""
 
 from itertools import pairwise
 
@@ -45,10 +45,10 @@ def model_formulation(of, kind):
 
 
 def model(name, of, kind, e=STEEL[0], yields=3e8, nu=STEEL[1], density=STEEL[2], formulation=None):
-    """Mass kept; elements that do not lock in bending, of implicit bodies (I) and explicit ones (E)."""
+    """Elements that do not lock in bending, of implicit bodies (I) and explicit ones (E)."""
     flows = f"-{name}_yield_stress {yields:g} -{name}_hardening_modulus {e / 200:g}"
     return joined(
-        f"-{name}_material_type {of} -{name}_mass_redistribute false -{name}_element_formulation {formulation or model_formulation(of, kind)}",
+        f"-{name}_material_type {of} -{name}_mass_redistribute auto -{name}_element_formulation {formulation or model_formulation(of, kind)}",
         material(name, e, nu, density),
         flows if of == "j2" else "",
         f"-{name}_ts_type centraldifference" if kind == "E" else "",
@@ -62,7 +62,7 @@ def drop(mesh, kind="E", of="neo_hookean", fall="flat", mu=0.3, speed=5.0, step=
     low = turned(corners, turn[:3], turn[3])[:, 2].min() if turn else 0
     with_block = partner == "block"
     return joined(
-        f"-bodies bracket{',block' if with_block else ''} -contact_type force -time_step {step:.17g} -time_end {end:.17g}",
+        f"-bodies bracket{',block' if with_block else ''} -time_step {step:.17g} -time_end {end:.17g}",
         f"-bracket_dm_plex_filename {mesh} -bracket_initial_velocity 0,0,{-speed} -bracket_translate 0,0,{gap - low:.17g}",
         f"-bracket_rotate {words(turn)}" if turn else "",
         model("bracket", of, kind, formulation=formulation),
@@ -81,7 +81,7 @@ def stack(n=10, kind="I", of="linear_elastic", mu=0.3, speed=5.0, step=2e-6, end
     bodies = [joined(box(name, (faces, 1), (-0.04, k * 1.001e-3 + 1e-6), (0.04, k * 1.001e-3 + 1.001e-3)), model(name, of, kind)) for k, name in enumerate(names)]
     top = n * 1.001e-3 + 1e-6
     return joined(
-        f"-bodies {','.join(names)},block -obstacles t {plane('t', (0, 0), (0, 1))} -contact_type force -time_step {step:.17g} -time_end {end:.17g}",
+        f"-bodies {','.join(names)},block -obstacles t {plane('t', (0, 0), (0, 1))} -time_step {step:.17g} -time_end {end:.17g}",
         f"-contact_pairs {','.join(f'{b}:{a}' for a, b in pairwise(chain))}",
         *bodies,
         joined(box("block", (4, 4), (-0.005, top), (0.005, top + 0.01)), model("block", "linear_elastic", kind), f"-block_initial_velocity 0,{-speed}"),
@@ -99,7 +99,7 @@ def crushed(mesh, layers, faces, of="neo_hookean", kind="I", mu=0.3, closing=0.0
     top = TUBE + WALL / 2
     way = f"0,-{closing:g}*(t/{end:g})^2*(2-t/{end:g})"
     return joined(
-        f"-bodies tube,plate -obstacles t {plane('t', (0, -top - 1e-6), (0, 1))} -contact_type force -contact_pairs tube:t,tube:plate -contact_facing false",
+        f"-bodies tube,plate -obstacles t {plane('t', (0, -top - 1e-6), (0, 1))} -contact_pairs tube:t,tube:plate -contact_facing false",
         f"-time_step {step:.17g} -time_end {end:.17g} -tube_dm_plex_filename {mesh}",
         model("tube", of, kind, formulation=formulation),
         f"-tube_damping_mass 2000 {box('plate', (4, 1), (-0.03, top + 1e-6), (0.03, top + 0.005))} -plate_rigid true -plate_density 7800",
@@ -115,7 +115,7 @@ def between_tools(kind="I", of="linear_elastic", mu=0.2, step=1e-6, end=3e-3, sp
     tools = {"lower": ((-0.01, -0.0105), (0.01, -5e-4 - 1e-7)), "upper": ((-0.01, 5e-4 + 1e-7), (0.01, 0.0105))}
     way = f"{speed}*t*min(t/1e-3,1)/2+{speed / 2}*max(t-1e-3,0)"
     return joined(
-        f"-bodies sheet,lower,upper -contact_type force -contact_pairs sheet:lower,sheet:upper -time_step {step:.17g} -time_end {end:.17g}",
+        f"-bodies sheet,lower,upper -contact_pairs sheet:lower,sheet:upper -time_step {step:.17g} -time_end {end:.17g}",
         box("sheet", (60, 1), (-0.03, -5e-4), (0.03, 5e-4)),
         model("sheet", of, kind),
         f"-sheet_damping_stiffness {2e-6 if kind == 'I' else 2e-8} -sheet_boundary_displacement xmax -sheet_boundary_displacement_xmax {way},0",

@@ -383,13 +383,18 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionBegin;
   if (layer) PetscCall(LayerBalanceCreate(body, &explicit->layer));
   integrator->answers_by_layer = (PetscBool)(layer && body->time.substeps == 1 && (body->rows.global || body->rows.expected) &&
-                                             !body->rows.have_mass && !body->rows.tied_mass && !body->mass.n_keep);
+                                             !body->rows.have_mass && !body->rows.tied_mass);
   /* dashpots of a nonlinear body act by where the layer is, and by its velocity at mid-step */
   explicit->layer_alone = (PetscBool)(integrator->answers_by_layer && (body->model.linear || !BodyIsDamped(body)));
-  if (body->mass.matrix) PetscCall(BodySetUpMassSolver(body));
+  if (body->mass.matrix) {
+    PetscCall(BodySetUpMassSolver(body));
+    /* scatters take their tags when they are first used: here, where all ranks are, and not in a substep that some do not make */
+    PetscCall(VecZeroEntries(body->work.nodes[0]));
+    PetscCall(BodySolveMass(body, body->work.nodes[0], body->work.nodes[1]));
+  }
   PetscCall(TSCentralDifferenceSetAcceleration(body->time.ts, ComputeAcceleration, body));
   PetscCall(TSCentralDifferenceSetAccelerationVec(body->time.ts, body->state.a));
-  integrator->is_local        = (PetscBool)(body->mass.inverse != NULL);
+  integrator->is_local        = (PetscBool)(body->mass.inverse || body->mass.blocks);
   integrator->depends_on_step = (PetscBool)(body->time.substeps > 1);
   integrator->reads_start     = layer;
   integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);

@@ -122,7 +122,7 @@ PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertice
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
-  PetscCheck(!body->mass.extrapolation, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodyFindSpan()");
+  PetscCheck(!body->mass.decided, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodyChooseMass()");
   if (n) PetscAssertPointer(vertices, 3);
   PetscCall(BodySetUpDiscretization(body));
   PetscCall(BodyMarkNodes(body, n, vertices, body->layer.contains));
@@ -171,10 +171,13 @@ static PetscErrorCode SetUpRows(Body body)
 @*/
 PetscErrorCode BodySetUpSteps(Body body)
 {
+  PetscBool keeps;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->time.substeps) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyFindSpan(body, NULL, NULL, NULL));
+  PetscCall(BodyChooseMass(body, 0, NULL, &keeps));
+  if (keeps) PetscCall(BodyKeepMass(body));
   PetscCall(SetUpRows(body));
   if (body->mass.redistribute && (body->rows.global || body->rows.expected)) PetscCall(ImpaktCite(CITE_MASS_REDISTRIBUTION));
   PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->state));

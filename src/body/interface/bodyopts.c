@@ -49,7 +49,7 @@ static PetscErrorCode ReadMass(Body body)
 {
   BodyMassType    type;
   BodyMassMoments moments      = body->mass.moments;
-  PetscBool       redistribute = body->mass.redistribute, near = body->mass.near, extrapolate = body->mass.extrapolate, given;
+  PetscBool       redistribute = body->mass.redistribute, near = body->mass.near, automatic = body->mass.automatic, given;
   char            value[16] = "", name[256];
 
   PetscFunctionBegin;
@@ -58,17 +58,17 @@ static PetscErrorCode ReadMass(Body body)
   PetscObjectOptionsBegin((PetscObject)body);
   PetscCall(PetscOptionsEnum("-mass_type", "Mass matrix", "BodySetMassType", BodyMassTypes, (PetscEnum)type, (PetscEnum *)&type, NULL));
   PetscCall(PetscOptionsString("-mass_redistribute", "Move the mass of contact nodes to their inner neighbours", "BodySetMassRedistribute",
-                               near          ? "near"
-                               : extrapolate ? "auto"
-                                             : PetscBools[redistribute],
+                               near        ? "near"
+                               : automatic ? "auto"
+                                           : PetscBools[redistribute],
                                value, sizeof(value), &given));
   if (given) {
     PetscCall(PetscStrcasecmp(value, "near", &near));
-    PetscCall(PetscStrcasecmp(value, "auto", &extrapolate));
+    PetscCall(PetscStrcasecmp(value, "auto", &automatic));
     redistribute = PETSC_TRUE;
-    if (!near && !extrapolate && value[0]) {
+    if (!near && !automatic && value[0]) {
       PetscCall(PetscSNPrintf(name, sizeof(name), "%smass_redistribute", ((PetscObject)body)->prefix));
-      PetscCall(OptionsReadSwitch(PetscObjectComm((PetscObject)body), name, "near or auto", value, &redistribute));
+      PetscCall(OptionsReadSwitch(PetscObjectComm((PetscObject)body), name, ", near or auto", value, &redistribute));
     }
   }
   PetscCall(PetscOptionsEnum("-mass_moments", "What is kept when mass moves", "BodySetMassMoments", BodyMassMomentsNames,
@@ -76,13 +76,13 @@ static PetscErrorCode ReadMass(Body body)
   PetscOptionsEnd();
   PetscCall(BodySetMassMoments(body, moments));
   PetscCall(BodySetMassType(body, type));
-  PetscCheck(!given || !redistribute || body->integrator->deforms, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+  PetscCheck(!given || !redistribute || automatic || body->integrator->deforms, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%smass_redistribute %s: body '%s' is rigid, and its nodes keep their mass; leave the option out",
              ((PetscObject)body)->prefix, value, body->hdr.name);
   if (given) {
-    PetscCall(BodySetMassRedistribute(body, redistribute));
+    if (!automatic) PetscCall(BodySetMassRedistribute(body, redistribute));
     PetscCall(BodySetMassRedistributeNear(body, near));
-    PetscCall(BodySetMassExtrapolate(body, extrapolate));
+    PetscCall(BodySetMassAutomatic(body, automatic));
   }
   PetscCall(BodySetUpMassType(body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -143,7 +143,7 @@ static PetscErrorCode ReadStatic(Body body)
 . -<body>_<block>_material_type, ...                 - that of a block of the mesh, see `BodySetBlockMaterial()`
 . -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
 . -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
-. -<body>_mass_redistribute (true|false|near|auto)   - moves the mass of contact nodes to their inner neighbours, default true
+. -<body>_mass_redistribute (true|false|near|auto)   - massless contact nodes: all (default), none, those that face a partner, or as is best
 . -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
 . -<body>_ts_type (alpha2|centraldifference|static|rigid) - implicit, explicit, without inertia, or rigid, default alpha2
 . -<body>_rigid (true|false)                         - it does not deform, see `BodySetRigid()`

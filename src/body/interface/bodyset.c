@@ -331,6 +331,7 @@ PetscErrorCode BodySetMassRedistribute(Body body, PetscBool redistribute)
   PetscValidLogicalCollectiveBool(body, redistribute, 2);
   BodyCheckNotSetUp(body);
   body->mass.redistribute = redistribute;
+  body->mass.automatic    = PETSC_FALSE;
   body->mass.chosen       = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -367,37 +368,35 @@ PetscErrorCode BodySetMassRedistributeNear(Body body, PetscBool near)
 }
 
 /*@
-  BodySetMassExtrapolate - whether massless contact nodes move as the inner nodes around them do
+  BodySetMassAutomatic - whether the body chooses if its contact nodes are massless, and how
 
   Logically Collective
 
   Input Parameters:
-+ body        - the `Body`, before the contact is set up
-- extrapolate - `PETSC_FALSE` (default): their mass moves to inner nodes
++ body      - the `Body`, before the contact is set up
+- automatic - `PETSC_TRUE`: as is best for body and pairs; `PETSC_FALSE`, as at first: as `BodySetMassRedistribute()` says
 
   Options Database Key:
-. -<body>_mass_redistribute auto - redistribution, and this
+. -<body>_mass_redistribute auto - it does
 
   Level: intermediate
 
   Notes:
-  The velocity of a massless node is the affine extrapolation of those of the nearest inner nodes, v = E v_inner, and the mass of the body
-is
-  E^T M E: total mass, centre of mass and moments of inertia are those of the full mass M. Contact nodes around which inner nodes do not span
-  the body, as in sheets of one or two elements, keep their mass, see `BodyFindSpan()`.
+  In fine bodies mass moves to inner neighbours, as `BodySetMassRedistribute()` has it. In coarser ones the velocity of a massless node is
+the affine extrapolation of those of the nearest inner nodes, v = E v_inner, and the mass of the body is E^T M E: total mass, centre of mass
+and moments of inertia are those of the full mass M. Thin bodies, in which inner nodes do not span the space around contact nodes, keep
+their mass, and so do all bodies that contact pairs connect with them. `BodyView()` tells.
 
-  Where a factor near one on the masses that are left keeps centre and moments of inertia to 1e-3, as in fine meshes, mass moves as with
-  `BodySetMassRedistribute()` alone: waves do not feel that, and lumped masses stay diagonal. `BodyView()` tells.
-
-.seealso: `Body`, `BodySetMassRedistribute()`, `BodyFindSpan()`
+.seealso: `Body`, `BodySetMassRedistribute()`, `BodySetMassRedistributeNear()`
 @*/
-PetscErrorCode BodySetMassExtrapolate(Body body, PetscBool extrapolate)
+PetscErrorCode BodySetMassAutomatic(Body body, PetscBool automatic)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(body, extrapolate, 2);
+  PetscValidLogicalCollectiveBool(body, automatic, 2);
   BodyCheckNotSetUp(body);
-  body->mass.extrapolate = extrapolate;
+  if (automatic) body->mass.redistribute = PETSC_TRUE;
+  body->mass.automatic = automatic;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -41,16 +41,15 @@ static PetscErrorCode ViewLayer(Body body, PetscViewer viewer)
   const BodyMass *mass = &body->mass;
 
   PetscFunctionBegin;
-  if (mass->n_contact && mass->extrapolate)
+  if (mass->extrapolate)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "  massless contact layer: moves as inner nodes do, with weights of up to %g in sum; mass, centre and "
                                      "moments of inertia are kept\n",
                                      (double)mass->extrapolated_by));
   if (mass->n_keep)
     PetscCall(PetscViewerASCIIPrintf(viewer,
-                                     "  %" PetscInt_FMT " of %" PetscInt_FMT
-                                     " contact nodes keep their mass, since nodes inside do not span the "
-                                     "body there: at (%g, %g, %g)%s\n",
+                                     "  thin: contact nodes keep their mass, since nodes inside do not span the body around %" PetscInt_FMT
+                                     " of %" PetscInt_FMT " nodes at its surface, as at (%g, %g, %g)%s\n",
                                      mass->n_keep, mass->n_contact, (double)mass->keeps_at[0], (double)mass->keeps_at[1],
                                      (double)mass->keeps_at[2], UnitsOf((PetscObject)body, UNIT_LENGTH)));
   if (mass->least_factor == 0) PetscFunctionReturn(PETSC_SUCCESS);

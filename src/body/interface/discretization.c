@@ -14,7 +14,7 @@ PetscErrorCode BodySetUpMassType(Body body)
     body->mass.type         = BODY_MASS_CONSISTENT;
     body->mass.redistribute = PETSC_FALSE;
     body->mass.near         = PETSC_FALSE;
-    body->mass.extrapolate  = PETSC_FALSE;
+    body->mass.automatic    = PETSC_FALSE;
   }
   if ((int)body->mass.type == PETSC_DECIDE)
     body->mass.type = body->integrator->divides_by_mass && body->mesh.dim > 1 ? BODY_MASS_LUMPED : BODY_MASS_AVERAGED;

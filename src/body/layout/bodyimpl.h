@@ -65,22 +65,25 @@ typedef struct {
 } BodyModel;
 
 typedef struct {
-  BodyMassType type;
-  PetscBool    redistribute; /* contact nodes become massless */
-  PetscBool    near;         /* but those that face no partner at the start, which keep their mass */
-  PetscBool    extrapolate; /* massless nodes move as inner nodes do, see extrapolation.c; where these do not span, nodes keep their mass */
-  PetscBool    chosen;      /* program or options have said whether they do */
-  Vec          row_sum;     /* M 1: the lumped mass */
-  Vec          diagonal;    /* the mass matrix where it is diagonal, else NULL */
-  Mat          matrix;      /* the mass matrix where it is not diagonal, else NULL */
-  Mat          product;     /* the same for products with vectors */
-  Mat          of_nodes;    /* the same for nodes, where it couples nodes that share no element; else NULL */
-  PetscScalar *diagonals;   /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
-  Vec          inverse;     /* of a diagonal one: 1/m, 0 on massless nodes */
-  ConstrainedSolver solver; /* of one that is not diagonal; NULL until first needed */
-  MassBlocks        blocks; /* in its place where the matrix couples nodes near the surface alone, on one rank; NULL until first needed */
-  Vec               orphans;   /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
-  PetscReal         total;     /* [kg] */
+  BodyMassType      type;
+  PetscBool         redistribute; /* contact nodes become massless */
+  PetscBool         near;         /* but those that face no partner at the start, which keep their mass */
+  PetscBool         automatic;    /* the body chooses whether and how they become massless, see masschoice.c */
+  PetscBool         decided;      /* it has */
+  PetscBool         moved;        /* the mass has found a place, with factor and orphans */
+  PetscBool         extrapolate;  /* massless nodes move as inner nodes do, see extrapolation.c */
+  PetscBool         chosen;       /* program or options have said whether they are massless */
+  Vec               row_sum;      /* M 1: the lumped mass */
+  Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
+  Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
+  Mat               product;      /* the same for products with vectors */
+  Mat               of_nodes;     /* the same for nodes, where it couples nodes that share no element; else NULL */
+  PetscScalar      *diagonals;    /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
+  Vec               inverse;      /* of a diagonal one: 1/m, 0 on massless nodes */
+  ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
+  MassBlocks        blocks;  /* in its place where the matrix couples nodes near the surface alone, on one rank; NULL until first needed */
+  Vec               orphans; /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
+  PetscReal         total;   /* [kg] */
   PetscReal         centre[3]; /* of the undeformed body [m] */
   PetscReal
       inverse_inertia[9]; /* inverse of the inertia tensor of the undeformed body about its centre; zero in one dimension [1/(kg m^2)] */
@@ -92,9 +95,9 @@ typedef struct {
   PetscReal       inertia_error; /* largest relative change of a moment of inertia about an axis through the centre; 0: they are kept */
   PetscReal       turn_error;    /* the same of axes about which nothing that is held keeps the body from turning */
   /* of a body that extrapolates, over all ranks */
-  Mat       extrapolation;     /* E, nodes x nodes: velocities from those of inner nodes; NULL until BodyFindSpan() */
+  Mat       extrapolation;     /* E, nodes x nodes: velocities from those of inner nodes; NULL until BodyFindExtrapolation() */
   PetscReal extrapolated_by;   /* the largest sum of the absolute weights of a node */
-  PetscInt  n_contact, n_keep; /* contact nodes; those around which inner nodes do not span the body, and which keep their mass */
+  PetscInt  n_contact, n_keep; /* contact nodes; those around which inner nodes do not span the body */
   PetscReal keeps_at[3];       /* where one of the latter is [m] */
 } BodyMass;
 
@@ -407,7 +410,8 @@ PETSC_INTERN PetscErrorCode BodySetUpWork(Body);
 PETSC_INTERN PetscErrorCode BodyComputeStartAcceleration(Body, PetscBool, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyAddWork(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
-PETSC_INTERN PetscErrorCode BodyFindOrphans(Body);
+PETSC_INTERN PetscErrorCode BodyFindOrphans(Body, PetscBool *);
+PETSC_INTERN PetscErrorCode BodyFindExtrapolation(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);
 PETSC_INTERN PetscErrorCode BodyComputeStableStepAt(Body, const PetscScalar[], PetscBool, PetscReal *);

@@ -6,7 +6,7 @@
 
    The weights of a contact node are those of least sum w^2 / omega that satisfy sum w = 1, sum w (x - x_node) = 0, with omega = 1 /
    distance^4. Where the neighbouring inner nodes lie in a plane, or nearly so, there are no such weights, or only large ones: there the
-   inner nodes do not span the body, as in sheets of one or two elements, and the node keeps its mass.
+   inner nodes do not span the body, as in sheets of one or two elements.
 */
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
@@ -247,7 +247,7 @@ static PetscErrorCode Extrapolate(Surroundings *around, PetscInt node, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* E, and which of this rank's contact nodes have no weights and keep their mass: they have the identity in E */
+/* E, and which of this rank's contact nodes have no weights: they have the identity in E */
 static PetscErrorCode FillExtrapolation(Body body, Surroundings *around, PetscBool keeps[])
 {
   const PetscInt *numbers;
@@ -278,33 +278,18 @@ static PetscErrorCode FillExtrapolation(Body body, Surroundings *around, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Contact nodes that keep their mass are no nodes of the layer, also as ghosts of other ranks */
-static PetscErrorCode TakeOut(Body body, const PetscBool keeps[])
+static PetscErrorCode CountNodes(Body body, const PetscBool keeps[])
 {
-  const PetscInt     dim    = body->mesh.dim;
-  PetscReal          all[2] = {0};
-  PetscScalar       *mark;
-  const PetscScalar *marked;
-  Vec                marks, local;
+  PetscInt all[2] = {0};
 
   PetscFunctionBegin;
-  PetscCall(BodyCreateVec(body, &marks));
-  PetscCall(VecZeroEntries(marks));
-  PetscCall(VecGetArray(marks, &mark));
   for (PetscInt i = 0; i < body->mesh.owned_nodes; i++) {
-    mark[i * dim] = keeps[i] ? 1 : 0;
     all[0] += body->layer.contains[i] ? 1 : 0;
     all[1] += keeps[i] ? 1 : 0;
   }
-  PetscCall(VecRestoreArray(marks, &mark));
-  PetscCall(BodyGetLocalRead(body, marks, &local, &marked));
-  for (PetscInt i = 0; i < body->mesh.local_nodes; i++)
-    if (PetscRealPart(marked[i * dim]) > 0) body->layer.contains[i] = PETSC_FALSE;
-  PetscCall(BodyRestoreLocalRead(body, marks, &local, &marked));
-  PetscCall(VecDestroy(&marks));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  body->mass.n_contact = (PetscInt)all[0];
-  body->mass.n_keep    = (PetscInt)all[1];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, all, 2, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+  body->mass.n_contact = all[0];
+  body->mass.n_keep    = all[1];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -326,30 +311,8 @@ static PetscErrorCode NotePlace(Body body, const PetscBool keeps[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyFindSpan - which contact nodes of a body can be massless, since inner nodes span the body around them
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, after the calls of `BodySetContactNodes()`
-
-  Output Parameters:
-+ n_contact - contact nodes of all ranks; or `NULL`
-. n_keep    - those of them that keep their mass: the inner nodes around them lie in a plane, or too near to one; or `NULL`
-- place     - the reference position of one of those, 3 numbers [m]; or `NULL`
-
-  Level: developer
-
-  Notes:
-  Without `BodySetMassExtrapolate()` there is nothing to find, and all numbers are zero.
-
-  Nodes that keep their mass do not belong to the massless layer any more. Where all of them do, `BodyIsRedistributed()` is false from then
-  on. Calls beyond the first cost nothing.
-
-.seealso: `Body`, `BodySetMassExtrapolate()`, `BodySetContactNodes()`, `BodyIsRedistributed()`
-@*/
-PetscErrorCode BodyFindSpan(Body body, PetscInt *n_contact, PetscInt *n_keep, PetscReal place[])
+/* E, and how many contact nodes there are around which inner nodes do not span the body: they lie in a plane, or too near to one */
+PetscErrorCode BodyFindExtrapolation(Body body)
 {
   const PetscInt n    = body->mesh.owned_nodes;
   MPI_Comm       comm = PetscObjectComm((PetscObject)body);
@@ -357,28 +320,17 @@ PetscErrorCode BodyFindSpan(Body body, PetscInt *n_contact, PetscInt *n_keep, Pe
   PetscBool     *keeps;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySetUpDiscretization(body));
-  if (body->mass.extrapolate && body->mass.redistribute && !body->mass.extrapolation) {
-    PetscCall(MatCreate(comm, &body->mass.extrapolation));
-    PetscCall(MatSetSizes(body->mass.extrapolation, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
-    PetscCall(MatSetType(body->mass.extrapolation, MATAIJ));
-    PetscCall(MatSetUp(body->mass.extrapolation));
-    PetscCall(PetscCalloc1(n, &keeps));
-    PetscCall(CreateSurroundings(body, &around));
-    PetscCall(FillExtrapolation(body, &around, keeps));
-    PetscCall(DestroySurroundings(&around));
-    PetscCall(TakeOut(body, keeps));
-    PetscCall(NotePlace(body, keeps));
-    PetscCall(PetscFree(keeps));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &body->mass.extrapolated_by, 1, MPIU_REAL, MPIU_MAX, comm));
-    if (body->mass.n_keep == body->mass.n_contact) {
-      body->mass.extrapolate = PETSC_FALSE;
-      if (body->mass.n_keep) body->mass.redistribute = PETSC_FALSE;
-    }
-  }
-  if (n_contact) *n_contact = body->mass.n_contact;
-  if (n_keep) *n_keep = body->mass.n_keep;
-  for (PetscInt d = 0; place && d < 3; d++) place[d] = body->mass.keeps_at[d];
+  PetscCall(MatCreate(comm, &body->mass.extrapolation));
+  PetscCall(MatSetSizes(body->mass.extrapolation, n, n, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetType(body->mass.extrapolation, MATAIJ));
+  PetscCall(MatSetUp(body->mass.extrapolation));
+  PetscCall(PetscCalloc1(n, &keeps));
+  PetscCall(CreateSurroundings(body, &around));
+  PetscCall(FillExtrapolation(body, &around, keeps));
+  PetscCall(DestroySurroundings(&around));
+  PetscCall(CountNodes(body, keeps));
+  PetscCall(NotePlace(body, keeps));
+  PetscCall(PetscFree(keeps));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &body->mass.extrapolated_by, 1, MPIU_REAL, MPIU_MAX, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

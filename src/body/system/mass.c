@@ -3,14 +3,6 @@
 
 /* Entries of a matrix that are scaled at a time */
 #define MAX_COLUMNS 256
-/* Where the contact nodes have no more than this part of the mass, and factors above this on the masses that are left leave moments of
-   inertia off by less than this part, factors are chosen before extrapolated velocities. Bars of 6 and 8 elements across have their first
-   frequencies within 1.1 and 0.8 % then, bars of 3 elements within 8 %, with a least factor of 0.97. Behind the front of a wave in a bar of
-   200 elements the contact force scatters by 1e-5 with a factor, by 2.5e-3 with extrapolated velocities. */
-#define SMALL_LAYER  0.2
-#define GOOD_FACTOR  (2. / 3.)
-#define GOOD_INERTIA 1e-3
-
 const char *const BodyMassTypes[]        = {"lumped", "consistent", "averaged", "BodyMassType", "BODY_MASS_", NULL};
 const char *const BodyMassMomentsNames[] = {"total", "centre", "inertia", "BodyMassMoments", "BODY_MASS_", NULL};
 
@@ -148,51 +140,6 @@ static PetscErrorCode SetUpLayer(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The part of the mass that contact nodes have */
-static PetscErrorCode GetLayerPart(Body body, PetscReal *part)
-{
-  const PetscInt n       = body->model.element->nodes;
-  PetscReal      sums[2] = {0};
-  PetscScalar    lumped[ELEMENT_MAX_NODES], consistent[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
-
-  PetscFunctionBegin;
-  for (PetscInt e = 0; e < body->model.element->count; e++) {
-    PetscCall(BodyGetElementMassParts(body, e, PETSC_FALSE, lumped, consistent));
-    for (PetscInt a = 0; a < n; a++) {
-      PetscReal mass = lumped[a];
-
-      for (PetscInt b = 0; b < n; b++) mass += consistent[a * n + b];
-      sums[0] += mass;
-      if (body->layer.contains[body->mesh.connectivity[e * n + a]]) sums[1] += mass;
-    }
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  *part = sums[1] / sums[0];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where a factor near one on the masses that are left keeps centre and moments of inertia, that is the better choice: waves do not feel it,
-   and a lumped mass stays diagonal */
-static PetscErrorCode ChooseFactor(Body body)
-{
-  const BodyMass before = body->mass;
-  PetscReal      part   = 0;
-
-  PetscFunctionBegin;
-  PetscCall(GetLayerPart(body, &part));
-  if (part > SMALL_LAYER) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyFindOrphans(body));
-  PetscCall(BodyFindMassFactor(body));
-  body->mass.extrapolate = PETSC_FALSE;
-  for (PetscInt d = 0; d < 3; d++) body->mass.extrapolate = (PetscBool)(body->mass.extrapolate || body->mass.shift[d] != 0);
-  if (body->mass.least_factor < GOOD_FACTOR || body->mass.inertia_error > GOOD_INERTIA) body->mass.extrapolate = PETSC_TRUE;
-  if (!body->mass.extrapolate) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDestroy(&body->mass.orphans));
-  PetscCall(PetscFree(body->mass.factor));
-  body->mass = before;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Assembles the mass, and what the explicit integrator needs to divide by it */
 PetscErrorCode BodySetUpMass(Body body)
 {
@@ -201,9 +148,8 @@ PetscErrorCode BodySetUpMass(Body body)
 
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
-  if (body->mass.redistribute && body->mass.extrapolate) PetscCall(ChooseFactor(body));
-  else if (body->mass.redistribute) {
-    PetscCall(BodyFindOrphans(body));
+  if (body->mass.redistribute && !body->mass.extrapolate && !body->mass.moved) {
+    PetscCall(BodyFindOrphans(body, NULL));
     PetscCall(BodyFindMassFactor(body));
   }
   PetscCall(AssembleMass(body));
@@ -241,7 +187,7 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscInt rstart;
 
   PetscFunctionBegin;
-  if (body->mass.of_nodes && body->rows.size == 1) {
+  if (body->mass.of_nodes && (body->rows.size == 1 || body->mesh.whole)) {
     if (!body->mass.blocks) PetscCall(BodyCreateMassBlocks(body, &body->mass.blocks));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -1,5 +1,5 @@
-/* The inverse of a mass matrix that couples nodes near the surface alone, on one rank: factors of that block, once for all components where
-   none of its displacements is held; elsewhere the matrix is diagonal. */
+/* The inverse of a mass matrix that couples nodes near the surface alone, of a body that one rank has: factors of that block, once for all
+   components where none of its displacements is held; elsewhere the matrix is diagonal. */
 #include <body/layout/bodyimpl.h>
 
 struct _n_MassBlocks {
@@ -34,7 +34,7 @@ static PetscErrorCode FactorBlock(MassBlocks blocks, PetscInt d, Mat of_nodes)
 }
 
 /* Which dofs belong to the block, and the inverse of the others */
-static PetscErrorCode Divide(Body body, MassBlocks blocks)
+static PetscErrorCode Divide(Body body, MassBlocks blocks, Mat of_nodes)
 {
   const PetscInt dim  = body->mesh.dim;
   PetscInt       held = 0;
@@ -46,10 +46,10 @@ static PetscErrorCode Divide(Body body, MassBlocks blocks)
     PetscInt           n;
     PetscReal          diagonal = 0;
 
-    PetscCall(MatGetRow(body->mass.of_nodes, node, &n, &columns, &values));
+    PetscCall(MatGetRow(of_nodes, node, &n, &columns, &values));
     for (PetscInt k = 0; k < n; k++)
       if (columns[k] == node) diagonal = PetscRealPart(values[k]);
-    PetscCall(MatRestoreRow(body->mass.of_nodes, node, NULL, &columns, &values));
+    PetscCall(MatRestoreRow(of_nodes, node, NULL, &columns, &values));
     for (PetscInt d = 0; d < dim; d++) {
       const PetscInt  dof     = node * dim + d;
       const PetscBool is_held = (PetscBool)(held < body->held.n && body->held.dofs[held] == dof);
@@ -66,16 +66,18 @@ PetscErrorCode BodyCreateMassBlocks(Body body, MassBlocks *created)
 {
   const PetscInt dim = body->mesh.dim;
   MassBlocks     blocks;
+  Mat            of_nodes = body->mass.of_nodes;
 
   PetscFunctionBegin;
+  if (body->rows.size > 1) PetscCall(MatMPIAIJGetSeqAIJ(of_nodes, &of_nodes, NULL, NULL)); /* of other ranks there are no nodes */
   PetscCall(PetscNew(&blocks));
   PetscCall(PetscCalloc1(body->mesh.owned_nodes * dim, &blocks->inverse));
   for (PetscInt d = 0; d < dim; d++) PetscCall(PetscMalloc1(body->mesh.owned_nodes, &blocks->nodes[d]));
-  PetscCall(Divide(body, blocks));
+  PetscCall(Divide(body, blocks, of_nodes));
   for (PetscInt d = 0; d < dim; d++) {
     if (d && blocks->n[d] == blocks->n[d - 1])
       PetscCall(PetscArraycmp(blocks->nodes[d], blocks->nodes[d - 1], (size_t)blocks->n[d], &blocks->same[d]));
-    if (!blocks->same[d]) PetscCall(FactorBlock(blocks, d, body->mass.of_nodes));
+    if (!blocks->same[d] && blocks->n[d]) PetscCall(FactorBlock(blocks, d, of_nodes));
     PetscCall(VecCreateSeq(PETSC_COMM_SELF, blocks->n[d], &blocks->b[d]));
     PetscCall(VecDuplicate(blocks->b[d], &blocks->x[d]));
   }
@@ -98,6 +100,7 @@ PetscErrorCode BodySolveMassBlocks(Body body, MassBlocks blocks, Vec f, Vec a)
   for (PetscInt d = 0; d < dim; d++) {
     const PetscInt *nodes = blocks->nodes[d];
 
+    if (!blocks->n[d]) continue;
     if (!blocks->same[d]) factor = blocks->factors[d];
     PetscCall(VecGetArrayWrite(blocks->b[d], &b));
     for (PetscInt k = 0; k < blocks->n[d]; k++) b[k] = force[nodes[k] * dim + d];

@@ -395,7 +395,7 @@ PetscErrorCode BodyGetInertiaChange(Body body, PetscInt n, const PetscInt vertic
   body->mass.orphans    = NULL;
   body->mass.factor     = NULL;
   body->mass.turn_error = 0;
-  PetscCall(BodyFindOrphans(body));
+  PetscCall(BodyFindOrphans(body, NULL));
   PetscCall(BodyFindMassFactor(body));
   *change = body->mass.turn_error;
   PetscCall(VecDestroy(&body->mass.orphans));

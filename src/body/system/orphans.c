@@ -181,8 +181,8 @@ static PetscErrorCode CopyToComponents(Body body, Vec mass)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the mass of elements without inner nodes a place, if there is any */
-PetscErrorCode BodyFindOrphans(Body body)
+/* Finds the mass of elements without inner nodes a place, if there is any. `homeless`: whether some finds none; NULL: that is an error. */
+PetscErrorCode BodyFindOrphans(Body body, PetscBool *homeless)
 {
   Orphans   orphans;
   Vec       work;
@@ -190,6 +190,7 @@ PetscErrorCode BodyFindOrphans(Body body)
   PetscInt  furthest = 0;
 
   PetscFunctionBegin;
+  if (homeless) *homeless = PETSC_FALSE;
   PetscCall(BodyCreateVec(body, &orphans.mass));
   PetscCall(CollectMass(body, orphans.mass));
   PetscCall(VecNorm(orphans.mass, NORM_1, &total));
@@ -206,11 +207,11 @@ PetscErrorCode BodyFindOrphans(Body body)
   PetscCall(VecDestroy(&orphans.distance));
   PetscCall(VecDestroy(&orphans.nearer));
   PetscCall(VecDestroy(&work));
-  PetscCheck(
-      left == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-      "Body '%s': %g%s of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the "
-      "mesh, name smaller surfaces in -contact_pairs, or keep the mass where it is: -%smass_redistribute false with -contact_type force",
-      body->hdr.name, (double)left, UnitsOf((PetscObject)body, UNIT_MASS), ((PetscObject)body)->prefix);
+  if (homeless) *homeless = (PetscBool)(left != 0);
+  PetscCheck(left == 0 || homeless, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "Body '%s': %g%s of elements that have all their nodes on contact surfaces find no inner node nearby to go to; refine the "
+             "mesh, name smaller surfaces in -contact_pairs, or leave the choice to the body: -%smass_redistribute auto",
+             body->hdr.name, (double)left, UnitsOf((PetscObject)body, UNIT_MASS), ((PetscObject)body)->prefix);
   PetscCall(CopyToComponents(body, orphans.mass));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

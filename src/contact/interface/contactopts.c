@@ -14,7 +14,7 @@ static PetscErrorCode ReadBalance(Contact contact, const char value[])
     PetscCall(ContactSetAutomaticBalance(contact));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (value[0]) PetscCall(OptionsReadSwitch(PetscObjectComm((PetscObject)contact), "contact_balance", "auto", value, &balance));
+  if (value[0]) PetscCall(OptionsReadSwitch(PetscObjectComm((PetscObject)contact), "contact_balance", " or auto", value, &balance));
   PetscCall(ContactSetBalance(contact, balance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

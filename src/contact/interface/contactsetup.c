@@ -70,6 +70,76 @@ PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the method by traces alone has; the step by forces takes none of it */
+static PetscErrorCode RefuseOptionsOfTraces(Contact contact, const char body[])
+{
+  const char *const names[] = {"-schwarz_transmission", "-schwarz_traction",    "-schwarz_traction_waveform", "-schwarz_predictor",
+                               "-schwarz_relaxation",   "-schwarz_convergence", "-schwarz_unconverged",       "-schwarz_recheck",
+                               "-schwarz_condense",     "-schwarz_sweep",       "-schwarz_dense_limit",       "-contact_swap_sides"};
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(names); k++) {
+    PetscBool given;
+
+    PetscCall(PetscOptionsHasName(NULL, ((PetscObject)contact)->prefix, names[k], &given));
+    PetscCheck(
+        !given, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        "%s has no effect: contact nodes of body '%s' keep their mass, so that -contact_type force makes the steps; leave it out, or "
+        "choose -%s_mass_redistribute true or false",
+        names[k], body, body);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Which bodies pairs connect, directly or by others: to each one the first of them */
+void ContactFindSets(Contact contact, PetscInt set[])
+{
+  for (PetscInt b = 0; b < contact->n_bodies; b++) set[b] = contact->neighbours.come_and_go ? 0 : b; /* then any two may come near */
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!contact->pairs[p].obstacle) ContactJoinGroups(set, contact->pairs[p].body[0], contact->pairs[p].body[1]);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) set[b] = ContactGroupOf(set, b);
+}
+
+/* Lets bodies choose whether their contact nodes are massless. Where some are not, no others of their set are either: their rule is that of
+   impulses, by which massless nodes lose more than the kinetic energy with which those that have mass hit, and cost more. The step by
+   forces then takes the place of that by traces. */
+static PetscErrorCode ChooseMass(Contact contact)
+{
+  const PetscInt n    = contact->n_bodies;
+  PetscInt       kept = n; /* a body that keeps its mass by its own choice */
+  PetscInt      *set;
+  PetscBool     *keeps, by_traces;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &set));
+  PetscCall(PetscCalloc1(n, &keeps));
+  ContactFindSets(contact, set);
+  for (PetscInt b = 0; b < n; b++) {
+    const PetscInt *vertices;
+    PetscInt        n_vertices;
+    PetscBool       chooses, needs;
+    Surface         boundary;
+
+    PetscCall(ContactCreateSurface(contact, b, NULL, &boundary));
+    PetscCall(SurfaceGetVertices(boundary, &n_vertices, &vertices));
+    PetscCall(BodyChooseMass(contact->bodies[b], n_vertices, vertices, &chooses));
+    PetscCall(SurfaceDestroy(&boundary));
+    PetscCall(ContactNeedsImpulse(contact, b, &needs));
+    if (chooses && kept == n) kept = b;
+    keeps[set[b]] = (PetscBool)(keeps[set[b]] || chooses || (contact->sideless && (needs || contact->options.keep_mass)));
+  }
+  for (PetscInt b = 0; b < n; b++)
+    if (keeps[set[b]]) PetscCall(BodyKeepMass(contact->bodies[b]));
+  PetscCall(PetscFree(keeps));
+  PetscCall(PetscFree(set));
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_SCHWARZ, &by_traces));
+  if (kept == n || !by_traces) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(RefuseOptionsOfTraces(contact, ((PetscObject)contact->bodies[kept])->name));
+  PetscCall(ContactSetType(contact, CONTACT_FORCE));
+  PetscTryTypeMethod(contact, setfromoptions);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactSetUpSurfaces - finds the contact surfaces and rows, the first part of `ContactSetUp()`
 
@@ -87,6 +157,8 @@ PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
 @*/
 PetscErrorCode ContactSetUpSurfaces(Contact contact)
 {
+  PetscReal extent;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->surfaces_known) PetscFunctionReturn(PETSC_SUCCESS);
@@ -96,7 +168,6 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
   PetscCall(ContactChooseAllPairs(contact));
-  PetscCall(ContactCheckLaws(contact));
   PetscCall(ContactOrderBodies(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     StatusLineTell("elements of body %s", ((PetscObject)contact->bodies[b])->name);
@@ -104,7 +175,10 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   }
   PetscCall(ContactFindDimension(contact));
   StatusLineTell("contact surfaces");
-  PetscCall(ContactSetUpRows(contact));
+  PetscCall(ContactTakeSurfaces(contact, &extent));
+  PetscCall(ChooseMass(contact));
+  PetscCall(ContactCheckLaws(contact));
+  PetscCall(ContactSetUpRows(contact, extent));
   PetscCall(ContactWarnOfObstacles(contact));
   contact->surfaces_known = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -47,18 +47,34 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether contact nodes of a body have mass, all or some of them */
+/* Whether the contact nodes of a body have mass */
 PetscErrorCode ContactBodyHasMass(Body body, PetscBool *has)
 {
   PetscBool massless, without_inertia, rigid;
-  PetscInt  n_keep;
 
   PetscFunctionBegin;
   PetscCall(BodyIsRigid(body, &rigid));
   PetscCall(BodyIsRedistributed(body, &massless));
   PetscCall(BodyIsStatic(body, &without_inertia));
-  PetscCall(BodyFindSpan(body, NULL, &n_keep, NULL));
-  *has = (PetscBool)((!massless || n_keep) && !without_inertia && !rigid);
+  *has = (PetscBool)(!massless && !without_inertia && !rigid);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a set needs the rule `impulse`: contact nodes that have mass, be it that of a rigid body which meets what cannot yield */
+PetscErrorCode ContactNeedsImpulse(Contact contact, PetscInt b, PetscBool *needs)
+{
+  PetscBool rigid;
+
+  PetscFunctionBegin;
+  PetscCall(ContactBodyHasMass(contact->bodies[b], needs));
+  PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
+  for (PetscInt p = 0; p < contact->n_pairs && rigid && !*needs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    if (pair->body[0] != b && pair->body[1] != b) continue;
+    if (pair->obstacle) *needs = PETSC_TRUE;
+    else PetscCall(BodyIsRigid(contact->bodies[pair->body[pair->body[0] == b]], needs));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

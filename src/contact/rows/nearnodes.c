@@ -1,6 +1,5 @@
-/* Bodies of which not all contact nodes are massless. Those alone that face a partner at the start (-<body>_mass_redistribute near): which
-   nodes these are, that contact comes to no others, and what other bodies would gain by it. Those around which inner nodes span the body
-   (auto). */
+/* Bodies of which those contact nodes alone are massless that face a partner at the start (-<body>_mass_redistribute near): which nodes
+   these are, that contact comes to no others, and what other bodies would gain by it. */
 #include <contact/parts.h>
 
 /* Forces on nodes with mass that are smaller, in parts of the largest nodal force, are round-off of the weights */
@@ -30,20 +29,6 @@ PetscErrorCode ContactMarkNearNodes(Contact contact, const ContactPair *pair, Pe
   PetscCall(SurfaceGetVertices(surfaces[side], &n, &vertices));
   PetscCall(BodySetContactNodes(contact->bodies[pair->body[side]], n, vertices));
   for (PetscInt s = 0; s < 2; s++) PetscCall(SurfaceDestroy(&surfaces[s]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Which nodes keep their mass where inner nodes do not span the body, once all contact nodes are known. Methods that expect either mass or
-   none on all contact nodes of a body get bodies that keep it all. */
-PetscErrorCode ContactFindMassless(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscInt n_keep;
-
-    PetscCall(BodyFindSpan(contact->bodies[b], NULL, &n_keep, NULL));
-    if (n_keep && !contact->sideless) PetscCall(BodySetMassRedistribute(contact->bodies[b], PETSC_FALSE));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

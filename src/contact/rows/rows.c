@@ -176,25 +176,29 @@ static PetscErrorCode CheckHeld(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces, transfers and rows of all pairs */
-PetscErrorCode ContactSetUpRows(Contact contact)
+/* Surfaces of all pairs, whose nodes their bodies are told of. `extent` becomes the largest coordinate of their meshes, without sign [m].
+ */
+PetscErrorCode ContactTakeSurfaces(Contact contact, PetscReal *extent)
 {
-  PetscReal extent = 0;
-
   PetscFunctionBegin;
+  *extent = 0;
   PetscCall(ContactChooseTiedMass(contact));
-  if (contact->neighbours.come_and_go) PetscCall(ContactTakeFirstNeighbours(contact, &extent));
+  if (contact->neighbours.come_and_go) PetscCall(ContactTakeFirstNeighbours(contact, extent));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscCall(ContactCreateSurfaces(contact, &contact->pairs[p], &extent));
-    PetscCall(ContactChooseRowSide(contact, &contact->pairs[p]));
-  }
-  PetscCall(ContactChooseBalance(contact));
-  PetscCall(ContactOrderBodies(contact)); /* again, since pairs may have been turned round */
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscCall(ContactCreateTransfer(contact, &contact->pairs[p]));
+    PetscCall(ContactCreateSurfaces(contact, &contact->pairs[p], extent));
     PetscCall(ContactMarkNodes(contact, &contact->pairs[p]));
   }
-  PetscCall(ContactFindMassless(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Transfers and rows of all pairs, whose surfaces are known and have coordinates up to `extent` [m] */
+PetscErrorCode ContactSetUpRows(Contact contact, PetscReal extent)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactChooseRowSide(contact, &contact->pairs[p]));
+  PetscCall(ContactChooseBalance(contact));
+  PetscCall(ContactOrderBodies(contact)); /* again, since pairs may have been turned round */
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactCreateTransfer(contact, &contact->pairs[p]));
   PetscCall(ContactLayOutRows(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscBool changed;

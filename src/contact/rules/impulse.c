@@ -104,8 +104,8 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper, const Contac
 
 const ContactRule ContactRuleImpulse = {
     .name  = "impulse",
-    .takes = "contact takes the kinetic energy of the contact nodes that hit, which have mass; massless contact nodes "
-             "(-<body>_mass_redistribute, the default) and finer elements lose less",
+    .takes = "contact takes the kinetic energy of the contact nodes that hit, which have mass; finer elements lose less, "
+             "and in thick bodies massless contact nodes (-<body>_mass_redistribute true)",
     .place = Place,
     .begin = Begin,
     .load  = Load,

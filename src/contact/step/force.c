@@ -29,7 +29,8 @@ static PetscErrorCode SetFromOptions(Contact contact)
   PetscCall(PetscOptionsEList("-contact_rule", "How forces run within a step", "ContactSetType", rules, 3, rules[0], &rule, NULL));
   PetscOptionsEnd();
   PetscCall(ContactMonitorSetFromOptions(contact, &Stepper(contact)->monitor));
-  Stepper(contact)->asked = rule == 1 ? &ContactRuleImpulse : rule == 2 ? &ContactRuleLinear : NULL;
+  Stepper(contact)->asked    = rule == 1 ? &ContactRuleImpulse : rule == 2 ? &ContactRuleLinear : NULL;
+  contact->options.keep_mass = (PetscBool)(rule == 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -206,6 +207,35 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Which body is why contact nodes have mass, and what a hit may take then */
+static PetscErrorCode ViewMass(Contact contact, PetscViewer viewer)
+{
+  PetscReal most  = 0;
+  PetscInt  loses = 0, thin = contact->n_bodies;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscReal part;
+    PetscBool has, is_thin;
+
+    PetscCall(ContactBodyHasMass(contact->bodies[b], &has));
+    if (!has || (!contact->body_rows[b].n_all && !contact->neighbours.come_and_go)) continue;
+    PetscCall(BodyChooseMass(contact->bodies[b], 0, NULL, &is_thin));
+    if (is_thin && thin == contact->n_bodies) thin = b;
+    PetscCall(ContactStepperGetFlatHit(contact, b, &part));
+    if (part > most) loses = b;
+    most = PetscMax(most, part);
+  }
+  if (most == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (thin < contact->n_bodies)
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  body '%s' is thin: it and what it may touch keep the mass of contact nodes\n",
+                                     ((PetscObject)contact->bodies[thin])->name));
+  PetscCall(PetscViewerASCIIPrintf(viewer,
+                                   "  contact nodes that hit lose their energy, where body '%s' hits flat up to %.2g %% of all it has\n",
+                                   ((PetscObject)contact->bodies[loses])->name, (double)(100 * most)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode View(Contact contact, PetscViewer viewer)
 {
   const ContactStepper *stepper = Stepper(contact);
@@ -220,6 +250,7 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
   for (PetscInt b = 0; b < contact->n_bodies && !one; b++)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  rule of body '%s' and what it may touch: %s\n", ((PetscObject)contact->bodies[b])->name,
                                      stepper->rules[b]->name));
+  PetscCall(ViewMass(contact, viewer));
   if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) && contact->friction.law.view)
     PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
   for (PetscInt p = 0; p < contact->n_pairs; p++)

@@ -6,24 +6,6 @@
 #include "stepimpl.h"
 #include <contact/laws/friction.h>
 
-/* Whether a set needs the rule `impulse`: contact nodes that have mass, be it that of a rigid body which meets what cannot yield */
-static PetscErrorCode NeedsImpulse(Contact contact, PetscInt b, PetscBool *needs)
-{
-  PetscBool rigid;
-
-  PetscFunctionBegin;
-  PetscCall(ContactBodyHasMass(contact->bodies[b], needs));
-  PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
-  for (PetscInt p = 0; p < contact->n_pairs && rigid && !*needs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    if (pair->body[0] != b && pair->body[1] != b) continue;
-    if (pair->obstacle) *needs = PETSC_TRUE;
-    else PetscCall(BodyIsRigid(contact->bodies[pair->body[pair->body[0] == b]], needs));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The rule of each set: contact nodes without mass have no impulse to lose; those with mass would swing if their gap were closed */
 PetscErrorCode ContactStepperSetUpRules(Contact contact, ContactStepper *stepper)
 {
@@ -32,15 +14,13 @@ PetscErrorCode ContactStepperSetUpRules(Contact contact, ContactStepper *stepper
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc2(contact->n_bodies, &impulse, contact->n_bodies, &mass));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) set[b] = contact->neighbours.come_and_go ? 0 : b; /* then any two may come near */
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (!contact->pairs[p].obstacle) ContactJoinGroups(set, contact->pairs[p].body[0], contact->pairs[p].body[1]);
+  ContactFindSets(contact, set);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscInt s = set[b] = ContactGroupOf(set, b);
+    const PetscInt s = set[b];
     PetscBool      needs, has;
 
     if (!contact->neighbours.come_and_go && !contact->body_rows[b].n_all) continue;
-    PetscCall(NeedsImpulse(contact, b, &needs));
+    PetscCall(ContactNeedsImpulse(contact, b, &needs));
     PetscCall(ContactBodyHasMass(contact->bodies[b], &has));
     impulse[s] = (PetscBool)(impulse[s] || needs);
     mass[s]    = (PetscBool)(mass[s] || has);

@@ -139,6 +139,7 @@ PETSC_INTERN PetscErrorCode ContactStepperChooseProducts(Contact, ContactStepper
 PETSC_INTERN PetscErrorCode ContactStepperTellProducts(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateProducts(Contact, ContactStepper *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *);
+PETSC_INTERN PetscErrorCode ContactStepperGetFlatHit(Contact, PetscInt, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpRules(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperFindGroups(Contact, ContactStepper *);
 PETSC_INTERN PetscInt       ContactStepperGroup(Contact, const ContactStepper *, PetscInt);

@@ -107,14 +107,14 @@ static void keeps_all_moments(void **state)
 
       (void)snprintf(text, sizeof(text), "%s %s", kind_options(kind), box);
       for (PetscInt how = AUTO; how <= KEPT; how++) {
-        PetscInt     n_contact, n_keep;
+        PetscBool    keeps;
         Body         body;
         PetscOptions options = create(&body, text, type, is_explicit, how);
 
         touch_all_sides(body);
-        ok(BodyFindSpan(body, &n_contact, &n_keep, NULL));
-        assert_true(how == KEPT ? n_contact == 0 : n_contact > 0);
-        assert_int_equal(n_keep, 0);
+        ok(BodyChooseMass(body, 0, NULL, &keeps));
+        assert_true(how == KEPT ? body->mass.n_contact == 0 : body->mass.n_contact > 0);
+        assert_true(!keeps);
         ok(BodySetUp(body));
         get_products(body, products[how]);
         if (how == AUTO) check_layer(body);
@@ -138,7 +138,7 @@ static void is_that_found_by_hand(void **state)
   const PetscReal expected[4][4] = {{3, 0, 0, 0}, {0, 9, -6, 0}, {0, -6, 18, 0}, {0, 0, 0, 0}}, end = 3;
   Body            body;
   PetscOptions    options;
-  PetscInt        n_keep;
+  PetscBool       keeps;
   Rows            rows;
 
   (void)state;
@@ -146,8 +146,8 @@ static void is_that_found_by_hand(void **state)
                               "-mass_redistribute auto");
   set_rows(body, 1, &end, &rows);
   ok(BodySetControllerStep(body, 0, 0.1));
-  ok(BodyFindSpan(body, NULL, &n_keep, NULL));
-  assert_int_equal(n_keep, 0);
+  ok(BodyChooseMass(body, 0, NULL, &keeps));
+  assert_true(!keeps);
   ok(BodySetUp(body));
   for (PetscInt j = 0; j < 4; j++) {
     PetscScalar       *unit;
@@ -177,8 +177,7 @@ static void keeps_mass_of_thin_bodies(void **state)
   for (PetscInt kind = 0; kind < KINDS; kind++)
     for (PetscInt layers = 1; layers <= 3; layers++) {
       const PetscInt dim = kind_dim[kind];
-      PetscInt       n_contact, n_keep;
-      PetscBool      redistributed;
+      PetscBool      keeps, redistributed;
       char           text[512];
       Body           body;
       PetscOptions   options;
@@ -188,9 +187,10 @@ static void keeps_mass_of_thin_bodies(void **state)
       options = create(&body, text, 0, PETSC_FALSE, AUTO);
       touch_side(body, dim == 2 ? "ymin" : "zmin");
       touch_side(body, dim == 2 ? "ymax" : "zmax");
-      ok(BodyFindSpan(body, &n_contact, &n_keep, NULL));
-      assert_int_equal(n_contact, dim == 2 ? 14 : 84);
-      assert_int_equal(n_keep, layers == 3 ? 0 : n_contact);
+      ok(BodyChooseMass(body, 0, NULL, &keeps));
+      assert_int_equal(body->mass.n_contact, dim == 2 ? 14 : 84);
+      assert_int_equal(body->mass.n_keep, layers == 3 ? 0 : body->mass.n_contact);
+      assert_int_equal(keeps, layers < 3);
       ok(BodySetUp(body));
       ok(BodyIsRedistributed(body, &redistributed));
       assert_int_equal(redistributed, layers == 3);

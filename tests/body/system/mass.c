@@ -170,7 +170,7 @@ static void is_refused_without_a_place_to_go(void **state)
   (void)state;
   assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
   if (size > 1) skip(); /* an error on the rank of the element alone; Impakt ends all ranks then */
-  options = bar_create(&body, "-dm_plex_box_faces 1 -density 1 -youngs_modulus 1");
+  options = bar_create(&body, "-dm_plex_box_faces 1 -density 1 -youngs_modulus 1 -mass_redistribute true");
   set_rows(body, 2, ends, &rows);
   ok(BodySetControllerStep(body, 0, 0.1));
   refused(PETSC_ERR_USER_INPUT, "'bar'|contact surfaces|refine|-bar_mass_redistribute", BodySetUp(body));
@@ -407,7 +407,7 @@ static void of_elements_without_inner_nodes_goes_to_their_neighbours(void **stat
       Pair           pair;
 
       (void)snprintf(text, sizeof(text), "%s %s", kind_options(kind), kind_dim[kind] == 2 ? BOX_2D : BOX_3D);
-      (void)snprintf(full, sizeof(full), "%s " MATERIAL "-mass_type %s", text, types[type]);
+      (void)snprintf(full, sizeof(full), "%s " MATERIAL "-mass_redistribute true -mass_type %s", text, types[type]);
       pair = pair_create(text, type, PETSC_FALSE);
       for (PetscInt side = 0; side < n_sides; side++) touch_side(pair.moved, sides[side]);
       pair_set_up(&pair);
@@ -457,7 +457,8 @@ static void is_refused_without_an_inner_node(void **state)
     PetscOptions   options;
     Body           body;
 
-    options = solid_body_create(&body, "%s %s -dm_plex_box_faces %s", kind_options(kind), MATERIAL, dim == 2 ? "4,1" : "3,2,1");
+    options = solid_body_create(&body, "%s %s -mass_redistribute true -dm_plex_box_faces %s", kind_options(kind), MATERIAL,
+                                dim == 2 ? "4,1" : "3,2,1");
     touch_side(body, dim == 2 ? "ymin" : "zmin");
     touch_side(body, dim == 2 ? "ymax" : "zmax");
     ok(BodySetControllerStep(body, 0, 0.01));
@@ -474,7 +475,7 @@ static void is_refused_where_it_cannot_hold_the_layer(void **state)
   Body         body;
 
   (void)state;
-  options = solid_body_create(&body, "%s %s -dm_plex_box_faces 2,2", kind_options(0), MATERIAL);
+  options = solid_body_create(&body, "%s %s -dm_plex_box_faces 2,2 -mass_redistribute true", kind_options(0), MATERIAL);
   touch_side(body, "xmin");
   touch_side(body, "xmax");
   touch_side(body, "ymin");

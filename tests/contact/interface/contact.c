@@ -276,7 +276,7 @@ static void AddBox(const char name[], PetscInt dim, const char faces[], const ch
 
   ok(PetscSNPrintf(options, sizeof(options),
                    "-prefix_push %s_ -dm_plex_dim %d -dm_plex_simplex 0 -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s "
-                   "-density 1 -youngs_modulus 1 %s -prefix_pop",
+                   "-density 1 -youngs_modulus 1 -mass_redistribute true %s -prefix_pop",
                    name, (int)dim, faces, lower, upper, more));
   AddOptions(options);
 }

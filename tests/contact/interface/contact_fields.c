@@ -27,7 +27,8 @@ static void AddPlates(const char more[])
              names[i], names[i], names[i], names[i], 0.901 * i, names[i], 0.901 * i + 0.9, names[i], names[i], names[i]);
     AddOptions(text);
   }
-  AddOptions("-a_initial_velocity 0.1,0 -bodies a,b,c -contact_pairs a.xmax:b.xmin,b.xmax:c.xmin -time_step 0.02 -time_end 1.4");
+  AddOptions("-all_mass_redistribute true -a_initial_velocity 0.1,0 -bodies a,b,c -contact_pairs a.xmax:b.xmin,b.xmax:c.xmin -time_step "
+             "0.02 -time_end 1.4");
   AddOptions(more);
 }
 

@@ -14,7 +14,8 @@ static void AddBlocks(PetscInt dim)
                  : "-a_dm_plex_box_faces 2,2,2 -b_dm_plex_box_faces 2,3,3 -a_dm_plex_box_upper 1,1,1 -b_dm_plex_box_lower 1.01,0.2,0.1 "
                    "-b_dm_plex_box_upper 2.01,1.2,0.9 -a_initial_velocity 0.1,0.01,0.02");
   AddOptions(dim == 2 ? "-a_dm_plex_dim 2 -b_dm_plex_dim 2" : "-a_dm_plex_dim 3 -b_dm_plex_dim 3");
-  AddOptions("-a_dm_plex_simplex 0 -b_dm_plex_simplex 0 -a_density 1 -b_density 1 -a_youngs_modulus 1 -b_youngs_modulus 1 "
+  AddOptions("-all_mass_redistribute true -a_dm_plex_simplex 0 -b_dm_plex_simplex 0 -a_density 1 -b_density 1 -a_youngs_modulus 1 "
+             "-b_youngs_modulus 1 "
              "-a_poissons_ratio 0.3 -b_poissons_ratio 0.3 -bodies a,b -time_step 0.05 -time_end 1");
 }
 
@@ -143,7 +144,8 @@ static void the_finer_surface_is_found(void **state)
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(cases); i++) {
     PetscInt side;
 
-    AddOptions("-a_dm_plex_simplex 0 -b_dm_plex_simplex 0 -a_density 1 -b_density 1 -a_youngs_modulus 1 -b_youngs_modulus 1 -bodies a,b "
+    AddOptions("-all_mass_redistribute true -a_dm_plex_simplex 0 -b_dm_plex_simplex 0 -a_density 1 -b_density 1 -a_youngs_modulus 1 "
+               "-b_youngs_modulus 1 -bodies a,b "
                "-time_step 0.01 -time_end 1 -contact_pairs a:b -contact_rows finer");
     AddOptions(cases[i].options);
     ok(SimulationCreate(simulation));
@@ -161,7 +163,7 @@ static void AddBox(const char name[], const char faces[], const char lower[], co
 
   ok(PetscSNPrintf(options, sizeof(options),
                    "-prefix_push %s_ -dm_plex_dim 2 -dm_plex_simplex 0 -dm_plex_box_faces %s -dm_plex_box_lower %s -dm_plex_box_upper %s "
-                   "-density 1 -youngs_modulus 1 -prefix_pop",
+                   "-density 1 -youngs_modulus 1 -mass_redistribute true -prefix_pop",
                    name, faces, lower, upper));
   AddOptions(options);
 }

@@ -15,7 +15,7 @@ def explicit(bodies):
 
 
 def stack(halves, pairing="II", more="", dim=2, nu=0, widths=(-1, 1)):
-    """Block a falls on blocks b and c, or on b alone, which is as wide as both."""
+    """Block a falls on blocks b and c, or on b alone, which is as wide as both. The masses of b and c are those of the one: mass moves by elements."""
     last_axis = (4,) if dim == 2 else (2, 4)
     depth = () if dim == 2 else (0.5,)
     low, high = (lambda x, y: (x, *((0,) if depth else ()), y)), (lambda x, y: (x, *depth, y))
@@ -26,7 +26,7 @@ def stack(halves, pairing="II", more="", dim=2, nu=0, widths=(-1, 1)):
         parts.append(box(name, (3 if halves else 6, *last_axis), low(left, -1), high(right, 0), f"-{name}_dm_plex_simplex 0"))
         parts.append(material(name, nu=nu))
     bodies = "abc" if halves else "ab"
-    parts.append(f"-bodies {','.join(bodies)} -contact_pairs {'a:b,a:c' if halves else 'a:b'} -time_step 0.02 -time_end 2.6")
+    parts.append(f"-bodies {','.join(bodies)} -contact_pairs {'a:b,a:c' if halves else 'a:b'} -all_mass_redistribute true -time_step 0.02 -time_end 2.6")
     return joined(*parts, explicit(" ".join(b for b in UNDER[pairing].split() if b in bodies)), more)
 
 

@@ -96,7 +96,7 @@ def test_many_rows_of_layers_are_products(shared_run, impakt):
         box("b", (26, 26, 2), (0.003, 0.002, 0.0100001), (0.097, 0.098, 0.02)),
         *(f"{material(name, 2e11, 0.3, 7800)} -{name}_material_type linear_elastic -{name}_ts_type centraldifference" for name in "ab"),
         "-bodies a,b -contact_pairs b.zmin:a.zmax -a_initial_velocity 0,0,1 -b_initial_velocity 0.3,0.2,-1 -time_step 2.5e-7 -time_end 4e-6",
-        "-contact_law coulomb -contact_friction 0.2",
+        "-contact_law coulomb -contact_friction 0.2 -all_mass_redistribute true",
     )
     schwarz, force, ranks = shared_run(run), impakt(f"{run} -contact_type force -info :contact"), impakt(f"{run} -contact_type force", ranks=3)
     assert "S assembled: as products" in force.stdout and "S assembled: dense" not in force.stdout
