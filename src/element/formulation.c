@@ -81,7 +81,7 @@ PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char 
   and where the material flows.
 
   `ELEMENT_ENHANCED` adds modes that bend to the displacements of each element, and eliminates them there. Quadrilaterals and hexahedra
-  have it.
+  have it. Of materials that flow, two elements through the thickness of a thin body bear the moment of a beam, one 15 % more.
 
   `ELEMENT_REDUCED` has one point of integration, for explicit bodies: more than twice as fast as the full hexahedron. What that point does
   not see is held by the stiffness of linear elasticity; `hourglass_energy` of history and summary is what it stores, which should be small
@@ -238,10 +238,10 @@ PetscErrorCode ElementApplyFormulation(Element element)
              "-%selement_formulation %s: the elements have %" PetscInt_FMT " nodes%s", Prefix(element), element->formulation,
              element->nodes, composite ? "; make the mesh by MeshCreate() or MeshCreateComposite()" : "");
   PetscCall(HasHistory(element, &flows));
-  PetscCheck(full || mean || composite || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
-             "-%selement_formulation %s: it keeps no history of plastic flow; use mean_dilatation or full", Prefix(element),
-             element->formulation);
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_ENHANCED, &enhanced));
+  PetscCheck(full || mean || composite || enhanced || !flows, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
+             "-%selement_formulation %s: it keeps no history of plastic flow; use enhanced, mean_dilatation or full", Prefix(element),
+             element->formulation);
   PetscCall(PetscObjectTypeCompare((PetscObject)element->material, MATERIAL_MOONEY_RIVLIN, &rubber));
   PetscCheck(!enhanced || !rubber, PetscObjectComm((PetscObject)element), PETSC_ERR_SUP,
              "-%selement_formulation enhanced with mooney_rivlin has other states of equilibrium beside the one that is looked for, shaped "
@@ -288,5 +288,31 @@ PetscErrorCode ElementWarnOfLocking(Element element)
                            element->axisymmetric
                                ? ""
                                : "element_formulation composite, which files of 6-node triangles and 10-node tetrahedra have by default"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A warning where a body that flows has one element through its thickness; called where it has, on all ranks. Bars do not bend, and
+   elements that lock have a warning of their own. */
+PetscErrorCode ElementWarnOfOneLayer(Element element)
+{
+  PetscErrorCode (*create)(Element) = NULL;
+  const char *const formulation     = element->formulation;
+  PetscBool         full, enhanced;
+  char              key[128], other[256] = "";
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(formulation, ELEMENT_FULL, &full));
+  if (!element->history.n || element->dim == 1 || full) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrcmp(formulation, ELEMENT_ENHANCED, &enhanced));
+  PetscCall(GetKey(element->cell_type, element->axisymmetric, ELEMENT_ENHANCED, sizeof(key), key));
+  PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
+  if (create && !enhanced) PetscCall(PetscSNPrintf(other, sizeof(other), ", or -%selement_formulation enhanced", Prefix(element)));
+  PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)element), stderr,
+                         "impakt: warning: body '%s' has one element through its thickness, of a material that flows: where it bends, %s; "
+                         "use two elements%s\n",
+                         ((PetscObject)element)->name ? ((PetscObject)element)->name : "",
+                         enhanced ? "the two points of each through the thickness bear 15 % too much moment"
+                                  : "moments are off by 30 % and more, to either side",
+                         other));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -162,11 +162,11 @@ PetscErrorCode SolidSetUpMaterial(Element element, const PetscReal coordinates[]
   PetscCall(MaterialGetKernels(element->material, &solid->unconstrained));
   PetscCall(MaterialSetPlaneStress(element->material, solid->plane_stress));
   PetscCall(MaterialGetKernels(element->material, &solid->kernels));
-  element->history.n      = solid->kernels.n_history;
+  element->history.n      = solid->kernels.n_history ? solid->kernels.n_history + solid->own_history : 0;
   element->history.points = solid->shape->n_points;
-  PetscCheck(solid->kernels.n_history <= SOLID_MAX_HISTORY, PETSC_COMM_SELF, PETSC_ERR_SUP,
-             "The material has %" PetscInt_FMT " numbers of history for each point; at most %d", solid->kernels.n_history,
-             SOLID_MAX_HISTORY);
+  PetscCheck(element->history.n <= SOLID_MAX_HISTORY, PETSC_COMM_SELF, PETSC_ERR_SUP,
+             "The material has %" PetscInt_FMT " numbers of history for each point; at most %" PetscInt_FMT, solid->kernels.n_history,
+             SOLID_MAX_HISTORY - solid->own_history);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

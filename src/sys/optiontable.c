@@ -138,7 +138,8 @@ static const KnownOption options[] = {
     {"materials", OPTION_OF_BODY, "element_formulation", "full|mean_dilatation|enhanced|reduced|composite",
      "of quadrilaterals and hexahedra: fully integrated; with one change of volume for each element, against locking of nearly "
      "incompressible "
-     "bodies; with modes of their own that bend, for implicit and static bodies; or with one point, for explicit ones. Default full, but "
+     "bodies; with modes of their own that bend, for implicit and static bodies, and for thin ones that flow; or with one point, for "
+     "explicit ones that do not flow. Default full, but "
      "mean_dilatation where Poisson's "
      "ratio is "
      "larger than 0.4, except in plane stress. Of triangles and tetrahedra: composite divides each into 4 or 8, which together are an "

@@ -79,6 +79,21 @@ def test_refused(impakt, options, message):
     assert message in " ".join(run.stderr.split())
 
 
+def test_one_element_thick(impakt):
+    """Of a material that flows. Two elements, whose middle nodes lie within, and elastic ones are not warned of."""
+    common = "-bodies b -b_density 1 -b_youngs_modulus 1 -b_yield_stress 1e-3 -time_step 0.01 -time_end 0.01"
+    for dim in (2, 3):
+        sheet = f"{common} -b_dm_plex_dim {dim} -b_element_formulation enhanced -b_dm_plex_box_faces 4,4"
+        thin, thick = (f"{sheet.replace('4,4', '4,1')} -b_dm_plex_box_upper 4,1", sheet) if dim == 2 else (f"{sheet},1", f"{sheet},2")
+        told = impakt(f"{thin} -b_material_type j2").stderr
+        assert "body 'b' has one element through its thickness, of a material that flows: where it bends, the two points of each" in told
+        assert "15 % too much moment; use two elements" in told
+        assert "use two elements, or -b_element_formulation enhanced" in impakt(f"{thin.replace('enhanced', 'mean_dilatation')} -b_material_type j2").stderr
+        assert "one element" not in impakt(f"{thick} -b_material_type j2").stderr
+        assert "one element" not in impakt(f"{thin.replace('-b_yield_stress 1e-3', '')} -b_material_type neo_hookean").stderr
+    assert impakt(f"{thin} -b_material_type j2 -b_mesh_division graph", ranks=2).stderr.count("one element") == 1
+
+
 def test_tetrahedra_warn(impakt):
     common = "-bodies b -b_dm_plex_dim 3 -b_dm_plex_simplex true -b_density 1 -b_youngs_modulus 1 -time_step 0.1 -time_end 0.1"
     told = impakt(f"{common} -b_poissons_ratio 0.45").stderr

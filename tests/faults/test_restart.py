@@ -102,6 +102,7 @@ VARIANTS |= {
     "-left_initial_velocity 60,20 -time_step 2e-5 -time_end 2.4e-3",
     "sweeps on bodies": BLOCKS + "-schwarz_condense 0 -schwarz_snes_type anderson -schwarz_transmission robin",
     "plastic": BLOCKS + "-left_material_type j2 -left_yield_stress 5e6 -left_hardening_modulus 1e8 -time_end 8e-4",
+    "plastic, enhanced": BLOCKS + EXPLICIT + "-left_material_type j2 -left_yield_stress 5e6 -left_hardening_modulus 1e8 -left_element_formulation enhanced -time_end 8e-4",
     "plastic, explicit": TAYLOR + "-rod_mass_redistribute true",
     "plastic, explicit, with mass": TAYLOR,
 }
@@ -404,31 +405,32 @@ PLASTIC = """-bodies b -b_dm_plex_box_faces 4,4 -b_density 7800 -b_youngs_modulu
 FLOWS = "-b_yield_stress 2e8 -b_hardening_modulus 1e9 -b_material_type "
 
 
-@pytest.mark.parametrize("integrator", ["alpha2", *long("centraldifference")])
-def test_plastic_flow_preloads_dynamic(run_in, folder, integrator):
+@pytest.mark.parametrize(("integrator", "formulation"), [("alpha2", "mean_dilatation"), ("centraldifference", "enhanced"), *long(("centraldifference", "mean_dilatation"), ("alpha2", "enhanced"))])
+def test_plastic_flow_preloads_dynamic(run_in, folder, integrator, formulation):
     """A block that has flowed without inertia under its load stays at rest with it, since the history of its material comes along: no kinetic energy at all
     was seen implicitly, 9e-24 J explicitly, and 4e-9 J of plastic work, of 8.6e6 J in the run before. Other materials are refused."""
     where, dynamic = folder("static"), folder("dynamic")
-    static = "-b_ts_type static -time_step 0.1 -time_end 1 -b_boundary_traction_ymax 0,-3e8*t"
+    static = f"-b_ts_type static -time_step 0.1 -time_end 1 -b_boundary_traction_ymax 0,-3e8*t -b_element_formulation {formulation}"
     run_in(PLASTIC + FLOWS + "j2", where, 1, *static.split(), "-checkpoint", "c.h5", fields=False)
     assert summary(where)["bodies"]["b"]["plastic_work"] > 8e6
-    options = f"-b_ts_type {integrator} -time_step 1e-6 -time_end 2e-5 -b_boundary_traction_ymax 0,-3e8 -restart_state {where / 'c.h5'}".split()
+    options = f"-b_ts_type {integrator} -time_step 1e-6 -time_end 2e-5 -b_boundary_traction_ymax 0,-3e8 -b_element_formulation {formulation} -restart_state {where / 'c.h5'}".split()
     run_in(PLASTIC + FLOWS + "j2", dynamic, 2, *options, fields=False)
     with h5py.File(dynamic / "h.h5") as history:
         assert history["body/b/kinetic"][()].max() < 1e-15
         assert abs(history["body/b/plastic_work"][()]).max() < 1e-6
-    for material in (FLOWS + "j2_small", "-b_material_type neo_hookean"):
+    for material in (FLOWS + "j2_small", "-b_material_type neo_hookean") if formulation != "enhanced" else ():
         refused = run_in(PLASTIC + material, dynamic, 1, *options, code=None, fields=False)
         assert "the checkpoint has the history of body 'b' for the material j2" in refused.stderr
 
 
-@pytest.mark.long
-def test_flow_goes_on_from_a_state(run_in, folder, same_runs):
+@pytest.mark.parametrize("formulation", ["enhanced", *long("mean_dilatation")])
+def test_flow_goes_on_from_a_state(run_in, folder, same_runs, formulation):
     """Begun with a state, a run is continued from its own checkpoint to the last bit, plastic work and all."""
     before, whole, other = folder("before"), folder("whole"), folder("other")
+    flows = f"{PLASTIC}{FLOWS}j2 -b_element_formulation {formulation} "
     static = "-b_ts_type static -time_step 0.1 -time_end 1 -b_boundary_traction_ymax 0,-3e8*t "
-    run_in(PLASTIC + FLOWS + "j2 " + static, before, 1, "-checkpoint", "c.h5")
-    case = PLASTIC + FLOWS + f"j2 -time_step 1e-5 -time_end 4e-4 -b_boundary_traction_ymax 0,-5e8 -restart_state {before / 'c.h5'}"
+    run_in(flows + static, before, 1, "-checkpoint", "c.h5")
+    case = flows + f"-time_step 1e-5 -time_end 4e-4 -b_boundary_traction_ymax 0,-5e8 -restart_state {before / 'c.h5'}"
     run_in(case, whole, 1)
     run_in(case, other, 1, "-checkpoint", "c.h5", "-checkpoint_interval", 25)
     run_in(case, other, 1, "-restart", "c.prev.h5")

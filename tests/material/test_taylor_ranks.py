@@ -20,6 +20,7 @@ RUNS = {
     "implicit": "-rod_material_type j2 -time_step 2e-7 -time_end 2e-6",
     "johnson-cook": "-rod_material_type johnson_cook -rod_hardening_exponent 0.31 -rod_rate_coefficient 0.025 -rod_softening_exponent 1.09 -rod_melting_temperature 1356 -rod_specific_heat 383 "
     "-rod_ts_type centraldifference -anvil_ts_type centraldifference -time_step 4e-8 -time_end 2e-6",
+    "enhanced": "-rod_material_type j2 -rod_element_formulation enhanced -rod_ts_type centraldifference -anvil_ts_type centraldifference -time_step 4e-8 -time_end 1e-6",
     "composite": "-rod_material_type j2 -rod_dm_plex_simplex -rod_element_formulation composite -rod_ts_type centraldifference -anvil_ts_type centraldifference -time_step 2e-8 -time_end 1e-6",
 }
 
@@ -34,7 +35,7 @@ def series(run):
     return found
 
 
-@pytest.mark.parametrize(("name", "ranks"), [("explicit", 3), *long(("implicit", 2), ("johnson-cook", 4), ("composite", 3))])
+@pytest.mark.parametrize(("name", "ranks"), [("explicit", 3), *long(("implicit", 2), ("johnson-cook", 4), ("enhanced", 3), ("composite", 3))])
 def test_ranks(name, ranks, shared_run):
     """At every step to 1e-10 of the largest value. Measured: 8e-15."""
     one, several = (series(shared_run(f"{CASE} {RUNS[name]}", n)) for n in (1, ranks))

@@ -113,3 +113,4 @@ PETSC_INTERN PetscErrorCode ElementCreateSelection(Element, PetscBool, PetscInt,
 PETSC_INTERN PetscInt       ElementHistorySlot(Element, PetscInt);
 PETSC_INTERN PetscErrorCode ElementApplyFormulation(Element);
 PETSC_INTERN PetscErrorCode ElementWarnOfLocking(Element);
+PETSC_INTERN PetscErrorCode ElementWarnOfOneLayer(Element);

@@ -31,6 +31,7 @@ typedef struct {
   const ElementHistory *history;     /* of the element */
   MaterialKernels       kernels;
   MaterialKernels       unconstrained; /* of the same material when not in plane stress */
+  PetscInt              own_history; /* numbers of the formulation behind those of the material at each point, of materials with history */
   PetscBool             plane_stress, linear;
   PetscBool             mean_dilatation; /* of axisymmetric elements */
   PetscReal mean_share; /* of the mean of the element in the ratio of volumes at its points; 0 to 1, which most formulations have */

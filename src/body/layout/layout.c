@@ -135,6 +135,22 @@ static PetscErrorCode SetUpConnectivity(Body body, PetscInt vstart, PetscInt ven
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A body that flows and whose nodes all lie on its surface has one element through its thickness */
+static PetscErrorCode WarnOfOneLayer(Body body, PetscInt vstart, PetscInt vend)
+{
+  PetscInt  n, *on_surface;
+  PetscBool inner;
+
+  PetscFunctionBegin;
+  if (!body->model.element->history.n || body->mesh.dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MeshGetNodeSet(body->mesh.dm, NULL, &n, &on_surface));
+  PetscCall(PetscFree(on_surface));
+  inner = (PetscBool)(n < vend - vstart);
+  PetscCall(BodyAnyRank(body, &inner));
+  if (!inner) PetscCall(ElementWarnOfOneLayer(body->model.element));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, const PetscInt node_of_vertex[])
 {
   BodyBlocks *blocks = &body->model.blocks;
@@ -153,6 +169,7 @@ static PetscErrorCode SetUpElements(Body body, PetscInt vstart, PetscInt vend, c
   if (blocks->n) PetscCall(ElementSetBlocks(body->model.element, blocks->n, blocks->materials, count, blocks->of_element));
   PetscCall(ElementSetUp(body->model.element, count, body->mesh.connectivity, body->mesh.coordinates));
   PetscCall(ElementWarnOfLocking(body->model.element));
+  PetscCall(WarnOfOneLayer(body, vstart, vend));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
