@@ -40,8 +40,8 @@ def turned(points, axis, degrees):
 
 
 def model_formulation(of, kind):
-    """Against locking in bending; those that do not lock there keep no history of plastic flow."""
-    return "mean_dilatation" if of == "j2" else "enhanced" if kind == "I" else "reduced"
+    """Against locking in bending; elements with one point keep no history of plastic flow."""
+    return "enhanced" if kind == "I" or of == "j2" else "reduced"
 
 
 def model(name, of, kind, e=STEEL[0], yields=3e8, nu=STEEL[1], density=STEEL[2], formulation=None):
