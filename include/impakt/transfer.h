@@ -73,6 +73,7 @@ PETSC_EXTERN PetscErrorCode TransferSetBoundaries(Transfer, Surface, Surface);
 PETSC_EXTERN PetscErrorCode TransferSetOwner(Transfer, PetscMPIInt);
 PETSC_EXTERN PetscErrorCode TransferGetOwner(Transfer, PetscMPIInt *);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
+PETSC_EXTERN PetscErrorCode TransferSetNear(Transfer, const PetscBool[], PetscBool[], PetscBool[]);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferBeginUpdate(Transfer, Vec, Vec, PetscReal, PetscReal[TRANSFER_SUMS]);
 PETSC_EXTERN PetscErrorCode TransferCompareMotion(Transfer, const PetscReal[TRANSFER_SUMS], PetscBool, PetscReal[TRANSFER_LARGEST]);

@@ -172,8 +172,8 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
     PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
     PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
   }
-  for (PetscInt row = 0; row < transfer->n; row++) {
-    const PetscInt n = set->offsets[row + 1] - set->offsets[row];
+  for (PetscInt k = 0; k < (transfer->some_near ? transfer->n_near : transfer->n); k++) {
+    const PetscInt row = transfer->some_near ? transfer->near[k] : k, n = set->offsets[row + 1] - set->offsets[row];
 
     transfer->followed[row] = (PetscBool)(set->opposite[row] && n <= FOLLOW_MAX &&
                                           (touches[row] || TransferPresentGap(transfer, row) <= reach));

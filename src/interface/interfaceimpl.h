@@ -25,9 +25,12 @@ struct _p_Surface {
   PetscBool   *sharp;        /* per node: it lies on a sharp edge of the mesh */
   PetscReal   *smooth;       /* per node: its normal, 0 on a sharp edge */
   PetscInt    *mirrors;      /* per owned node: a bit for each axis across its planes of symmetry, see SurfaceSetMirrors(); or NULL */
-  PetscBool    round;        /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
-  PetscSF      sf;           /* from owned nodes to ghosts, one number for each node */
-  PetscSF      vectors;      /* the same, three numbers for each node */
+  PetscBool   *near;         /* per node: SurfaceMove() finds its normal, area and size; NULL: those of all nodes, see SurfaceSetNear() */
+  PetscInt     n_near_nodes, *near_nodes; /* these nodes, */
+  PetscInt     n_near_faces, *near_faces; /* and the faces at them */
+  PetscBool    round;                     /* nodal normals are those of the round surface through the nodes, see SurfaceSetRound() */
+  PetscSF      sf;                        /* from owned nodes to ghosts, one number for each node */
+  PetscSF      vectors;                   /* the same, three numbers for each node */
 };
 
 /* A face of the Neumann side as one rank sends it to another */
@@ -153,10 +156,12 @@ struct _p_Transfer {
   PetscReal      smallest_size; /* edge of the smallest face of both sides at the last build [m] */
   PetscReal     *built_x[2];    /* positions of the owned nodes of both sides at the last build */
   PetscReal     *built_slip;    /* per row: the part of sum_j P_ij x_j - x_i across the normal at the last build, 3 numbers each [m] */
-  PetscReal     *slip;     /* per row: how far the partner had slipped since the row was built, as of the last update [parts of the face] */
-  PetscBool     *keep;     /* per row: in the next build it stays as it is, being near contact and within the bounds */
-  PetscBool     *followed; /* per row: it has followed the surfaces since the last update, see TransferFollow() */
-  PetscBool     *goes_on;  /* per row: in the next build its weights go on from where they are */
+  PetscReal     *slip; /* per row: how far the partner had slipped since the row was built, as of the last update [parts of the face] */
+  PetscInt       n_near, *near; /* rows that updates look at between builds, see TransferSetNear() */
+  PetscBool      some_near;     /* there may be others */
+  PetscBool     *keep;          /* per row: in the next build it stays as it is, being near contact and within the bounds */
+  PetscBool     *followed;      /* per row: it has followed the surfaces since the last update, see TransferFollow() */
+  PetscBool     *goes_on;       /* per row: in the next build its weights go on from where they are */
   Follow         follow;
   PetscReal     *column_x, *column_normals;       /* of the columns: present positions and normals, */
   PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */

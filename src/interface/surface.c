@@ -243,6 +243,7 @@ PetscErrorCode SurfaceClearNodes(Surface surface)
   PetscCall(PetscSFDestroy(&surface->vectors));
   PetscCall(PetscFree4(data->vertices, data->dofs, surface->owner_index, surface->owner_rank));
   PetscCall(PetscFree4(data->faces, surface->signs, data->face_normals, data->face_areas));
+  PetscCall(PetscFree3(surface->near, surface->near_nodes, surface->near_faces));
   PetscCall(PetscFree2(surface->sharp, surface->smooth));
   PetscCall(PetscFree5(data->reference, data->positions, data->normals, data->areas, data->sizes));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -39,31 +39,36 @@ static void AddCorner(PetscInt n, PetscInt k, const PetscReal x[][3], const Pets
   for (PetscInt d = 0; d < 3; d++) sum[d] += product[d] / squares;
 }
 
-/* Adds the areas and normals of this rank's faces to their nodes, and finds the smallest face at each */
-static void AddFaces(Surface surface)
+/* Nothing has been added to a node */
+static void Clear(SurfaceData *data, PetscInt i)
+{
+  for (PetscInt d = 0; d < 3; d++) data->normals[3 * i + d] = 0;
+  data->areas[i] = 0;
+  data->sizes[i] = PETSC_MAX_REAL;
+}
+
+/* Adds the area and normal of a face of this rank to its nodes, for which it may be the smallest one */
+static void AddFace(Surface surface, PetscInt f)
 {
   SurfaceData   *data = &surface->data;
-  const PetscInt n    = data->face_nodes;
+  const PetscInt n = data->face_nodes, *nodes = data->faces + f * n;
+  PetscReal      x[4][3], areas[4], *normal = data->face_normals + 3 * f;
 
-  for (PetscInt f = 0; f < data->n_faces; f++) {
-    const PetscInt *nodes = data->faces + f * n;
-    PetscReal       x[4][3], areas[4], *normal = data->face_normals + 3 * f;
-
-    for (PetscInt k = 0; k < n; k++)
-      for (PetscInt d = 0; d < 3; d++) x[k][d] = data->positions[3 * nodes[k] + d];
-    normal[0] = surface->signs[f];
-    normal[1] = normal[2] = 0;
-    FaceNormal(n, (const PetscReal(*)[3])x, normal, &data->face_areas[f]);
-    FaceNodeAreas(n, (const PetscReal(*)[3])x, normal, areas);
-    if (surface->axisymmetric) /* 2 pi x is linear along the face */
-      for (PetscInt k = 0; k < 2; k++) areas[k] = PETSC_PI / 3 * data->face_areas[f] * (2 * x[k][0] + x[1 - k][0]);
-    for (PetscInt k = 0; k < n; k++) {
-      data->areas[nodes[k]] += areas[k];
-      data->sizes[nodes[k]] = PetscMin(data->sizes[nodes[k]], FaceSize(n, data->face_areas[f]));
-      if (surface->round && n > 1) AddCorner(n, k, (const PetscReal(*)[3])x, normal, data->normals + 3 * nodes[k]);
-      else
-        for (PetscInt d = 0; d < 3; d++) data->normals[3 * nodes[k] + d] += data->face_areas[f] * normal[d];
-    }
+  for (PetscInt k = 0; k < n; k++)
+    for (PetscInt d = 0; d < 3; d++) x[k][d] = data->positions[3 * nodes[k] + d];
+  normal[0] = surface->signs[f];
+  normal[1] = normal[2] = 0;
+  FaceNormal(n, (const PetscReal(*)[3])x, normal, &data->face_areas[f]);
+  FaceNodeAreas(n, (const PetscReal(*)[3])x, normal, areas);
+  if (surface->axisymmetric) /* 2 pi x is linear along the face */
+    for (PetscInt k = 0; k < 2; k++) areas[k] = PETSC_PI / 3 * data->face_areas[f] * (2 * x[k][0] + x[1 - k][0]);
+  for (PetscInt k = 0; k < n; k++) {
+    if (surface->near && !surface->near[nodes[k]]) continue;
+    data->areas[nodes[k]] += areas[k];
+    data->sizes[nodes[k]] = PetscMin(data->sizes[nodes[k]], FaceSize(n, data->face_areas[f]));
+    if (surface->round && n > 1) AddCorner(n, k, (const PetscReal(*)[3])x, normal, data->normals + 3 * nodes[k]);
+    else
+      for (PetscInt d = 0; d < 3; d++) data->normals[3 * nodes[k] + d] += data->face_areas[f] * normal[d];
   }
 }
 
@@ -111,6 +116,106 @@ PetscErrorCode SurfaceSetRound(Surface surface, PetscBool round)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Normals, areas and sizes of near nodes where these are now */
+static PetscErrorCode UpdateNodes(Surface surface)
+{
+  SurfaceData   *data    = &surface->data;
+  const PetscInt n_faces = surface->near ? surface->n_near_faces : data->n_faces;
+  const PetscInt n_nodes = surface->near ? surface->n_near_nodes : data->n_nodes;
+  PetscSF        sf = surface->sf, vectors = surface->vectors;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < n_nodes; k++) Clear(data, surface->near ? surface->near_nodes[k] : k);
+  for (PetscInt i = data->n_owned; i < data->n_nodes; i++) Clear(data, i); /* owners add what ghosts have */
+  for (PetscInt k = 0; k < n_faces; k++) AddFace(surface, surface->near ? surface->near_faces[k] : k);
+  if (surface->divided) {
+    PetscCall(PetscSFReduceBegin(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
+    PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
+    PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+    PetscCall(PetscSFReduceEnd(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
+    PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
+    PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
+  }
+  for (PetscInt k = 0; k < n_nodes; k++) {
+    const PetscInt i = surface->near ? surface->near_nodes[k] : k;
+
+    if (i >= data->n_owned) break;
+    if (surface->axisymmetric && data->reference[3 * i] <= surface->on_axis) data->normals[3 * i] = 0;
+    SurfaceMirrorNormal(surface, i, data->normals + 3 * i);
+    (void)Normalize(data->normals + 3 * i);
+  }
+  if (surface->divided) PetscCall(ShareNodes(surface));
+  for (PetscInt k = 0; k < n_nodes; k++) {
+    const PetscInt i = surface->near ? surface->near_nodes[k] : k;
+
+    for (PetscInt d = 0; d < 3; d++) surface->smooth[3 * i + d] = surface->sharp[i] ? 0 : data->normals[3 * i + d];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SurfaceSetNear - tells of which nodes the normals, areas and sizes are needed from now on in `SurfaceMove()`
+
+  Collective
+
+  Input Parameters:
++ surface - the `Surface`
+- near    - for each node that this rank owns, whether they are; `NULL`: of all nodes
+
+  Level: developer
+
+.seealso: `Surface`, `SurfaceMove()`
+@*/
+PetscErrorCode SurfaceSetNear(Surface surface, const PetscBool near[])
+{
+  const SurfaceData *data = &surface->data;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
+  PetscCall(PetscFree3(surface->near, surface->near_nodes, surface->near_faces));
+  if (!near) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc3(data->n_nodes + 1, &surface->near, data->n_nodes, &surface->near_nodes, data->n_faces,
+                         &surface->near_faces)); /* never NULL */
+  PetscCall(PetscArraycpy(surface->near, near, data->n_owned));
+  if (surface->divided) {
+    PetscCall(PetscSFBcastBegin(surface->sf, MPI_C_BOOL, surface->near, surface->near, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(surface->sf, MPI_C_BOOL, surface->near, surface->near, MPI_REPLACE));
+  }
+  surface->n_near_nodes = surface->n_near_faces = 0;
+  for (PetscInt i = 0; i < data->n_nodes; i++)
+    if (surface->near[i]) surface->near_nodes[surface->n_near_nodes++] = i;
+  for (PetscInt f = 0; f < data->n_faces; f++) {
+    PetscBool any = PETSC_FALSE;
+
+    for (PetscInt k = 0; k < data->face_nodes; k++) any = (PetscBool)(any || surface->near[data->faces[f * data->face_nodes + k]]);
+    if (any) surface->near_faces[surface->n_near_faces++] = f;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  SurfaceMove - as `SurfaceUpdate()`, but for normals, areas and sizes of nodes that are not near
+
+  Collective
+
+  Input Parameters:
++ surface - the `Surface`
+- u       - displacements of its body, a global vector of the mesh; `NULL` for the reference position
+
+  Level: developer
+
+.seealso: `Surface`, `SurfaceSetNear()`, `SurfaceUpdate()`
+@*/
+PetscErrorCode SurfaceMove(Surface surface, Vec u)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
+  if (u) PetscValidHeaderSpecific(u, VEC_CLASSID, 2);
+  PetscCall(UpdatePositions(surface, u));
+  PetscCall(UpdateNodes(surface));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   SurfaceUpdate - moves a surface to where its body is
 
@@ -129,33 +234,11 @@ PetscErrorCode SurfaceSetRound(Surface surface, PetscBool round)
 @*/
 PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
 {
-  SurfaceData *data = &surface->data;
-  PetscSF      sf = surface->sf, vectors = surface->vectors;
+  PetscBool *near = surface->near;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
-  if (u) PetscValidHeaderSpecific(u, VEC_CLASSID, 2);
-  PetscCall(UpdatePositions(surface, u));
-  PetscCall(PetscArrayzero(data->normals, 3 * data->n_nodes));
-  PetscCall(PetscArrayzero(data->areas, data->n_nodes));
-  for (PetscInt i = 0; i < data->n_nodes; i++) data->sizes[i] = PETSC_MAX_REAL;
-  AddFaces(surface);
-  if (surface->divided) {
-    PetscCall(PetscSFReduceBegin(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
-    PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
-    PetscCall(PetscSFReduceBegin(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
-    PetscCall(PetscSFReduceEnd(vectors, MPIU_REAL, data->normals, data->normals, MPIU_SUM));
-    PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->areas, data->areas, MPIU_SUM));
-    PetscCall(PetscSFReduceEnd(sf, MPIU_REAL, data->sizes, data->sizes, MPIU_MIN));
-  }
-  for (PetscInt i = 0; i < data->n_owned && surface->axisymmetric; i++)
-    if (data->reference[3 * i] <= surface->on_axis) data->normals[3 * i] = 0;
-  for (PetscInt i = 0; i < data->n_owned; i++) {
-    SurfaceMirrorNormal(surface, i, data->normals + 3 * i);
-    (void)Normalize(data->normals + 3 * i);
-  }
-  if (surface->divided) PetscCall(ShareNodes(surface));
-  for (PetscInt i = 0; i < data->n_nodes; i++)
-    for (PetscInt d = 0; d < 3; d++) surface->smooth[3 * i + d] = surface->sharp[i] ? 0 : data->normals[3 * i + d];
+  surface->near = NULL; /* all nodes */
+  PetscCall(SurfaceMove(surface, u));
+  surface->near = near;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -91,6 +91,7 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   PetscCall(TransferDestroySaved(*transfer));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
+  PetscCall(PetscFree((*transfer)->near));
   PetscCall(PetscFree3((*transfer)->balance.bends[0], (*transfer)->balance.bends[1], (*transfer)->balance.bend));
   PetscCall(PetscFree5((*transfer)->balance.uneven, (*transfer)->balance.lever, (*transfer)->balance.across, (*transfer)->balance.gap,
                        (*transfer)->balance.turned));

@@ -132,12 +132,14 @@ static PetscErrorCode CopyNotes(Transfer transfer, PetscBool back)
 @*/
 PetscErrorCode TransferSave(Transfer transfer)
 {
+  const PetscBool same = (PetscBool)(transfer->saved.same && transfer->saved.builds == transfer->counts.builds);
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   PetscCall(Allocate(transfer));
   PetscCall(SaveRows(transfer));
-  PetscCall(CopyNotes(transfer, PETSC_FALSE));
+  if (!same || transfer->neumann) PetscCall(CopyNotes(transfer, PETSC_FALSE)); /* before an obstacle builds alone change them */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

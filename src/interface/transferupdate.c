@@ -1,5 +1,6 @@
 /* When the rows of a transfer are built again. */
 #include "interfaceimpl.h"
+#include "obstacleimpl.h"
 
 /* Partners are known up to this distance beyond the closest one [edges of the largest face], so that bodies which come closer do not need
    new rows in each step */
@@ -85,7 +86,8 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
     transfer->columns_present = PETSC_TRUE;
   }
-  for (PetscInt row = 0; row < transfer->n; row++) {
+  for (PetscInt k = 0; k < (transfer->some_near ? transfer->n_near : transfer->n); k++) {
+    const PetscInt   row    = transfer->some_near ? transfer->near[k] : k;
     const PetscReal *normal = transfer->rows.normals + dim * row, size = data->sizes[row];
     PetscReal        offset[3], gap, slip = 0, turned = 0, gradient[3], present[3];
     PetscBool        within;
@@ -111,6 +113,12 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     if (!within) *slipped = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether rows neither slip nor turn, so that the motion alone says when they are built again */
+static PetscBool IsFlat(Transfer transfer)
+{
+  return (PetscBool)(!transfer->neumann && transfer->obstacle->type == OBSTACLE_PLANE);
 }
 
 /* Notes the positions and slips that the next updates compare with; `near` is how far partners are known [m] */
@@ -271,7 +279,7 @@ PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neu
 PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRANSFER_SUMS], PetscBool anew,
                                      PetscReal largest[TRANSFER_LARGEST])
 {
-  PetscBool slipped;
+  PetscBool slipped = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
@@ -285,7 +293,7 @@ PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRA
   }
   if (!transfer->looks) PetscFunctionReturn(PETSC_SUCCESS);
   GetMotion(transfer, sums, largest);
-  PetscCall(HasSlipped(transfer, &slipped));
+  if (!transfer->some_near || !IsFlat(transfer)) PetscCall(HasSlipped(transfer, &slipped));
   largest[2] = slipped;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -313,6 +321,7 @@ PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neuma
                                  const PetscReal largest[TRANSFER_LARGEST], PetscBool *rebuilt)
 {
   PetscReal reach;
+  PetscBool slipped;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
@@ -327,12 +336,63 @@ PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neuma
     transfer->followed[row] = PETSC_FALSE;
   }
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
+  if (transfer->some_near) { /* normals, areas and sizes of all nodes */
+    PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
+    if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
+    if (transfer->looks && IsFlat(transfer)) PetscCall(HasSlipped(transfer, &slipped)); /* which rows stay as they are */
+  }
   PetscCall(TransferGetReach(transfer, near, &reach));
   if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
   else PetscCall(TransferBuildObstacleRows(transfer, reach));
   for (PetscInt row = 0; row < transfer->n; row++) /* a gap that is that of the surfaces again has no turn in it */
     if (transfer->balance.n && transfer->rows.changed[row] && !transfer->goes_on[row]) transfer->balance.turned[row] = 0;
   PetscCall(Remember(transfer, reach));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  TransferSetNear - tells which rows may touch before rows are built again: updates look at no others until they build
+
+  Neighborwise Collective
+
+  Input Parameters:
++ transfer - the `Transfer`, updated once at least, whose surfaces the caller moves, see `TransferSetMoved()`
+- near     - for each row of this rank, whether it may; `NULL`: all rows. Others have a gap of more than two edges of the face.
+
+  Output Parameters:
++ dirichlet - of the nodes of the Dirichlet side that this rank owns those whose normals near rows need are set to true, for
+              `SurfaceSetNear()`: none before a plane
+- neumann   - of the Neumann side those that these rows name; `NULL` with an obstacle
+
+  Level: developer
+
+.seealso: `Transfer`, `TransferUpdate()`, `SurfaceSetNear()`
+@*/
+PetscErrorCode TransferSetNear(Transfer transfer, const PetscBool near[], PetscBool dirichlet[], PetscBool neumann[])
+{
+  const RowSet *set = &transfer->rows;
+  PetscReal    *columns, *nodes;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  PetscCall(PetscFree(transfer->near));
+  transfer->some_near = (PetscBool)(near != NULL);
+  transfer->n_near    = 0;
+  if (!near || transfer->idle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscMalloc1(transfer->n, &transfer->near));
+  for (PetscInt row = 0; row < transfer->n; row++) {
+    if (!near[row]) continue;
+    transfer->near[transfer->n_near++] = row;
+    dirichlet[row]                     = (PetscBool)(dirichlet[row] || !IsFlat(transfer));
+  }
+  if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscCalloc2(3 * set->n_columns, &columns, 3 * transfer->neumann->data.n_nodes, &nodes));
+  for (PetscInt k = 0; k < transfer->n_near; k++)
+    for (PetscInt j = set->offsets[transfer->near[k]]; j < set->offsets[transfer->near[k] + 1]; j++) columns[3 * set->columns[j]] = 1;
+  PetscCall(PetscSFReduceBegin(set->vectors, MPIU_REAL, columns, nodes, MPIU_MAX));
+  PetscCall(PetscSFReduceEnd(set->vectors, MPIU_REAL, columns, nodes, MPIU_MAX));
+  for (PetscInt i = 0; i < transfer->neumann->data.n_owned; i++) neumann[i] = (PetscBool)(neumann[i] || nodes[3 * i] > 0);
+  PetscCall(PetscFree2(columns, nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -38,26 +38,27 @@ struct _ContactOps {
 
 /* Two bodies, or a body and an obstacle, that may touch */
 typedef struct {
-  char          *name;         /* as given: left:right */
-  PetscInt       body[2];      /* numbers of the body that has a node for each row, and of the other; n_bodies if that is an obstacle */
-  PetscBool      turned;       /* the body that has the rows is the one that the user names second */
-  PetscInt       dirichlet;    /* which of them takes displacements in this controller step: 0 or 1 */
-  char          *surface[2];   /* names of the surfaces; NULL for all faces that see the other body */
-  Obstacle       obstacle;     /* in place of the second body, or NULL; borrowed */
-  PetscBool      chosen;       /* the program has chosen the pair, not the user */
-  const char    *why;          /* why the program has the first body take displacements; NULL: the user says so */
-  ContactRowSide row_side;     /* which body is to have the rows, if `own_side` */
-  PetscBool      own_side;     /* the pair has been given a side of its own */
-  Surface        surfaces[2];  /* those of the bodies */
-  PetscInt       place[2];     /* these in contact->surfaces */
-  PetscBool      far;          /* its bodies are so far apart that its rows have no partner, see src/contact/rows/farpairs.c */
-  PetscBool      was_far;      /* at the start of the controller step */
-  PetscReal      distance;     /* between the boxes of its surfaces as the step begins, where they are far apart [m] */
-  Transfer       transfer;     /* between the surfaces */
-  PetscInt       components;   /* rows of each node: 1, along its normal, or as many as space has dimensions */
-  PetscInt       begin, end;   /* rows of this rank: begin to end - 1 */
-  PetscInt       shift[2];     /* row i of this rank has the number i - shift[side] among those of the body on that side */
-  PetscReal      normal[3];    /* mean outward normal of the body that has the rows */
+  char          *name;        /* as given: left:right */
+  PetscInt       body[2];     /* numbers of the body that has a node for each row, and of the other; n_bodies if that is an obstacle */
+  PetscBool      turned;      /* the body that has the rows is the one that the user names second */
+  PetscInt       dirichlet;   /* which of them takes displacements in this controller step: 0 or 1 */
+  char          *surface[2];  /* names of the surfaces; NULL for all faces that see the other body */
+  Obstacle       obstacle;    /* in place of the second body, or NULL; borrowed */
+  PetscBool      chosen;      /* the program has chosen the pair, not the user */
+  const char    *why;         /* why the program has the first body take displacements; NULL: the user says so */
+  ContactRowSide row_side;    /* which body is to have the rows, if `own_side` */
+  PetscBool      own_side;    /* the pair has been given a side of its own */
+  Surface        surfaces[2]; /* those of the bodies */
+  PetscInt       place[2];    /* these in contact->surfaces */
+  PetscBool      far;         /* its bodies are so far apart that its rows have no partner, see src/contact/rows/farpairs.c */
+  PetscBool      was_far;     /* at the start of the controller step */
+  PetscReal      distance;    /* between the boxes of its surfaces as the step begins, where they are far apart [m] */
+  Transfer       transfer;    /* between the surfaces */
+  PetscInt       components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
+  PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
+  PetscInt       near_begin, near_end; /* of them those near contact, in rows.near */
+  PetscInt       shift[2];             /* row i of this rank has the number i - shift[side] among those of the body on that side */
+  PetscReal      normal[3];            /* mean outward normal of the body that has the rows */
   PetscBool      bonded;       /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
   PetscBool      keeps_mass;   /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool      by_force;     /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
@@ -162,6 +163,12 @@ typedef struct {
   PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
   PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
+  /* those that may touch, see src/contact/rows/nearrows.c */
+  PetscBool lists;      /* the method looks at no others */
+  PetscBool listed;     /* there may be others */
+  PetscInt  n_near;     /* of this rank */
+  PetscInt *near;       /* their numbers, ascending: all rows of a node, or none */
+  PetscReal near_reach; /* others are farther away than this, of all ranks [m] */
 } ContactRows;
 
 /* The rows of a body: those of the pairs that it is in */
@@ -171,6 +178,7 @@ typedef struct {
   PetscInt   n_all;           /* of all ranks */
   PetscInt  *rows;            /* their numbers among the rows of this rank, ascending */
   PetscInt  *all;             /* of those of all ranks: their numbers among the rows of all ranks, ascending */
+  PetscInt   n_near, *near;   /* its rows near contact: their places in `rows`, ascending */
   PetscReal *area;            /* as that of rows; the body borrows it */
   PetscInt   n_pairs, *pairs; /* that it is in, ascending */
   /* its matrix in contact->interfaces, and the spare one */

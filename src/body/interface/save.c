@@ -23,10 +23,12 @@ PetscErrorCode BodySave(Body body)
   if (body->rows.local && stepped) {
     const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
 
-    for (PetscInt i = 0; i < 4; i++) {
+    for (PetscInt i = 0; i < 4; i++) { /* those of other rows are old */
       PetscCall(TraceGetLevel(traces[i], 0, &start));
       PetscCall(TraceGetLevel(traces[i], body->time.substeps, &end));
-      PetscCall(PetscArraycpy(start, end, body->rows.local));
+      if (body->rows.n_near == body->rows.local) PetscCall(PetscArraycpy(start, end, body->rows.local));
+      else
+        for (PetscInt k = 0; k < body->rows.n_near; k++) start[body->rows.near[k]] = end[body->rows.near[k]];
     }
   }
   /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */

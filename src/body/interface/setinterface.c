@@ -1,13 +1,25 @@
 /* New entries for rows of the interface, as contact surfaces slide and turn in the course of a run. */
 #include <body/layout/bodyimpl.h>
 
-/* The output traces at the start of the controller step: the new rows of the saved state */
-static PetscErrorCode RewriteStart(Body body)
+/*@
+  BodyWriteStartTraces - the output traces of all rows at the start of the controller step, from the state there
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up, saved
+
+  Level: developer
+
+.seealso: `Body`, `BodySetNearRows()`, `BodyGetTraces()`
+@*/
+PetscErrorCode BodyWriteStartTraces(Body body)
 {
   const Vec   vecs[]   = {body->saved.u, body->saved.v, body->saved.a};
   const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt t = 0; t < 3; t++) PetscCall(BodyWriteTrace(body, body->rows.matrix, vecs[t], traces[t], 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -37,6 +49,7 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscInt numbers[], c
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&body->rows.matrix));
   body->rows.matrix = B;
+  PetscCall(BodySetNearRows(body, -1, NULL));
   PetscCall(BodySetUpFreeRows(body));
   PetscCall(BodyForgetCompliance(body, all));
   PetscCall((*body->integrator->ops.setrows)(body, all));
@@ -45,6 +58,6 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscInt numbers[], c
   if (body->mass.solver) PetscCall(ConstrainedSolverSetRows(body->mass.solver, body->rows.free_matrix, all));
   body->repeats = PETSC_FALSE;
   PetscCall(BodySetConstraints(body));
-  PetscCall(RewriteStart(body));
+  PetscCall(BodyWriteStartTraces(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -198,14 +198,19 @@ typedef struct {
   PetscReal     *robin;                           /* per local row: stiffness of its Robin spring [N/m] */
   PetscInt       n_prescribed, n_forced, n_robin; /* over all ranks; Robin rows are forced ones */
   /* of a nonlinear body whose equations hold at a stage within the substep: forces are what they are there, and those at the end follow */
-  PetscReal      stage;         /* where it is, as a part of the substep */
-  Vec            stage_balance; /* forces that hold rows and held dofs at the stage; NULL: they are those at the end [N] */
-  PetscScalar   *kept_traces;   /* output traces put aside by BodyKeep() */
-  BodyHandover   handover;
-  BodyExchange   exchange;
-  PetscBool      constant;    /* forces act that are the same throughout the controller step, see BodySetConstantForces() */
-  Vec            nodal_force; /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
-  BodyForceShape nodal_shape; /* how */
+  PetscReal    stage;         /* where it is, as a part of the substep */
+  Vec          stage_balance; /* forces that hold rows and held dofs at the stage; NULL: they are those at the end [N] */
+  PetscScalar *kept_traces;   /* output traces put aside by BodyKeep() */
+  BodyHandover handover;
+  BodyExchange exchange;
+  /* rows that anything happens to, see BodySetNearRows() */
+  PetscInt       n_near, *near; /* of this rank, ascending */
+  PetscBool      some_near;     /* on some rank there may be others */
+  Mat            near_matrix;   /* these of the matrix; that itself where they are all */
+  Vec            near_row;      /* work space: a number for each */
+  PetscBool      constant;      /* forces act that are the same throughout the controller step, see BodySetConstantForces() */
+  Vec            nodal_force;   /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
+  BodyForceShape nodal_shape;   /* how */
 } BodyRows;
 
 /* What a body keeps for controller steps that have been cut in halves so many times, see src/body/interface/steplevel.c */
@@ -273,7 +278,7 @@ struct _p_Body {
   /* of a body whose contact nodes answer by themselves, see contactnodes.c; empty until needed */
   struct {
     Vec       force; /* on contact nodes, zero but while it is divided by the mass [N] */
-    PetscInt  n;     /* owned displacements of contact nodes */
+    PetscInt  n;     /* owned displacements of contact nodes that near rows act on */
     PetscInt *dofs;  /* rank numbering, ascending */
   } nodes;
   /* interface */
@@ -485,6 +490,12 @@ PETSC_INTERN PetscErrorCode BodyAddHandover(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodyTurnToMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyEndMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
+PETSC_INTERN PetscErrorCode BodyMultiplyNearRows(Body, Vec, PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodyAddNearRows(Body, const PetscScalar[], Vec);
+PETSC_INTERN PetscBool      BodyNearRowsAreZero(Body, const PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodyDestroyNearRows(Body);
+PETSC_INTERN PetscErrorCode BodyClearRepeat(Body);
+PETSC_INTERN PetscErrorCode BodyListContactDofs(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyBringChanges(Body);
 PETSC_INTERN void           BodyDropWord(Body);

@@ -18,19 +18,51 @@ PetscErrorCode BodyDestroyContactNodes(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The displacements of contact nodes, and a vector of zeros for the forces on them */
-static PetscErrorCode SetUp(Body body)
+/* Marks displacements that near rows have entries in */
+static PetscErrorCode MarkNear(Body body, Vec marks)
 {
-  PetscInt n = 0;
+  const BodyRows *rows = &body->rows;
+  PetscInt        begin;
 
   PetscFunctionBegin;
-  if (body->nodes.force) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyCreateVec(body, &body->nodes.force));
+  PetscCall(MatGetOwnershipRange(rows->near_matrix, &begin, NULL));
+  for (PetscInt k = 0; k < rows->n_near; k++) {
+    const PetscInt *columns;
+    PetscInt        n;
+
+    PetscCall(MatGetRow(rows->near_matrix, begin + k, &n, &columns, NULL));
+    for (PetscInt j = 0; j < n; j++) PetscCall(VecSetValue(marks, columns[j], 1, ADD_VALUES));
+    PetscCall(MatRestoreRow(rows->near_matrix, begin + k, &n, &columns, NULL));
+  }
+  PetscCall(VecAssemblyBegin(marks));
+  PetscCall(VecAssemblyEnd(marks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyListContactDofs - the displacements of contact nodes that near rows act on, all where all rows are near; and a vector of zeros for
+   the forces on them */
+PetscErrorCode BodyListContactDofs(Body body)
+{
+  const PetscInt     dim  = body->mesh.dim;
+  const PetscBool    some = body->rows.some_near;
+  const PetscScalar *marked;
+  PetscInt           n = 0;
+
+  PetscFunctionBegin;
+  if (!BodyAnswersByNodes(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->nodes.force) {
+    PetscCall(BodyCreateVec(body, &body->nodes.force));
+    for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) n += body->layer.contains[node] ? dim : 0;
+    PetscCall(PetscMalloc1(n, &body->nodes.dofs));
+  }
   PetscCall(VecZeroEntries(body->nodes.force));
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) n += body->layer.contains[node] ? body->mesh.dim : 0;
-  PetscCall(PetscMalloc1(n, &body->nodes.dofs));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++)
-    if (body->layer.contains[i / body->mesh.dim]) body->nodes.dofs[body->nodes.n++] = i;
+  if (some) PetscCall(MarkNear(body, body->nodes.force));
+  PetscCall(VecGetArrayRead(body->nodes.force, &marked));
+  body->nodes.n = 0;
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++)
+    if (some ? marked[i] != 0 : body->layer.contains[i / dim]) body->nodes.dofs[body->nodes.n++] = i;
+  PetscCall(VecRestoreArrayRead(body->nodes.force, &marked));
+  PetscCall(VecZeroEntries(body->nodes.force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -41,7 +73,7 @@ PetscErrorCode BodyCopyContactNodes(Body body, Vec from, Vec to)
   PetscScalar       *target;
 
   PetscFunctionBegin;
-  PetscCall(SetUp(body));
+  if (!body->nodes.force) PetscCall(BodyListContactDofs(body));
   PetscCall(VecGetArrayRead(from, &source));
   PetscCall(VecGetArray(to, &target));
   for (PetscInt k = 0; k < body->nodes.n; k++) target[body->nodes.dofs[k]] = source[body->nodes.dofs[k]];
@@ -57,15 +89,13 @@ PetscErrorCode BodyAddAnswerOfNodes(Body body, const PetscScalar force[], PetscB
 {
   const PetscInt    *dofs;
   const PetscScalar *inverse;
-  PetscScalar       *row, *x, *values;
+  PetscScalar       *x, *values;
 
   PetscFunctionBegin;
-  PetscCall(SetUp(body));
+  if (!body->nodes.force) PetscCall(BodyListContactDofs(body));
+  if (!BodyHandsOver(body) && BodyNearRowsAreZero(body, force)) PetscFunctionReturn(PETSC_SUCCESS);
   dofs = body->nodes.dofs;
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, force, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTransposeAdd(body->rows.matrix, body->work.rows[0], body->nodes.force, body->nodes.force));
+  PetscCall(BodyAddNearRows(body, force, body->nodes.force));
   if (stopped) PetscCall(BodyAddStoppedHandover(body, body->nodes.force));
   PetscCall(BodyZeroHeld(body, body->nodes.force));
   PetscCall(VecGetArray(body->nodes.force, &x));

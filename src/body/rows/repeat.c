@@ -25,6 +25,14 @@ PetscErrorCode BodyDestroyRepeat(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rows that nobody looks at have no changes */
+PetscErrorCode BodyClearRepeat(Body body)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < 2 && body->repeat; k++) PetscCall(PetscArrayzero(body->repeat->changes[k], body->rows.local));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* After the integrator and the rows */
 PetscErrorCode BodySetUpRepeat(Body body)
 {
@@ -73,7 +81,11 @@ static PetscErrorCode CompareInputs(Body body, PetscBool news[2])
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
-    for (PetscInt i = 0; i < body->rows.local; i++) repeat->changes[k][i] = Compare(body, k, i, values[i], news);
+    for (PetscInt j = 0; j < body->rows.n_near; j++) {
+      const PetscInt i = body->rows.near[j];
+
+      repeat->changes[k][i] = Compare(body, k, i, values[i], news);
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -88,7 +100,7 @@ static PetscErrorCode TakeInputs(Body body)
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
-    PetscCall(PetscArraycpy(body->repeat->inputs[k], values, body->rows.local));
+    for (PetscInt j = 0; j < body->rows.n_near; j++) body->repeat->inputs[k][body->rows.near[j]] = values[body->rows.near[j]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -63,6 +63,7 @@ PetscErrorCode BodyCreateRowArrays(Body body)
   PetscCall(PetscMalloc1(rows->global, &rows->changed));
   PetscCall(BodyHandoverCreate(rows->local, &rows->handover));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(rows->matrix, NULL, &body->work.rows[k]));
+  PetscCall(BodySetNearRows(body, -1, NULL));
   rows->n_prescribed = rows->n_forced = rows->n_robin = 0;
   rows->laid_out++;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -79,6 +80,7 @@ PetscErrorCode BodyDestroyRowArrays(Body body)
   PetscCall(PetscFree(rows->by_mean));
   PetscCall(BodyHandoverDestroy(&rows->handover));
   PetscCall(VecDestroy(&rows->exchange.force));
+  PetscCall(BodyDestroyNearRows(body));
   for (PetscInt k = 0; k < 3; k++) PetscCall(VecDestroy(&body->work.rows[k]));
   PetscCall(MatDestroy(&rows->free_matrix));
   PetscCall(RowPatternDestroy(&rows->pattern));

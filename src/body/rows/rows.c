@@ -237,6 +237,30 @@ PetscErrorCode BodyTakeConditions(Body body, const PetscInt counts[BODY_CONDITIO
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  BodyIsForcedAlone - whether all rows are forced ones
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. forced - if so, the same on every rank
+
+  Level: developer
+
+.seealso: `Body`, `BodySetConditions()`
+@*/
+PetscErrorCode BodyIsForcedAlone(Body body, PetscBool *forced)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(forced, 2);
+  *forced = (PetscBool)(body->rows.n_forced == body->rows.global && !body->rows.n_robin);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tells the solvers which rows they hold */
 PetscErrorCode BodySetConstraints(Body body)
 {
@@ -304,7 +328,7 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
     PetscCall(VecAXPY(f, scale, body->rows.exchange.force));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  PetscCall(VecGetArrayWrite(body->work.rows[2], &row));
   PetscCall(TraceInterpolate(body->traces.force_in, position, 0, body->rows.local, row));
   if (body->rows.n_robin) {
     PetscCall(MatMult(body->rows.matrix, u, body->work.rows[1]));
@@ -313,9 +337,12 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
       if (body->rows.conditions[i] == BODY_ROBIN) row[i] -= body->rows.robin[i] * at[i];
     PetscCall(VecRestoreArrayRead(body->work.rows[1], &at));
   }
-  for (PetscInt i = 0; i < body->rows.local; i++)
+  for (PetscInt k = 0; k < body->rows.n_near; k++) {
+    const PetscInt i = body->rows.near[k];
+
     row[i] = body->rows.conditions[i] == BODY_FORCED || body->rows.conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTransposeAdd(body->rows.matrix, body->work.rows[0], f, f));
+  }
+  PetscCall(BodyAddNearRows(body, row, f));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[2], &row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

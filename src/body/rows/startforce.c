@@ -76,6 +76,9 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const Pet
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->start.changed && body->state.step == body->saved.step && BodyAnswersByNodes(body) && !BodyHandsOver(body) &&
+      BodyNearRowsAreZero(body, force))
+    PetscFunctionReturn(PETSC_SUCCESS); /* as it is */
   if (!body->start.a) PetscCall(BodyCreateVec(body, &body->start.a));
   if (body->start.changed) PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
   else PetscCall(CopyAnswering(body, body->saved.a, body->start.a));

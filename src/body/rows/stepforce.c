@@ -37,9 +37,10 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
   }
   for (PetscInt level = 0; level <= body->time.substeps; level++) {
     PetscCall(TraceGetLevel(body->traces.force_in, level, &values));
-    PetscCall(PetscArraycpy(values, force, body->rows.local));
+    for (PetscInt k = 0; k < body->rows.n_near; k++) values[body->rows.near[k]] = force[body->rows.near[k]];
   }
-  for (PetscInt i = 0; i < body->rows.local; i++) change[i] = force[i] - last[i];
+  if (!BodyAnswersByNodes(body)) PetscCall(PetscArrayzero(change, body->rows.local)); /* all rows count there */
+  for (PetscInt k = 0; k < body->rows.n_near; k++) change[body->rows.near[k]] = force[body->rows.near[k]] - last[body->rows.near[k]];
   /* BodyRepeat() moves the end state by what these forces are more than those before */
   if (body->repeats && body->rows.constant && body->integrator->repeats_constant) PetscFunctionReturn(PETSC_SUCCESS);
   body->rows.constant = PETSC_TRUE;
@@ -51,15 +52,11 @@ PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const P
    the nodes; `any`: whether the substep that has been made last is the first one of such a step */
 PetscErrorCode BodyComputeForceChange(Body body, PetscBool *any, Vec change)
 {
-  PetscScalar *row;
-
   PetscFunctionBegin;
   *any = (PetscBool)(body->rows.constant && body->state.step - body->saved.step == 1);
   if (!*any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, body->compliance->change, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], change));
+  PetscCall(VecZeroEntries(change));
+  PetscCall(BodyAddNearRows(body, body->compliance->change, change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,7 +30,18 @@ static PetscErrorCode ExtendFromStage(Body body, PetscInt level, PetscScalar rea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement, velocity and acceleration of all rows, and the force along prescribed and Robin ones, as they are now. Massless nodes,
+/* What near rows make of a vector, at a level of a trace */
+static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
+{
+  PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(trace, level, &values));
+  PetscCall(BodyMultiplyNearRows(body, vec, values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacement, velocity and acceleration of near rows, and the force along prescribed and Robin ones, as they are now. Massless nodes,
    which all rows are on where the state may be incomplete, have no acceleration unless they are held. */
 PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 {
@@ -43,12 +54,14 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
     body->rows.exchange.writes = PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.u, body->traces.displacement, level));
-  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.v, body->traces.velocity, level));
+  PetscCall(WriteNear(body, body->state.u, body->traces.displacement, level));
+  /* BodyCompleteStep() writes all */
+  if (body->state.incomplete && body->rows.constant && !body->rows.n_prescribed && !body->rows.n_robin) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WriteNear(body, body->state.v, body->traces.velocity, level));
   if (body->state.incomplete && !body->held.any) {
     PetscCall(TraceGetLevel(body->traces.acceleration, level, &acceleration));
-    PetscCall(PetscArrayzero(acceleration, body->rows.local));
-  } else PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.a, body->traces.acceleration, level));
+    for (PetscInt k = 0; k < body->rows.n_near; k++) acceleration[body->rows.near[k]] = 0;
+  } else PetscCall(WriteNear(body, body->state.a, body->traces.acceleration, level));
   if (body->rows.n_prescribed) {
     Vec             force   = body->state.internal_force;
     const PetscBool inertia = (PetscBool)(body->rows.traction == BODY_TRACTION_REACTION || body->rows.tied_mass);
@@ -72,7 +85,9 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
   if (body->rows.n_prescribed && at_stage) PetscCall(ExtendFromStage(body, level, reaction));
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
   PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
-  for (PetscInt i = 0; i < body->rows.local; i++) {
+  for (PetscInt k = 0; k < body->rows.n_near; k++) {
+    const PetscInt i = body->rows.near[k];
+
     if (body->rows.conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->rows.robin[i] * displacement[i];
     else if (body->rows.conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
   }
@@ -113,7 +128,8 @@ PetscErrorCode BodyGetTraces(Body body, BodyTraces *traces)
 - substep - 1 to the number of substeps
 
   Output Parameter:
-. force - for each row of this rank: what acts on forced rows, the reaction of prescribed and Robin ones, zero on free ones [N]
+. force - for each row of this rank, near ones alone, see `BodySetNearRows()`: what acts on forced rows, the reaction of prescribed and
+Robin ones, zero on free ones [N]
 
   Level: developer
 
@@ -128,7 +144,8 @@ PetscErrorCode BodyGetRowForces(Body body, PetscInt substep, PetscReal force[])
   if (body->rows.local) PetscAssertPointer(force, 3);
   PetscCall(TraceGetLevel(body->traces.reaction, substep, &reaction));
   PetscCall(TraceGetLevel(body->traces.force_in, substep, &force_in));
-  for (PetscInt i = 0; i < body->rows.local; i++) {
+  for (PetscInt k = 0; k < body->rows.n_near; k++) {
+    const PetscInt      i         = body->rows.near[k];
     const BodyCondition condition = body->rows.conditions[i];
 
     force[i] = condition == BODY_FREE ? 0 : PetscRealPart(condition == BODY_FORCED ? force_in[i] : reaction[i]);

@@ -28,8 +28,11 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
 PetscErrorCode ContactSetSomeConditions(Contact contact, ContactConditions conditions, const PetscBool left_out[])
 {
   PetscInt *counts = contact->work.counts;
+  PetscBool same   = (PetscBool)(conditions == CONDITIONS_FORCES);
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies && same; b++) PetscCall(BodyIsForcedAlone(contact->bodies[b], &same));
+  if (same) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     if (left_out && left_out[b]) continue;
     ContactGetConditions(contact, conditions, b, contact->work.conditions);
@@ -86,7 +89,9 @@ PetscErrorCode ContactComputeGaps(Contact contact)
       PetscCall(TraceGetSizes(traces->displacement, NULL, &levels));
       PetscCall(TraceGetLevel(traces->displacement, levels, &end[side]));
     }
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+      const PetscInt i = contact->rows.near[k];
+
       contact->end.gap[i] = contact->rows.initial_gap[i] + end[1][i - pair->shift[1]] - end[0][i - pair->shift[0]];
       if (contact->turns.n) contact->end.gap[i] += contact->turns.turned[i];
     }

@@ -263,9 +263,13 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscCall(ContactAcceptFriction(contact));
   PetscCall(ContactAddImpulses(contact));
   PetscCall(ContactAcceptTurns(contact));
-  PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
-  PetscCall(PetscArraycpy(contact->start.gap, contact->end.gap, contact->rows.n));
-  PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
+    const PetscInt i = contact->rows.near[k];
+
+    contact->start.force[i]  = contact->end.force[i];
+    contact->start.gap[i]    = contact->end.gap[i];
+    contact->start.active[i] = contact->end.active[i];
+  }
   contact->attempt.accepted_level = contact->attempt.level;
   contact->attempt.again          = PETSC_FALSE;
   contact->energy.start_known     = PETSC_FALSE;

@@ -206,6 +206,7 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
   if (fields->layouts != contact->neighbours.layouts) PetscCall(MakeRoom(fields));
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(VecGetLocalSize(nodes[0], &n));
+  PetscCall(ContactRefreshGaps(contact));
   n_carried = contact->friction.slip ? N_CARRIED : CARRY_SLIDING_AREA;
   for (Carried k = 0; k < n_carried; k++) {
     PetscCall(Carry(fields, body, k));

@@ -221,6 +221,7 @@ PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
 
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, "contact"));
+  PetscCall(ContactListAllRows(contact));
   PetscCall(VisitNeighbours(contact, checkpoint));
   sizes[1] = contact->n_pairs;
   sizes[2] = contact->rows.n_all;

@@ -65,8 +65,11 @@ PetscErrorCode ContactDestroyResultants(Contact contact)
 static void SumForces(Contact contact, const ContactPair *pair, const PetscReal rows[], PetscReal force[])
 {
   for (PetscInt d = 0; d < 3; d++) force[d] = 0;
-  for (PetscInt i = pair->begin; i < pair->end; i++)
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+    const PetscInt i = contact->rows.near[k];
+
     for (PetscInt d = 0; d < 3; d++) force[d] += rows[i] * contact->rows.normal[3 * i + d];
+  }
 }
 
 /* This rank's share of the resultant of the normal forces of a pair [N] */
@@ -77,8 +80,8 @@ static PetscErrorCode SumNormalForces(Contact contact, const ContactPair *pair, 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
   *force = 0;
-  for (PetscInt i = pair->begin; i < pair->end; i++) {
-    const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+  for (PetscInt j = pair->near_begin; j < pair->near_end; j++) {
+    const PetscInt i = contact->rows.near[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
 
     *force += (ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0) * row[i];
   }
@@ -93,8 +96,11 @@ static PetscErrorCode SumBeyond(Contact contact, const ContactPair *pair, PetscR
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
   *force = 0;
-  for (PetscInt i = pair->begin; i < pair->end; i += pair->components)
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+    const PetscInt i = contact->rows.near[k];
+
     if (rows.beyond[(i - pair->begin) / pair->components]) *force += contact->end.force[i];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -156,6 +162,14 @@ PetscErrorCode ContactUnpackImpulses(Contact contact, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether a near row of this rank has a force at the start of the step or at its end */
+static PetscBool HasForce(Contact contact, const ContactPair *pair)
+{
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k++)
+    if (contact->start.force[contact->rows.near[k]] != 0 || contact->end.force[contact->rows.near[k]] != 0) return PETSC_TRUE;
+  return PETSC_FALSE;
+}
+
 /* Adds the controller step that has been accepted to the impulses */
 PetscErrorCode ContactAddImpulses(Contact contact)
 {
@@ -163,8 +177,9 @@ PetscErrorCode ContactAddImpulses(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, *last = impulse + 3, *normal = impulse + 6, force[3], now = 0;
 
-    /* pairs that are far have no forces */
-    if (contact->pairs[p].far && last[0] == 0 && last[1] == 0 && last[2] == 0 && normal[1] == 0) continue;
+    /* nothing is added */
+    if (last[0] == 0 && last[1] == 0 && last[2] == 0 && normal[1] == 0 && (contact->pairs[p].far || !HasForce(contact, &contact->pairs[p])))
+      continue;
     if (contact->energy.changed) SumForces(contact, &contact->pairs[p], contact->start.force, last);
     SumForces(contact, &contact->pairs[p], contact->end.force, force);
     for (PetscInt d = 0; d < 3; d++) {
@@ -205,9 +220,9 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscCall(VecGetArrayRead(positions, &reference));
   PetscCall(VecGetArrayRead(u, &displacement));
   if (contact->held.merger) PetscCall(ContactSumMergedMoments(contact, pair, reference, displacement, moment));
-  for (PetscInt i = pair->begin; i < pair->end && !contact->held.merger; i++) {
+  for (PetscInt k = pair->near_begin; k < pair->near_end && !contact->held.merger; k++) {
+    const PetscInt   i = contact->rows.near[k], dof = contact->rows.dof[i];
     const PetscReal *normal = contact->rows.normal + 3 * i;
-    const PetscInt   dof    = contact->rows.dof[i];
     PetscReal        x[3]   = {0};
 
     for (PetscInt d = 0; d < dim; d++) x[d] = PetscRealPart(reference[dof + d] + displacement[dof + d]);
@@ -222,8 +237,11 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
 /* Whether a row of this rank touches, or has a force */
 static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
 {
-  for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++)
+  for (PetscInt k = pair->near_begin; k < pair->near_end && !pair->far; k++) {
+    const PetscInt i = contact->rows.near[k];
+
     if (contact->end.active[i] || contact->end.force[i] != 0) return PETSC_TRUE;
+  }
   return PETSC_FALSE;
 }
 
@@ -243,13 +261,13 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
   maxima[MAX_TENSION]      = 0;
   if (!contact->held.merger && !IsLoaded(contact, pair)) { /* moments of merged rows take a word of all ranks */
-    for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++)
-      maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
+    for (PetscInt k = pair->near_begin; k < pair->near_end && !pair->far; k++)
+      maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[contact->rows.near[k]]);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  for (PetscInt i = pair->begin; i < pair->end; i++) {
-    const PetscInt  node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+  for (PetscInt j = pair->near_begin; j < pair->near_end; j++) {
+    const PetscInt  i = contact->rows.near[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
     const PetscReal along = ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0;
 
     sums[SUM_FORCE] += along * contact->end.force[i];
@@ -270,6 +288,29 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gaps of pairs none of whose near rows is close: others may be closer, whose gaps are old. `maxima`: of all ranks */
+static PetscErrorCode FindFarGaps(Contact contact, PetscInt begin, PetscInt end, PetscReal maxima[])
+{
+  const PetscReal until = -contact->rows.near_reach;
+  PetscBool       any   = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  for (PetscInt p = begin; p < end; p++)
+    any = (PetscBool)(any || (!contact->pairs[p].far && maxima[N_MAXIMA * (p - begin) + MAX_PENETRATION] < until));
+  if (!contact->rows.listed || !any) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactRefreshGaps(contact));
+  for (PetscInt p = begin; p < end; p++) {
+    const ContactPair *pair    = &contact->pairs[p];
+    PetscReal         *deepest = &maxima[N_MAXIMA * (p - begin) + MAX_PENETRATION];
+
+    for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++) *deepest = PetscMax(*deepest, -contact->end.gap[i]);
+  }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX,
+                               PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* States of the pairs `begin` to `end` - 1 */
 PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscInt end, ContactPairState states[])
 {
@@ -283,6 +324,7 @@ PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscIn
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX,
                                PetscObjectComm((PetscObject)contact)));
   }
+  PetscCall(FindFarGaps(contact, begin, end, maxima));
   for (PetscInt p = begin; p < end; p++, sums += N_SUMS, maxima += N_MAXIMA) {
     ContactPairState *state = &states[p - begin];
     const PetscInt    sign  = ContactPairSign(&contact->pairs[p]);

@@ -246,14 +246,20 @@ PetscErrorCode ContactComputeSlips(Contact contact)
       PetscCall(TraceGetLevel(trace, 0, &start[side]));
       PetscCall(TraceGetLevel(trace, levels, &end[side]));
     }
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscInt first = i - pair->shift[0], second = i - pair->shift[1];
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+      const PetscInt i = contact->rows.near[k], first = i - pair->shift[0], second = i - pair->shift[1];
 
       contact->friction.slip[i] = PetscRealPart((end[1][second] - start[1][second]) - (end[0][first] - start[0][first])) +
                                   contact->friction.drive[i];
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a row has neither a force at the start of the step nor one in it: where rows are listed forces stay as they are in a step */
+static PetscBool HasNone(Contact contact, PetscInt i, const PetscReal start_force[])
+{
+  return (PetscBool)(contact->rows.listed && start_force[i] == 0 && contact->end.force[i] == 0);
 }
 
 /* What friction takes on the rows of a body that lie across normals */
@@ -266,15 +272,21 @@ static PetscErrorCode AddLossOn(Contact contact, PetscInt b, const PetscReal sta
 
   PetscFunctionBegin;
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-  for (PetscInt k = 0; k < of->n; k++)
-    last[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * start_force[of->rows[k]];
+  for (PetscInt j = 0; j < of->n_near; j++) {
+    const PetscInt k = of->near[j], i = of->rows[k];
+
+    last[k] = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * start_force[i];
+  }
   for (PetscInt level = 1; level <= substeps; level++) {
     PetscScalar *before, *after;
 
     PetscCall(TraceGetLevel(traces->displacement, level - 1, &before));
     PetscCall(TraceGetLevel(traces->displacement, level, &after));
     PetscCall(BodyGetRowForces(contact->bodies[b], level, now));
-    for (PetscInt k = 0; k < of->n; k++) {
+    for (PetscInt j = 0; j < of->n_near; j++) {
+      const PetscInt k = of->near[j];
+
+      if (HasNone(contact, of->rows[k], start_force)) continue;
       if (ContactRowRubs(contact, of->rows[k]))
         contact->friction.step_loss[of->rows[k]] -= 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - before[k]);
       last[k] = now[k];
@@ -291,14 +303,16 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
 
   PetscFunctionBegin;
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(friction->step_loss, contact->rows.n));
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) friction->step_loss[contact->rows.near[k]] = 0;
   PetscCall(PetscArrayzero(friction->pair_step, contact->n_pairs));
   PetscCall(PetscArrayzero(friction->pair_work, contact->n_pairs));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddLossOn(contact, b, start_force));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    /* what friction takes is the work of the surfaces on each other; the obstacle brings its part */
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
+    const PetscInt  i    = contact->rows.near[k];
     const PetscReal work = -0.5 * (start_force[i] + contact->end.force[i]) * friction->drive[i];
 
+    if (HasNone(contact, i, start_force)) continue;
+    /* what friction takes is the work of the surfaces on each other; the obstacle brings its part */
     friction->step_loss[i] += work;
     if (ContactRowRubs(contact, i))
       friction->step_loss[i] -= (*contact->ops->stored)(contact, i, CONTACT_NO_GAP) - contact->energy.last_stored[i];
@@ -331,8 +345,9 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
     friction->pair_loss[p] += friction->pair_step[p];
     friction->pair_driven[p] += friction->pair_work[p];
     if (pair->law != CONTACT_LAW_FRICTION) continue;
-    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
-      PetscReal way = 0;
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+      const PetscInt first = contact->rows.near[k];
+      PetscReal      way   = 0;
 
       for (PetscInt i = first + 1; i < first + pair->components; i++) {
         way += PetscSqr(friction->slip[i]);

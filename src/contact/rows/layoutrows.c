@@ -265,6 +265,7 @@ PetscErrorCode ContactRenewNeighbours(Contact contact, PetscReal near, PetscBool
   if (contact->attempt.again || contact->attempt.level) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactFindNeighbours(contact, near, &n));
   if (Same(contact, n)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactListAllRows(contact));
   PetscCall(ContactMoveSurfaces(contact));
   PetscCall(ContactReplacePairs(contact, n, contact->neighbours.found));
   *any = PETSC_TRUE;

@@ -211,7 +211,7 @@ PetscErrorCode ContactMoveSurfaces(Contact contact)
     Vec u;
 
     PetscCall(ContactGetRowPlace(contact, contact->surfaces[s].body, &u));
-    PetscCall(SurfaceUpdate(contact->surfaces[s].surface, u));
+    PetscCall(SurfaceMove(contact->surfaces[s].surface, u));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

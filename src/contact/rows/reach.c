@@ -19,13 +19,20 @@ static PetscReal Norm(const PetscReal v[3])
 static PetscErrorCode SumNodes(Vec vec, PetscInt dim, PetscReal sum[4])
 {
   const PetscScalar *values;
+  PetscReal          s[3] = {0, 0, 0};
   PetscInt           n;
 
   PetscFunctionBegin;
   PetscCall(VecGetLocalSize(vec, &n));
   PetscCall(VecGetArrayRead(vec, &values));
-  for (PetscInt i = 0; i < n; i += dim)
-    for (PetscInt d = 0; d < dim; d++) sum[d] += PetscRealPart(values[i + d]);
+  for (PetscInt i = 0; i < n && dim == 3; i += 3) { /* all at once */
+    s[0] += PetscRealPart(values[i]);
+    s[1] += PetscRealPart(values[i + 1]);
+    s[2] += PetscRealPart(values[i + 2]);
+  }
+  for (PetscInt i = 0; i < n && dim < 3; i += dim)
+    for (PetscInt d = 0; d < dim; d++) s[d] += PetscRealPart(values[i + d]);
+  for (PetscInt d = 0; d < 3; d++) sum[d] += s[d];
   PetscCall(VecRestoreArrayRead(vec, &values));
   sum[3] = (PetscReal)n / (PetscReal)dim;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -42,9 +49,10 @@ static PetscErrorCode FindSpread(Vec vec, PetscInt dim, const PetscReal mean[], 
   PetscCall(VecGetLocalSize(vec, &n));
   PetscCall(VecGetArrayRead(vec, &values));
   for (PetscInt i = 0; i < n; i += dim) {
-    PetscReal square = 0;
+    PetscReal square = PetscSqr(PetscRealPart(values[i]) - mean[0]);
 
-    for (PetscInt d = 0; d < dim; d++) square += PetscSqr(PetscRealPart(values[i + d]) - mean[d]);
+    if (dim > 1) square += PetscSqr(PetscRealPart(values[i + 1]) - mean[1]);
+    if (dim > 2) square += PetscSqr(PetscRealPart(values[i + 2]) - mean[2]);
     most = square > most ? square : most;
   }
   PetscCall(VecRestoreArrayRead(vec, &values));

@@ -146,7 +146,8 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
 /* Takes shifts of gaps back as far as rows are open, where this does no work. In contact it would do work, out of nothing. */
 static void DropShifts(Contact contact)
 {
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
+    const PetscInt  i    = contact->rows.near[k];
     const PetscReal part = PetscMin(contact->rows.gap_shift[i], PetscMax(contact->end.gap[i], 0));
 
     if (contact->start.active[i] || part == 0) continue;
@@ -249,6 +250,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   if (contact->dim == 1 || ContactAllPairsTie(contact) || (!contact->n_pairs && !contact->neighbours.come_and_go))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactMeasureReach(contact, &reach));
+  if (reach > contact->rows.near_reach) PetscCall(ContactListAllRows(contact));
   PetscCall(ContactRenewNeighbours(contact, reach, PETSC_FALSE, &any));
   if (contact->attempt.again) PetscCall(ContactRestoreRows(contact));
   else PetscCall(ContactSaveRows(contact));
@@ -275,7 +277,11 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     Affect(contact, &contact->pairs[p], rebuilt);
     PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
   }
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!any) {
+    PetscCall(ContactListNearRows(contact, reach));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(ContactListAllRows(contact));
   if (built) contact->counts.rebuilds++;
   contact->energy.rebuilt = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));

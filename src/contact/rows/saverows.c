@@ -76,11 +76,31 @@ static PetscErrorCode Copy(Contact contact, PetscBool back)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of near rows what changes while rows stay as they are; all else has been put aside since rows changed last */
+static void SaveNear(Contact contact)
+{
+  ContactSavedRows *saved = &contact->saved;
+
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
+    const PetscInt i = contact->rows.near[k];
+
+    saved->initial_gap[i]  = contact->rows.initial_gap[i];
+    saved->gap_shift[i]    = contact->rows.gap_shift[i];
+    saved->start.force[i]  = contact->start.force[i];
+    saved->start.gap[i]    = contact->start.gap[i];
+    saved->start.active[i] = contact->start.active[i];
+    saved->end.force[i]    = contact->end.force[i];
+    saved->end.gap[i]      = contact->end.gap[i];
+    saved->end.active[i]   = contact->end.active[i];
+  }
+}
+
 /* At the start of a controller step that may have to be made again, before the rows change */
 PetscErrorCode ContactSaveRows(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(Copy(contact, PETSC_FALSE));
+  if (contact->rows.listed) SaveNear(contact);
+  else PetscCall(Copy(contact, PETSC_FALSE));
   contact->saved.rebuilds = contact->counts.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].saved = contact->body_rows[b].pattern;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

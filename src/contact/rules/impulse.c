@@ -36,7 +36,8 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
   const PetscReal half = 0.5 * contact->step;
 
   PetscFunctionBegin;
-  for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+    const PetscInt  first   = contact->rows.near[k];
     const PetscBool tied    = contact->rows.tied[first];
     const PetscBool carried = (PetscBool)(tied || (contact->start.active[first] && contact->start.force[first] > 0));
     const PetscReal middle  = contact->start.gap[first] + half * stepper->rate[first];
@@ -61,8 +62,8 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
   const ContactBodyRows *of = &contact->body_rows[b];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < of->n; k++) {
-    const PetscInt  i    = of->rows[k];
+  for (PetscInt j = 0; j < of->n_near; j++) {
+    const PetscInt  k = of->near[j], i = of->rows[k];
     const PetscReal sign = ContactSign(&contact->pairs[contact->rows.pair[i]], b);
 
     stepper->mine[k]   = sign * contact->end.force[i];
@@ -86,13 +87,13 @@ static PetscReal Limit(PetscReal way, PetscReal by_force)
 /* What the step begins with is what it ends with, for all that takes the mean of both */
 static PetscErrorCode End(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
-  const PetscInt n = pair->end - pair->begin;
-
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(contact->energy.last_force + pair->begin, stepper->last + pair->begin, n));
-  PetscCall(PetscArraycpy(contact->start.force + pair->begin, contact->end.force + pair->begin, n));
   contact->energy.changed = PETSC_TRUE;
-  for (PetscInt i = pair->begin; i < pair->end; i++) {
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+    const PetscInt i = contact->rows.near[k];
+
+    contact->energy.last_force[i] = stepper->last[i];
+    contact->start.force[i]       = contact->end.force[i];
     if (!stepper->touches[i]) continue;
     if (!ContactRowRubs(contact, i))
       stepper->step_loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]) +

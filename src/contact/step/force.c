@@ -141,6 +141,12 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(ContactStepperSetUpRules(contact, stepper));
   PetscCall(ContactHasRigid(contact, &stepper->has_rigid));
   PetscCall(ChooseLaws(contact, stepper));
+  contact->rows.lists = PETSC_TRUE;
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    contact->rows.lists = (PetscBool)(contact->rows.lists && stepper->rules[b] == &ContactRuleImpulse);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].law != CONTACT_LAW_FRICTION && contact->pairs[p].law != CONTACT_LAW_FRICTIONLESS)
+      contact->rows.lists = PETSC_FALSE;
   contact->friction.steps     = PETSC_TRUE;
   stepper->rtol               = floating ? RTOL_FLOATING : any_static ? RTOL_STATIC : RTOL;
   stepper->atol               = (floating ? ATOL_FLOATING * CONTACT_POSITION_TOLERANCE : RESOLUTION) * contact->scale.length;
@@ -189,7 +195,7 @@ static PetscErrorCode Accept(Contact contact)
   ContactStepper *stepper = Stepper(contact);
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(stepper->joined, stepper->joins, contact->rows.n));
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->joined[contact->rows.near[k]] = stepper->joins[contact->rows.near[k]];
   PetscCall(ContactStepperAcceptSecants(stepper));
   contact->counts.contact_loss += stepper->step_loss;
   contact->energy.largest_force += stepper->step_force; /* changes of gaps add up, and what nobody knows of them does */

@@ -87,7 +87,11 @@ PetscErrorCode ContactStepperAdvance(Contact contact, ContactStepper *stepper)
     const ContactBodyRows *of = &contact->body_rows[b];
 
     moves[b] = !stepper->rests[b];
-    for (PetscInt k = 0; k < of->n && !moves[b]; k++) moves[b] = contact->end.force[of->rows[k]] != stepper->given[of->rows[k]];
+    for (PetscInt k = 0; k < of->n_near && !moves[b]; k++) {
+      const PetscInt i = of->rows[of->near[k]];
+
+      moves[b] = contact->end.force[i] != stepper->given[i];
+    }
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(
@@ -100,7 +104,7 @@ PetscErrorCode ContactStepperAdvance(Contact contact, ContactStepper *stepper)
   PetscCall(ContactAgree(contact));
   contact->counts.sweeps++;
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArraycpy(stepper->given, contact->end.force, contact->rows.n));
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->given[contact->rows.near[k]] = contact->end.force[contact->rows.near[k]];
   for (PetscInt b = 0; b < contact->n_bodies; b++) stepper->rests[b] = PETSC_TRUE;
   PetscCall(ContactComputeGaps(contact));
   if (contact->friction.slip) PetscCall(ContactComputeSlips(contact));

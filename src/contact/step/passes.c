@@ -84,21 +84,21 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   Contact            contact = (Contact)ctx;
   ContactStepper    *stepper = Stepper(contact);
   LawProblem        *problem = &stepper->problem;
-  const PetscInt     n       = problem->n;
+  const PetscInt     n = problem->n, n_near = contact->rows.n_near, *near = contact->rows.near;
   const PetscScalar *x;
   PetscScalar       *f;
 
   PetscFunctionBegin;
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.force[i] = stepper->touches[i] ? PetscRealPart(x[i]) : 0;
+  for (PetscInt k = 0; k < n_near; k++) contact->end.force[near[k]] = stepper->touches[near[k]] ? PetscRealPart(x[near[k]]) : 0;
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(ContactStepperAdvance(contact, stepper));
   if (ContactFailed(contact)) {
     PetscCall(ContactRejectResidual(F));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt i = 0; i < contact->rows.n; i++) stepper->mine[i] = stepper->touches[i] ? Reading(contact, stepper, i) : 0;
+  for (PetscInt k = 0; k < n_near; k++) stepper->mine[near[k]] = stepper->touches[near[k]] ? Reading(contact, stepper, near[k]) : 0;
   PetscCall(ContactStepperGather(contact, stepper, contact->end.force, problem->base));
   PetscCall(ContactStepperGather(contact, stepper, stepper->mine, problem->read));
   PetscCall(PetscArraycpy(problem->force, problem->base, n));
@@ -195,8 +195,9 @@ PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *steppe
 static PetscErrorCode FindScales(Contact contact, ContactStepper *stepper)
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    PetscReal *scale = &stepper->scale[stepper->group[contact->pairs[contact->rows.pair[i]].body[0]]];
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
+    const PetscInt i     = contact->rows.near[k];
+    PetscReal     *scale = &stepper->scale[stepper->group[contact->pairs[contact->rows.pair[i]].body[0]]];
 
     if (stepper->touches[i]) *scale = PetscMax(*scale, PetscAbsReal(contact->step * stepper->rate[i]));
   }
@@ -216,7 +217,12 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(stepper->x, &x));
-  for (PetscInt i = 0; i < contact->rows.n; i++) x[i] = stepper->touches[i] ? contact->end.force[i] : 0;
+  PetscCall(PetscArrayzero(x, contact->rows.n));
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
+    const PetscInt i = contact->rows.near[k];
+
+    if (stepper->touches[i]) x[i] = contact->end.force[i];
+  }
   PetscCall(VecRestoreArrayWrite(stepper->x, &x));
   PetscCall(ContactStepperFindGroups(contact, stepper));
   PetscCall(FindScales(contact, stepper));

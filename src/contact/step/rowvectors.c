@@ -48,6 +48,10 @@ PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, co
   const PetscScalar *values;
 
   PetscFunctionBegin;
+  if (contact->ranks.size == 1) { /* all rows are here */
+    for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = mine[stepper->rows[k]];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ContactStepperScatter(contact, stepper, mine));
   PetscCall(VecGetArrayRead(stepper->of_all, &values));
   for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = values[stepper->rows[k]];
@@ -59,18 +63,27 @@ PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, co
 PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
 {
   LawProblem        *problem = &stepper->problem;
-  const PetscScalar *touches;
-  PetscInt           n = 0;
+  const PetscBool    alone   = (PetscBool)(contact->ranks.size == 1);
+  const PetscInt     n_look  = alone ? contact->rows.n_near : contact->rows.n_all;
+  const PetscScalar *touches = stepper->mine;
+  PetscInt           n       = 0;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++)
+  if (!alone) PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
+    const PetscInt i = contact->rows.near[k];
+
     stepper->mine[i] = stepper->touches[i] ? 1 + contact->rows.tied[ContactFirstRow(contact, i)] : 0; /* which law it has */
-  PetscCall(ContactStepperScatter(contact, stepper, stepper->mine));
-  PetscCall(VecGetArrayRead(stepper->of_all, &touches));
-  for (PetscInt i = 0; i < contact->rows.n_all; i++) n += touches[i] != 0;
+  }
+  if (!alone) {
+    PetscCall(ContactStepperScatter(contact, stepper, stepper->mine));
+    PetscCall(VecGetArrayRead(stepper->of_all, &touches));
+  }
+  for (PetscInt k = 0; k < n_look; k++) n += touches[alone ? contact->rows.near[k] : k] != 0;
   PetscCall(LawProblemResize(problem, n));
   n = problem->n_nodes = 0;
-  for (PetscInt i = 0; i < contact->rows.n_all; i++) {
+  for (PetscInt k = 0; k < n_look; k++) {
+    const PetscInt     i    = alone ? contact->rows.near[k] : k;
     const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[i]];
 
     if (touches[i] == 0) continue;
@@ -83,7 +96,7 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
     stepper->rows[n++] = i;
   }
   problem->begin[problem->n_nodes] = n;
-  PetscCall(VecRestoreArrayRead(stepper->of_all, &touches));
+  if (!alone) PetscCall(VecRestoreArrayRead(stepper->of_all, &touches));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

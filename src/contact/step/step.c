@@ -21,7 +21,9 @@ PetscErrorCode ContactStepperComputeRates(Contact contact, PetscReal rate[])
     PetscScalar       *v[2];
 
     for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].velocity, 0, &v[side]));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+      const PetscInt i = contact->rows.near[k];
+
       rate[i] = PetscRealPart(v[1][i - pair->shift[1]] - v[0][i - pair->shift[0]]);
       if (contact->friction.drive) rate[i] += contact->friction.drive[i] / contact->step;
     }
@@ -37,13 +39,17 @@ static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(problem->limit, 2 * problem->n_nodes));
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
-  PetscCall(PetscArrayzero(stepper->before, contact->rows.n));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end && contact->pairs[p].law == CONTACT_LAW_FRICTION;
-         i += contact->dim)
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->mine[contact->rows.near[k]] = stepper->before[contact->rows.near[k]] = 0;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt k = pair->near_begin; k < pair->near_end && pair->law == CONTACT_LAW_FRICTION; k += contact->dim) {
+      const PetscInt i = contact->rows.near[k];
+
       (*contact->friction.law.getlimit)(contact, contact->friction.law.data, i, contact->friction.speed[i], &stepper->mine[i],
                                         &stepper->before[i]);
+    }
+  }
   for (PetscInt k = 0; k < 2; k++) {
     PetscCall(ContactStepperGather(contact, stepper, k ? stepper->before : stepper->mine, stepper->gathered));
     for (PetscInt node = 0; node < problem->n_nodes; node++)
@@ -77,7 +83,7 @@ static PetscErrorCode MarkSliding(Contact contact, const ContactStepper *stepper
 
   PetscFunctionBegin;
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(contact->friction.slides, contact->rows.n));
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) contact->friction.slides[contact->rows.near[k]] = PETSC_FALSE;
   for (PetscInt node = 0; problem->n && node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first, i = stepper->rows[first] - contact->rows.begin;
 
@@ -98,10 +104,11 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
     const ContactPair *pair = &contact->pairs[p];
     const ContactRule *rule = ContactStepperRule(stepper, pair);
 
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscInt first = i - (i - pair->begin) % pair->components;
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+      const PetscInt  first  = contact->rows.near[k];
+      const PetscBool active = (PetscBool)(contact->rows.tied[first] || contact->end.force[first] > 0);
 
-      contact->end.active[i] = (PetscBool)(contact->rows.tied[first] || contact->end.force[first] > 0);
+      for (PetscInt i = first; i < first + pair->components; i++) contact->end.active[i] = active;
     }
     if (rule->end) PetscCall((*rule->end)(contact, stepper, pair));
   }
@@ -130,7 +137,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
   stepper->passes = 0;
   if (stepper->has_rigid || stepper->forms) stepper->state++;
   stepper->forms = PETSC_FALSE;
-  PetscCall(PetscArraycpy(stepper->last, contact->start.force, contact->rows.n));
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->last[contact->rows.near[k]] = contact->start.force[contact->rows.near[k]];
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
   PetscCall(ContactStepperComputeRates(contact, stepper->rate));
   for (PetscInt p = 0; p < contact->n_pairs; p++)

@@ -1,0 +1,157 @@
+/*
+   Rows near contact: those that may touch before rows are built again, which they are once surfaces have moved by a quarter of the smallest
+   face. A step of a method that asks for them looks at no others, so that it costs what touches, not what all contact nodes do. Others are
+   open and have no force; what is known of them, gaps and output traces of the bodies, is old until somebody asks.
+*/
+#include <contact/parts.h>
+
+/* Gap of a row up to which it is near [edges of the face]: rows within two edges count as near contact in builds, and surfaces may have
+   moved by a quarter of an edge since the last one, and by another one until the next */
+#define NEAR_CONTACT 3
+
+/* The near rows of the bodies, from the list of all */
+static PetscErrorCode ListBodyRows(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].n_near = 0;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+      ContactBodyRows *of = &contact->body_rows[pair->body[side]];
+
+      for (PetscInt k = pair->near_begin; k < pair->near_end; k++) of->near[of->n_near++] = contact->rows.near[k] - pair->shift[side];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gaps of all rows as they are where the saved states of the bodies are */
+PetscErrorCode ContactRefreshGaps(Contact contact)
+{
+  PetscInt k = 0;
+
+  PetscFunctionBegin;
+  if (!contact->rows.listed) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (contact->body_rows[b].n_all) PetscCall(BodyWriteStartTraces(contact->bodies[b]));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *u[2];
+
+    for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].displacement, 0, &u[side]));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      if (k < contact->rows.n_near && contact->rows.near[k] == i) k++; /* these are as the step has left them */
+      else
+        contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] +
+                                                      PetscRealPart(u[1][i - pair->shift[1]] - u[0][i - pair->shift[0]]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Tells the transfers which rows are near, and the surfaces which nodes these are about */
+static PetscErrorCode TellSurfaces(Contact contact)
+{
+  PetscBool **nodes, *near;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(contact->n_surfaces, &nodes));
+  PetscCall(PetscMalloc1(contact->rows.n + 1, &near));
+  for (PetscInt s = 0; s < contact->n_surfaces; s++) {
+    const SurfaceData *data;
+
+    PetscCall(SurfaceGetData(contact->surfaces[s].surface, &data));
+    PetscCall(PetscCalloc1(data->n_owned + 1, &nodes[s])); /* never NULL */
+  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    const PetscInt     n    = (pair->end - pair->begin) / pair->components;
+
+    PetscCall(PetscArrayzero(near, n));
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components)
+      near[(contact->rows.near[k] - pair->begin) / pair->components] = PETSC_TRUE;
+    PetscCall(TransferSetNear(pair->transfer, contact->rows.listed ? near : NULL, nodes[pair->place[0]],
+                              pair->obstacle ? NULL : nodes[pair->place[1]]));
+  }
+  for (PetscInt s = 0; s < contact->n_surfaces; s++) {
+    PetscCall(SurfaceSetNear(contact->surfaces[s].surface, contact->rows.listed ? nodes[s] : NULL));
+    PetscCall(PetscFree(nodes[s]));
+  }
+  PetscCall(PetscFree(near));
+  PetscCall(PetscFree(nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All rows count as near */
+PetscErrorCode ContactListAllRows(Contact contact)
+{
+  const PetscBool before = contact->rows.listed;
+
+  PetscFunctionBegin;
+  if (!contact->body_rows) PetscFunctionReturn(PETSC_SUCCESS); /* no rows have been laid out yet */
+  PetscCall(ContactRefreshGaps(contact));
+  for (PetscInt b = 0; b < contact->n_bodies && before; b++)
+    if (contact->body_rows[b].n_all) PetscCall(BodySetNearRows(contact->bodies[b], -1, NULL));
+  contact->rows.listed     = PETSC_FALSE;
+  contact->rows.near_reach = PETSC_MAX_REAL;
+  contact->rows.n_near     = contact->rows.n;
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.near[i] = i;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    contact->pairs[p].near_begin = contact->pairs[p].begin;
+    contact->pairs[p].near_end   = contact->pairs[p].end;
+  }
+  PetscCall(ListBodyRows(contact));
+  if (before) PetscCall(TellSurfaces(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The near rows of a pair, and the smallest face at any of its nodes */
+static PetscErrorCode ListPair(Contact contact, ContactPair *pair, PetscReal *smallest)
+{
+  ContactRows *of = &contact->rows;
+  TransferRows rows;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  pair->near_begin = of->n_near;
+  for (PetscInt node = 0; node < rows.n; node++) {
+    const PetscInt first = pair->begin + node * pair->components;
+    PetscBool      near = (PetscBool)(pair->bonded || (of->opposite[first] && contact->start.gap[first] <= NEAR_CONTACT * rows.size[node]));
+
+    *smallest = PetscMin(*smallest, rows.size[node]);
+    for (PetscInt i = first; i < first + pair->components; i++)
+      near = (PetscBool)(near || of->tied[i] || contact->start.active[i] || contact->start.force[i] != 0 || of->gap_shift[i] != 0 ||
+                         contact->energy.last_force[i] != 0);
+    for (PetscInt i = first; near && i < first + pair->components; i++) of->near[of->n_near++] = i;
+  }
+  pair->near_end = of->n_near;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of a step in which rows stay as they are: lists those that are near, if the method looks at no others. `reach`: surfaces
+   that far apart may touch in the step [m] */
+PetscErrorCode ContactListNearRows(Contact contact, PetscReal reach)
+{
+  PetscReal smallest = PETSC_MAX_REAL;
+
+  PetscFunctionBegin;
+  if (!contact->rows.lists || contact->rows.listed || contact->held.merger || contact->turns.n || !contact->energy.unlimited)
+    PetscFunctionReturn(PETSC_SUCCESS);
+  contact->rows.n_near = 0;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ListPair(contact, &contact->pairs[p], &smallest));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+  if (reach > smallest) {
+    PetscCall(ContactListAllRows(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  contact->rows.near_reach = smallest;
+  contact->rows.listed     = PETSC_TRUE;
+  PetscCall(ListBodyRows(contact));
+  PetscCall(TellSurfaces(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (contact->body_rows[b].n_all)
+      PetscCall(BodySetNearRows(contact->bodies[b], contact->body_rows[b].n_near, contact->body_rows[b].near));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
