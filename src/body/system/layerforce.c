@@ -316,7 +316,7 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[],
   LayerElements      layer = body->layer.elements;
   const PetscInt     nodes = body->model.element->nodes, n = nodes * body->mesh.dim;
   PetscInt           dofs[ELEMENT_MAX_DOFS];
-  PetscScalar        one[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
+  PetscScalar        one[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS] = {0};
   const PetscScalar *at;
   Mat                all = K;
 
