@@ -73,6 +73,7 @@ PETSC_EXTERN PetscErrorCode BodyGetLed(Body, PetscBool *, PetscBool *);
 /* Rows, set up once and given new entries later */
 PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyChooseMass(Body, PetscInt, const PetscInt[], PetscBool *);
+PETSC_EXTERN PetscBool      BodyChoosesMass(Body);
 PETSC_EXTERN PetscErrorCode BodyKeepMass(Body);
 PETSC_EXTERN PetscErrorCode BodyGetContactPart(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);

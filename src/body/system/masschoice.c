@@ -143,6 +143,12 @@ PetscErrorCode BodyChooseMass(Body body, PetscInt n, const PetscInt boundary[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether what becomes of the mass of contact nodes is left to the body, which then wants to know its boundary, see BodyChooseMass() */
+PetscBool BodyChoosesMass(Body body)
+{
+  return body->mass.automatic;
+}
+
 /*@
   BodyKeepMass - lets contact nodes keep their mass, where that is left to the body
 
@@ -169,5 +175,6 @@ PetscErrorCode BodyKeepMass(Body body)
   mass->redistribute = mass->extrapolate = mass->moved = PETSC_FALSE;
   mass->least_factor = mass->largest_factor = 0;
   mass->inertia_error = mass->turn_error = 0;
+  PetscCall(PetscArrayzero(mass->shift, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -115,15 +115,18 @@ static PetscErrorCode ChooseMass(Contact contact)
   PetscCall(PetscCalloc1(n, &keeps));
   ContactFindSets(contact, set);
   for (PetscInt b = 0; b < n; b++) {
-    const PetscInt *vertices;
-    PetscInt        n_vertices;
-    PetscBool       chooses, needs;
-    Surface         boundary;
+    PetscBool chooses = PETSC_FALSE, needs;
 
-    PetscCall(ContactCreateSurface(contact, b, NULL, &boundary));
-    PetscCall(SurfaceGetVertices(boundary, &n_vertices, &vertices));
-    PetscCall(BodyChooseMass(contact->bodies[b], n_vertices, vertices, &chooses));
-    PetscCall(SurfaceDestroy(&boundary));
+    if (BodyChoosesMass(contact->bodies[b])) {
+      const PetscInt *vertices;
+      PetscInt        n_vertices;
+      Surface         boundary;
+
+      PetscCall(ContactCreateSurface(contact, b, NULL, &boundary));
+      PetscCall(SurfaceGetVertices(boundary, &n_vertices, &vertices));
+      PetscCall(BodyChooseMass(contact->bodies[b], n_vertices, vertices, &chooses));
+      PetscCall(SurfaceDestroy(&boundary));
+    }
     PetscCall(ContactNeedsImpulse(contact, b, &needs));
     if (chooses && kept == n) kept = b;
     keeps[set[b]] = (PetscBool)(keeps[set[b]] || chooses || (contact->sideless && (needs || contact->options.keep_mass)));
