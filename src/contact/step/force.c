@@ -13,6 +13,8 @@
 #define ATOL_FLOATING 1e-2 /* of that on positions */
 /* What rows read is right to so much, as positions are round-off, in parts of the size of the smallest body */
 #define RESOLUTION 2e-15
+/* Turn of an obstacle's normal above which a row is laid again [rad], as rows between bodies are, see pairsupdate.c */
+#define STILL 1e-6
 
 static ContactStepper *Stepper(Contact contact)
 {
@@ -163,6 +165,8 @@ static PetscErrorCode SetUp(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Rows that a rule lays ahead follow curved obstacles from step to step, as rows between bodies follow these: their planes are not looked
+   at again after the step, see ContactLayAhead() */
 static PetscErrorCode LayRows(Contact contact)
 {
   const ContactStepper *stepper = Stepper(contact);
@@ -170,6 +174,9 @@ static PetscErrorCode LayRows(Contact contact)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies && stepper->rules; b++)
     if (stepper->rules[b]->place) PetscCall((*stepper->rules[b]->place)(contact, b));
+  for (PetscInt p = 0; p < contact->n_pairs && stepper->rules; p++)
+    if (contact->pairs[p].obstacle && stepper->rules[contact->pairs[p].body[0]]->place)
+      PetscCall(TransferSetBounds(contact->pairs[p].transfer, contact->options.slip_bound, PetscMin(contact->options.angle_bound, STILL)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
