@@ -35,6 +35,7 @@ typedef struct {
   PetscInt   n_found, *found, *ring; /* inner nodes around a contact node; per node: elements to it, -1: further away */
   PetscReal *distance, *weights;
   PetscInt  *queue;
+  PetscBool *moves; /* which of the nodes that this rank owns are to move as inner nodes do */
 } Surroundings;
 
 /* An inner node is as far from the surface as two of them are from each other in a regular mesh. Extrapolation by three times that distance
@@ -90,6 +91,22 @@ static PetscErrorCode MarkElements(Body body, PetscBool near[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Contact nodes but those that are held in all directions: where these are is known, as it is of inner nodes */
+static PetscErrorCode FindMoving(Body body, PetscBool **moves)
+{
+  const PetscInt dim = body->mesh.dim;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(body->mesh.owned_nodes, moves));
+  PetscCall(PetscArraycpy(*moves, body->layer.contains, body->mesh.owned_nodes));
+  for (PetscInt i = 0; i + dim <= body->held.n; i++) { /* ascending */
+    const PetscInt dof = body->held.dofs[i];
+
+    if (dof % dim == 0 && body->held.dofs[i + dim - 1] == dof + dim - 1) (*moves)[dof / dim] = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode CreateSurroundings(Body body, Surroundings *around)
 {
   const PetscInt  dim = body->mesh.dim;
@@ -111,9 +128,10 @@ static PetscErrorCode CreateSurroundings(Body body, Surroundings *around)
   PetscCall(BodyCreateVec(body, &marks));
   PetscCall(VecZeroEntries(marks));
   PetscCall(VecGetArray(marks, &mark));
+  PetscCall(FindMoving(body, &around->moves));
   PetscCall(PetscMalloc1(body->mesh.owned_nodes, &layer));
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    if (!body->layer.contains[node]) continue;
+    if (!around->moves[node]) continue;
     layer[n++]       = begin + node;
     mark[node * dim] = 1;
   }
@@ -142,6 +160,7 @@ static PetscErrorCode DestroySurroundings(Surroundings *around)
 {
   PetscFunctionBegin;
   PetscCall(PetscFree5(around->found, around->ring, around->queue, around->distance, around->weights));
+  PetscCall(PetscFree(around->moves));
   PetscCall(VecRestoreArrayRead(around->marks, &around->massless));
   PetscCall(VecRestoreArrayRead(around->positions, &around->x));
   PetscCall(VecDestroy(&around->marks));
@@ -262,7 +281,7 @@ static PetscErrorCode FillExtrapolation(Body body, Surroundings *around, PetscBo
     PetscInt       n   = 0, node;
     PetscReal      sum = 0;
 
-    if (body->layer.contains[i]) {
+    if (around->moves[i]) {
       PetscCall(ISLocate(around->nodes, row, &node));
       PetscCall(Extrapolate(around, node, &n, &sum));
       keeps[i]                   = (PetscBool)(n == 0);
