@@ -195,6 +195,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpSavedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroySavedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactListAllRows(Contact);
 PETSC_INTERN PetscErrorCode ContactListNearRows(Contact, PetscReal);
+PETSC_INTERN void           ContactListActingRows(Contact, const PetscBool[]);
 PETSC_INTERN PetscErrorCode ContactRefreshGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
 PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);

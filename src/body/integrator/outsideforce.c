@@ -4,7 +4,9 @@
 /* Whether there are any: from loads or, where it is counted, of contact */
 PetscBool BodyHasOutsideForce(Body body, PetscBool contact)
 {
-  return (PetscBool)(body->loads || (contact && (body->rows.n_forced || BodyHandsOver(body))));
+  const PetscBool pushed = (PetscBool)(body->rows.n_forced && (!body->rows.idle || body->rows.nodal_force));
+
+  return (PetscBool)(body->loads || (contact && (pushed || BodyHandsOver(body))));
 }
 
 /* The force from outside at a time and, where it is counted, that of contact at a position (0 to 1) in the controller step [N]; u: the

@@ -112,8 +112,7 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
     PetscCall(BodyHistoryEnd(body));
     PetscCall(BodyCheckSubstep(body));
     /* rows of massless nodes are where they were, and all that they do but for reactions and what is held is known */
-    if (body->held.any || body->rows.constant || body->rows.n_prescribed || body->rows.n_robin)
-      PetscCall(BodyWriteTraces(body, body->time.substeps));
+    if (body->held.any || body->rows.constant || body->rows.n_prescribed || body->rows.n_robin) PetscCall(BodyWriteRest(body));
     PetscCall(PetscTime(&end));
     body->statistics.seconds += end - begin;
     PetscCall(PetscLogEventEnd(BODY_Integrate, body, 0, 0, 0));

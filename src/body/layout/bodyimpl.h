@@ -209,6 +209,7 @@ typedef struct {
   Mat            near_matrix;   /* these of the matrix; that itself where they are all */
   Vec            near_row;      /* work space: a number for each */
   PetscBool      constant;      /* forces act that are the same throughout the controller step, see BodySetConstantForces() */
+  PetscBool      idle;          /* these are zero; where all rows are on this rank */
   Vec            nodal_force;   /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
   BodyForceShape nodal_shape;   /* how */
 } BodyRows;
@@ -497,6 +498,7 @@ PETSC_INTERN PetscErrorCode BodyDestroyNearRows(Body);
 PETSC_INTERN PetscErrorCode BodyClearRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyListContactDofs(Body);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
+PETSC_INTERN PetscErrorCode BodyWriteRest(Body);
 PETSC_INTERN PetscErrorCode BodyBringChanges(Body);
 PETSC_INTERN void           BodyDropWord(Body);
 PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);

@@ -324,6 +324,7 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
     PetscCall(VecAXPY(f, body->rows.nodal_shape == BODY_FORCE_LINEAR ? scale * position : scale, body->rows.nodal_force));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (body->rows.idle) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->rows.exchange.open) {
     PetscCall(VecAXPY(f, scale, body->rows.exchange.force));
     PetscFunctionReturn(PETSC_SUCCESS);

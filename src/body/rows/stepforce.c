@@ -12,6 +12,8 @@
 
   Input Parameters:
 + body  - the `Body`, saved, whose rows are forced
+. n     - number of near rows that may have a force now, or have had one in the last call
+. rows  - their numbers
 . force - along each row of this rank [N]
 . last  - the same at the end of the last step, along the rows as they are now [N]
 - none  - zero for each row of this rank
@@ -24,23 +26,27 @@ gone.
 
 .seealso: `Body`, `BodySetStartForce()`, `BodyGetNodalCompliance()`
 @*/
-PetscErrorCode BodySetConstantForces(Body body, const PetscReal force[], const PetscReal last[], const PetscReal none[])
+PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[], const PetscReal force[], const PetscReal last[],
+                                     const PetscReal none[])
 {
   PetscReal   *change = body->compliance->change;
   PetscScalar *values;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->rows.local) {
-    PetscAssertPointer(force, 2);
-    PetscAssertPointer(last, 3);
+  if (n) {
+    PetscAssertPointer(rows, 3);
+    PetscAssertPointer(force, 4);
+    PetscAssertPointer(last, 5);
   }
   for (PetscInt level = 0; level <= body->time.substeps; level++) {
     PetscCall(TraceGetLevel(body->traces.force_in, level, &values));
-    for (PetscInt k = 0; k < body->rows.n_near; k++) values[body->rows.near[k]] = force[body->rows.near[k]];
+    for (PetscInt k = 0; k < n; k++) values[rows[k]] = force[rows[k]];
   }
+  body->rows.idle = (PetscBool)(body->rows.size == 1);
+  for (PetscInt k = 0; k < n && body->rows.idle; k++) body->rows.idle = (PetscBool)(force[rows[k]] == 0);
   if (!BodyAnswersByNodes(body)) PetscCall(PetscArrayzero(change, body->rows.local)); /* all rows count there */
-  for (PetscInt k = 0; k < body->rows.n_near; k++) change[body->rows.near[k]] = force[body->rows.near[k]] - last[body->rows.near[k]];
+  for (PetscInt k = 0; k < n; k++) change[rows[k]] = force[rows[k]] - last[rows[k]];
   /* BodyRepeat() moves the end state by what these forces are more than those before */
   if (body->repeats && body->rows.constant && body->integrator->repeats_constant) PetscFunctionReturn(PETSC_SUCCESS);
   body->rows.constant = PETSC_TRUE;

@@ -41,27 +41,18 @@ static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement, velocity and acceleration of near rows, and the force along prescribed and Robin ones, as they are now. Massless nodes,
-   which all rows are on where the state may be incomplete, have no acceleration unless they are held. */
-PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
+/* All but the displacement of BodyWriteTraces(). Nobody looks at accelerations where forces are constant in a controller step. */
+static PetscErrorCode WriteRates(Body body, PetscInt level)
 {
   const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
   PetscScalar    *reaction, *displacement, *acceleration, *force_in;
 
   PetscFunctionBegin;
-  if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  if (body->rows.exchange.open) {
-    body->rows.exchange.writes = PETSC_TRUE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(WriteNear(body, body->state.u, body->traces.displacement, level));
-  /* BodyCompleteStep() writes all */
-  if (body->state.incomplete && body->rows.constant && !body->rows.n_prescribed && !body->rows.n_robin) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(WriteNear(body, body->state.v, body->traces.velocity, level));
   if (body->state.incomplete && !body->held.any) {
     PetscCall(TraceGetLevel(body->traces.acceleration, level, &acceleration));
     for (PetscInt k = 0; k < body->rows.n_near; k++) acceleration[body->rows.near[k]] = 0;
-  } else PetscCall(WriteNear(body, body->state.a, body->traces.acceleration, level));
+  } else if (!body->rows.constant) PetscCall(WriteNear(body, body->state.a, body->traces.acceleration, level));
   if (body->rows.n_prescribed) {
     Vec             force   = body->state.internal_force;
     const PetscBool inertia = (PetscBool)(body->rows.traction == BODY_TRACTION_REACTION || body->rows.tied_mass);
@@ -91,6 +82,33 @@ PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
     if (body->rows.conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->rows.robin[i] * displacement[i];
     else if (body->rows.conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Displacement, velocity and acceleration of near rows, and the force along prescribed and Robin ones, as they are now. Massless nodes,
+   which all rows are on where the state may be incomplete, have no acceleration unless they are held. */
+PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
+{
+  PetscFunctionBegin;
+  if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->rows.exchange.open) {
+    body->rows.exchange.writes = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(WriteNear(body, body->state.u, body->traces.displacement, level));
+  /* BodyCompleteStep() writes the rest */
+  if (body->state.incomplete && body->rows.constant && !body->rows.n_prescribed && !body->rows.n_robin) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(WriteRates(body, level));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* After a state that was incomplete has been completed, whose displacement of rows has been written: the rest */
+PetscErrorCode BodyWriteRest(Body body)
+{
+  PetscFunctionBegin;
+  if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->rows.exchange.open) body->rows.exchange.writes = PETSC_TRUE;
+  else PetscCall(WriteRates(body, body->time.substeps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -263,11 +263,11 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscCall(ContactAcceptFriction(contact));
   PetscCall(ContactAddImpulses(contact));
   PetscCall(ContactAcceptTurns(contact));
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) contact->start.gap[contact->rows.near[k]] = contact->end.gap[contact->rows.near[k]];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     contact->start.force[i]  = contact->end.force[i];
-    contact->start.gap[i]    = contact->end.gap[i];
     contact->start.active[i] = contact->end.active[i];
   }
   contact->attempt.accepted_level = contact->attempt.level;

@@ -65,8 +65,8 @@ PetscErrorCode ContactDestroyResultants(Contact contact)
 static void SumForces(Contact contact, const ContactPair *pair, const PetscReal rows[], PetscReal force[])
 {
   for (PetscInt d = 0; d < 3; d++) force[d] = 0;
-  for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     for (PetscInt d = 0; d < 3; d++) force[d] += rows[i] * contact->rows.normal[3 * i + d];
   }
@@ -80,8 +80,8 @@ static PetscErrorCode SumNormalForces(Contact contact, const ContactPair *pair, 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
   *force = 0;
-  for (PetscInt j = pair->near_begin; j < pair->near_end; j++) {
-    const PetscInt i = contact->rows.near[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+  for (PetscInt j = pair->acts_begin; j < pair->acts_end; j++) {
+    const PetscInt i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
 
     *force += (ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0) * row[i];
   }
@@ -96,8 +96,8 @@ static PetscErrorCode SumBeyond(Contact contact, const ContactPair *pair, PetscR
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
   *force = 0;
-  for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k += pair->components) {
+    const PetscInt i = contact->rows.acting[k];
 
     if (rows.beyond[(i - pair->begin) / pair->components]) *force += contact->end.force[i];
   }
@@ -162,11 +162,11 @@ PetscErrorCode ContactUnpackImpulses(Contact contact, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a near row of this rank has a force at the start of the step or at its end */
+/* Whether a row of this rank has a force at the start of the step or at its end */
 static PetscBool HasForce(Contact contact, const ContactPair *pair)
 {
-  for (PetscInt k = pair->near_begin; k < pair->near_end; k++)
-    if (contact->start.force[contact->rows.near[k]] != 0 || contact->end.force[contact->rows.near[k]] != 0) return PETSC_TRUE;
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++)
+    if (contact->start.force[contact->rows.acting[k]] != 0 || contact->end.force[contact->rows.acting[k]] != 0) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -220,8 +220,8 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscCall(VecGetArrayRead(positions, &reference));
   PetscCall(VecGetArrayRead(u, &displacement));
   if (contact->held.merger) PetscCall(ContactSumMergedMoments(contact, pair, reference, displacement, moment));
-  for (PetscInt k = pair->near_begin; k < pair->near_end && !contact->held.merger; k++) {
-    const PetscInt   i = contact->rows.near[k], dof = contact->rows.dof[i];
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end && !contact->held.merger; k++) {
+    const PetscInt   i = contact->rows.acting[k], dof = contact->rows.dof[i];
     const PetscReal *normal = contact->rows.normal + 3 * i;
     PetscReal        x[3]   = {0};
 
@@ -237,8 +237,8 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
 /* Whether a row of this rank touches, or has a force */
 static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
 {
-  for (PetscInt k = pair->near_begin; k < pair->near_end && !pair->far; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end && !pair->far; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     if (contact->end.active[i] || contact->end.force[i] != 0) return PETSC_TRUE;
   }
@@ -260,19 +260,17 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
   maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
   maxima[MAX_TENSION]      = 0;
-  if (!contact->held.merger && !IsLoaded(contact, pair)) { /* moments of merged rows take a word of all ranks */
-    for (PetscInt k = pair->near_begin; k < pair->near_end && !pair->far; k++)
-      maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[contact->rows.near[k]]);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  for (PetscInt k = pair->near_begin; k < pair->near_end && !pair->far; k++)
+    maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[contact->rows.near[k]]);
+  if (!contact->held.merger && !IsLoaded(contact, pair))
+    PetscFunctionReturn(PETSC_SUCCESS); /* moments of merged rows take a word of all ranks */
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  for (PetscInt j = pair->near_begin; j < pair->near_end; j++) {
-    const PetscInt  i = contact->rows.near[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+  for (PetscInt j = pair->acts_begin; j < pair->acts_end; j++) {
+    const PetscInt  i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
     const PetscReal along = ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0;
 
     sums[SUM_FORCE] += along * contact->end.force[i];
-    maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[i]);
-    normal                  = (k ? normal : 0) + along * contact->end.force[i];
+    normal = (k ? normal : 0) + along * contact->end.force[i];
     if (k == pair->components - 1) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -normal);
     if (!contact->end.active[i]) continue;
     /* merged rows of one node may have different areas */

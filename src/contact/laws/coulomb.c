@@ -15,6 +15,7 @@ static PetscErrorCode SetUp(Contact contact, void *data)
 
   PetscFunctionBegin;
   (void)data;
+  contact->friction.law.ignores_speed = (PetscBool)(kinetic < 0);
   if (contact->neighbours.come_and_go) { /* pairs that come later have the same coefficient */
     PetscCheck(contact->options.friction >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_law coulomb needs a coefficient of friction: set -contact_friction mu for all pairs");

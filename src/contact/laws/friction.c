@@ -230,12 +230,20 @@ PetscErrorCode ContactDriveFriction(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether the law takes the speed at which nodes have slid before they touch: then slips count on all near rows, else where forces act */
+static PetscBool SpeedCounts(Contact contact)
+{
+  return (PetscBool)!contact->friction.law.ignores_speed;
+}
+
 /* Slips over the controller step, from the bodies' traces */
 PetscErrorCode ContactComputeSlips(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
+    const PetscBool    all  = SpeedCounts(contact);
+    const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, last = all ? pair->near_end : pair->acts_end;
     PetscScalar       *start[2], *end[2];
 
     for (PetscInt side = 0; side < 2; side++) {
@@ -246,8 +254,8 @@ PetscErrorCode ContactComputeSlips(Contact contact)
       PetscCall(TraceGetLevel(trace, 0, &start[side]));
       PetscCall(TraceGetLevel(trace, levels, &end[side]));
     }
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-      const PetscInt i = contact->rows.near[k], first = i - pair->shift[0], second = i - pair->shift[1];
+    for (PetscInt k = all ? pair->near_begin : pair->acts_begin; k < last; k++) {
+      const PetscInt i = rows[k], first = i - pair->shift[0], second = i - pair->shift[1];
 
       contact->friction.slip[i] = PetscRealPart((end[1][second] - start[1][second]) - (end[0][first] - start[0][first])) +
                                   contact->friction.drive[i];
@@ -271,9 +279,10 @@ static PetscErrorCode AddLossOn(Contact contact, PetscInt b, const PetscReal sta
   PetscInt               substeps;
 
   PetscFunctionBegin;
+  if (!of->n_acting) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-  for (PetscInt j = 0; j < of->n_near; j++) {
-    const PetscInt k = of->near[j], i = of->rows[k];
+  for (PetscInt j = 0; j < of->n_acting; j++) {
+    const PetscInt k = of->acting[j], i = of->rows[k];
 
     last[k] = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * start_force[i];
   }
@@ -283,8 +292,8 @@ static PetscErrorCode AddLossOn(Contact contact, PetscInt b, const PetscReal sta
     PetscCall(TraceGetLevel(traces->displacement, level - 1, &before));
     PetscCall(TraceGetLevel(traces->displacement, level, &after));
     PetscCall(BodyGetRowForces(contact->bodies[b], level, now));
-    for (PetscInt j = 0; j < of->n_near; j++) {
-      const PetscInt k = of->near[j];
+    for (PetscInt j = 0; j < of->n_acting; j++) {
+      const PetscInt k = of->acting[j];
 
       if (HasNone(contact, of->rows[k], start_force)) continue;
       if (ContactRowRubs(contact, of->rows[k]))
@@ -303,12 +312,12 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
 
   PetscFunctionBegin;
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) friction->step_loss[contact->rows.near[k]] = 0;
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) friction->step_loss[contact->rows.acting[k]] = 0;
   PetscCall(PetscArrayzero(friction->pair_step, contact->n_pairs));
   PetscCall(PetscArrayzero(friction->pair_work, contact->n_pairs));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddLossOn(contact, b, start_force));
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt  i    = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt  i    = contact->rows.acting[k];
     const PetscReal work = -0.5 * (start_force[i] + contact->end.force[i]) * friction->drive[i];
 
     if (HasNone(contact, i, start_force)) continue;
@@ -341,12 +350,14 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
+    const PetscBool    all  = SpeedCounts(contact);
+    const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, end = all ? pair->near_end : pair->acts_end;
 
     friction->pair_loss[p] += friction->pair_step[p];
     friction->pair_driven[p] += friction->pair_work[p];
     if (pair->law != CONTACT_LAW_FRICTION) continue;
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
-      const PetscInt first = contact->rows.near[k];
+    for (PetscInt k = all ? pair->near_begin : pair->acts_begin; k < end; k += pair->components) {
+      const PetscInt first = rows[k];
       PetscReal      way   = 0;
 
       for (PetscInt i = first + 1; i < first + pair->components; i++) {

@@ -68,7 +68,7 @@ PetscErrorCode ContactNumberBodyRows(Contact contact)
       if (of->all[k] < begin) of->begin++;
       else if (of->all[k] < end) of->n++;
     }
-    PetscCall(PetscMalloc3(of->n, &of->rows, of->n, &of->area, of->n, &of->near));
+    PetscCall(PetscMalloc4(of->n, &of->rows, of->n, &of->area, of->n, &of->near, of->n, &of->acting));
     for (PetscInt k = 0; k < of->n; k++) of->rows[k] = of->all[of->begin + k] - begin;
   }
   PetscCall(PetscCalloc1(contact->n_bodies, &next));
@@ -89,7 +89,7 @@ PetscErrorCode ContactDestroyBodyRows(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; contact->body_rows && b < contact->n_bodies; b++) {
-    PetscCall(PetscFree3(contact->body_rows[b].rows, contact->body_rows[b].area, contact->body_rows[b].near));
+    PetscCall(PetscFree4(contact->body_rows[b].rows, contact->body_rows[b].area, contact->body_rows[b].near, contact->body_rows[b].acting));
     PetscCall(PetscFree(contact->body_rows[b].all));
     PetscCall(PetscFree(contact->body_rows[b].pairs));
   }

@@ -2,6 +2,9 @@
    Rows near contact: those that may touch before rows are built again, which they are once surfaces have moved by a quarter of the smallest
    face. A step of a method that asks for them looks at no others, so that it costs what touches, not what all contact nodes do. Others are
    open and have no force; what is known of them, gaps and output traces of the bodies, is old until somebody asks.
+
+   Of near rows those act in a step whose node touches in it, or had a force in it or in the last one. Whatever comes of forces, on bodies
+   too, is zero on all others, since it was made zero in the step after their last force; so nobody looks at them for it.
 */
 #include <contact/parts.h>
 
@@ -9,21 +12,64 @@
    moved by a quarter of an edge since the last one, and by another one until the next */
 #define NEAR_CONTACT 3
 
-/* The near rows of the bodies, from the list of all */
-static PetscErrorCode ListBodyRows(Contact contact)
+/* The acting rows of the bodies, from the list of all */
+static void ListActingOfBodies(Contact contact)
 {
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].n_near = 0;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].n_acting = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
       ContactBodyRows *of = &contact->body_rows[pair->body[side]];
 
-      for (PetscInt k = pair->near_begin; k < pair->near_end; k++) of->near[of->n_near++] = contact->rows.near[k] - pair->shift[side];
+      for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) of->acting[of->n_acting++] = contact->rows.acting[k] - pair->shift[side];
     }
   }
+}
+
+/* All near rows count as acting; those of the bodies are listed, too */
+static PetscErrorCode ListBodyRows(Contact contact)
+{
+  PetscFunctionBegin;
+  contact->rows.n_acting = contact->rows.n_near;
+  PetscCall(PetscArraycpy(contact->rows.acting, contact->rows.near, contact->rows.n_near));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    contact->pairs[p].acts_begin = contact->pairs[p].near_begin;
+    contact->pairs[p].acts_end   = contact->pairs[p].near_end;
+  }
+  ListActingOfBodies(contact);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    ContactBodyRows *of = &contact->body_rows[b];
+
+    of->n_near = of->n_acting;
+    PetscCall(PetscArraycpy(of->near, of->acting, of->n_near));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* In a step, once it is known which rows touch: lists those that act. Where an attempt has failed all near rows do, as others had forces in
+   that. */
+void ContactListActingRows(Contact contact, const PetscBool touches[])
+{
+  ContactRows *rows = &contact->rows;
+
+  if (!rows->listed) return; /* all do */
+  rows->n_acting = 0;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    pair->acts_begin = rows->n_acting;
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+      const PetscInt first = rows->near[k];
+      PetscBool      acts  = (PetscBool)(touches[first] || contact->attempt.again);
+
+      for (PetscInt i = first; i < first + pair->components && !acts; i++)
+        acts = (PetscBool)(contact->start.force[i] != 0 || contact->energy.last_force[i] != 0);
+      for (PetscInt i = first; i < first + pair->components && acts; i++) rows->acting[rows->n_acting++] = i;
+    }
+    pair->acts_end = rows->n_acting;
+  }
+  ListActingOfBodies(contact);
 }
 
 /* Gaps of all rows as they are where the saved states of the bodies are */

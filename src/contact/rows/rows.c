@@ -60,7 +60,7 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCallMPI(MPI_Allgatherv(contact->rows.pair, mine, MPIU_INT, contact->ranks.row_pair, contact->ranks.counts, contact->ranks.offsets,
                               MPIU_INT, comm));
   PetscCall(ContactNumberBodyRows(contact));
-  PetscCall(PetscMalloc1(n, &contact->rows.near));
+  PetscCall(PetscMalloc2(n, &contact->rows.near, n, &contact->rows.acting));
   PetscCall(ContactListAllRows(contact));
   PetscCall(ContactOrderVisits(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -272,7 +272,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->work.moved, contact->work.flags, contact->work.rest));
   PetscCall(PetscFree3(contact->work.updated, contact->work.motion, contact->work.off));
   PetscCall(ContactDestroyBodyRows(contact));
-  PetscCall(PetscFree(contact->rows.near));
+  PetscCall(PetscFree2(contact->rows.near, contact->rows.acting));
   PetscCall(PetscFree(contact->ranks.visits));
   PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(PetscFree4(contact->ties.holds, contact->ties.distance, contact->work.entry_counts, contact->work.drift));

@@ -147,10 +147,11 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
 static void DropShifts(Contact contact)
 {
   for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt  i    = contact->rows.near[k];
-    const PetscReal part = PetscMin(contact->rows.gap_shift[i], PetscMax(contact->end.gap[i], 0));
+    const PetscInt i = contact->rows.near[k];
+    PetscReal      part;
 
-    if (contact->start.active[i] || part == 0) continue;
+    if (contact->rows.gap_shift[i] == 0 || contact->start.active[i]) continue;
+    part = PetscMin(contact->rows.gap_shift[i], PetscMax(contact->end.gap[i], 0));
     contact->rows.gap_shift[i] -= part;
     contact->rows.initial_gap[i] -= part;
     contact->end.gap[i] -= part;

@@ -76,7 +76,8 @@ static PetscErrorCode Copy(Contact contact, PetscBool back)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of near rows what changes while rows stay as they are; all else has been put aside since rows changed last */
+/* Of near rows what changes while rows stay as they are, of those that have acted in the last step forces, too; all else has been put aside
+   since rows changed last */
 static void SaveNear(Contact contact)
 {
   ContactSavedRows *saved = &contact->saved;
@@ -84,13 +85,17 @@ static void SaveNear(Contact contact)
   for (PetscInt k = 0; k < contact->rows.n_near; k++) {
     const PetscInt i = contact->rows.near[k];
 
-    saved->initial_gap[i]  = contact->rows.initial_gap[i];
-    saved->gap_shift[i]    = contact->rows.gap_shift[i];
+    saved->initial_gap[i] = contact->rows.initial_gap[i];
+    saved->gap_shift[i]   = contact->rows.gap_shift[i];
+    saved->start.gap[i]   = contact->start.gap[i];
+    saved->end.gap[i]     = contact->end.gap[i];
+  }
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k];
+
     saved->start.force[i]  = contact->start.force[i];
-    saved->start.gap[i]    = contact->start.gap[i];
     saved->start.active[i] = contact->start.active[i];
     saved->end.force[i]    = contact->end.force[i];
-    saved->end.gap[i]      = contact->end.gap[i];
     saved->end.active[i]   = contact->end.active[i];
   }
 }

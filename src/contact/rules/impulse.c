@@ -43,6 +43,7 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
     const PetscReal middle  = contact->start.gap[first] + half * stepper->rate[first];
     const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && middle <= 0));
 
+    if (!touches && !stepper->touches[first]) continue; /* as it was in the last step */
     for (PetscInt i = first; i < first + pair->components; i++) {
       const PetscReal way = half * (i == first ? PetscMin(stepper->rate[i], 0) : stepper->rate[i]);
 
@@ -62,14 +63,14 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
   const ContactBodyRows *of = &contact->body_rows[b];
 
   PetscFunctionBegin;
-  for (PetscInt j = 0; j < of->n_near; j++) {
-    const PetscInt  k = of->near[j], i = of->rows[k];
+  for (PetscInt j = 0; j < of->n_acting; j++) {
+    const PetscInt  k = of->acting[j], i = of->rows[k];
     const PetscReal sign = ContactSign(&contact->pairs[contact->rows.pair[i]], b);
 
     stepper->mine[k]   = sign * contact->end.force[i];
     stepper->before[k] = sign * stepper->last[i];
   }
-  PetscCall(BodySetConstantForces(contact->bodies[b], stepper->mine, stepper->before, stepper->none));
+  PetscCall(BodySetConstantForces(contact->bodies[b], of->n_acting, of->acting, stepper->mine, stepper->before, stepper->none));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,8 +90,8 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper, const Contac
 {
   PetscFunctionBegin;
   contact->energy.changed = PETSC_TRUE;
-  for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     contact->energy.last_force[i] = stepper->last[i];
     contact->start.force[i]       = contact->end.force[i];

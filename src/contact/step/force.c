@@ -202,7 +202,7 @@ static PetscErrorCode Accept(Contact contact)
   ContactStepper *stepper = Stepper(contact);
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->joined[contact->rows.near[k]] = stepper->joins[contact->rows.near[k]];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) stepper->joined[contact->rows.acting[k]] = stepper->joins[contact->rows.acting[k]];
   PetscCall(ContactStepperAcceptSecants(stepper));
   contact->counts.contact_loss += stepper->step_loss;
   contact->energy.largest_force += stepper->step_force; /* changes of gaps add up, and what nobody knows of them does */

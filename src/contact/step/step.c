@@ -39,12 +39,13 @@ static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(problem->limit, 2 * problem->n_nodes));
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->mine[contact->rows.near[k]] = stepper->before[contact->rows.near[k]] = 0;
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++)
+    stepper->mine[contact->rows.acting[k]] = stepper->before[contact->rows.acting[k]] = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt k = pair->near_begin; k < pair->near_end && pair->law == CONTACT_LAW_FRICTION; k += contact->dim) {
-      const PetscInt i = contact->rows.near[k];
+    for (PetscInt k = pair->acts_begin; k < pair->acts_end && pair->law == CONTACT_LAW_FRICTION; k += contact->dim) {
+      const PetscInt i = contact->rows.acting[k];
 
       (*contact->friction.law.getlimit)(contact, contact->friction.law.data, i, contact->friction.speed[i], &stepper->mine[i],
                                         &stepper->before[i]);
@@ -83,7 +84,7 @@ static PetscErrorCode MarkSliding(Contact contact, const ContactStepper *stepper
 
   PetscFunctionBegin;
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) contact->friction.slides[contact->rows.near[k]] = PETSC_FALSE;
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) contact->friction.slides[contact->rows.acting[k]] = PETSC_FALSE;
   for (PetscInt node = 0; problem->n && node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first, i = stepper->rows[first] - contact->rows.begin;
 
@@ -104,8 +105,8 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
     const ContactPair *pair = &contact->pairs[p];
     const ContactRule *rule = ContactStepperRule(stepper, pair);
 
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
-      const PetscInt  first  = contact->rows.near[k];
+    for (PetscInt k = pair->acts_begin; k < pair->acts_end; k += pair->components) {
+      const PetscInt  first  = contact->rows.acting[k];
       const PetscBool active = (PetscBool)(contact->rows.tied[first] || contact->end.force[first] > 0);
 
       for (PetscInt i = first; i < first + pair->components; i++) contact->end.active[i] = active;
@@ -137,11 +138,13 @@ PetscErrorCode ContactStepperStep(Contact contact)
   stepper->passes = 0;
   if (stepper->has_rigid || stepper->forms) stepper->state++;
   stepper->forms = PETSC_FALSE;
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->last[contact->rows.near[k]] = contact->start.force[contact->rows.near[k]];
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
   PetscCall(ContactStepperComputeRates(contact, stepper->rate));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
+  ContactListActingRows(contact, stepper->touches);
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++)
+    stepper->last[contact->rows.acting[k]] = contact->start.force[contact->rows.acting[k]];
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   PetscCall(ContactStepperBeginSecants(contact, stepper));
   while (more) {

@@ -156,12 +156,14 @@ static void implicit_bodies_repeat_as_they_turn(void **state)
 static void set_constant(Body body, const NodeRows *rows, PetscInt step, PetscReal scale)
 {
   PetscReal force[ROWS], last[ROWS], none[ROWS] = {0};
+  PetscInt  all[ROWS];
 
   for (PetscInt i = 0; i < rows->local; i++) {
     last[i]  = step ? 1e-3 * PetscSinReal(step - 1 + rows->which[i]) : 0;
     force[i] = scale * PetscSinReal(step + rows->which[i]);
+    all[i]   = i;
   }
-  ok(BodySetConstantForces(body, force, last, none));
+  ok(BodySetConstantForces(body, rows->local, all, force, last, none));
   ok(BodyTryIntegrateRows(body, NULL));
 }
 
