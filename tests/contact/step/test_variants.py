@@ -23,6 +23,7 @@ from contactstep import (
     sheet_and_block,
     turned,
 )
+from thinvariants import thin_variant
 
 # Largest step of an explicit body [s]: 0.8 of the stable one
 STABLE = {"sheet": 1.2e-7, "block": 2.8e-7, "a": 2.8e-7, "b": 3e-7, "k": 3.5e-7, "p": 2.4e-7}
@@ -57,7 +58,7 @@ def variant(seed):
     velocity = (draw.uniform(-3, 3), -(10 ** draw.uniform(-0.3, 1.2)))
     gap, shift = 10 ** draw.uniform(-6, math.log10(5e-5)), draw.choice((0, draw.uniform(-0.05, 0.05)))
     frame, units = draw.choice(((0, 0), (draw.uniform(-20, 20), draw.uniform(-20, 20)))), draw.choice((SI, SI, MM_T_S))
-    v = SimpleNamespace(scene=scene, names=names, kinds=kinds[: len(names)], of=of, step=step, substeps=substeps, mu=mu, ranks=draw.choice((1, 1, 2, 3)), free=[], rows=0, other=1, units=SI)
+    v = SimpleNamespace(scene=scene, names=names, kinds=kinds[: len(names)], of=of, step=step, substeps=substeps, mu=mu, ranks=draw.choice((1, 1, 2, 3)), free=[], rows=0, other=1, units=SI, edge=ELEMENT, turns=2e-5)
     v.massless = [thick and name not in ("sheet", "p") for name in names]  # bodies of one element through the thickness have no inner nodes
     v.rule = "linear" if all(v.massless) else "impulse"
     kept = [not moved for moved in v.massless]
@@ -110,20 +111,21 @@ def check_energy(v, run, impakt):
 
 def check_momenta(v, run):
     """Implicit bodies have the round-off of their equations, whose largest number is (omega step)^2; massless nonlinear ones the tolerance of Newton's method."""
-    roundoff = 30 * np.finfo(float).eps * (WAVE * v.step / ELEMENT) ** 2 if "I" in v.kinds else 0
+    roundoff = 30 * np.finfo(float).eps * (WAVE * v.step / v.edge) ** 2 if "I" in v.kinds else 0
     newton = 1e-9 if v.rule == "linear" and v.of != "linear_elastic" else 0
-    assert momentum_error(run, v.free[0]) <= max(1e-12, roundoff, newton)
+    if len(run.history["contact"]) == 1:
+        assert momentum_error(run, v.free[0]) <= max(1e-12, roundoff, newton)
     if len(v.free) == 1:
         return
     assert kept_error(run, "momentum", v.free) <= max(1e-12, roundoff, newton)
     if v.of != "linear_elastic" and v.rule == "impulse" and not v.mu:
-        # Friction acts across the gap, and linear bodies that bend do not keep it themselves; nor does the trapezoidal rule in steps without contact, measured 1.1e-5
-        assert kept_error(run, "angular_momentum", v.free) <= (1e-6 if v.kinds == "EE" else 2e-5)
+        # Friction acts across the gap, and linear bodies that bend do not keep it themselves; nor does the trapezoidal rule in steps without contact, measured 1.1e-5, of thin bodies, which bend, 5.1e-4; a quarter of the step: a fifth of it
+        assert kept_error(run, "angular_momentum", v.free) <= (1e-6 if "I" not in v.kinds else v.turns)
 
 
 def roundoff(run, metre, scale):
     """Work in a step of forces on gaps that are right to the round-off of positions, 2e-15 of 0.1 m [J]."""
-    return 1e-13 * scale + 2e-16 * metre * np.abs(run.history[f"contact/{pair_of(run)}/force"][1:])
+    return 1e-13 * scale + 2e-16 * metre * sum(np.abs(pair["force"][1:]) for pair in run.history["contact"].values())
 
 
 def check_loss(v, run, frames):
@@ -156,6 +158,7 @@ def check_gaps(v, run, frames):
         assert -growth.min() <= 1e-6 * ELEMENT * max(1, v.steps / 1000)
 
 
+THIN = (1, 2, 4)
 QUICK = (0, 3, 4, 6, 11, 12, 14, 17, 20, 24, 31, 58)  # each less than 2 s of a core, all scenes and rules among them
 
 
@@ -168,6 +171,22 @@ def test_variant(seed, impakt):
     check_energy(v, run, impakt)
     if v.free:
         check_momenta(v, run)
+    if v.rule == "impulse":
+        check_loss(v, run, frames)
+    if frames is not None:
+        check_gaps(v, run, frames)
+
+
+@pytest.mark.parametrize("seed", [*THIN, *validate(*(seed for seed in range(60) if seed not in THIN))])
+def test_thin_variant(seed, impakt, tmp_path):
+    """Sheets, plates, brackets, tubes, on an obstacle, on a thick block, on each other, with both faces in contact."""
+    v = thin_variant(random.Random(seed), tmp_path)
+    run = impakt(joined(v.options, FIELDS if v.normal is not None else ""), v.ranks, timeout=120)
+    assert run.summary["contact"]["steps_in_contact"] > 0
+    v.rule = "impulse" if "contact_loss" in run.history else "linear"  # the wall of a tube of two elements has inner nodes that span it
+    frames = Frames(run, v.rows, v.other, v.normal) if v.normal is not None else None
+    check_energy(v, run, impakt)
+    check_momenta(v, run)
     if v.rule == "impulse":
         check_loss(v, run, frames)
     if frames is not None:
