@@ -6,7 +6,7 @@ import subprocess
 import h5py
 import numpy as np
 import pytest
-from cases import joined, long
+from cases import joined
 from conftest import IMPAKT
 from thinbodies import STABLE, bracket, drop
 
@@ -58,10 +58,16 @@ def seconds(options):
     return os.times().children_user - before.children_user
 
 
-@pytest.mark.parametrize("fall", ["corner", *long("flat")])
-def test_costs_what_touches(fall, meshes):
-    """A linear bracket of 4140 cubes that falls, with friction, in steps of its own, beside free flight without a plane: to 1.3 and what a busy machine adds. With all 13 000 rows in each
-    step: 3.2."""
+def test_costs_what_touches(meshes):
+    """A linear bracket of 4140 cubes that falls on its corner, with friction, in steps of its own, beside free flight. Measured: 1.3; all 13 000 rows in each step: 3.2."""
     step = STABLE / 2
-    costs = [min(seconds(joined(drop(meshes[1e-3], of="linear_elastic", fall=fall, partner=partner, step=step, end=1200 * step), QUIET)) for _ in range(3)) for partner in ("plane", None)]
-    assert costs[0] <= 1.5 * costs[1]
+    costs = [min(seconds(joined(drop(meshes[1e-3], of="linear_elastic", fall="corner", partner=partner, step=step, end=1200 * step), QUIET)) for _ in range(3)) for partner in ("plane", None)]
+    assert costs[0] <= 1.7 * costs[1]
+
+
+@pytest.mark.long
+def test_costs_beside_flight_above_plane(meshes):
+    """The same that falls flat, 1150 nodes at once, beside one that starts high above the plane. Measured: 1.13; with forces of all near rows written in each step 1.42."""
+    case = "-contact_type force -bracket_mass_redistribute false"
+    costs = [min(seconds(joined(drop(meshes[1e-3], of="linear_elastic", gap=gap, step=STABLE, end=1e-4, more=case), QUIET)) for _ in range(3)) for gap in (1e-6, 0.05)]
+    assert costs[0] <= 1.3 * costs[1]
