@@ -80,7 +80,7 @@ static PetscErrorCode AssembleMatrix(Body body, Vec u)
   if (u && u != point) PetscCall(VecCopy(u, point));
   if (u && u != point && body->history) PetscCall(BodyHistoryCopyStart(body, implicit->history[level], &implicit->history_step[level]));
   if (u && body->history) BodyHistoryUse(body, implicit->history[level], implicit->history_step[level], &before);
-  PetscCall(BodyAssembleTangent(body, u, A));
+  PetscCall(BodyAssembleTangent(body, u, NULL, A));
   if (u && body->history) BodyHistoryLookBack(body, &before);
   if (implicit->shift > 0) PetscCall(BodyAddMassMatrix(body, implicit->shift, A));
   PetscCall(BodyAddDampingMatrix(body, u, implicit->shift_velocity, A));
@@ -136,7 +136,7 @@ PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
 
   PetscFunctionBegin;
   SetShifts(body);
-  PetscCall(BodyCreateMatrix(body, &implicit->matrix));
+  PetscCall(BodyCreateMatrix(body, NULL, &implicit->matrix));
   implicit->matrices[body->time.level] = implicit->matrix;
   if (!body->model.linear) PetscCall(BodyCreateVec(body, &implicit->points[body->time.level]));
   if (body->history) {

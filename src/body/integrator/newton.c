@@ -115,7 +115,7 @@ PetscErrorCode BodyImplicitComputeUnitStrainForce(Body body)
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  PetscCall(BodyAssembleTangent(body, NULL, implicit->matrix));
+  PetscCall(BodyAssembleTangent(body, NULL, NULL, implicit->matrix));
   PetscCall(MatGetDiagonal(implicit->matrix, body->work.nodes[0]));
   PetscCall(GetShortestEdges(body, body->work.nodes[1]));
   PetscCall(ProductNorm(body, body->work.nodes[0], body->work.nodes[1], body->work.nodes[0], &implicit->unit_strain));

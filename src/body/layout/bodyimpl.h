@@ -6,6 +6,7 @@
 #include <impakt/private/elementimpl.h>
 #include <solver/constrainedsolver.h>
 #include <body/layout/integrator.h>
+#include <body/layout/nodeelements.h>
 
 typedef struct _n_LayerElements *LayerElements;
 typedef struct _n_LayerSolver   *LayerSolver;
@@ -22,6 +23,7 @@ typedef struct {
   PetscInt       vertex_start;   /* point of the first vertex in the DM */
   PetscInt      *node_of_vertex; /* of the vertices in their order */
   PetscInt      *connectivity;   /* nodes of the elements, element by element */
+  NodeElements   around;         /* the elements of the nodes; NULL until BodyGetNodeElements() */
   /* the cells of the DM, which are the elements but for composite ones: each of these is made of several cells that follow each other */
   PetscInt    n_cells, cell_nodes, cells_of_element;
   PetscInt   *cell_connectivity; /* `connectivity`, where cells are elements */
@@ -385,9 +387,9 @@ PETSC_INTERN PetscErrorCode BodyGetStiffness(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyEndSolver(Body);
 PETSC_INTERN PetscErrorCode BodyBeginAssembly(Body, Mat, Mat *);
 PETSC_INTERN PetscErrorCode BodyEndAssembly(Mat, Mat);
-PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, Mat);
+PETSC_INTERN PetscErrorCode BodyAssembleTangent(Body, Vec, const PetscBool[], Mat);
 PETSC_INTERN PetscErrorCode BodyCreateNodeGraph(Body, const PetscBool[], Mat *);
-PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, Mat *);
+PETSC_INTERN PetscErrorCode BodyCreateMatrix(Body, const PetscBool[], Mat *);
 PETSC_INTERN PetscErrorCode BodyNoteInverted(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyFindFirstElement(Body, PetscInt, PetscMPIInt *, PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodyLocateLargest(Body, PetscBool, Vec, PetscInt *, PetscReal[3], PetscReal *);

@@ -2,11 +2,16 @@
    Displacements of nodes under unit forces on them, at the end of a controller step of many substeps of an explicit body, by these substeps
    where they count alone. In each substep a force is felt one element farther, and what is far from the nodes asked for when the step ends
    does not come back to them in time. Ahead of the wave displacements fall below round-off: nodes join as their neighbours have moved.
+   integrator/frontstep.c makes whole steps again in such a way.
 */
 #include "complianceimpl.h"
+#include <impakt/private/simd.h>
 
-#define STILL    1e-12 /* parts of the largest displacement: neighbours of a node that has moved no more do not move at all */
-#define TOGETHER 8     /* columns that are made at once: of nodes near each other, as neighbours in the numbering mostly are */
+/* Neighbours of a node that has moved no more than this part of the largest displacement do not move at all. Columns of nonlinear bodies
+   are those of the undeformed one, and wrong by more. */
+#define STILL           1e-12
+#define STILL_NONLINEAR 1e-5
+#define TOGETHER        SIMD_WIDTH /* columns that are made at once: of nodes near each other, as neighbours in the numbering mostly are */
 
 typedef struct {
   PetscInt           dim, n;           /* nodes */
@@ -53,26 +58,39 @@ static void Spread(Front *front, PetscInt left, PetscReal least)
   }
 }
 
+/* The force on a node in each column but for the unit force. The rows of a node have their entries in the same places. */
+SIMD_INLINE void GetForces(const Front *front, PetscInt dim, PetscInt node, SimdReal forces[])
+{
+  const PetscInt     first = front->begin[node * dim], n = front->begin[node * dim + 1] - first;
+  const PetscScalar *values = front->values + first;
+
+  for (PetscInt d = 0; d < dim; d++)
+    for (PetscInt c = 0; c < TOGETHER; c++) forces[d][c] = 0;
+  for (PetscInt e = 0; e < n; e++) {
+    const PetscScalar *u = front->u + front->columns[first + e] * TOGETHER;
+
+    for (PetscInt d = 0; d < dim; d++)
+      for (PetscInt c = 0; c < TOGETHER; c++) forces[d][c] -= values[d * n + e] * u[c];
+  }
+}
+
 /* One substep from displacements that are there, under a force on one of them in each column */
-static void Step(Front *front, PetscInt left, PetscInt n, const PetscInt dofs[], PetscReal force, PetscReal dt)
+SIMD_CLONES static void Step(const Front *front, PetscInt left, PetscInt n, const PetscInt dofs[], PetscReal force, PetscReal dt)
 {
   const PetscInt dim = front->dim;
 
   for (PetscInt k = 0; k < front->n_moved; k++) {
     const PetscInt node = front->moved[k];
+    SimdReal       forces[3];
 
-    for (PetscInt i = node * dim; i < (node + 1) * dim && front->distance[node] <= left; i++) {
-      PetscScalar balance[TOGETHER] = {0}, *a = front->a + i * TOGETHER;
-
-      for (PetscInt e = front->begin[i]; e < front->begin[i + 1]; e++) {
-        const PetscScalar value = front->values[e], *u = front->u + front->columns[e] * TOGETHER;
-
-        for (PetscInt c = 0; c < TOGETHER; c++) balance[c] -= value * u[c];
-      }
-      for (PetscInt c = 0; c < n; c++)
-        if (dofs[c] == i) balance[c] += force;
-      for (PetscInt c = 0; c < TOGETHER; c++) a[c] = balance[c] * front->inverse[i];
-    }
+    if (front->distance[node] > left) continue;
+    if (dim == 3) GetForces(front, 3, node, forces);
+    else if (dim == 2) GetForces(front, 2, node, forces);
+    else GetForces(front, 1, node, forces);
+    for (PetscInt c = 0; c < n; c++)
+      if (dofs[c] / dim == node) forces[dofs[c] % dim][c] += force;
+    for (PetscInt d = 0; d < dim; d++)
+      for (PetscInt c = 0; c < TOGETHER; c++) front->a[(node * dim + d) * TOGETHER + c] = forces[d][c] * front->inverse[node * dim + d];
   }
   for (PetscInt k = 0; k < front->n_moved; k++) {
     const PetscInt first = front->moved[k] * dim * TOGETHER;
@@ -85,7 +103,8 @@ static void Step(Front *front, PetscInt left, PetscInt n, const PetscInt dofs[],
 }
 
 /* The columns of some displacements, in `u`, where the nodes asked for are */
-static void MakeColumns(Front *front, PetscInt n, const PetscInt dofs[], BodyForceShape shape, PetscInt substeps, PetscReal dt)
+static void MakeColumns(Front *front, PetscInt n, const PetscInt dofs[], BodyForceShape shape, PetscInt substeps, PetscReal dt,
+                        PetscReal still)
 {
   const PetscInt size = front->dim * TOGETHER;
 
@@ -106,43 +125,49 @@ static void MakeColumns(Front *front, PetscInt n, const PetscInt dofs[], BodyFor
     PetscReal largest = 0;
 
     for (PetscInt c = 0; c < n; c++) largest = PetscMax(largest, Largest(front, dofs[c] / front->dim));
-    Spread(front, substeps - k, STILL * largest);
+    Spread(front, substeps - k, still * largest);
     Step(front, substeps - k, n, dofs, shape == BODY_FORCE_CONSTANT ? 1 : (PetscReal)k / (PetscReal)substeps, dt);
   }
 }
 
-/* How many elements nodes are away from those of some displacements */
-static void FindDistances(Front *front, PetscInt n, const PetscInt dofs[])
+/* FrontCreateMatrix - the stiffness of the undeformed body, of nodes that forces on contact nodes can reach, and act back from on contact
+   nodes, before a controller step ends */
+PetscErrorCode FrontCreateMatrix(Body body, Mat *stiffness)
 {
-  const PetscInt dim   = front->dim;
-  PetscInt       count = 0, *queue = front->moved;
+  const PetscInt n = body->mesh.owned_nodes, far = (body->time.substeps + 1) / 2;
+  PetscInt      *contact, *distance, *order, n_contact = 0, found;
+  PetscBool     *marked;
+  NodeElements   around;
 
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(n, &contact, n, &distance, n, &order));
+  PetscCall(PetscCalloc1(body->model.element->count, &marked));
+  PetscCall(BodyGetNodeElements(body, &around));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscInt node = dofs[i] / dim;
-
-    if (front->distance[node] == 0) continue;
-    front->distance[node] = 0;
-    queue[count++]        = node;
+    distance[i] = PETSC_INT_MAX;
+    if (body->layer.contains[i]) contact[n_contact++] = i;
   }
-  for (PetscInt k = 0; k < count; k++)
-    for (PetscInt e = front->begin[queue[k] * dim]; e < front->begin[queue[k] * dim + 1]; e += dim) {
-      const PetscInt other = front->columns[e] / dim;
-
-      if (front->distance[other] <= front->distance[queue[k]] + 1) continue;
-      front->distance[other] = front->distance[queue[k]] + 1;
-      queue[count++]         = other;
-    }
+  PetscCall(NodeElementsFindDistances(around, n_contact, 1, contact, far, distance, &found, order));
+  for (PetscInt k = 0; k < found; k++)
+    for (PetscInt j = around->begin[order[k]]; j < around->begin[order[k] + 1]; j++) marked[around->elements[j]] = PETSC_TRUE;
+  PetscCall(BodyCreateMatrix(body, marked, stiffness));
+  PetscCall(BodyAssembleTangent(body, NULL, marked, *stiffness));
+  PetscCall(PetscFree(marked));
+  PetscCall(PetscFree3(contact, distance, order));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* FrontProbe - columns of displacements, of a body on one rank with its stiffness, where all forces are but those on dashpots */
 PetscErrorCode FrontProbe(Body body, Mat stiffness, BodyForceShape shape, PetscInt n, const PetscInt dofs[], Compliance compliance)
 {
-  Front          front  = {.dim = body->mesh.dim, .n = body->mesh.owned_nodes};
-  const PetscInt n_dofs = front.n * front.dim, size = n_dofs * TOGETHER, *known;
-  const Vec      inverse = body->work.nodes[0], column = body->work.nodes[1];
-  PetscScalar   *values;
-  PetscInt       n_rows, n_known, some[TOGETHER], count = 0;
-  PetscBool      done;
+  Front           front   = {.dim = body->mesh.dim, .n = body->mesh.owned_nodes};
+  const PetscInt  size    = front.n * front.dim * TOGETHER, *known;
+  const PetscReal still   = body->model.linear ? STILL : STILL_NONLINEAR;
+  const Vec       inverse = body->work.nodes[0], column = body->work.nodes[1];
+  PetscScalar    *values;
+  PetscInt        n_rows, n_known, found, some[TOGETHER], count = 0;
+  NodeElements    around;
+  PetscBool       done;
 
   PetscFunctionBegin;
   PetscCall(MatGetRowIJ(stiffness, 0, PETSC_FALSE, PETSC_FALSE, &n_rows, &front.begin, &front.columns, &done));
@@ -155,15 +180,18 @@ PetscErrorCode FrontProbe(Body body, Mat stiffness, BodyForceShape shape, PetscI
   PetscCall(PetscMalloc2(front.n, &front.distance, front.n, &front.moved));
   for (PetscInt i = 0; i < front.n; i++) front.distance[i] = PETSC_INT_MAX;
   ComplianceGetRows(compliance, &n_known, &known, NULL);
-  FindDistances(&front, n_known, known);
-  FindDistances(&front, n, dofs);
+  PetscCall(BodyGetNodeElements(body, &around));
+  PetscCall(NodeElementsFindDistances(around, n_known, front.dim, known, body->time.substeps, front.distance, &found, front.moved));
+  PetscCall(NodeElementsFindDistances(around, n, front.dim, dofs, body->time.substeps, front.distance, &found, front.moved));
   for (PetscInt i = 0; i < n; i++) {
     if (!ComplianceKnows(compliance, dofs[i])) some[count++] = dofs[i];
     if (!count || (count < TOGETHER && i < n - 1)) continue;
-    MakeColumns(&front, count, some, shape, body->time.substeps, body->time.step);
+    MakeColumns(&front, count, some, shape, body->time.substeps, body->time.step, still);
     PetscCall(VecGetArrayWrite(column, &values));
     for (PetscInt c = 0; c < count; c++) {
-      for (PetscInt k = 0; k < n_dofs; k++) values[k] = front.u[k * TOGETHER + c];
+      ComplianceGetRows(compliance, &n_known, &known, NULL);
+      for (PetscInt k = 0; k < n_known; k++) values[known[k]] = front.u[known[k] * TOGETHER + c];
+      values[some[c]] = front.u[some[c] * TOGETHER + c];
       PetscCall(ComplianceSetColumn(compliance, some[c], 1, values));
     }
     PetscCall(VecRestoreArrayWrite(column, &values));

@@ -71,13 +71,13 @@ static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *
 static PetscErrorCode GetMatrix(Body body, Kind kind, Mat *A)
 {
   PetscFunctionBegin;
-  if (body->model.linear && kind != BY_FRONT) {
+  if (body->model.linear) {
     PetscCall(ConstrainedSolverGetMatrices(body->solver, A, NULL));
     PetscCall(PetscObjectReference((PetscObject)*A));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(BodyCreateMatrix(body, A));
-  PetscCall(BodyAssembleTangent(body, NULL, *A));
+  PetscCall(BodyCreateMatrix(body, NULL, A));
+  PetscCall(BodyAssembleTangent(body, NULL, NULL, *A));
   if (kind == BY_SLAB) PetscCall(BodyAddMassMatrix(body, 4 / PetscSqr(body->time.step), *A));
   PetscCall(BodyAddSpringStiffness(body, *A));
   PetscCall(BodyEliminateHeld(body, *A));
@@ -186,7 +186,7 @@ static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt do
   nodal->kind = kind;
   /* an explicit body has a solver for its layer alone */
   if (kind == BY_BODY || body->integrator->staggered > 0) nodal->solver = body->solver;
-  if (kind == BY_FRONT) PetscCall(GetMatrix(body, kind, &nodal->matrix));
+  if (kind == BY_FRONT) PetscCall(FrontCreateMatrix(body, &nodal->matrix));
   if (kind == BY_BODY || kind == BY_FRONT) PetscFunctionReturn(PETSC_SUCCESS);
   if (kind == BY_LAYER) PetscCall(CreateLayerFunctions(body, &nodal->functions));
   if (nodal->solver) {

@@ -82,7 +82,7 @@ static PetscErrorCode AssembleMass(Body body)
 
   PetscFunctionBegin;
   if (body->mass.type == BODY_MASS_LUMPED) PetscCall(BodyCreateVec(body, &body->mass.diagonal));
-  else PetscCall(BodyCreateMatrix(body, &body->mass.matrix));
+  else PetscCall(BodyCreateMatrix(body, NULL, &body->mass.matrix));
   for (PetscInt e = 0; e < body->model.element->count; e++) {
     PetscCall(BodyGetElementMass(body, e, of_nodes));
     PetscCall(BodyGetElementDofs(body, e, dofs));

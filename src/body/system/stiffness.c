@@ -114,16 +114,16 @@ static PetscErrorCode FillPattern(Body body, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An empty matrix with room for what elements and the mass couple. DMPLEX's own count goes through the mesh entity by entity, which takes
-   ten times as long as that of the graph. */
-PetscErrorCode BodyCreateMatrix(Body body, Mat *A)
+/* An empty matrix with room for what elements, of those that are marked (NULL: all), and the mass couple. DMPLEX's own count goes through
+   the mesh entity by entity, which takes ten times as long as that of the graph. */
+PetscErrorCode BodyCreateMatrix(Body body, const PetscBool marked[], Mat *A)
 {
   const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes * dim;
   PetscInt       begin, end, *here, *elsewhere;
   Mat            graph;
 
   PetscFunctionBegin;
-  PetscCall(BodyCreateNodeGraph(body, NULL, &graph));
+  PetscCall(BodyCreateNodeGraph(body, marked, &graph));
   PetscCall(MatGetOwnershipRange(graph, &begin, &end));
   PetscCall(PetscCalloc2(n, &here, n, &elsewhere));
   for (PetscInt row = begin; row < end; row++) {
@@ -174,8 +174,8 @@ PetscErrorCode BodyEndAssembly(Mat all, Mat here)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* K = tangent stiffness at displacement u; NULL: undeformed [N/m] */
-PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
+/* K = tangent stiffness at displacement u; NULL: undeformed; of the elements that are marked, NULL: all [N/m] */
+PetscErrorCode BodyAssembleTangent(Body body, Vec u, const PetscBool marked[], Mat K)
 {
   const PetscInt     n = body->model.element->nodes * body->mesh.dim;
   PetscInt           dofs[ELEMENT_MAX_DOFS];
@@ -197,6 +197,7 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, Mat K)
     array = zero;
   }
   for (PetscInt e = 0; e < body->model.element->count; e++) {
+    if (marked && !marked[e]) continue;
     PetscCall((*element->ops->stiffness)(element, e, array, tangent));
     PetscCall(BodyGetElementDofs(body, e, dofs));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, tangent, ADD_VALUES));
@@ -215,8 +216,8 @@ PetscErrorCode BodyGetStiffness(Body body, Mat *K)
 {
   PetscFunctionBegin;
   if (!body->model.stiffness) {
-    PetscCall(BodyCreateMatrix(body, &body->model.stiffness));
-    PetscCall(BodyAssembleTangent(body, NULL, body->model.stiffness));
+    PetscCall(BodyCreateMatrix(body, NULL, &body->model.stiffness));
+    PetscCall(BodyAssembleTangent(body, NULL, NULL, body->model.stiffness));
   }
   *K = body->model.stiffness;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -10,7 +10,8 @@
 #define FEW_ROWS  60    /* up to so many S is dense whatever it is made of, */
 #define MANY_ROWS 150   /* and up to so many where bodies have blocks, whose LU factors are exact where bodies hang on soft springs */
 #define SPARSE    0.25  /* blocks of bodies that are at most this part of S make it sparse */
-#define ZERO      1e-14 /* what entries of rows are zero but for round-off; the largest are 1 or so */
+#define ZERO      1e-14 /* entries of rows that are zero but for round-off; the largest are 1 or so */
+#define SMALL     1e-3  /* entries that are left out where S is approximate all the same, in parts of the largest of their row */
 
 PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
 {
@@ -36,14 +37,18 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows along an axis have entries of zero along the others, each of which would ask for a column of the compliance */
-static PetscBool Counts(PetscScalar value)
+/* How large an entry of a row is that counts. Rows along an axis have entries of zero along the others, each of which would ask for a
+   column of the compliance; `small`: so they have where the axis has turned a little, which secants make up for. */
+static PetscReal Least(PetscBool small, PetscInt n, const PetscScalar values[])
 {
-  return (PetscBool)(PetscAbsScalar(value) > ZERO);
+  PetscReal largest = 0;
+
+  for (PetscInt e = 0; e < n && small; e++) largest = PetscMax(largest, PetscAbsScalar(values[e]));
+  return PetscMax(ZERO, SMALL * largest);
 }
 
 /* How many entries each of the touching rows of a body has, and room for them */
-static PetscErrorCode CountEntries(Contact contact, ContactStepper *stepper, PetscInt b)
+static PetscErrorCode CountEntries(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool small)
 {
   StepperEntries *entries = &stepper->assembly.of_body[b];
   const PetscInt  first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
@@ -53,11 +58,13 @@ static PetscErrorCode CountEntries(Contact contact, ContactStepper *stepper, Pet
   PetscCall(PetscArrayzero(begin, entries->n + 1));
   for (PetscInt k = 0; k < entries->n; k++) {
     const PetscScalar *values;
+    PetscReal          least;
     PetscInt           n;
 
     if (entries->rows[k] < first || entries->rows[k] >= end) continue;
     PetscCall(MatGetRow(contact->interfaces[b], entries->rows[k], &n, NULL, &values));
-    for (PetscInt e = 0; e < n; e++) begin[k + 1] += Counts(values[e]);
+    least = Least(small, n, values);
+    for (PetscInt e = 0; e < n; e++) begin[k + 1] += PetscAbsScalar(values[e]) > least;
     PetscCall(MatRestoreRow(contact->interfaces[b], entries->rows[k], &n, NULL, &values));
   }
   if (contact->ranks.size > 1)
@@ -72,16 +79,15 @@ static PetscErrorCode CountEntries(Contact contact, ContactStepper *stepper, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Brings the entries of the touching rows of a body to all ranks; each rank has those of its rows */
-static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, PetscInt b)
+/* Brings the entries of the touching rows of a body to all ranks; each rank has those of its rows. small: without those that are small. */
+static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool small)
 {
   StepperEntries *entries = &stepper->assembly.of_body[b];
   const PetscInt  first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
   PetscMPIInt     total;
 
   PetscFunctionBegin;
-  if (!entries->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CountEntries(contact, stepper, b));
+  PetscCall(CountEntries(contact, stepper, b, small));
   PetscCall(PetscMPIIntCast(entries->begin[entries->n], &total));
   PetscCall(PetscArrayzero(entries->columns, total));
   PetscCall(PetscArrayzero(entries->values, total));
@@ -90,12 +96,14 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
     const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[entries->places[k]]]];
     const PetscInt    *columns;
     const PetscScalar *values;
+    PetscReal          least;
     PetscInt           n, at = entries->begin[k];
 
     if (row < first || row >= end) continue;
     PetscCall(MatGetRow(contact->interfaces[b], row, &n, &columns, &values));
+    least = Least(small, n, values);
     for (PetscInt e = 0; e < n; e++) {
-      if (!Counts(values[e])) continue;
+      if (PetscAbsScalar(values[e]) <= least) continue;
       entries->columns[at]  = columns[e];
       entries->values[at++] = ContactSign(pair, b) * values[e];
     }
@@ -373,11 +381,14 @@ static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Vec diagonal;
+    PetscBool is_explicit, linear;
+    Vec       diagonal;
 
-    PetscCall(GetEntries(contact, stepper, b));
     if (!assembly->of_body[b].n) continue;
+    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
+    PetscCall(BodyIsLinear(contact->bodies[b], &linear));
     PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
+    PetscCall(GetEntries(contact, stepper, b, (PetscBool)(is_explicit && !linear && !diagonal)));
     assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
     if (diagonal) PetscCall(ScaleEntries(contact, stepper, b, diagonal));
     else PetscCall(MakeBlock(contact, stepper, b));

@@ -127,12 +127,18 @@ static PetscReal Multiply(PetscInt n, const PetscScalar block[], const PetscScal
 static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscReal told_work,
                               LawProblem *problem)
 {
-  const PetscInt     n      = entries->n;
-  const PetscScalar *gone   = force + n;
-  PetscScalar       *change = product + n; /* of a column */
-  PetscReal          work   = 0;
+  const PetscInt     n       = entries->n;
+  const PetscScalar *gone    = force + n;
+  PetscScalar       *change  = product + n; /* of a column */
+  PetscScalar       *S       = NULL;
+  PetscInt           leading = 0;
+  PetscReal          work    = 0;
 
   PetscFunctionBegin;
+  if (problem && !problem->sparse) {
+    PetscCall(MatDenseGetLDA(problem->S, &leading));
+    PetscCall(MatDenseGetArray(problem->S, &S));
+  }
   for (PetscInt k = 0; k < n; k++) work += PetscRealPart(force[k] * gone[k]);
   for (PetscInt l = 0; l < n; l++) {
     const PetscInt    j       = entries->places[l];
@@ -143,9 +149,11 @@ static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[]
       entries->block[l * n + k] += change[k];
     }
     if (!problem) continue;
-    PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
+    if (problem->sparse) PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
+    for (PetscInt k = 0; k < n && !problem->sparse; k++) S[j * leading + entries->places[k]] += change[k];
     problem->diagonal[j] += PetscRealPart(change[l]);
   }
+  if (S) PetscCall(MatDenseRestoreArray(problem->S, &S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
