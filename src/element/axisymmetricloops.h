@@ -214,6 +214,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, PetscBool mean, const Solid *s
     Means          means = {{0}, {0}};
     PetscInt       bad;
 
+    if (SolidSkips(solid, first)) continue;
     GetField(connectivity, first, count, solid->coordinates, &X);
     GetField(connectivity, first, count, u, &U);
     for (PetscInt g = 0; g < POINTS; g++) GetPoint(linear, &X, &U, points[g], &at[g]);

@@ -275,6 +275,7 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
     CompositeMeans       means;
     PetscInt             bad;
 
+    if (SolidSkips(solid, first)) continue;
     GetNodal(connectivity, first, count, u, nodal);
     GetPoints(solid, solid->linear, &batch, nodal, at, &means);
     for (PetscInt g = 0; g < POINTS; g++) SolidStress(solid, first, g, (const SimdReal *)at[g].H, P[g]);

@@ -1,5 +1,6 @@
 /* The class: creation, shape, material, options, set-up, view, destruction. */
 #include <impakt/private/elementimpl.h>
+#include <impakt/private/simd.h>
 #include <sys/names.h>
 #include <sys/units.h>
 
@@ -302,6 +303,16 @@ PetscErrorCode ElementViewFromOptions(Element element, PetscObject object, const
   PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
   PetscCall(PetscObjectViewFromOptions((PetscObject)element, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* ElementCountWanted - the elements in batches that internalforce() does not leave out */
+PetscInt ElementCountWanted(Element element)
+{
+  PetscInt wanted = element->count;
+
+  for (PetscInt first = 0; first < element->count && element->skips; first += SIMD_WIDTH)
+    if (element->skips[first / SIMD_WIDTH]) wanted -= PetscMin(SIMD_WIDTH, element->count - first);
+  return wanted;
 }
 
 /*@

@@ -194,6 +194,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
     Dilated        dilated[2];
     PetscBool      affine;
 
+    if (SolidSkips(solid, first)) continue;
     ZeroModes(F);
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);

@@ -26,15 +26,16 @@ typedef struct {
 } SolidTerm;
 
 typedef struct {
-  const SolidShape     *shape;
-  const PetscReal      *coordinates; /* of the rank's nodes; owned by the body */
-  const ElementHistory *history;     /* of the element */
-  MaterialKernels       kernels;
-  MaterialKernels       unconstrained; /* of the same material when not in plane stress */
-  PetscInt              own_history; /* numbers of the formulation behind those of the material at each point, of materials with history */
-  PetscBool             plane_stress, linear;
-  PetscBool             mean_dilatation; /* of axisymmetric elements */
-  PetscReal mean_share; /* of the mean of the element in the ratio of volumes at its points; 0 to 1, which most formulations have */
+  const SolidShape       *shape;
+  const PetscReal        *coordinates; /* of the rank's nodes; owned by the body */
+  const ElementHistory   *history;     /* of the element */
+  const PetscBool *const *skips;       /* of the element */
+  MaterialKernels         kernels;
+  MaterialKernels         unconstrained; /* of the same material when not in plane stress */
+  PetscInt  own_history; /* numbers of the formulation behind those of the material at each point, of materials with history */
+  PetscBool plane_stress, linear;
+  PetscBool mean_dilatation; /* of axisymmetric elements */
+  PetscReal mean_share;      /* of the mean of the element in the ratio of volumes at its points; 0 to 1, which most formulations have */
   PetscReal (*point)(Element, PetscInt, PetscInt, PetscReal[]); /* weight of a point of an element with the thickness, and the gradients of
                                                                    the shape functions there, nodes x dim */
   /* shape functions at the points of loads and masses, and their gradients by reference coordinates, nodes x dim */
@@ -42,6 +43,12 @@ typedef struct {
   SolidShape reduced; /* the shape with another rule, where a formulation has one */
   void      *own;     /* of the formulation */
 } Solid;
+
+/* Whether the forces of the batch that begins with element `first` are not wanted */
+SIMD_INLINE PetscBool SolidSkips(const Solid *solid, PetscInt first)
+{
+  return (PetscBool)(*solid->skips && (*solid->skips)[first / SIMD_WIDTH]);
+}
 
 /* The first number of the history of point g of a batch */
 SIMD_INLINE size_t SolidHistoryOffset(const ElementHistory *history, PetscInt first, PetscInt g)

@@ -6,7 +6,8 @@ typedef struct {
   PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
   /* NULL where the layer does not answer linearly and alone: how far it goes under forces that are to come, and what it lacks for balance
      where it has been left */
-  Vec expected, missing;
+  Vec       expected, missing;
+  FrontStep front; /* NULL until a substep of several is made that may be made again in a part of the nodes */
 } BodyExplicit;
 
 static LayerBalance GetLayer(Body body)
@@ -146,6 +147,7 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
 
   PetscFunctionBegin;
   PetscCall(PlaceRows(body, t, U, force));
+  PetscCall(FrontStepNote(((BodyExplicit *)body->integrator->data)->front, body, U, V));
   if (body->state.damping) PetscCall(BodyMultiplyDamping(body, U, V, body->state.damping));
   if (IsEarly(body)) {
     PetscCall(LeaveIncomplete(body, U, A));
@@ -363,6 +365,14 @@ static PetscErrorCode ComputeFreeRows(Body body, PetscScalar displacement[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* One of several substeps */
+static PetscErrorCode Step(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(FrontStepMake(&((BodyExplicit *)body->integrator->data)->front, body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* In one substep the rows answer by the massless layer alone, or, where contact nodes have mass, not at all */
 static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
 {
@@ -399,6 +409,7 @@ static PetscErrorCode SetUp(Body body)
   integrator->reads_start     = layer;
   integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
   if (body->time.substeps == 1) integrator->ops.complete = Complete;
+  else integrator->ops.step = Step;
   if (layer && body->time.substeps == 1) integrator->ops.freerows = ComputeFreeRows;
   if (explicit->layer_alone) {
     integrator->ops.repeat = RepeatLayer;
@@ -423,6 +434,7 @@ static PetscErrorCode Destroy(Body body)
   PetscFunctionBegin;
   PetscCall(VecDestroy(&((BodyExplicit *)body->integrator->data)->expected));
   PetscCall(VecDestroy(&((BodyExplicit *)body->integrator->data)->missing));
+  PetscCall(FrontStepDestroy(&((BodyExplicit *)body->integrator->data)->front));
   PetscCall(LayerBalanceDestroy(&((BodyExplicit *)body->integrator->data)->layer));
   PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);

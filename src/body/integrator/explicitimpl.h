@@ -4,6 +4,7 @@
 
 typedef struct _n_LayerBalance *LayerBalance;
 typedef struct _n_LayerRows    *LayerRows;
+typedef struct _n_FrontStep    *FrontStep;
 
 PETSC_INTERN PetscErrorCode LayerRowsCreate(Body, IS, LayerRows *);
 PETSC_INTERN PetscErrorCode LayerRowsUpdate(LayerRows, Body);
@@ -24,6 +25,9 @@ PETSC_INTERN PetscErrorCode LayerBalanceAgree(LayerBalance, Body);
 PETSC_INTERN PetscErrorCode LayerBalanceApplyUnit(LayerBalance, Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode LayerBalanceVisit(LayerBalance, Body, Checkpoint);
 PETSC_INTERN PetscErrorCode LayerBalanceCopyPoint(LayerBalance, Body, PetscBool, Vec, PetscReal[2]);
+PETSC_INTERN PetscErrorCode FrontStepDestroy(FrontStep *);
+PETSC_INTERN PetscErrorCode FrontStepMake(FrontStep *, Body);
+PETSC_INTERN PetscErrorCode FrontStepNote(FrontStep, Body, Vec, Vec);
 PETSC_INTERN PetscBool      BodyHasOutsideForce(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyComputeOutsideForce(Body, PetscReal, PetscReal, PetscBool, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyProbeBySubsteps(Body, PetscInt, const PetscInt[], Compliance);
