@@ -70,7 +70,6 @@ static const struct {
   const char *begin, *other, *values, *standard;
 } needs[] = {
     {OPTION_OF_RUN, "contact_friction", "contact_law", "coulomb", "frictionless"},
-    {OPTION_OF_RUN, "contact_spring_stiffness", "contact_law", "spring", "frictionless"},
     {OPTION_OF_RUN, "contact_penalty", "contact_type", "penalty", "schwarz"},
     {OPTION_OF_RUN, "penalty_", "contact_type", "penalty", "schwarz"},
     {OPTION_OF_RUN, "lagrange_", "contact_type", "lagrange", "schwarz"},
@@ -271,11 +270,44 @@ static const char *FindName(const char option[], OptionOwner owner, const char b
   return NULL;
 }
 
+/* The contact law that an option is a parameter of, as spring in contact_spring_stiffness: one that the table lists. Or nothing */
+static PetscErrorCode FindLaw(const char option[], char law[], size_t size)
+{
+  const KnownOption *options;
+  size_t             n;
+
+  PetscFunctionBegin;
+  law[0]  = 0;
+  options = KnownOptionsGet(&n);
+  for (size_t i = 0; i < n && !law[0]; i++) {
+    const char *at = options[i].value;
+
+    if (strcmp(options[i].name, "contact_law")) continue;
+    for (size_t length = strcspn(at, "|"); length && !law[0]; at += length + (at[length] == '|'), length = strcspn(at, "|")) {
+      char begin[128];
+
+      PetscCall(PetscSNPrintf(begin, sizeof(begin), "contact_%.*s_", (int)length, at));
+      if (!strncasecmp(option, begin, strlen(begin))) PetscCall(PetscSNPrintf(law, size, "%.*s", (int)length, at));
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What an option (without its dash) needs that the run has not chosen, as "-contact_law coulomb"; or nothing */
 PetscErrorCode OptionsFindNeed(const char option[], char need[], size_t size)
 {
+  char law[64];
+
   PetscFunctionBegin;
   need[0] = 0;
+  PetscCall(FindLaw(option, law, sizeof(law)));
+  if (law[0]) {
+    char chosen[64] = "";
+
+    PetscCall(PetscOptionsGetString(NULL, NULL, "-contact_law", chosen, sizeof(chosen), NULL));
+    if (strcmp(chosen, law)) PetscCall(PetscSNPrintf(need, size, "-contact_law %s", law));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(needs); i++) {
     const char *at = FindName(option, needs[i].owner, needs[i].begin);
     char        other[128], value[64];

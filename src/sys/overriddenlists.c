@@ -3,6 +3,7 @@
 #include <string.h>
 #include <strings.h>
 #include "names.h"
+#include "optiontable.h"
 #include "optionsfiles.h"
 #include "overriddenlists.h"
 
@@ -71,15 +72,23 @@ static PetscErrorCode Try(const char list[], const char begin[], const char opti
 /* Which overridden list has the name that an option (without its dash) belongs to; nothing, if none has */
 PetscErrorCode OptionsFindOverridden(const char option[], PetscInt n, const char *const bodies[], char text[], size_t size)
 {
-  const char *const lists[] = {"boundary_displacement", "boundary_traction"};
+  const char *const  lists[] = {"boundary_displacement", "boundary_traction"};
+  const KnownOption *known;
+  size_t             n_known;
 
   PetscFunctionBegin;
   text[0] = 0;
+  known   = KnownOptionsGet(&n_known);
   PetscCall(Try("bodies", "", option, text, size));
   PetscCall(Try("obstacles", "", option, text, size));
-  PetscCall(Try("contact_pairs", "contact_friction_", option, text, size));
-  PetscCall(Try("contact_pairs", "contact_law_", option, text, size));
-  PetscCall(Try("contact_pairs", "contact_spring_stiffness_", option, text, size));
+  for (size_t i = 0; i < n_known; i++) {
+    const char *pair = strstr(known[i].name, "<pair>");
+    char        begin[PETSC_MAX_OPTION_NAME];
+
+    if (!pair) continue;
+    PetscCall(PetscSNPrintf(begin, sizeof(begin), "%.*s", (int)(pair - known[i].name), known[i].name));
+    PetscCall(Try("contact_pairs", begin, option, text, size));
+  }
   for (PetscInt b = 0; b < n && !text[0]; b++)
     for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(lists); i++) {
       char list[PETSC_MAX_OPTION_NAME], begin[PETSC_MAX_OPTION_NAME];
