@@ -43,15 +43,15 @@ typedef const char *ContactType;
                                displacement since then are equal
 . `CONTACT_LAW_BONDED`       - they slide without resistance until they meet; a node that has been pushed against the partner stays there
                                from the next controller step on
-. `CONTACT_LAW_SPRING`       - nodes that lie on the partner at the start are glued to it by springs in all directions, see
-                               `ContactSetSpringStiffness()`
+. `CONTACT_LAW_GLUE`         - nodes that lie on the partner at the start are glued to it, by the law that `ContactSetGlueLaw()` names:
+                               springs in all directions, which may break
 - `CONTACT_LAW_FRICTION`     - they resist sliding, by the law that `ContactSetFrictionLaw()` names
 
    Level: beginner
 
-.seealso: `ContactSetLaw()`, `ContactSetPairLaw()`
+.seealso: `ContactSetLaw()`, `ContactSetPairLaw()`, `ContactSetGlueLaw()`, `ContactSetFrictionLaw()`
 E*/
-typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED, CONTACT_LAW_SPRING, CONTACT_LAW_FRICTION } ContactLaw;
+typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED, CONTACT_LAW_GLUE, CONTACT_LAW_FRICTION } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
 
 /*E
@@ -293,6 +293,7 @@ typedef struct {
   PetscReal      friction_tilt;     /* most by which normal forces were off along surfaces, in parts of what friction can bear; statics */
   PetscReal      friction_residual; /* most by which a step has missed the law of friction, de Saxce's residual [m] */
   PetscReal      contact_loss;      /* energy that contact has taken, friction apart, where `ContactGetLossReason()` has one [J] */
+  PetscReal      glue_loss;         /* energy that damage of glue has taken, see `ContactGlueBreaks()` [J] */
   PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
   PetscLogDouble seconds;           /* in sweeps */
 } ContactCounts;
@@ -342,8 +343,11 @@ PETSC_EXTERN PetscErrorCode ContactGetLaw(Contact, ContactLaw *);
 PETSC_EXTERN PetscErrorCode ContactSetPairLaw(Contact, PetscInt, ContactLaw);
 PETSC_EXTERN PetscErrorCode ContactGetPairLaw(Contact, PetscInt, ContactLaw *);
 PETSC_EXTERN PetscErrorCode ContactHasLaw(Contact, ContactLaw, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactSetSpringStiffness(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactSetPairSpringStiffness(Contact, PetscInt, PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSetGlueLaw(Contact, const char[]);
+PETSC_EXTERN PetscErrorCode ContactSetPairGlueLaw(Contact, PetscInt, const char[]);
+PETSC_EXTERN PetscErrorCode ContactSetGlueParameter(Contact, const char[], const char[], PetscReal);
+PETSC_EXTERN PetscErrorCode ContactSetPairGlueParameter(Contact, PetscInt, const char[], PetscReal);
+PETSC_EXTERN PetscErrorCode ContactGlueBreaks(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetFrictionLaw(Contact, const char[]);
 PETSC_EXTERN PetscErrorCode ContactSetPairFrictionLaw(Contact, PetscInt, const char[]);
 PETSC_EXTERN PetscErrorCode ContactSetFriction(Contact, PetscReal);

@@ -66,14 +66,15 @@ typedef struct {
   const ContactPairState *pairs;              /* per pair */
   PetscInt                sweeps;             /* of this step, or of that part of it which took most */
   PetscReal               penalty_energy;     /* stored in springs between surfaces, see ContactGetPenaltyEnergy() [J] */
-  PetscReal uncounted_energy;         /* that part of it which `energy_change` leaves out: of penalty springs, which are no glue [J] */
-  PetscReal obstacle_work;            /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
-  PetscReal friction_loss;            /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
-  PetscReal contact_loss;             /* energy that contact has taken so far by its rule, see ContactGetLossReason() [J] */
-  PetscReal energy_change;            /* of all bodies since the start, less work done on them, with what friction, damping and
-                                         plastic flow have taken [J] */
-  PetscReal energy_scale;             /* what that is relative to: the largest so far of kinetic energy, without that of the common motion
-                                         of bodies that are free, strain energy, and work done or taken [J] */
+  PetscReal uncounted_energy; /* that part of it which `energy_change` leaves out: of penalty springs, which are no glue [J] */
+  PetscReal obstacle_work;    /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
+  PetscReal friction_loss;    /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
+  PetscReal glue_loss;        /* energy that damage of glue has taken so far, see ContactGlueBreaks() [J] */
+  PetscReal contact_loss;     /* energy that contact has taken so far by its rule, see ContactGetLossReason() [J] */
+  PetscReal energy_change;    /* of all bodies since the start, less work done on them, with what friction, damage of glue, damping and
+                                 plastic flow have taken [J] */
+  PetscReal energy_scale;     /* what that is relative to: the largest so far of kinetic energy, without that of the common motion
+                                 of bodies that are free, strain energy, and work done or taken [J] */
   PetscInt                 step_cuts; /* how often a step had to be cut in halves in this controller step */
   PetscInt                 n_supports;
   const ControllerSupport *supports; /* held surfaces body by body, then obstacles */

@@ -14,14 +14,14 @@
 
   Note:
   The scale is the largest so far of kinetic energy, strain energy and work: of loads, held displacements and moving obstacles, or what
-  friction, damping and plastic flow have taken. The energy at the start alone says nothing of a body that hardly moves then and is driven
-  afterwards, nor does the strain energy of a body that slides for long.
+  friction, damage of glue, damping and plastic flow have taken. The energy at the start alone says nothing of a body that hardly moves then
+and is driven afterwards, nor does the strain energy of a body that slides for long.
 */
 PetscErrorCode EnergyScaleAdd(EnergyScale *scale, Controller controller, ControllerFrame *frame)
 {
-  const PetscReal glue    = frame->penalty_energy - frame->uncounted_energy;
-  PetscReal       balance = frame->friction_loss - frame->obstacle_work + glue, kinetic, strain = glue;
-  PetscReal       done = PetscAbsReal(frame->obstacle_work), taken = frame->friction_loss;
+  const PetscReal glue  = frame->penalty_energy - frame->uncounted_energy;
+  PetscReal       taken = frame->friction_loss + frame->glue_loss, done = PetscAbsReal(frame->obstacle_work);
+  PetscReal       balance = taken - frame->obstacle_work + glue, kinetic, strain = glue;
   const Body     *bodies;
 
   PetscFunctionBegin;

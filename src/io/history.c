@@ -26,7 +26,8 @@ struct _n_History {
   PetscInt       n_bodies, *dims; /* space dimension of each body */
   PetscBool     *damped;          /* per body: it has Rayleigh damping */
   PetscBool      friction;        /* contact has friction */
-  PetscBool      springs;         /* contact has penalty springs */
+  PetscBool      springs;         /* contact has penalty springs, or glue */
+  PetscBool      breaks;          /* glue that may break */
   PetscBool      takes;           /* contact takes energy by its rule */
   PetscBool     *plastic;         /* per body: its material flows */
   PetscBool     *hourglasses;     /* per body: its elements have one point */
@@ -78,15 +79,17 @@ static PetscErrorCode AddAllSeries(History history, Controller controller)
                          history->n_bodies, &history->hourglasses, history->n_bodies, &history->rigid));
   PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &history->friction));
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &history->springs));
-  if (!history->springs) PetscCall(ContactHasLaw(contact, CONTACT_LAW_SPRING, &history->springs));
+  if (!history->springs) PetscCall(ContactHasLaw(contact, CONTACT_LAW_GLUE, &history->springs));
+  PetscCall(ContactGlueBreaks(contact, &history->breaks));
   PetscCall(ContactGetLossReason(contact, &reason));
   history->takes = (PetscBool)(reason != NULL);
-  PetscCall(PetscCalloc1(6 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
+  PetscCall(PetscCalloc1(7 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
   PetscCall(AddSeries(history, "/time", "", "", UNIT_TIME, 1));
   PetscCall(AddSeries(history, "/schwarz", "", "iterations", UNIT_ONE, 1));
   PetscCall(AddSeries(history, "/energy", "", "change", UNIT_ENERGY, 1));
   PetscCall(AddSeries(history, "/energy", "", "scale", UNIT_ENERGY, 1));
   if (history->springs) PetscCall(AddSeries(history, "/penalty_energy", "", "", UNIT_ENERGY, 1));
+  if (history->breaks) PetscCall(AddSeries(history, "/glue_loss", "", "", UNIT_ENERGY, 1));
   if (history->takes) PetscCall(AddSeries(history, "/contact_loss", "", "", UNIT_ENERGY, 1));
   for (PetscInt i = 0; i < n_pairs; i++) {
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
@@ -262,6 +265,7 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
   *next++ = frame->energy_change;
   *next++ = frame->energy_scale;
   if (history->springs) *next++ = frame->penalty_energy;
+  if (history->breaks) *next++ = frame->glue_loss;
   if (history->takes) *next++ = frame->contact_loss;
   for (PetscInt i = 0; i < frame->n_pairs; i++) {
     *next++ = frame->pairs[i].force;

@@ -82,7 +82,8 @@ static PetscErrorCode ViewContact(const Report *report, Contact contact, Exact e
   const ContactStatistics *c       = &report->results->contact;
   PetscReal                impulse = NAN;
   ContactType              type;
-  PetscBool                pulls = PETSC_FALSE, friction;
+  PetscBool                pulls = PETSC_FALSE, friction, breaks;
+  ContactCounts            counts;
 
   PetscFunctionBegin;
   if (exact) PetscCall(ExactGetImpulse(exact, &impulse));
@@ -96,6 +97,9 @@ static PetscErrorCode ViewContact(const Report *report, Contact contact, Exact e
   if (!report->statics.all) PetscCall(PrintValue(report, "impulse along the normals", c->impulse, UNIT_IMPULSE, impulse));
   PetscCall(PrintValue(report, "largest penetration", PetscMax(0, -c->gap_min), UNIT_LENGTH, NAN));
   if (friction) PetscCall(PrintValue(report, "energy taken by friction", c->friction_loss, UNIT_ENERGY, NAN));
+  PetscCall(ContactGlueBreaks(contact, &breaks));
+  PetscCall(ContactGetCounts(contact, &counts));
+  if (breaks) PetscCall(PrintValue(report, "energy taken by damage of glue", counts.glue_loss, UNIT_ENERGY, NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -72,7 +72,7 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
   json_t       *object, *pair;
   ContactType   type;
   ContactCounts counts;
-  PetscBool     friction;
+  PetscBool     friction, breaks;
   const char   *name, *takes;
 
   PetscFunctionBegin;
@@ -84,6 +84,8 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
   PetscCall(AddOverlap(object, controller, contact, results));
   PetscCall(ContactGetCounts(contact, &counts));
   PetscCall(ContactGetLossReason(contact, &takes));
+  PetscCall(ContactGlueBreaks(contact, &breaks));
+  if (breaks) PetscCall(SummarySetReal(object, "glue_loss", counts.glue_loss));
   if (takes) PetscCall(SummarySetReal(object, "contact_loss", counts.contact_loss));
   if (friction) {
     PetscCall(SummarySetReal(object, "friction_least", counts.friction_least));

@@ -290,7 +290,7 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   PetscFunctionBegin;
   PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
   PetscCall(ContactGetPairLaw(contact, p, &law));
-  tied = (PetscBool)(law == CONTACT_LAW_TIED || law == CONTACT_LAW_SPRING);
+  tied = (PetscBool)(law == CONTACT_LAW_TIED || law == CONTACT_LAW_GLUE);
   if (tied && !results->pairs[p].active_max)
     PetscCall(AddOfKind(verdict, VERDICT_UNTIED, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
   PetscCall(ContactPairIsNamed(contact, p, &named));

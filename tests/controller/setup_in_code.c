@@ -285,16 +285,21 @@ static void laws_of_pairs(void **state)
   refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 2", ContactSetPairLaw(contact, 2, CONTACT_LAW_TIED));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "no contact law", ContactSetPairLaw(contact, 0, CONTACT_LAW_FRICTION));
   refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'sand'|coulomb", ContactSetPairFrictionLaw(contact, 1, "sand"));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness_low.ymax:high.ymin -1|positive", ContactSetPairSpringStiffness(contact, 0, -1));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness 0|positive", ContactSetSpringStiffness(contact, 0));
-  ok(ContactSetPairLaw(contact, 0, CONTACT_LAW_SPRING));
-  ok(ContactSetSpringStiffness(contact, 1));
-  ok(ContactSetPairSpringStiffness(contact, 0, 1e4));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "low.ymax:high.ymin|ContactSetPairGlueLaw", ContactSetPairGlueParameter(contact, 0, "stiffness", 1));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no contact law", ContactSetPairLaw(contact, 0, CONTACT_LAW_GLUE));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'sand'|spring", ContactSetPairGlueLaw(contact, 0, "sand"));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "'tie'|no glue", ContactSetPairGlueLaw(contact, 0, "tie"));
+  ok(ContactSetPairGlueLaw(contact, 0, "spring"));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness_low.ymax:high.ymin -1|positive", ContactSetPairGlueParameter(contact, 0, "stiffness", -1));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness 0|positive", ContactSetGlueParameter(contact, "spring", "stiffness", 0));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "spring|no parameter 'length'", ContactSetGlueParameter(contact, "spring", "length", 1));
+  ok(ContactSetGlueParameter(contact, "spring", "stiffness", 1));
+  ok(ContactSetPairGlueParameter(contact, 0, "stiffness", 1e4));
   ok(ContactSetPairFrictionLaw(contact, 1, "coulomb"));
   ok(ContactSetFriction(contact, 0.3));
   ok(ContactSetLaw(contact, CONTACT_LAW_TIED)); /* of pairs that have none of their own: there are none */
   ok(ContactGetPairLaw(contact, 0, &law));
-  assert_int_equal(law, CONTACT_LAW_SPRING);
+  assert_int_equal(law, CONTACT_LAW_GLUE);
   ok(ContactGetPairLaw(contact, 1, &law));
   assert_int_equal(law, CONTACT_LAW_FRICTION);
   ok(ContactHasLaw(contact, CONTACT_LAW_TIED, &has));

@@ -5,8 +5,11 @@
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h>
 
-typedef struct _n_Checkpoint *Checkpoint; /* src/checkpoint/checkpoint.h */
-typedef struct _n_Tables     *Tables;     /* src/checkpoint/tables.h */
+typedef struct _n_Checkpoint *Checkpoint;  /* src/checkpoint/checkpoint.h */
+typedef struct _n_Tables     *Tables;      /* src/checkpoint/tables.h */
+typedef struct _n_ContactGlue ContactGlue; /* src/contact/laws/glue.h */
+
+#define CONTACT_GLUE_PARAMETERS 4 /* of a law of glue, at most */
 
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
@@ -70,7 +73,8 @@ typedef struct {
   PetscReal      friction;     /* that */
   PetscBool      own_law;      /* it has a law of its own */
   ContactLaw     law;          /* what its surfaces do to each other */
-  PetscReal      stiffness;    /* of springs between them, per unit of area; less than 0: that of all pairs [N/m^3] */
+  PetscInt       glue;         /* that of glue, in contact->glues */
+  PetscReal      glue_parameters[CONTACT_GLUE_PARAMETERS]; /* its own; less than 0: those of all pairs */
 } ContactPair;
 
 /* A surface of a body, for all pairs that have the same */
@@ -132,7 +136,7 @@ typedef struct {
   PetscReal            friction_kinetic; /* of those that slide fast; less than 0: the same */
   PetscReal            friction_decay;   /* how fast it falls to that with the speed [s/m] */
   PetscInt             friction_dense;   /* rows up to which the matrices of steps with friction are dense; less than 0: as costs say */
-  PetscReal spring_stiffness; /* of the springs of pairs that have none of their own, per unit of area; less than 0: not set [N/m^3] */
+  PetscInt             glue;             /* law of glue of pairs that have none of their own, in contact->glues */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -310,6 +314,7 @@ typedef struct {
   PetscReal     *last_force;               /* per row: at the end of the last step [N] */
   PetscReal     *accepted_force;           /* the same, also of rows that have been let go since, with their surfaces [N] */
   PetscReal     *last_stored;              /* per row: what springs had stored then [J] */
+  PetscReal     *broken;                   /* per row: what damage of glue takes in the present step [J] */
   PetscReal     *start_force;              /* per row: that with which the step begins instead [N] */
   PetscReal     *rest;                     /* per row: the part that remains of what goes over from it as it was before it changed */
   PetscReal     *half_force, *half_rest;   /* per row: the same in the last attempt by halves that is within the room */
@@ -514,6 +519,8 @@ struct _p_Contact {
   ContactAttempt    attempt;
   ContactFloating   floating;
   ContactFriction   friction;
+  PetscInt          n_glues;
+  ContactGlue      *glues; /* laws of glue that have been named, see src/contact/laws/glue.h */
   ContactWork       work;
   ContactNeighbours neighbours;
   ContactReach      reach;
@@ -553,7 +560,7 @@ static inline PetscBool ContactRowRubs(Contact contact, PetscInt i)
 /* Whether nodes of a pair that lie on the partner at the start are held there, rigidly or by springs: their rows are along the axes */
 static inline PetscBool ContactPairTies(const ContactPair *pair)
 {
-  return (PetscBool)(pair->law == CONTACT_LAW_TIED || pair->law == CONTACT_LAW_SPRING);
+  return (PetscBool)(pair->law == CONTACT_LAW_TIED || pair->law == CONTACT_LAW_GLUE);
 }
 
 /* Whether any pair has a law; where there are none at present, those to come */
@@ -568,7 +575,7 @@ static inline PetscBool ContactAnyPairHas(Contact contact, ContactLaw law)
 /* The same of all pairs: whether they tie what lies on each other at the start */
 static inline PetscBool ContactAllPairsTie(Contact contact)
 {
-  if (!contact->n_pairs) return (PetscBool)(contact->options.law == CONTACT_LAW_TIED || contact->options.law == CONTACT_LAW_SPRING);
+  if (!contact->n_pairs) return (PetscBool)(contact->options.law == CONTACT_LAW_TIED || contact->options.law == CONTACT_LAW_GLUE);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (!ContactPairTies(&contact->pairs[p])) return PETSC_FALSE;
   return PETSC_TRUE;

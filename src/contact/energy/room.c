@@ -237,7 +237,7 @@ static PetscErrorCode DestroyRowEnergy(Contact contact)
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree4(energy->last_stored, energy->accepted_force, energy->last_force, energy->start_force));
+  PetscCall(PetscFree5(energy->last_stored, energy->broken, energy->accepted_force, energy->last_force, energy->start_force));
   PetscCall(PetscFree2(energy->tried_force, energy->tried_rest));
   PetscCall(PetscFree4(energy->last, energy->now, energy->leaves, energy->rest));
   PetscCall(PetscFree4(energy->half_force, energy->half_rest, energy->gain_force, energy->gain_rest));
@@ -253,7 +253,8 @@ PetscErrorCode ContactSetUpRowEnergy(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(DestroyRowEnergy(contact));
-  PetscCall(PetscCalloc4(rows, &energy->last_stored, rows, &energy->accepted_force, rows, &energy->last_force, rows, &energy->start_force));
+  PetscCall(PetscCalloc5(rows, &energy->last_stored, rows, &energy->broken, rows, &energy->accepted_force, rows, &energy->last_force, rows,
+                         &energy->start_force));
   PetscCall(PetscCalloc2(rows, &energy->tried_force, rows, &energy->tried_rest));
   PetscCall(PetscCalloc4(rows, &energy->last, rows, &energy->now, rows, &energy->leaves, rows, &energy->rest));
   PetscCall(PetscCalloc4(rows, &energy->half_force, rows, &energy->half_rest, rows, &energy->gain_force, rows, &energy->gain_rest));

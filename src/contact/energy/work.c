@@ -80,13 +80,15 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the energy that the springs of each pair have gained in the step. `across`: those across the normals too */
+/* Adds the energy that the springs of each pair have gained in the step, with what damage takes of it, which is no room for gains.
+   `across`: those across the normals too */
 static void AddSprings(Contact contact, PetscBool across, PetscReal sums[])
 {
   if (contact->ops->stored == ContactStoresNothing) return;
   for (PetscInt i = 0; i < contact->rows.n; i++)
     if (across || !ContactRowRubs(contact, i))
-      sums[2 * contact->rows.pair[i]] += (*contact->ops->stored)(contact, i, contact->end.gap[i]) - contact->energy.last_stored[i];
+      sums[2 * contact->rows.pair[i]] += (*contact->ops->stored)(contact, i, contact->end.gap[i]) - contact->energy.last_stored[i] +
+                                         contact->energy.broken[i];
 }
 
 /* Work of contact on the bodies in the step as it has been made without changes at its start, and the forces of pairs that touch: for each

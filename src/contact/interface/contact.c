@@ -58,7 +58,6 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   (*contact)->options.friction         = -1;
   (*contact)->options.friction_kinetic = -1;
   (*contact)->options.friction_dense   = -1;
-  (*contact)->options.spring_stiffness = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -359,11 +358,10 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  all pairs have rows all the time, also of bodies that are far apart, since %s\n",
                                      contact->neighbours.stay));
   if (contact->options.law != CONTACT_LAW_FRICTIONLESS)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactNameLaw(contact, contact->options.law)));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  law %s\n", ContactNameLaw(contact, NULL)));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (contact->pairs[p].own_law)
-      PetscCall(
-          PetscViewerASCIIPrintf(viewer, "  law of %s: %s\n", contact->pairs[p].name, ContactNameLaw(contact, contact->pairs[p].law)));
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  law of %s: %s\n", contact->pairs[p].name, ContactNameLaw(contact, &contact->pairs[p])));
   if (!contact->options.separation)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  surfaces that have met slide on each other and do not come apart\n"));
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP)
@@ -453,6 +451,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));
   PetscCall(ContactDestroyFriction(c));
+  PetscCall(PetscFree(c->glues));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

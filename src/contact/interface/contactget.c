@@ -131,7 +131,7 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
 }
 
 /*@
-  ContactGetPenaltyEnergy - energy stored in springs between surfaces: of penalty methods, and of `CONTACT_LAW_SPRING`
+  ContactGetPenaltyEnergy - energy stored in springs between surfaces: of penalty methods, and of `CONTACT_LAW_GLUE`
 
   Not Collective
 

@@ -178,7 +178,7 @@ static PetscErrorCode ReadRowSides(Contact contact)
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
 . -contact_law (frictionless|tied|bonded|spring|coulomb)        - what the surfaces do to each other
 . -contact_law_<pair> (frictionless|tied|bonded|spring|coulomb) - the same of one pair
-. -contact_spring_stiffness k, -contact_spring_stiffness_<pair> k - of springs, per unit of area [N/m^3]
+. -contact_<law>_<parameter> x, -contact_<law>_<parameter>_<pair> x - parameters of a law of glue, as -contact_spring_stiffness [N/m^3]
 . -contact_friction mu, -contact_friction_<pair> mu             - coefficient of friction of all pairs; of one
 . -contact_friction_kinetic mu, -contact_friction_decay d       - what it falls to with the speed v of sliding, as exp(-d v)
 . -contact_friction_dense_limit n                               - rows up to which steps with friction have dense matrices
@@ -225,7 +225,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(ReadRowSides(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactReadLaw(contact, p));
   PetscCall(ContactReadFriction(contact));
-  PetscCall(ContactReadSprings(contact));
+  PetscCall(ContactReadGlue(contact));
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -51,8 +51,9 @@ static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair
   *pair = &contact->pairs[contact->n_pairs++];
   PetscCall(PetscMemzero(*pair, sizeof(**pair)));
   PetscCall(PetscStrallocpy(name, &(*pair)->name));
-  (*pair)->law       = contact->options.law;
-  (*pair)->stiffness = -1;
+  (*pair)->law  = contact->options.law;
+  (*pair)->glue = contact->options.glue;
+  for (PetscInt k = 0; k < CONTACT_GLUE_PARAMETERS; k++) (*pair)->glue_parameters[k] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

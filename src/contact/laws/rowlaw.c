@@ -12,13 +12,12 @@ PetscErrorCode RowLawRegister(const char name[], PetscErrorCode (*create)(RowLaw
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+#define ROW_LAW_REGISTER(law) PetscCall(RowLawRegister(#law, RowLawCreate_##law));
+
 PetscErrorCode RowLawRegisterAll(void)
 {
   PetscFunctionBegin;
-  PetscCall(RowLawRegister("unilateral", RowLawCreate_Unilateral));
-  PetscCall(RowLawRegister("tie", RowLawCreate_Tie));
-  PetscCall(RowLawRegister("hold", RowLawCreate_Hold));
-  PetscCall(RowLawRegister("spring", RowLawCreate_Spring));
+  ROW_LAWS(ROW_LAW_REGISTER)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -44,5 +43,24 @@ PetscErrorCode RowLawCreate(const char name[], RowLaw *law)
   }
   PetscCall(PetscMemzero(law, sizeof(*law)));
   PetscCall((*create)(law));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The names of the laws of glue, which users give, in the order in which these have been registered. The registry owns them. */
+PetscErrorCode RowLawListGlue(PetscInt room, const char *names[], PetscInt *n)
+{
+  const char **all;
+  int          n_all;
+
+  PetscFunctionBegin;
+  *n = 0;
+  PetscCall(PetscFunctionListGet(RowLawList, &all, &n_all));
+  for (int k = 0; k < n_all && *n < room; k++) {
+    RowLaw law;
+
+    PetscCall(RowLawCreate(all[k], &law));
+    if (law.stiffness) names[(*n)++] = all[k];
+  }
+  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,34 +1,73 @@
 /*
    Laws of the one contact step: the relation between the forces on the rows of a node and what these rows read. A law is a projection,
-   lambda = P(lambda - r y) for any r > 0, with its derivative; y is what it reads. Nobody asks for the name of a law.
+   lambda = P(lambda - r y), with its derivative; y is what it reads. Nobody asks for the name of a law.
+
+   A law of glue has a stiffness, parameters that users give, and may have numbers that it keeps of each node, as damage. Users name it in
+   -contact_law, and its parameters in -contact_<law>_<parameter>.
 */
 #pragma once
 #include <petscsys.h>
+#include <sys/units.h>
 
-#define ROW_LAW_ROWS 3 /* of a node, at most: along its normal, and across it */
+#define ROW_LAW_ROWS       3 /* of a node, at most: along its normal, and across it; of glue along the axes */
+#define ROW_LAW_PARAMETERS 4 /* at most */
+#define ROW_LAW_HISTORY    2 /* numbers that a law keeps of a node, at most */
 
 typedef enum {
   ROW_LAW_READS_CLOSED, /* by how much the way of a row in the step misses that with which it counts as closed */
   ROW_LAW_READS_END,    /* the gap at the end of the step */
-  ROW_LAW_READS_MEAN    /* the gap that the force of the step does its work on, and what the law gives way by */
+  ROW_LAW_READS_MEAN    /* a multiple of the gap that the force of the step does its work on: at its end, or the mean of the step */
 } RowLawReads;
+
+/* A number that users give to a law of glue; all are positive */
+typedef struct {
+  const char   *name, *what; /* in options; in words */
+  UnitDimension unit;
+  const char   *hint; /* (NULL) for those who have not set it */
+} RowLawParameter;
+
+/* What glue knows of a node. Its rows are along the axes, and the gap is a vector by which the second body has gone from the first. */
+typedef struct {
+  PetscReal        times;                    /* what its rows read is this number of times the gap that the force does its work on */
+  PetscReal        r;                        /* that of the trial force, for that gap [N/m] */
+  PetscReal        area;                     /* [m^2] */
+  PetscReal        normal[ROW_LAW_ROWS];     /* along which the node opens */
+  PetscBool        secant;                   /* the derivative is to be that at the present stiffness, as if it stayed */
+  PetscReal        least;                    /* gap along the normal that contact lets it have, at least [m] */
+  PetscReal        history[ROW_LAW_HISTORY]; /* at the start of the step */
+  const PetscReal *parameters;
+} RowLawGlue;
 
 typedef struct {
   RowLawReads reads;
   PetscBool   pulls; /* it pulls as well as pushes, and its rows across the normal stick */
   /* P(p) of the rows of a node, and dP_i/dp_j at [i * n + j]; the force across the normal is at most limit[0] [N], and limit[1] times the
-     normal force more */
-  void (*project)(PetscInt n, const PetscReal limit[2], const PetscReal p[], PetscReal force[], PetscReal derivative[]);
-  /* (NULL: rigid) of a row with springs of a stiffness [N/m]: how far it gives way under a force [m/N]; what it stores at a gap [J] */
-  PetscReal (*compliance)(PetscReal stiffness);
-  PetscReal (*stored)(PetscReal stiffness, PetscReal gap);
+     normal force more. Of glue r is the same for all rows: the force is that which a gap m has with force + r m = -p, and - r m - p. */
+  void (*project)(PetscInt n, const PetscReal limit[2], const RowLawGlue *, const PetscReal p[], PetscReal force[], PetscReal derivative[]);
+  /* The rest is of glue. Its force is stiffness times gap, beside contact; so it stores half of that times the gap, and damage, by which
+     the stiffness falls, takes what is missing then. */
+  PetscInt        n_parameters;
+  RowLawParameter parameters[ROW_LAW_PARAMETERS];
+  const char *(*check)(const PetscReal parameters[]); /* (NULL) what is wrong with them together; NULL: nothing */
+  PetscReal (*stiffness)(const PetscReal parameters[], const PetscReal history[]); /* per unit of area [N/m^3]; NULL: it is no glue */
+  PetscReal (*softening)(const PetscReal parameters[]); /* (NULL) by how much force falls as the gap grows, at most [N/m^3] */
+  PetscInt n_history;                                   /* numbers that it keeps of each node, zeros at the start */
+  void (*grow)(PetscInt n, const RowLawGlue *, const PetscReal gap[],
+               PetscReal history[]); /* what these are after a step with such a gap */
 } RowLaw;
 
 PETSC_INTERN PetscErrorCode RowLawRegister(const char[], PetscErrorCode (*)(RowLaw *));
 PETSC_INTERN PetscErrorCode RowLawRegisterAll(void);
 PETSC_INTERN PetscErrorCode RowLawDestroyList(void);
 PETSC_INTERN PetscErrorCode RowLawCreate(const char[], RowLaw *);
-PETSC_INTERN PetscErrorCode RowLawCreate_Unilateral(RowLaw *);
-PETSC_INTERN PetscErrorCode RowLawCreate_Tie(RowLaw *);
-PETSC_INTERN PetscErrorCode RowLawCreate_Hold(RowLaw *);
-PETSC_INTERN PetscErrorCode RowLawCreate_Spring(RowLaw *);
+PETSC_INTERN PetscErrorCode RowLawListGlue(PetscInt, const char *[], PetscInt *);
+
+/* The laws that Impakt brings. To add one: its file, and a line here. */
+#define ROW_LAWS(LAW)                                                                                                                      \
+  LAW(hold)                                                                                                                                \
+  LAW(spring)                                                                                                                              \
+  LAW(tie)                                                                                                                                 \
+  LAW(unilateral)
+
+#define ROW_LAW_DECLARE(law) PETSC_INTERN PetscErrorCode RowLawCreate_##law(RowLaw *);
+ROW_LAWS(ROW_LAW_DECLARE)

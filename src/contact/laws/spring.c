@@ -1,25 +1,39 @@
 /*
-   Glue: springs between both sides of each row, lambda = -k g. As a projection it is the tie, P the identity, of what the foot of the
-   spring reads, g + lambda / k, with the gap g on which the force of the step does its work: then the springs take what the bodies give.
+   Glue: springs between both sides of each row, lambda = -k g, with the gap g on which the force of the step does its work. So the springs
+   take what the bodies give.
 */
 #include "rowlaw.h"
 
-static PetscReal Compliance(PetscReal stiffness)
+static PetscReal Stiffness(const PetscReal parameters[], const PetscReal history[])
 {
-  return 1 / stiffness;
+  (void)history;
+  return parameters[0];
 }
 
-static PetscReal Stored(PetscReal stiffness, PetscReal gap)
+/* With the gap m, -k m - r m = p */
+static void Project(PetscInt n, const PetscReal limit[2], const RowLawGlue *glue, const PetscReal p[], PetscReal force[],
+                    PetscReal derivative[])
 {
-  return 0.5 * stiffness * gap * gap;
+  const PetscReal k = Stiffness(glue->parameters, glue->history) * glue->area, part = k / (k + glue->r);
+
+  (void)limit;
+  for (PetscInt i = 0; i < n; i++) {
+    force[i] = part * p[i];
+    for (PetscInt j = 0; j < n; j++) derivative[i * n + j] = i == j ? part : 0;
+  }
 }
 
-PetscErrorCode RowLawCreate_Spring(RowLaw *law)
+PetscErrorCode RowLawCreate_spring(RowLaw *law)
 {
   PetscFunctionBegin;
-  PetscCall(RowLawCreate_Tie(law));
-  law->reads      = ROW_LAW_READS_MEAN;
-  law->compliance = Compliance;
-  law->stored     = Stored;
+  law->reads         = ROW_LAW_READS_MEAN;
+  law->pulls         = PETSC_TRUE;
+  law->project       = Project;
+  law->stiffness     = Stiffness;
+  law->n_parameters  = 1;
+  law->parameters[0] = (RowLawParameter){.name = "stiffness",
+                                         .what = "Stiffness of springs per unit of area",
+                                         .unit = UNIT_STIFFNESS_ON_AREA,
+                                         .hint = "glue of the modulus E and the thickness t has about E/t; -contact_law tied is rigid"};
   PetscFunctionReturn(PETSC_SUCCESS);
 }

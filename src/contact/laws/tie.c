@@ -1,16 +1,18 @@
 /* Ties: what holds the rows of a node where they are. */
 #include "rowlaw.h"
 
-static void Project(PetscInt n, const PetscReal limit[2], const PetscReal p[], PetscReal force[], PetscReal derivative[])
+static void Project(PetscInt n, const PetscReal limit[2], const RowLawGlue *glue, const PetscReal p[], PetscReal force[],
+                    PetscReal derivative[])
 {
   (void)limit;
+  (void)glue;
   for (PetscInt i = 0; i < n; i++) {
     force[i] = p[i];
     for (PetscInt j = 0; j < n; j++) derivative[i * n + j] = i == j;
   }
 }
 
-PetscErrorCode RowLawCreate_Tie(RowLaw *law)
+PetscErrorCode RowLawCreate_tie(RowLaw *law)
 {
   PetscFunctionBegin;
   law->reads   = ROW_LAW_READS_END;

@@ -6,11 +6,13 @@
 #include <petscmath.h>
 
 /* The first row is along the normal */
-static void Project(PetscInt n, const PetscReal limit[2], const PetscReal p[], PetscReal force[], PetscReal derivative[])
+static void Project(PetscInt n, const PetscReal limit[2], const RowLawGlue *glue, const PetscReal p[], PetscReal force[],
+                    PetscReal derivative[])
 {
   const PetscBool pushes = (PetscBool) !(p[0] <= 0); /* what is no number stays none, and is found out */
   PetscReal       bound, size = 0;
 
+  (void)glue;
   force[0] = pushes ? p[0] : 0;
   for (PetscInt k = 0; k < n * n; k++) derivative[k] = 0;
   derivative[0] = pushes;
@@ -27,7 +29,7 @@ static void Project(PetscInt n, const PetscReal limit[2], const PetscReal p[], P
   }
 }
 
-PetscErrorCode RowLawCreate_Unilateral(RowLaw *law)
+PetscErrorCode RowLawCreate_unilateral(RowLaw *law)
 {
   PetscFunctionBegin;
   law->reads   = ROW_LAW_READS_CLOSED;

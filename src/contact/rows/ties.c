@@ -189,9 +189,9 @@ static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, c
             "or set -contact_tie_distance, now %g of a face, above that number to tie them as they are",
             pair->name, summary->n[state],
             summary->n[TIE_HOLDS] + summary->n[TIE_OVERLAPS] + summary->n[TIE_TOO_FAR] + summary->n[TIE_APART], first,
-            state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", ContactLaws[pair->law], (double)x[0], (double)x[1], (double)x[2],
-            state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)(gap / size),
-            moves, (double)contact->options.tie_distance);
+            state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", ContactNameLaw(contact, pair), (double)x[0], (double)x[1],
+            (double)x[2], state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, UnitsOf((PetscObject)contact, UNIT_LENGTH),
+            (double)(gap / size), moves, (double)contact->options.tie_distance);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,13 +220,13 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
     PetscCheck(summary->n[TIE_APART], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_pairs %s: -contact_law %s ties nothing, since at the start no node of body '%s' lies opposite to the partner; "
                "place the bodies so that their surfaces lie on each other, or leave the pair out of -contact_pairs",
-               pair->name, ContactLaws[pair->law], ((PetscObject)contact->bodies[pair->body[0]])->name);
+               pair->name, ContactNameLaw(contact, pair), ((PetscObject)contact->bodies[pair->body[0]])->name);
     SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
             "-contact_pairs %s: -contact_law %s ties nothing: at the start the node of body '%s' that is nearest to the partner, at "
             "(%g, %g, %g) before any displacement, has a gap of %g%s, which is %.3g of its face, and nodes are tied within "
             "-contact_tie_distance, now %g of a face; move one of the bodies (%s), or leave the pair out "
             "of -contact_pairs",
-            pair->name, ContactLaws[pair->law], ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1],
+            pair->name, ContactNameLaw(contact, pair), ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1],
             (double)x[2], (double)summary->gap[TIE_APART], UnitsOf((PetscObject)contact, UNIT_LENGTH),
             (double)(summary->gap[TIE_APART] / summary->size[TIE_APART - 1]), (double)contact->options.tie_distance, moves);
   }

@@ -98,7 +98,7 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper, const Contac
     if (!stepper->touches[i]) continue;
     if (!ContactRowRubs(contact, i))
       stepper->step_loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]) +
-                            ContactStepperStored(contact, i, contact->end.gap[i]) - ContactStepperStored(contact, i, contact->start.gap[i]);
+                            ContactStepperTaken(contact, stepper, i);
     stepper->step_force += PetscAbsReal(contact->end.force[i]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

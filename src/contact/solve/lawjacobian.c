@@ -108,7 +108,7 @@ static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar for
     PetscBool      same;
 
     LawProblemGetTrial(problem, node, force, y, p);
-    (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, projected, derivative);
+    (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, projected, derivative);
     PetscCall(PetscArraycmp(derivative, last, rows * rows, &same));
     if (same) continue;
     PetscCall(PetscArraycpy(last, derivative, rows * rows));

@@ -19,7 +19,8 @@
 #define SPARSE_TOLERANCE 1e-13 /* of linear iterations [parts of the residual] */
 #define MOST_LINEAR      200   /* round-off may keep them from either */
 #define MOST_SWEEPS      5120
-#define NODE_ITERATIONS  10 /* for the rows of one node in a sweep */
+#define NODE_ITERATIONS  10  /* for the rows of one node in a sweep */
+#define GAPS_ALONE       1e4 /* r, in parts of the stiffness of glue, with which trial forces have what is read as their gap */
 
 /* out = S in, which is there where the last product was this one */
 PetscErrorCode LawProblemMultiply(LawProblem *problem, const PetscScalar in[], PetscScalar out[])
@@ -57,10 +58,33 @@ PetscErrorCode LawProblemRead(LawProblem *problem, const PetscScalar force[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* 1/r of the rows of a node that is glued: the same for all of them, so that the law is one of vectors. Where the force falls as the gap
+   grows, r is beyond that slope, by as much again: else a trial force would have several gaps. */
+static void WeighGlue(LawProblem *problem, PetscInt node)
+{
+  const RowLaw *law    = problem->law[node];
+  RowLawGlue   *glue   = &problem->glue[node];
+  PetscReal     weight = PETSC_MAX_REAL;
+
+  for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++)
+    if (problem->diagonal[i] > PETSC_SMALL * problem->largest) weight = PetscMin(weight, problem->diagonal[i]);
+  if (weight == PETSC_MAX_REAL) weight = PETSC_SMALL * problem->largest;
+  if (law->softening) {
+    const PetscReal slope = (*law->softening)(glue->parameters), k = (*law->stiffness)(glue->parameters, glue->history);
+
+    weight           = PetscMin(weight, glue->times / ((problem->secant ? GAPS_ALONE * (k + slope) : 2 * slope) * glue->area));
+    problem->softens = PETSC_TRUE;
+  }
+  glue->secant = problem->secant;
+  for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++) problem->weight[i] = weight;
+  glue->r = glue->times / weight;
+}
+
 /* 1/r of all rows. Rows across the normal of a node have the same r: else friction would not point against the slip */
 void LawProblemFindWeights(LawProblem *problem)
 {
   problem->largest = 0;
+  problem->softens = PETSC_FALSE;
   for (PetscInt i = 0; i < problem->n; i++) problem->largest = PetscMax(problem->largest, problem->diagonal[i]);
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
@@ -69,6 +93,7 @@ void LawProblemFindWeights(LawProblem *problem)
     for (PetscInt i = first + 1; i < end; i++) across = PetscMax(across, problem->diagonal[i]);
     for (PetscInt i = first; i < end; i++) /* of a row that is held all of the diagonal is zero */
       problem->weight[i] = PetscMax(i == first ? problem->diagonal[i] : across, PETSC_SMALL * problem->largest);
+    if (problem->law[node]->stiffness) WeighGlue(problem, node);
   }
 }
 
@@ -95,7 +120,7 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
     PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
     LawProblemGetTrial(problem, node, x, y, p);
-    (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, force, derivative);
+    (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, force, derivative);
     for (PetscInt k = 0; k < rows; k++) f[first + k] = x[first + k] - force[k];
   }
   PetscCall(VecRestoreArrayWrite(F, &f));
@@ -174,7 +199,7 @@ static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
       PetscReal p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
       LawProblemGetTrial(problem, node, x, y, p);
-      (*problem->law[node]->project)(rows, problem->limit + 2 * node, p, force, derivative);
+      (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, force, derivative);
       for (PetscInt k = 0; k < rows; k++) {
         const PetscScalar change = force[k] - x[first + k];
 
@@ -265,13 +290,13 @@ PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
   problem->n = n;
   if (n > problem->room) {
     PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-    PetscCall(PetscFree4(problem->diagonal, problem->weight, problem->law, problem->derivatives));
+    PetscCall(PetscFree5(problem->diagonal, problem->weight, problem->law, problem->glue, problem->derivatives));
     problem->room = PetscMax(n, 2 * problem->room);
     PetscCall(PetscMalloc7(problem->room + 1, &problem->begin, 2 * problem->room, &problem->limit, problem->room, &problem->base,
                            problem->room, &problem->read, problem->room, &problem->centre, problem->room, &problem->force,
                            3 * problem->room, &problem->work));
-    PetscCall(PetscMalloc4(problem->room, &problem->diagonal, problem->room, &problem->weight, problem->room, &problem->law,
-                           ROW_LAW_ROWS * ROW_LAW_ROWS * problem->room, &problem->derivatives));
+    PetscCall(PetscMalloc5(problem->room, &problem->diagonal, problem->room, &problem->weight, problem->room, &problem->law, problem->room,
+                           &problem->glue, ROW_LAW_ROWS * ROW_LAW_ROWS * problem->room, &problem->derivatives));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -326,7 +351,7 @@ PetscErrorCode LawProblemDestroy(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(DestroySolvers(problem));
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
-  PetscCall(PetscFree4(problem->diagonal, problem->weight, problem->law, problem->derivatives));
+  PetscCall(PetscFree5(problem->diagonal, problem->weight, problem->law, problem->glue, problem->derivatives));
   PetscCall(MatDestroy(&problem->S));
   PetscCall(MatDestroy(&problem->entries));
   PetscFunctionReturn(PETSC_SUCCESS);

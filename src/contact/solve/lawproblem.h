@@ -8,7 +8,8 @@ typedef struct {
   PetscInt      *begin;       /* per node: its first row; n_nodes + 1 */
   const RowLaw **law;         /* per node; borrowed */
   PetscReal     *limit;       /* two numbers per node */
-  Mat            S;           /* what rows read by forces on them, laws that give way included: dense, sparse, or products [m/N] */
+  RowLawGlue    *glue;        /* per node: of laws of glue */
+  Mat            S;           /* what rows read by forces on them: dense, sparse, or products [m/N] */
   Mat            entries;     /* S, or a sparse matrix near it where S is products alone */
   PetscReal     *diagonal;    /* of the latter */
   PetscReal     *weight;      /* per row: 1 / r of the trial force lambda - r y [m/N] */
@@ -22,6 +23,8 @@ typedef struct {
   PetscReal      largest;     /* on the diagonal of S [m/N] */
   PetscInt       room, rows;  /* rows that there is room for; of the solvers */
   PetscInt       iterations;  /* of Newton's method, and node by node, in the last solution */
+  PetscBool      softens;     /* the force of a node falls as its gap grows */
+  PetscBool      secant;      /* glue has its present stiffness in the Jacobian, see lawsolve.c */
   PetscBool      solved;      /* there is a solution since the last call */
   PetscBool      by_nodes;    /* that was found node by node */
   PetscBool      sparse;      /* the matrix of entries is */

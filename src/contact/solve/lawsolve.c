@@ -28,7 +28,28 @@ static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, SNESConvergedReaso
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By Newton's method; where it goes round in a circle, from where a few sweeps node by node lead, more of them each time */
+/* Iterations with the Jacobian of glue that keeps its present stiffness. The energy of glue is concave in the square of the gap, so that
+   each of them lowers the energy of all, and leads over where the last state has no neighbour: nodes of a coarse mesh break one by one, all
+   at once (majorise and minimise; Bourdin, Francfort, Marigo 2000 alternate so between gaps and damage). */
+static PetscErrorCode SolveBySecants(LawProblem *problem, PetscInt iterations, SNESConvergedReason *reason)
+{
+  PetscInt most;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetTolerances(problem->newton, NULL, NULL, NULL, &most, NULL));
+  PetscCall(SNESSetTolerances(problem->newton, PETSC_CURRENT, PETSC_CURRENT, 0, iterations, PETSC_INT_MAX));
+  for (PetscInt back = 0; back < 2; back++) {
+    problem->secant      = (PetscBool)!back;
+    problem->jacobian_of = -1;
+    LawProblemFindWeights(problem);
+    if (!back) PetscCall(SolveBy(problem, problem->newton, reason));
+  }
+  PetscCall(SNESSetTolerances(problem->newton, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By Newton's method; where it goes round in a circle, from where a few sweeps node by node lead, or secants of glue that softens, more of
+   them each time */
 static PetscErrorCode SolveOnce(LawProblem *problem)
 {
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
@@ -49,13 +70,14 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
   PetscCall(SolveBy(problem, problem->newton, &reason));
   for (; reason < 0 && sweeps <= most && !LawProblemHasProducts(problem); sweeps *= 4) { /* sweeps take entries of S */
-    PetscCall(PetscInfo(problem->newton,
-                        "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps node by node\n",
-                        problem->n, SNESConvergedReasons[reason], problem->iterations, sweeps));
+    PetscCall(PetscInfo(
+        problem->newton, "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps %s\n",
+        problem->n, SNESConvergedReasons[reason], problem->iterations, sweeps, problem->softens ? "with secants" : "node by node"));
     problem->by_nodes = PETSC_TRUE;
     PetscCall(PetscArraycpy(problem->force, start, problem->n));
     PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
-    PetscCall(SolveBy(problem, problem->nodes, &reason));
+    if (problem->softens) PetscCall(SolveBySecants(problem, sweeps, &reason));
+    else PetscCall(SolveBy(problem, problem->nodes, &reason));
     if (reason == SNES_DIVERGED_NAN) break;
     PetscCall(PetscArraycpy(start, problem->force, problem->n));
     if (reason < 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, &reason));

@@ -362,18 +362,6 @@ static PetscErrorCode AssembleSparse(ContactStepper *stepper, Mat *S)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds how far laws give way under their own forces */
-static PetscErrorCode AddGive(Contact contact, ContactStepper *stepper, Mat S)
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) stepper->mine[i] = ContactStepperGive(contact, stepper, i);
-  PetscCall(ContactStepperGather(contact, stepper, stepper->mine, stepper->gathered));
-  for (PetscInt k = 0; k < stepper->problem.n; k++) PetscCall(MatSetValues(S, 1, &k, 1, &k, &stepper->gathered[k], ADD_VALUES));
-  PetscCall(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(S, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What S is made of, from the bodies */
 static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
 {
@@ -423,7 +411,6 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
     PetscCall(PetscObjectReference((PetscObject)S));
   } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, &S));
   else PetscCall(AssembleDense(stepper, &S));
-  if (stepper->gives) PetscCall(AddGive(contact, stepper, S));
   PetscCall(LawProblemTakeS(&stepper->problem, &S, near ? &near : NULL));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
   PetscCall(PetscInfo(contact, "S assembled: %s, %" PetscInt_FMT " rows of %" PetscInt_FMT " nodes\n",

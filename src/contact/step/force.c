@@ -71,55 +71,26 @@ static PetscErrorCode Check(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of the springs of a pair, per unit of area [N/m^3] */
-static PetscReal GetStiffness(Contact contact, PetscInt p)
-{
-  return contact->pairs[p].stiffness > 0 ? contact->pairs[p].stiffness : contact->options.spring_stiffness;
-}
-
-/* Of the springs of a row [N/m] */
-static PetscReal GetRowStiffness(Contact contact, PetscInt i)
-{
-  const PetscInt p = contact->rows.pair[i];
-
-  return GetStiffness(contact, p) * contact->rows.area[i] * contact->resultants.cross_section[p];
-}
-
-/* How far the law of a row gives way under its force, in what it reads [m/N] */
-PetscReal ContactStepperGive(Contact contact, const ContactStepper *stepper, PetscInt i)
-{
-  const RowLaw *law = ContactStepperLaw(contact, stepper, i);
-
-  return law->compliance ? ContactStepperTimes(contact, stepper, i) * (*law->compliance)(GetRowStiffness(contact, i)) : 0;
-}
-
-/* What the law of a row stores at a gap [J] */
-PetscReal ContactStepperStored(Contact contact, PetscInt i, PetscReal gap)
-{
-  const RowLaw *law = ContactStepperLaw(contact, Stepper(contact), i);
-
-  return law->stored ? (*law->stored)(GetRowStiffness(contact, i), gap) : 0;
-}
-
 /* The laws of the nodes of each pair: while they may open, and once they are held */
 static PetscErrorCode ChooseLaws(Contact contact, ContactStepper *stepper)
 {
   const char *const names[][2] = {[CONTACT_LAW_FRICTIONLESS] = {"unilateral", "hold"},
                                   [CONTACT_LAW_TIED]         = {"unilateral", "tie"},
                                   [CONTACT_LAW_BONDED]       = {"unilateral", "tie"},
-                                  [CONTACT_LAW_SPRING]       = {"unilateral", "spring"},
                                   [CONTACT_LAW_FRICTION]     = {"unilateral", "hold"}};
 
   PetscFunctionBegin;
   PetscCall(PetscFree(stepper->laws));
   PetscCall(PetscMalloc1(2 * contact->n_pairs, &stepper->laws));
-  stepper->gives = PETSC_FALSE;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     for (PetscInt held = 0; held < 2; held++) {
-      PetscCall(RowLawCreate(names[contact->pairs[p].law][held], &stepper->laws[2 * p + held]));
-      if (stepper->laws[2 * p + held].compliance) stepper->gives = PETSC_TRUE;
+      const ContactLaw law = contact->pairs[p].law;
+
+      PetscCall(RowLawCreate(law != CONTACT_LAW_GLUE ? names[law][held]
+                             : held                  ? ContactNameLaw(contact, &contact->pairs[p])
+                                                     : "unilateral",
+                             &stepper->laws[2 * p + held]));
     }
-  if (stepper->gives) contact->ops->stored = ContactStepperStored;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,6 +114,7 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(ContactStepperSetUpRules(contact, stepper));
   PetscCall(ContactHasRigid(contact, &stepper->has_rigid));
   PetscCall(ChooseLaws(contact, stepper));
+  PetscCall(ContactStepperSetUpGlue(contact, stepper));
   contact->rows.lists = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     contact->rows.lists = (PetscBool)(contact->rows.lists && stepper->rules[b] == &ContactRuleImpulse);
@@ -203,6 +175,7 @@ static PetscErrorCode Accept(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) stepper->joined[contact->rows.acting[k]] = stepper->joins[contact->rows.acting[k]];
+  PetscCall(ContactStepperAcceptGlue(contact, stepper));
   PetscCall(ContactStepperAcceptSecants(stepper));
   contact->counts.contact_loss += stepper->step_loss;
   contact->energy.largest_force += stepper->step_force; /* changes of gaps add up, and what nobody knows of them does */
@@ -215,6 +188,7 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitBools(checkpoint, "joined", contact->rows.n, stepper->joined));
+  PetscCall(ContactStepperVisitGlue(contact, stepper, checkpoint));
   PetscCall(ContactStepperVisitSecants(contact, stepper, checkpoint));
   if (CheckpointLoads(checkpoint)) stepper->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -266,10 +240,7 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
   PetscCall(ViewMass(contact, viewer));
   if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) && contact->friction.law.view)
     PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (stepper->laws[2 * p + 1].stored)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "  springs of %s: %g%s\n", contact->pairs[p].name, (double)GetStiffness(contact, p),
-                                       UnitsOf((PetscObject)contact, UNIT_STIFFNESS_ON_AREA)));
+  PetscCall(ContactStepperViewGlue(contact, stepper, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -291,6 +262,7 @@ static PetscErrorCode Reset(Contact contact)
   PetscCall(ContactStepperDestroyAssembly(&stepper->assembly));
   PetscCall(LawProblemDestroy(&stepper->problem));
   PetscCall(PetscFree(stepper->laws));
+  PetscCall(ContactStepperDestroyGlue(stepper));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));

@@ -19,9 +19,7 @@ static PetscReal Reading(Contact contact, const ContactStepper *stepper, PetscIn
   const RowLaw *law = ContactStepperLaw(contact, stepper, i);
 
   if (law->reads == ROW_LAW_READS_END) return contact->end.gap[i];
-  if (law->reads == ROW_LAW_READS_MEAN)
-    return contact->end.gap[i] + (ContactStepperTimes(contact, stepper, i) - 1) * contact->start.gap[i] +
-           ContactStepperGive(contact, stepper, i) * contact->end.force[i];
+  if (law->reads == ROW_LAW_READS_MEAN) return contact->end.gap[i] + (ContactStepperTimes(contact, stepper, i) - 1) * contact->start.gap[i];
   if (!contact->rows.opposite[i]) return 0; /* across the normal of a node that may be bonded yet */
   return (ContactRowRubs(contact, i) ? contact->friction.slip[i] : contact->end.gap[i] - contact->start.gap[i]) - stepper->lets[i];
 }

@@ -16,7 +16,7 @@
 /* Whether S is products: of many rows, whose bodies tell them exactly and cheaply */
 PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *stepper)
 {
-  PetscBool products = (PetscBool)(stepper->problem.n > FEW_PRODUCTS && !stepper->gives && !stepper->forms);
+  PetscBool products = (PetscBool)(stepper->problem.n > FEW_PRODUCTS && !stepper->forms);
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies && products; b++) {

@@ -101,6 +101,7 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   stepper->step_loss = stepper->step_force = 0;
+  PetscCall(ContactStepperEndGlue(contact, stepper));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
     const ContactRule *rule = ContactStepperRule(stepper, pair);
@@ -114,7 +115,7 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
     if (rule->end) PetscCall((*rule->end)(contact, stepper, pair));
   }
   PetscCall(MarkSliding(contact, stepper));
-  if (stepper->gives) PetscCall(ContactSumStored(contact));
+  if (stepper->glued) PetscCall(ContactSumStored(contact));
   if (!contact->energy.takes) PetscFunctionReturn(PETSC_SUCCESS);
   sums[0] = stepper->step_loss;
   sums[1] = stepper->step_force;
@@ -151,6 +152,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
     PetscCall(ContactStepperListRows(contact, stepper));
     if (stepper->problem.n) {
       PetscCall(GetLimits(contact, stepper));
+      PetscCall(ContactStepperBeginGlue(contact, stepper));
       PetscCall(ContactStepperAssemble(contact, stepper));
       PetscCall(ContactStepperIterate(contact, stepper));
     } else PetscCall(ContactStepperAdvance(contact, stepper));

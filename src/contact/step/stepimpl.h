@@ -2,6 +2,7 @@
 #pragma once
 #include <contact/parts.h>
 #include <contact/solve/lawproblem.h>
+#include <contact/laws/glue.h>
 
 typedef struct _ContactStepper ContactStepper;
 
@@ -71,13 +72,16 @@ struct _ContactStepper {
   /* set-up; what follows is for the rows that there are, see Reset() */
   SNES                outer; /* its unknowns are the forces of all rows */
   LawProblem          problem;
-  const ContactRule **rules;     /* per body: that of its set */
-  RowLaw             *laws;      /* two per pair: of nodes that may open, and of those that are held */
-  PetscBool           gives;     /* a law gives way */
-  PetscBool           has_rigid; /* bodies whose compliance is another in each step, as they turn */
+  const ContactRule **rules;      /* per body: that of its set */
+  RowLaw             *laws;       /* two per pair: of nodes that may open, and of those that are held */
+  PetscBool           glued;      /* a law is of glue */
+  PetscReal          *parameters; /* ROW_LAW_PARAMETERS per pair: of its glue */
+  PetscBool           has_rigid;  /* bodies whose compliance is another in each step, as they turn */
   VecScatter          to_all;
   /* state between steps, per row of this rank */
-  PetscBool *joined; /* its node has touched first in the last accepted step */
+  PetscBool *joined;  /* its node has touched first in the last accepted step */
+  PetscReal *history; /* of a node, at its first row: ROW_LAW_HISTORY numbers of its law of glue, as the step begins, */
+  PetscReal *grown;   /* and at its end */
   /* state of a step, per row of this rank */
   PetscBool *touches, *joins; /* it may touch in this step; its node touches for the first time */
   PetscReal *last;            /* force at the end of the last step [N] */
@@ -126,8 +130,15 @@ static inline PetscBool ContactStepperSlides(const LawProblem *problem, PetscInt
 
 PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
-PETSC_INTERN PetscReal      ContactStepperGive(Contact, const ContactStepper *, PetscInt);
 PETSC_INTERN PetscReal      ContactStepperStored(Contact, PetscInt, PetscReal);
+PETSC_INTERN PetscReal      ContactStepperTaken(Contact, const ContactStepper *, PetscInt);
+PETSC_INTERN PetscErrorCode ContactStepperSetUpGlue(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperBeginGlue(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperEndGlue(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperAcceptGlue(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperVisitGlue(Contact, ContactStepper *, Checkpoint);
+PETSC_INTERN PetscErrorCode ContactStepperViewGlue(Contact, const ContactStepper *, PetscViewer);
+PETSC_INTERN PetscErrorCode ContactStepperDestroyGlue(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor *);
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);

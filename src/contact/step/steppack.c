@@ -1,5 +1,6 @@
 /* What the contact step remembers from step to step, as tables by which a run is continued on another number of ranks: which nodes have
-   touched first in the last step, as their guess is another one, what secants have shown, and what contact has taken. */
+   touched first in the last step, as their guess is another one, what laws keep of glued nodes, what secants have shown, and what contact
+   and damage have taken. */
 #include "stepimpl.h"
 #include <checkpoint/tables.h>
 
@@ -23,7 +24,8 @@ static PetscErrorCode FindPlace(Contact contact, const ContactPair *pair, PetscI
 static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, PetscReal *places[2], Tables tables)
 {
   const ContactStepper *stepper = (const ContactStepper *)contact->data;
-  const PetscInt        n = (pair->end - pair->begin) / pair->components, width = TABLES_KEY + 1 + 2 * pair->components;
+  const PetscInt        n = (pair->end - pair->begin) / pair->components, own = stepper->glued ? ROW_LAW_HISTORY : 0,
+                        width  = TABLES_KEY + 1 + 2 * pair->components + own;
   const PetscReal      *values = NULL;
   const SurfaceData    *data;
   PetscReal            *packed;
@@ -52,6 +54,7 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
       if (back) places[side][of] = *next;
       else PetscCall(FindPlace(contact, pair, side, of, next));
     }
+    if (own) TablesCopyReals(back, own, stepper->history + own * (pair->begin + i * pair->components), &next);
   }
   if (!back) PetscCall(TablesAdd(tables, name, n, width, packed));
   PetscCall(PetscFree(packed));
@@ -143,8 +146,10 @@ static PetscErrorCode UnpackAllSecants(Contact contact, PetscReal *const mine[2]
 /* Adds the tables; collective */
 PetscErrorCode ContactStepperPack(Contact contact, Tables tables)
 {
+  const PetscReal losses[] = {contact->counts.contact_loss, contact->counts.glue_loss};
+
   PetscFunctionBegin;
-  PetscCall(TablesAddNumbers(tables, LOSS_NAME, 1, &contact->counts.contact_loss));
+  PetscCall(TablesAddNumbers(tables, LOSS_NAME, 2, losses));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, NULL, tables));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(PackSecants(contact, b, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -160,10 +165,12 @@ PetscErrorCode ContactStepperUnpack(Contact contact, Tables tables)
 
   PetscFunctionBegin;
   PetscCall(TablesGetNumbers(tables, LOSS_NAME, &n, &loss));
-  PetscCheck(n == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
-             "The checkpoint has %" PetscInt_FMT " losses of contact in place of one: it is of another problem", n);
+  PetscCheck(n == 2, PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
+             "The checkpoint has %" PetscInt_FMT " losses of contact in place of two: it is of another problem", n);
   contact->counts.contact_loss = loss[0];
+  contact->counts.glue_loss    = loss[1];
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, places, tables));
+  if (stepper->glued) PetscCall(PetscArraycpy(stepper->grown, stepper->history, ROW_LAW_HISTORY * contact->rows.n));
   PetscCall(UnpackAllSecants(contact, places, tables));
   stepper->state++;
   PetscFunctionReturn(PETSC_SUCCESS);

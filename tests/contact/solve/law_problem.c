@@ -14,8 +14,8 @@ static RowLaw unilateral, tie; /* see take_laws() */
 static void take_laws(void **state)
 {
   (void)state;
-  ok(RowLawCreate_Unilateral(&unilateral));
-  ok(RowLawCreate_Tie(&tie));
+  ok(RowLawCreate_unilateral(&unilateral));
+  ok(RowLawCreate_tie(&tie));
 }
 
 /* S by columns */

@@ -1,0 +1,210 @@
+/*
+   What the step does for laws of glue: it tells them of the node, keeps what they keep, and books what damage takes of the energy.
+
+   Glue has the stiffness k, times area, and the force k g with the gap g on which the force of the step does its work: the mean gap of a
+   constant force, so that this does 1/2 k (g_1^2 - g_0^2) with the gaps at the ends of the step, or the gap at its end, with the force
+   between both linear in time. The glue stores 1/2 k_1 g_1^2 then, where 1/2 k_0 g_0^2 was; the fall of k has taken 1/2 (k_0 - k_1) g_0^2
+   in the first case and 1/2 (k_0 - k_1) g_0 g_1 in the second, to round-off.
+*/
+#include "stepimpl.h"
+#include <checkpoint/checkpoint.h>
+#include <sys/units.h>
+
+/* Whether a law of glue holds a row */
+static PetscBool IsGlued(Contact contact, const ContactStepper *stepper, PetscInt i)
+{
+  return (PetscBool)(ContactStepperLaw(contact, stepper, i)->stiffness != NULL);
+}
+
+static PetscReal GetArea(Contact contact, PetscInt i)
+{
+  return contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]];
+}
+
+/* Of the glue of a row, with the numbers kept of its node [N/m]; 0: there is none */
+static PetscReal GetStiffness(Contact contact, const ContactStepper *stepper, const PetscReal history[], PetscInt i)
+{
+  if (!IsGlued(contact, stepper, i)) return 0;
+  return GetArea(contact, i) *
+         (*ContactStepperLaw(contact, stepper, i)->stiffness)(stepper->parameters + ROW_LAW_PARAMETERS * contact->rows.pair[i],
+                                                              history + ROW_LAW_HISTORY * ContactFirstRow(contact, i));
+}
+
+/* What the law of a row stores at a gap at the end of the step [J] */
+PetscReal ContactStepperStored(Contact contact, PetscInt i, PetscReal gap)
+{
+  const ContactStepper *stepper = (const ContactStepper *)contact->data;
+
+  return 0.5 * GetStiffness(contact, stepper, stepper->grown, i) * gap * gap;
+}
+
+/* What the law of a row has stored in the step, and its damage has taken [J] */
+PetscReal ContactStepperTaken(Contact contact, const ContactStepper *stepper, PetscInt i)
+{
+  return ContactStepperStored(contact, i, contact->end.gap[i]) -
+         0.5 * GetStiffness(contact, stepper, stepper->history, i) * PetscSqr(contact->start.gap[i]) + contact->energy.broken[i];
+}
+
+PetscErrorCode ContactStepperSetUpGlue(Contact contact, ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  stepper->glued = ContactAnyPairHas(contact, CONTACT_LAW_GLUE);
+  if (!stepper->glued) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->ops->stored = ContactStepperStored;
+  PetscCall(PetscCalloc3(ROW_LAW_PARAMETERS * contact->n_pairs, &stepper->parameters, ROW_LAW_HISTORY * contact->rows.n, &stepper->history,
+                         ROW_LAW_HISTORY * contact->rows.n, &stepper->grown));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].law == CONTACT_LAW_GLUE) ContactGetGlueParameters(contact, p, stepper->parameters + ROW_LAW_PARAMETERS * p);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactStepperDestroyGlue(ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree3(stepper->parameters, stepper->history, stepper->grown));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The gap along the normal below which contact holds a node of glue. A force that is constant in the step keeps it from going deeper, or,
+   of a node that was apart, keeps the mean gap of the step from being one of overlap: its work on the bodies is never positive. */
+static PetscReal GetLeast(Contact contact, const ContactStepper *stepper, PetscInt first, const PetscReal normal[])
+{
+  PetscReal start = 0;
+
+  if (ContactStepperTimes(contact, stepper, first) == 1) return 0;
+  for (PetscInt d = 0; d < contact->dim; d++) start += normal[d] * contact->start.gap[first + d];
+  return PetscMin(start, 0);
+}
+
+/* Numbers of the nodes of this rank: one of glue, in the order of the enumeration. Each row of a node has a component of its normal. */
+enum { GLUE_AREA, GLUE_NORMAL, GLUE_LEAST, GLUE_HISTORY };
+
+static PetscErrorCode FillNumbers(Contact contact, ContactStepper *stepper, PetscInt which)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    TransferRows       rows;
+
+    if (pair->law != CONTACT_LAW_GLUE) continue;
+    PetscCall(TransferGetRows(pair->transfer, &rows));
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+      const PetscInt   i = contact->rows.near[k], first = ContactFirstRow(contact, i);
+      const PetscReal *normal = rows.normals + contact->dim * ((i - pair->begin) / pair->components);
+      PetscReal       *mine   = &stepper->mine[i];
+
+      if (which == GLUE_AREA) *mine = GetArea(contact, i);
+      else if (which == GLUE_NORMAL) *mine = normal[i - first];
+      else if (which == GLUE_LEAST) *mine = GetLeast(contact, stepper, first, normal);
+      else *mine = stepper->history[ROW_LAW_HISTORY * first + which - GLUE_HISTORY];
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* As a step begins, once its touching rows are listed: what the law of each node of glue is told, on all ranks */
+PetscErrorCode ContactStepperBeginGlue(Contact contact, ContactStepper *stepper)
+{
+  LawProblem *problem = &stepper->problem;
+
+  PetscFunctionBegin;
+  for (PetscInt which = 0; which < GLUE_HISTORY + ROW_LAW_HISTORY && stepper->glued; which++) {
+    PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
+    PetscCall(FillNumbers(contact, stepper, which));
+    PetscCall(ContactStepperGather(contact, stepper, stepper->mine, stepper->gathered));
+    for (PetscInt node = 0; node < problem->n_nodes; node++) {
+      const PetscInt     first = problem->begin[node], p = contact->ranks.row_pair[stepper->rows[first]];
+      const PetscScalar *value = stepper->gathered + first;
+      RowLawGlue        *glue  = &problem->glue[node];
+
+      glue->parameters = stepper->parameters + ROW_LAW_PARAMETERS * p;
+      glue->times      = ContactStepperRule(stepper, &contact->pairs[p])->shape == BODY_FORCE_CONSTANT ? 2 : 1;
+      if (which == GLUE_AREA) glue->area = PetscRealPart(value[0]);
+      else if (which == GLUE_LEAST) glue->least = PetscRealPart(value[0]);
+      else if (which >= GLUE_HISTORY) glue->history[which - GLUE_HISTORY] = PetscRealPart(value[0]);
+      for (PetscInt i = first; which == GLUE_NORMAL && i < problem->begin[node + 1]; i++)
+        glue->normal[i - first] = PetscRealPart(value[i - first]);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the end of a step: what laws keep of the nodes of a pair, and what its damage takes */
+static PetscErrorCode EndPair(Contact contact, ContactStepper *stepper, PetscInt p)
+{
+  const ContactPair *pair = &contact->pairs[p];
+  TransferRows       rows;
+
+  PetscFunctionBegin;
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+    const PetscInt first = contact->rows.near[k], node = (first - pair->begin) / pair->components;
+    const RowLaw  *law   = ContactStepperLaw(contact, stepper, first);
+    RowLawGlue     glue  = {.area = GetArea(contact, first), .parameters = stepper->parameters + ROW_LAW_PARAMETERS * p};
+    PetscReal     *grown = stepper->grown + ROW_LAW_HISTORY * first, gap[ROW_LAW_ROWS];
+
+    if (!law->stiffness || !law->grow) continue;
+    glue.times = ContactStepperTimes(contact, stepper, first);
+    PetscCall(PetscArraycpy(glue.normal, rows.normals + contact->dim * node, contact->dim));
+    PetscCall(PetscArraycpy(glue.history, stepper->history + ROW_LAW_HISTORY * first, ROW_LAW_HISTORY));
+    for (PetscInt c = 0; c < pair->components; c++)
+      gap[c] = (contact->end.gap[first + c] + (glue.times - 1) * contact->start.gap[first + c]) / glue.times;
+    PetscCall(PetscArraycpy(grown, glue.history, ROW_LAW_HISTORY));
+    (*law->grow)(pair->components, &glue, gap, grown);
+    for (PetscInt i = first; i < first + pair->components; i++)
+      contact->energy.broken[i] = 0.5 *
+                                  (GetStiffness(contact, stepper, stepper->history, i) -
+                                   GetStiffness(contact, stepper, stepper->grown, i)) *
+                                  contact->start.gap[i] * (glue.times == 1 ? contact->end.gap[i] : contact->start.gap[i]);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactStepperEndGlue(Contact contact, ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (contact->pairs[p].law == CONTACT_LAW_GLUE) PetscCall(EndPair(contact, stepper, p));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Collective */
+PetscErrorCode ContactStepperAcceptGlue(Contact contact, ContactStepper *stepper)
+{
+  PetscReal sum = 0;
+  PetscBool breaks;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGlueBreaks(contact, &breaks));
+  if (!breaks) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscArraycpy(stepper->history, stepper->grown, ROW_LAW_HISTORY * contact->rows.n));
+  for (PetscInt i = 0; i < contact->rows.n; i++) sum += contact->energy.broken[i];
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  contact->counts.glue_loss += sum;
+  if (sum != 0) PetscCall(PetscInfo(contact, "damage of glue takes %g J in the step\n", (double)sum));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactStepperVisitGlue(Contact contact, ContactStepper *stepper, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  if (!stepper->glued) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CheckpointVisitReals(checkpoint, "history of glue", ROW_LAW_HISTORY * contact->rows.n, stepper->history));
+  if (CheckpointLoads(checkpoint)) PetscCall(PetscArraycpy(stepper->grown, stepper->history, ROW_LAW_HISTORY * contact->rows.n));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactStepperViewGlue(Contact contact, const ContactStepper *stepper, PetscViewer viewer)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const RowLaw *law = &stepper->laws[2 * p + 1];
+
+    for (PetscInt k = 0; k < law->n_parameters; k++)
+      PetscCall(PetscViewerASCIIPrintf(viewer, "  %s of the glue of %s: %g%s\n", law->parameters[k].name, contact->pairs[p].name,
+                                       (double)stepper->parameters[ROW_LAW_PARAMETERS * p + k],
+                                       UnitsOf((PetscObject)contact, law->parameters[k].unit)));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
