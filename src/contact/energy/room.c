@@ -12,6 +12,8 @@
 */
 #include "energyimpl.h"
 
+#define ROUND_OFF_STRAIN PETSC_MACHINE_EPSILON /* what bodies at rest may have when their massless nodes have found their balance */
+
 /* Which bodies have been in one group in this step, in the attempts so far: those whose pairs touch are joined to it */
 void ContactFindGroups(Contact contact)
 {
@@ -287,7 +289,7 @@ PetscErrorCode ContactBeginEnergy(Contact contact)
   if (energy->begun) PetscFunctionReturn(PETSC_SUCCESS);
   energy->begun = PETSC_TRUE;
   PetscCall(GetOwnEnergy(contact, &energy->scale));
-  energy->at_rest = (PetscBool)(energy->scale <= 0);
+  energy->at_rest = (PetscBool)(energy->scale <= PetscSqr(ROUND_OFF_STRAIN) * contact->scale.force * contact->scale.length);
   energy->scale   = PetscMax(energy->scale, 0);
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] = energy->excess * energy->scale / contact->n_bodies;
   PetscFunctionReturn(PETSC_SUCCESS);
