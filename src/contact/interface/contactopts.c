@@ -176,8 +176,8 @@ static PetscErrorCode ReadRowSides(Contact contact)
 . -contact_type (schwarz|force|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
-. -contact_law (frictionless|tied|bonded|spring|coulomb)        - what the surfaces do to each other
-. -contact_law_<pair> (frictionless|tied|bonded|spring|coulomb) - the same of one pair
+. -contact_law (frictionless|tied|bonded|coulomb|...)           - what the surfaces do to each other
+. -contact_law_<pair> (frictionless|tied|bonded|coulomb|...)    - the same of one pair
 . -contact_<law>_<parameter> x, -contact_<law>_<parameter>_<pair> x - parameters of a law of glue, as -contact_spring_stiffness [N/m^3]
 . -contact_friction mu, -contact_friction_<pair> mu             - coefficient of friction of all pairs; of one
 . -contact_friction_kinetic mu, -contact_friction_decay d       - what it falls to with the speed v of sliding, as exp(-d v)

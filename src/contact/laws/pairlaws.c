@@ -45,7 +45,7 @@ static PetscErrorCode CheckLaw(Contact contact, ContactLaw law)
   `ContactSetGlueLaw()`, `CONTACT_LAW_FRICTION` by `ContactSetFrictionLaw()`
 
   Options Database Key:
-. -contact_law (frictionless|tied|bonded|spring|coulomb) - the law
+. -contact_law (frictionless|tied|bonded|coulomb|...) - the law
 
   Level: beginner
 
@@ -97,7 +97,7 @@ PetscErrorCode ContactGetLaw(Contact contact, ContactLaw *law)
 - law     - a `ContactLaw`; `CONTACT_LAW_GLUE` by `ContactSetPairGlueLaw()`, `CONTACT_LAW_FRICTION` by `ContactSetPairFrictionLaw()`
 
   Options Database Key:
-. -contact_law_<pair> (frictionless|tied|bonded|spring|coulomb) - the law of the pair, which is named as in -contact_pairs
+. -contact_law_<pair> (frictionless|tied|bonded|coulomb|...) - the law of the pair, which is named as in -contact_pairs
 
   Level: intermediate
 
