@@ -69,8 +69,8 @@ PetscErrorCode ContactStepperBeginSecants(Contact contact, ContactStepper *stepp
     StepperEntries *entries = &stepper->assembly.of_body[b];
 
     PetscCall(Copy(&entries->kept, same_size ? 0 : entries->kept.n_pairs, &entries->secants));
-    if (!contact->attempt.again || !entries->n || entries->alone) continue;
-    entries->corrected = PETSC_FALSE; /* a step that has failed may have corrected it */
+    if (!(contact->attempt.again || contact->energy.again) || !entries->n || entries->alone) continue;
+    entries->corrected = PETSC_FALSE; /* the attempt before at this step may have corrected it */
     stepper->assembled = -1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
