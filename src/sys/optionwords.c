@@ -47,6 +47,8 @@ static const struct {
     {"contact_rule", "sheet thin plate shell impulse restitution inelastic"},
     {"contact_law", "tie glue bond coulomb spring"},
     {"contact_spring_stiffness", "adhesive interface_stiffness glue_stiffness"},
+    {"contact_cohesive_strength", "cohesive delamination debonding czm"},
+    {"contact_cohesive_toughness", "fracture_energy fracture_toughness gc gic critical_energy_release_rate"},
     {"contact_friction", "friction mu friction_coefficient coefficient_of_friction"},
     {"contact_penalty", "penalty_parameter"},
     {"obstacles", "wall floor ground plane"},

@@ -64,6 +64,7 @@ PETSC_INTERN PetscErrorCode RowLawListGlue(PetscInt, const char *[], PetscInt *)
 
 /* The laws that Impakt brings. To add one: its file, and a line here. */
 #define ROW_LAWS(LAW)                                                                                                                      \
+  LAW(cohesive)                                                                                                                            \
   LAW(hold)                                                                                                                                \
   LAW(spring)                                                                                                                              \
   LAW(tie)                                                                                                                                 \
