@@ -29,9 +29,8 @@ static const KnownOption options[] = {
     {"bodies", OPTION_OF_BODY, "mass_type", "lumped|consistent|averaged",
      "mass matrix; averaged: the mean of the two others. Default averaged, but lumped for explicit bodies in 2-D and 3-D"},
     {"bodies", OPTION_OF_BODY, "mass_redistribute", "true|false|near|auto",
-     "whether contact nodes are massless. auto: their mass moves to inner neighbours in fine bodies, in coarse ones they move "
-     "as inner nodes do, and thin bodies and what may touch these keep it. true, the default: it moves; false: it stays; near: it moves "
-     "from nodes that "
+     "whether contact nodes are massless. auto, the default: their mass moves to inner neighbours in fine bodies, in coarse ones they move "
+     "as inner nodes do, and thin bodies and what may touch these keep it. true: it moves; false: it stays; near: it moves from nodes that "
      "face a partner at the start, and contact that comes to others is an error"},
     {"bodies", OPTION_OF_BODY, "mass_moments", "total|centre|inertia",
      "what that keeps: the total mass, its centre too, or (default) the moments of inertia too, where positive masses allow"},

@@ -1,5 +1,6 @@
 """A band on a drum: what its ends bear has the ratio exp(mu pi) of Euler and Eytelwein while all slides, and may have any smaller one while it sticks."""
 
+import h5py
 import numpy as np
 import pytest
 from cases import long, worst_energy_error
@@ -50,7 +51,7 @@ def test_turned_round_the_held_end_bears_less(impakt):
 def test_methods_and_inertia(options, impakt):
     run = impakt(f"{CAPSTAN} {options}")
     assert ratio(run) == pytest.approx(euler(0.3), rel=1e-4)  # measured: 1e-5 to 2e-5
-    assert worst_energy_error(run.summary) <= 1e-9
+    assert worst_energy_error(run.summary) <= 1e-8  # the band is thin: with inertia contact takes that of its nodes as they settle, measured 3e-9
 
 
 @pytest.mark.long
@@ -60,6 +61,26 @@ def test_band_that_stretches(impakt):
                  "-time_step 5e-4 -time_end 1")
     assert ratio(run) == pytest.approx(np.exp(0.3 * np.pi), rel=5e-3)  # measured: 2.7e-3
     assert run.summary["contact"]["friction_residual"] <= 1e-9
+
+
+@pytest.mark.parametrize("drum", ["", "-contact_type force -band_mass_redistribute true"])
+def test_band_stays_on_the_drum(drum, impakt):
+    """Nodes that slide by up to 0.025 of the radius end where the drum is, by their deformed positions, whether rows are laid ahead or again: 2e-9 measured. Those that
+    kept their planes were 3e-4 off it, and the ratio of tangential to normal force was 0.274 for 0.3."""
+    run = impakt(f"{CAPSTAN} -band_youngs_modulus 1e8 -band_material_type neo_hookean -band_ts_type alpha2 -band_density 1e4 -band_damping_mass 50 "
+                 f"-time_step 5e-4 -time_end 0.2 -output_fields fields.h5 {drum}")
+    with h5py.File(run.folder / "fields.h5") as file:
+        last = max(file["displacement"], key=int)
+        x = (file["mesh/positions"] + file["displacement"][last][()])[:, :2]
+        slid = np.linalg.norm(file["displacement"][last][:, :2], axis=1)
+        force, active = file["contact_force"][last][:, :2], file["contact_active"][last][()].ravel() > 0
+    radial = x / np.linalg.norm(x, axis=1)[:, None]
+    normal = np.sum(force * radial, axis=1)
+    across = np.abs(force[:, 0] * radial[:, 1] - force[:, 1] * radial[:, 0])
+    assert np.sum(active) > 60
+    assert slid[active].max() > 0.01 * RADIUS
+    assert np.abs(np.linalg.norm(x[active], axis=1) / RADIUS - 1).max() <= 1e-8
+    assert (across[active] / normal[active]).max() == pytest.approx(0.3, rel=1e-3)
 
 
 @pytest.mark.long
@@ -88,7 +109,7 @@ def test_sticks_below_the_ratio(impakt):
     """A band with inertia that is drawn at both ends, over a drum that stands still; at the left by 0.99 of the ratio times what the right end is drawn by."""
     run = impakt(f"{FREE} -band_boundary_traction_left 0,-{0.99 * euler(0.3)}*5e5*sin(pi*min(0.5,10*t))^2")
     late = run.history["time"][()] > 0.1
-    assert worst_energy_error(run.summary) <= 1e-9
+    assert worst_energy_error(run.summary) <= 1e-8  # measured: 5e-9, what nodes with mass lose as they settle
     assert run.summary["contact"]["friction_least"] >= -1e-12
     assert run.history[f"{PAIR}/sliding"][late].max() < 81  # some slide as far as waves stretch the band, but never all
     assert np.ptp(run.history["body/band/contact_position"][late, 0]) <= 1e-9  # of a radius of 1 m, measured: 7e-11; 5 % above the ratio 4e-5

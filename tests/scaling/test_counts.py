@@ -106,11 +106,11 @@ def test_small_bodies_in_contact_on_ranks(material, most, more):
 
 @pytest.mark.long
 def test_setup_of_small_bodies_on_ranks():
-    """What ranks tell each other for each disc more, from options to the end of a step. Measured: 145, of which 12 tell which elements
-    bound the step, and how massless nodes change the inertia; 20 steps of 160 of them took 22159
-    reductions, and 55793 where each mesh was made on the first rank and moved, and each vector and pair asked all ranks."""
+    """What ranks tell each other for each disc more, from options to the end of a step. Measured: 270, of which 125 are for the
+    mass by extrapolated velocities, and 12 tell which elements bound the step. 20 steps of 160 of them took 22159 with mass that moves, and 55793 where each mesh was made
+    on the first rank and moved, and each vector and pair asked all ranks."""
     few, many = (all_reductions(ARGUMENTS, discs(n, 5e-4), 2, 1) for n in (16, 32))
-    assert 0 < many - few <= 150 * 16
+    assert 0 < many - few <= 280 * 16
 
 
 @pytest.mark.parametrize("integrator", [*long("alpha2"), *validate("centraldifference")])

@@ -48,7 +48,7 @@ def model(name, of, kind, e=STEEL[0], yields=3e8, nu=STEEL[1], density=STEEL[2],
     """Elements that do not lock in bending, of implicit bodies (I) and explicit ones (E)."""
     flows = f"-{name}_yield_stress {yields:g} -{name}_hardening_modulus {e / 200:g}"
     return joined(
-        f"-{name}_material_type {of} -{name}_mass_redistribute auto -{name}_element_formulation {formulation or model_formulation(of, kind)}",
+        f"-{name}_material_type {of} -{name}_element_formulation {formulation or model_formulation(of, kind)}",
         material(name, e, nu, density),
         flows if of == "j2" else "",
         f"-{name}_ts_type centraldifference" if kind == "E" else "",

@@ -34,6 +34,7 @@ PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
   PetscCallMPI(MPI_Comm_size(comm, &(*body)->rows.size));
   (*body)->mass.type         = (BodyMassType)PETSC_DECIDE;
   (*body)->mass.redistribute = PETSC_TRUE;
+  (*body)->mass.automatic    = PETSC_TRUE;
   (*body)->mass.moments      = BODY_MASS_INERTIA;
   (*body)->springs.part      = PETSC_DECIDE;
   PetscCall(ElementCreate(comm, &(*body)->model.element));

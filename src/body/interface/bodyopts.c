@@ -143,7 +143,7 @@ static PetscErrorCode ReadStatic(Body body)
 . -<body>_<block>_material_type, ...                 - that of a block of the mesh, see `BodySetBlockMaterial()`
 . -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
 . -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in two and three dimensions
-. -<body>_mass_redistribute (true|false|near|auto)   - massless contact nodes: all (default), none, those that face a partner, or as is best
+. -<body>_mass_redistribute (true|false|near|auto)   - massless contact nodes: all, none, those that face a partner, or as is best (default)
 . -<body>_mass_moments (total|centre|inertia)        - what that keeps, default inertia
 . -<body>_ts_type (alpha2|centraldifference|static|rigid) - implicit, explicit, without inertia, or rigid, default alpha2
 . -<body>_rigid (true|false)                         - it does not deform, see `BodySetRigid()`

@@ -311,8 +311,8 @@ PetscErrorCode BodyGetMassType(Body body, BodyMassType *type)
 
   Input Parameters:
 + body         - the `Body`, not yet set up
-- redistribute - `PETSC_TRUE` (default): contact nodes are massless; a static body has no mass to move. Nodes that are tied to a body with
-                 the same integrator and step keep their mass unless this function says otherwise.
+- redistribute - `PETSC_TRUE`: contact nodes are massless; a static body has no mass to move. Until this function is called the body
+                 chooses, see `BodySetMassAutomatic()`, and nodes that are tied to a body with the same integrator and step keep their mass.
 
   Options Database Key:
 . -<body>_mass_redistribute (true|false) - massless contact nodes
@@ -374,7 +374,7 @@ PetscErrorCode BodySetMassRedistributeNear(Body body, PetscBool near)
 
   Input Parameters:
 + body      - the `Body`, before the contact is set up
-- automatic - `PETSC_TRUE`: as is best for body and pairs; `PETSC_FALSE`, as at first: as `BodySetMassRedistribute()` says
+- automatic - `PETSC_TRUE`, as at first: as is best for body and pairs; `PETSC_FALSE`: as `BodySetMassRedistribute()` says
 
   Options Database Key:
 . -<body>_mass_redistribute auto - it does

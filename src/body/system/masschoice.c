@@ -1,13 +1,16 @@
 /* What becomes of the mass of contact nodes where that is left to the body (-<body>_mass_redistribute auto). */
 #include <body/layout/bodyimpl.h>
 
-/* Where the contact nodes have no more than this part of the mass, and factors above this on the masses that are left leave moments of
-   inertia off by less than this part, factors are chosen before extrapolated velocities. Bars of 6 and 8 elements across have their first
-   frequencies within 1.1 and 0.8 % then, bars of 3 elements within 8 %, with a least factor of 0.97. Behind the front of a wave in a bar of
-   200 elements the contact force scatters by 1e-5 with a factor, by 2.5e-3 with extrapolated velocities. */
+/* Where the contact nodes have no more than this part of the mass, and factors on the masses that are left leave moments of inertia off by
+   less than this part, factors are chosen before extrapolated velocities; in explicit bodies that are thin, if they are above GOOD_FACTOR.
+   Bars of 6 and 8 elements across have their first frequencies within 1.1 and 0.8 % then, bars of 3 elements within 8 %. Behind the front
+   of a wave in a bar of 200 elements the contact force scatters by 1e-5 with a factor, by 2.5e-3 with extrapolated velocities. */
 #define SMALL_LAYER  0.2
 #define GOOD_FACTOR  (2. / 3.)
 #define GOOD_INERTIA 1e-3
+/* Explicit bodies that are thin keep their mass even where inner nodes span the body around those in contact, since massless layers cost
+   most of their steps: a bracket of two elements took twelve times as long. Bodies with so few nodes on their boundary cost little. */
+#define FEW_NODES 100
 
 /* The part of the mass that contact nodes have */
 static PetscErrorCode GetLayerPart(Body body, PetscReal *part)
@@ -57,9 +60,9 @@ PetscErrorCode BodyGetContactPart(Body body, PetscReal *part)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves mass, if a factor near one on the masses that are left keeps centre and moments of inertia, or where -<body>_mass_moments says that
-   less is enough */
-static PetscErrorCode TryFactor(Body body)
+/* Moves mass, if a factor of `least` or more on the masses that are left keeps centre and moments of inertia, or where
+   -<body>_mass_moments says that less is enough */
+static PetscErrorCode TryFactor(Body body, PetscReal least)
 {
   const BodyMass  before = body->mass;
   const PetscBool less   = (PetscBool)(before.moments != BODY_MASS_INERTIA);
@@ -69,7 +72,7 @@ static PetscErrorCode TryFactor(Body body)
   PetscCall(BodyFindOrphans(body, &bad));
   if (!bad) PetscCall(BodyFindMassFactor(body));
   for (PetscInt d = 0; d < 3 && !less; d++) bad = (PetscBool)(bad || body->mass.shift[d] != 0);
-  if (!less && (body->mass.least_factor < GOOD_FACTOR || body->mass.inertia_error > GOOD_INERTIA)) bad = PETSC_TRUE;
+  if (!less && (body->mass.least_factor < least || body->mass.inertia_error > GOOD_INERTIA)) bad = PETSC_TRUE;
   body->mass.moved = (PetscBool)!bad;
   if (body->mass.moved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecDestroy(&body->mass.orphans));
@@ -113,7 +116,7 @@ static PetscErrorCode FindThin(Body body, PetscInt n, const PetscInt boundary[])
   Level: developer
 
   Notes:
-  Where contact nodes have little of the mass, and a factor near one on the masses that are left keeps centre and moments of inertia to
+  Where contact nodes have little of the mass, and a factor on the masses that are left keeps centre and moments of inertia to
 1e-3, their mass moves to inner neighbours: waves do not feel that, and a lumped mass stays diagonal. Else their velocities are extrapolated
 from those of inner nodes, see extrapolation.c, if inner nodes span the body around each of them. Else they are to keep their mass.
 
@@ -123,8 +126,10 @@ from those of inner nodes, see extrapolation.c, if inner nodes span the body aro
 @*/
 PetscErrorCode BodyChooseMass(Body body, PetscInt n, const PetscInt boundary[], PetscBool *thin)
 {
-  BodyMass *mass = &body->mass;
+  BodyMass *mass  = &body->mass;
+  PetscInt  n_all = n;
   PetscReal part;
+  PetscBool factor;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -134,8 +139,13 @@ PetscErrorCode BodyChooseMass(Body body, PetscInt n, const PetscInt boundary[], 
   if (mass->automatic && mass->redistribute && body->integrator->has_inertia && !mass->decided) {
     mass->decided = PETSC_TRUE;
     PetscCall(GetLayerPart(body, &part));
-    if (part > 0 && (part <= SMALL_LAYER || mass->moments != BODY_MASS_INERTIA)) PetscCall(TryFactor(body));
-    if (part > 0 && !mass->moved && body->integrator->divides_by_mass) PetscCall(FindThin(body, n, boundary));
+    factor = (PetscBool)(part > 0 && (part <= SMALL_LAYER || mass->moments != BODY_MASS_INERTIA));
+    if (factor) PetscCall(TryFactor(body, GOOD_FACTOR));
+    if (part > 0 && !mass->moved && body->integrator->divides_by_mass) {
+      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_all, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
+      if (n_all > FEW_NODES) PetscCall(FindThin(body, n, boundary));
+    }
+    if (factor && !mass->moved && !mass->n_keep) PetscCall(TryFactor(body, 0));
     if (part > 0 && !mass->moved && !mass->n_keep) PetscCall(BodyFindExtrapolation(body));
     mass->extrapolate = (PetscBool)(mass->extrapolation && !mass->n_keep);
   }
