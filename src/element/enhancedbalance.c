@@ -4,6 +4,9 @@
 
 #define MAX_ITERATIONS 40
 #define STRAIN_STEP    1e-8 /* of differences: small against strains at which metals flow, large against round-off */
+#define RELATIVE       1e-9 /* part of the strain that amplitudes change by at last */
+/* Or the strain itself: stresses follow from 1 + H, whose round-off smaller strains are. Elements that fly freely have no others. */
+#define ROUND_OFF (50 * PETSC_MACHINE_EPSILON)
 
 void EnhancedPrepare(Element element, PetscInt e, const PetscScalar u[], Enhanced *enhanced)
 {
@@ -268,7 +271,7 @@ PetscErrorCode EnhancedBalance(const Solid *solid, Enhanced *enhanced, PetscReal
     PetscCall(EnhancedSolve(n, 1, factors, change));
     if (isnan(change[0])) break;
     /* what is left after a step is of the size of its square, relative to the strain where the material is not linear */
-    last = (PetscBool)(solid->linear || LargestStrain(enhanced, change) <= 1e-9 * strain);
+    last = (PetscBool)(solid->linear || LargestStrain(enhanced, change) <= PetscMax(RELATIVE * strain, ROUND_OFF));
     for (PetscInt i = 0; i < n; i++) {
       before -= change[i] * f[enhanced->fixed + i];
       alpha[i] += change[i];

@@ -10,7 +10,7 @@
 #define GOOD_INERTIA 1e-3
 /* Explicit bodies that are thin keep their mass even where inner nodes span the body around those in contact, since massless layers cost
    most of their steps: a bracket of two elements took twelve times as long. Bodies with so few nodes on their boundary cost little. */
-#define FEW_NODES 100
+#define FEW_NODES 30
 
 /* The part of the mass that contact nodes have */
 static PetscErrorCode GetLayerPart(Body body, PetscReal *part)
