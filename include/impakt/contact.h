@@ -150,19 +150,6 @@ E*/
 typedef enum { SCHWARZ_WAVEFORM_LINEAR, SCHWARZ_WAVEFORM_CONSTANT } SchwarzWaveform;
 
 /*E
-   SchwarzSweepType - whether the bodies of a sweep wait for each other's answer
-
-   Values:
-+ `SCHWARZ_SWEEP_MULTIPLICATIVE` - one takes displacements, the other the reactions that these have brought
-- `SCHWARZ_SWEEP_ADDITIVE`       - both take the forces that the sweep before has ended with
-
-   Level: advanced
-
-.seealso: `ContactSchwarzSetSweepType()`
-E*/
-typedef enum { SCHWARZ_SWEEP_MULTIPLICATIVE, SCHWARZ_SWEEP_ADDITIVE } SchwarzSweepType;
-
-/*E
    SchwarzRelaxation - relaxation of the plain alternation
 
    Values:
@@ -412,7 +399,6 @@ PETSC_EXTERN PetscErrorCode ContactSchwarzSetRobinParameter(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetTraction(Contact, BodyTractionType);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetTractionWaveform(Contact, SchwarzWaveform);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetSweepType(Contact, SchwarzSweepType);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetPredictor(Contact, SchwarzPredictor);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetSwapSides(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetRelaxation(Contact, SchwarzRelaxation);

@@ -1,6 +1,8 @@
 /* Option hygiene: every option that is given must have been read by somebody. */
+#define _POSIX_C_SOURCE 200809L /* strcasecmp() */
 #include <impakt.h>
 #include <string.h>
+#include <strings.h>
 #include "names.h"
 #include "optionstext.h"
 #include "optionwords.h"
@@ -42,6 +44,30 @@ static const char *const late_options[] = {"schwarz_snes_view",
                                            "x_virtual",
                                            "on_error_abort",
                                            "on_error_mpiabort"};
+
+/* Options that are gone, with what happens instead: they are accepted, so that older options files run */
+static const struct {
+  const char *name, *now;
+} gone_options[] = {
+    {"schwarz_sweep", "in each sweep the second body of a pair takes the reactions of the first, as with multiplicative"},
+};
+
+/* Warns of an option that is gone, and counts it as read */
+static PetscErrorCode AcceptGone(const char name[], const char value[], PetscBool *gone)
+{
+  PetscFunctionBegin;
+  *gone = PETSC_FALSE;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(gone_options) && !*gone; k++) {
+    char option[PETSC_MAX_OPTION_NAME];
+
+    if (strcasecmp(name, gone_options[k].name) != 0) continue;
+    PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", name));
+    PetscCall(PetscOptionsHasName(NULL, NULL, option, gone));
+    PetscCall(PetscFPrintf(PETSC_COMM_WORLD, stderr, "impakt: warning: %s%s%s has no effect any more: %s; leave it out\n", option,
+                           value && value[0] ? " " : "", value ? value : "", gone_options[k].now));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* Why nobody has read an option, and what to do */
 static PetscErrorCode FindReason(const char name[], PetscInt n, const char *const bodies[], char reason[], size_t size)
@@ -132,7 +158,7 @@ static PetscErrorCode AddShared(Unread *unread, PetscInt n, const char *const bo
 
   Note:
   To be called when everything has been set up and nothing been computed. Names the option that may have been meant, by letters or by
-  meaning; what an option needs beside it; and the list that an option is left over from.
+  meaning; what an option needs beside it; and the list that an option is left over from. An option that is gone brings a warning.
 
 .seealso: `ImpaktPrintOptions()`
 @*/
@@ -151,6 +177,7 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
 
     for (size_t k = 0; k < sizeof(late_options) / sizeof(late_options[0]) && !late; k++)
       PetscCall(PetscStrcmp(names[i], late_options[k], &late));
+    if (!late) PetscCall(AcceptGone(names[i], values[i], &late));
     if (late) continue;
     PetscCall(OptionsFindShared(names[i], values[i], shared, sizeof(shared)));
     if (shared[0]) { /* it has been given to all bodies, some of which have no use for it */

@@ -271,10 +271,6 @@ static const KnownOption options[] = {
     {"schwarz", OPTION_OF_RUN, "schwarz_relaxation", "fixed|aitken", "whether nrichardson adapts its relaxation, default fixed"},
     {"schwarz", OPTION_OF_RUN, "schwarz_traction", "internal|reaction",
      "nodal force handed to the Neumann side: without or with inertia, default internal"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_sweep", "multiplicative|additive",
-     "whether the second body of a pair takes the reactions of the first in a sweep (default), or both the forces that the sweep before "
-     "has "
-     "ended with; additive goes with newtonls and massless contact nodes"},
     {"schwarz", OPTION_OF_RUN, "schwarz_traction_waveform", "linear|constant",
      "traction over the substeps of a partner that makes more of them, default linear"},
     {"schwarz", OPTION_OF_RUN, "schwarz_transmission", "dirichlet_neumann|robin|impedance",

@@ -136,6 +136,28 @@ def test_no_file_repeats_an_option(words, tmp_path):
     refused(words("every.opts"), [f"'every.opts', line {len(files) + 1}", "without a -prefix_push"])
 
 
+# Options that are gone, with a value, and what the warning says that happens instead
+GONE = {"-schwarz_sweep": ("additive", "the second body of a pair takes the reactions of the first")}
+
+
+@pytest.mark.parametrize("option", list(GONE))
+@pytest.mark.parametrize(("method", "ranks"), [("schwarz", 1), ("schwarz", 3), ("penalty", 1)])
+def test_option_that_is_gone(option, method, ranks, impakt):
+    """One warning, and the same run as without the option, to the last bit, whatever the method."""
+    value, now = GONE[option]
+    options = f"-options_file options/impact-high-speed.opts -exact none -time_end 2e-5 -contact_type {method}"
+    without, run = impakt(options, ranks), impakt(f"{options} {option} {value}", ranks)
+    told = [line for line in run.stderr.splitlines() if option in line]
+    assert len(told) == 1
+    assert told[0].startswith(f"impakt: warning: {option} {value} has no effect any more: ")
+    assert now in told[0]
+    assert option not in without.stderr
+    for name in ("contact/left:right/force", "body/left/kinetic", "body/right/momentum"):
+        values = [r.history[name][()] for r in (without, run)]
+        assert values[0].any()
+        assert (values[0] == values[1]).all(), name
+
+
 TWO = """-bodies a,b
 -obstacles floor,wall
 -contact_pairs a:b,b:floor

@@ -75,7 +75,7 @@ static PetscErrorCode RefuseOptionsOfTraces(Contact contact, const char body[])
 {
   const char *const names[] = {"-schwarz_transmission", "-schwarz_traction",    "-schwarz_traction_waveform", "-schwarz_predictor",
                                "-schwarz_relaxation",   "-schwarz_convergence", "-schwarz_unconverged",       "-schwarz_recheck",
-                               "-schwarz_condense",     "-schwarz_sweep",       "-schwarz_dense_limit",       "-contact_swap_sides"};
+                               "-schwarz_condense",     "-schwarz_dense_limit", "-contact_swap_sides"};
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(names); k++) {

@@ -56,7 +56,6 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
                              schwarz->recheck, &schwarz->recheck, NULL));
   PetscOptionsEnd();
   PetscCall(SchwarzReadCondensation(contact));
-  PetscCall(SchwarzReadSweepType(contact));
   PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-schwarz_robin_parameter %g must be positive", (double)schwarz->robin_parameter);
   PetscCheck(!set_impedance || schwarz->impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -124,7 +123,6 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
              "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
   PetscCall(SchwarzChooseMode(contact));
-  PetscCall(SchwarzSetUpSweepType(contact));
   if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscCall(ContactWarnOfStages(contact, PETSC_TRUE));
   PetscCall(SchwarzSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
@@ -138,7 +136,6 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
-  PetscCall(SchwarzCheckSweepType(contact));
   if (schwarz->newton) PetscCall(SchwarzPreferForces(contact));
   PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
   PetscCall(PetscObjectTypeCompare((PetscObject)line_search, LINESEARCH_FULL_STEP, &schwarz->full_steps));
@@ -191,9 +188,8 @@ static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
   PetscFunctionBegin;
   PetscCall(SNESGetType(schwarz->outer.snes, &type));
   PetscCall(PetscViewerASCIIPrintf(
-      viewer, "  outer iteration %s%s%s, %s conditions, %s traction, %s predictor, tolerances %g%s and %g relative\n", type,
-      schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN ? " (Aitken)" : "",
-      schwarz->sweep == SCHWARZ_SWEEP_ADDITIVE ? ", additive sweeps" : "", Transmissions[schwarz->transmission],
+      viewer, "  outer iteration %s%s, %s conditions, %s traction, %s predictor, tolerances %g%s and %g relative\n", type,
+      schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[schwarz->transmission],
       schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole",
       Predictors[schwarz->predictor], (double)schwarz->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)schwarz->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -259,7 +255,6 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 .  -schwarz_traction_waveform (linear|constant)                  - traction of a partner with longer substeps in the course of them
 .  -contact_constraint (gap|gap_rate)                            - close the gap in the first step in contact, or keep it as it is at its
                                                                    start
-.  -schwarz_sweep (multiplicative|additive)                      - whether bodies of a sweep wait for each other's answer
 .  -contact_swap_sides (true|false)                              - whether the sides change with every controller step
 .  -schwarz_convergence (auto|position|contact_position|mismatch) - what is compared with the tolerances from sweep to sweep: the change of
                                                                    all positions (the paper's, for which sweeps integrate every body), of

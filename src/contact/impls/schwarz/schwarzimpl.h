@@ -102,7 +102,6 @@ typedef struct {
   SchwarzPredictor    predictor;
   SchwarzWaveform     waveform;
   SchwarzCondense     condense;
-  SchwarzSweepType    sweep;
   PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
   PetscReal           impedance;       /* N s/m for each unit of area; 0: that of plane waves in the Neumann side */
   PetscInt            dense_limit;     /* unknowns of the interface up to which its matrices are dense */
@@ -245,9 +244,6 @@ PETSC_INTERN PetscErrorCode SchwarzTakeActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzUpdateActiveSet(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzBreakCycle(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzSweep(SNES, Vec, Vec, void *);
-PETSC_INTERN PetscErrorCode SchwarzReadSweepType(Contact);
-PETSC_INTERN PetscErrorCode SchwarzSetUpSweepType(Contact);
-PETSC_INTERN PetscErrorCode SchwarzCheckSweepType(Contact);
 PETSC_INTERN PetscErrorCode SchwarzReportByForce(Contact, PetscInt);
 PETSC_INTERN PetscReal      SchwarzOffset(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscErrorCode SchwarzPredict(Contact);

@@ -134,7 +134,6 @@ static void refusals(void **state)
   create(simulation);
   contact = simulation->contact;
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetRobinParameter(contact, 0));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "order of sweeps", ContactSchwarzSetSweepType(contact, (SchwarzSweepType)2));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetImpedanceParameter(contact, -1));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must not be negative", ContactSchwarzSetDenseLimit(contact, -1));
   for (int value = -1; value <= 4; value += 5) { /* one less and one more than there are, of the largest enum */
