@@ -284,7 +284,7 @@ static PetscErrorCode FindLaw(const char option[], char law[], size_t size)
   for (size_t i = 0; i < n && !law[0]; i++) {
     const char *at = options[i].value;
 
-    if (strcmp(options[i].name, "contact_law")) continue;
+    if (strcmp(options[i].name, "contact_law") != 0) continue;
     for (size_t length = strcspn(at, "|"); length && !law[0]; at += length + (at[length] == '|'), length = strcspn(at, "|")) {
       char begin[128];
 
@@ -307,7 +307,7 @@ PetscErrorCode OptionsFindNeed(const char option[], char need[], size_t size)
     char chosen[64] = "";
 
     PetscCall(PetscOptionsGetString(NULL, NULL, "-contact_law", chosen, sizeof(chosen), NULL));
-    if (strcmp(chosen, law)) PetscCall(PetscSNPrintf(need, size, "-contact_law %s", law));
+    if (strcmp(chosen, law) != 0) PetscCall(PetscSNPrintf(need, size, "-contact_law %s", law));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(needs); i++) {
