@@ -41,7 +41,7 @@ static PetscErrorCode ViewLayer(Body body, PetscViewer viewer)
   const BodyMass *mass = &body->mass;
 
   PetscFunctionBegin;
-  if (mass->extrapolate)
+  if (mass->extrapolation)
     PetscCall(PetscViewerASCIIPrintf(viewer,
                                      "  massless contact layer: moves as inner nodes do, with weights of up to %g in sum; mass, centre and "
                                      "moments of inertia are kept\n",

@@ -73,7 +73,6 @@ typedef struct {
   PetscBool         automatic;    /* the body chooses whether and how they become massless, see masschoice.c */
   PetscBool         decided;      /* it has */
   PetscBool         moved;        /* the mass has found a place, with factor and orphans */
-  PetscBool         extrapolate;  /* massless nodes move as inner nodes do, see extrapolation.c */
   PetscBool         chosen;       /* program or options have said whether they are massless */
   Vec               row_sum;      /* M 1: the lumped mass */
   Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
@@ -97,7 +96,7 @@ typedef struct {
   PetscReal       inertia_error; /* largest relative change of a moment of inertia about an axis through the centre; 0: they are kept */
   PetscReal       turn_error;    /* the same of axes about which nothing that is held keeps the body from turning */
   /* of a body that extrapolates, over all ranks */
-  Mat       extrapolation;     /* E, nodes x nodes: velocities from those of inner nodes; NULL until BodyFindExtrapolation() */
+  Mat       extrapolation;     /* E, nodes x nodes: velocities from those of inner nodes; NULL: massless nodes do not move as these */
   PetscReal extrapolated_by;   /* the largest sum of the absolute weights of a node */
   PetscInt  n_contact, n_keep; /* contact nodes; those around which inner nodes do not span the body */
   PetscReal keeps_at[3];       /* where one of the latter is [m] */

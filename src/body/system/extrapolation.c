@@ -330,7 +330,8 @@ static PetscErrorCode NotePlace(Body body, const PetscBool keeps[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* E, and how many contact nodes there are around which inner nodes do not span the body: they lie in a plane, or too near to one */
+/* E, if inner nodes span the body, and how many contact nodes there are around which inner nodes do not span the body: they lie in a plane,
+ * or too near to one */
 PetscErrorCode BodyFindExtrapolation(Body body)
 {
   const PetscInt n    = body->mesh.owned_nodes;
@@ -351,5 +352,6 @@ PetscErrorCode BodyFindExtrapolation(Body body)
   PetscCall(NotePlace(body, keeps));
   PetscCall(PetscFree(keeps));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &body->mass.extrapolated_by, 1, MPIU_REAL, MPIU_MAX, comm));
+  if (body->mass.n_keep) PetscCall(MatDestroy(&body->mass.extrapolation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

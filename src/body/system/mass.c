@@ -67,7 +67,7 @@ PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
   PetscReal       mean = 1;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetElementMassParts(body, e, (PetscBool)(body->mass.redistribute && !body->mass.extrapolate), lumped, M));
+  PetscCall(BodyGetElementMassParts(body, e, (PetscBool)(body->mass.redistribute && !body->mass.extrapolation), lumped, M));
   if (body->mass.factor) mean = MeanFactor(body, nodes);
   for (PetscInt i = 0; i < n * n && mean != 1; i++) M[i] *= mean;
   for (PetscInt a = 0; a < n; a++) M[a * n + a] += body->mass.factor ? body->mass.factor[nodes[a]] * lumped[a] : lumped[a];
@@ -148,13 +148,13 @@ PetscErrorCode BodySetUpMass(Body body)
 
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
-  if (body->mass.redistribute && !body->mass.extrapolate && !body->mass.moved) {
+  if (body->mass.redistribute && !body->mass.extrapolation && !body->mass.moved) {
     PetscCall(BodyFindOrphans(body, NULL));
     PetscCall(BodyFindMassFactor(body));
   }
   PetscCall(AssembleMass(body));
   if (body->mass.orphans) PetscCall(AddOrphans(body));
-  if (body->mass.redistribute && body->mass.extrapolate) PetscCall(BodyExtrapolateMass(body));
+  if (body->mass.redistribute && body->mass.extrapolation) PetscCall(BodyExtrapolateMass(body));
   PetscCall(BodySetUpMassProduct(body));
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));

@@ -60,24 +60,35 @@ PetscErrorCode BodyGetContactPart(Body body, PetscReal *part)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves mass, if a factor of `least` or more on the masses that are left keeps centre and moments of inertia, or where
-   -<body>_mass_moments says that less is enough */
-static PetscErrorCode TryFactor(Body body, PetscReal least)
+/* Forgets a factor and what it changes */
+static PetscErrorCode DropFactor(BodyMass *mass)
 {
-  const BodyMass  before = body->mass;
-  const PetscBool less   = (PetscBool)(before.moments != BODY_MASS_INERTIA);
+  PetscFunctionBegin;
+  PetscCall(VecDestroy(&mass->orphans));
+  PetscCall(PetscFree(mass->factor));
+  mass->moved        = PETSC_FALSE;
+  mass->least_factor = mass->largest_factor = 0;
+  mass->inertia_error = mass->turn_error = 0;
+  PetscCall(PetscArrayzero(mass->shift, 3));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Moves mass, if a factor on the masses that are left keeps centre and moments of inertia, or where -<body>_mass_moments says that less is
+   enough. `good`: the factor is near one, too */
+static PetscErrorCode TryFactor(Body body, PetscBool *good)
+{
+  BodyMass       *mass = &body->mass;
+  const PetscBool less = (PetscBool)(mass->moments != BODY_MASS_INERTIA);
   PetscBool       bad;
 
   PetscFunctionBegin;
   PetscCall(BodyFindOrphans(body, &bad));
   if (!bad) PetscCall(BodyFindMassFactor(body));
-  for (PetscInt d = 0; d < 3 && !less; d++) bad = (PetscBool)(bad || body->mass.shift[d] != 0);
-  if (!less && (body->mass.least_factor < least || body->mass.inertia_error > GOOD_INERTIA)) bad = PETSC_TRUE;
-  body->mass.moved = (PetscBool)!bad;
-  if (body->mass.moved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDestroy(&body->mass.orphans));
-  PetscCall(PetscFree(body->mass.factor));
-  body->mass = before;
+  for (PetscInt d = 0; d < 3 && !less; d++) bad = (PetscBool)(bad || mass->shift[d] != 0);
+  if (!less && mass->inertia_error > GOOD_INERTIA) bad = PETSC_TRUE;
+  mass->moved = (PetscBool)!bad;
+  if (bad) PetscCall(DropFactor(mass));
+  *good = (PetscBool)(mass->moved && (less || mass->least_factor >= GOOD_FACTOR));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,7 +105,6 @@ static PetscErrorCode FindThin(Body body, PetscInt n, const PetscInt boundary[])
   PetscCall(BodyFindExtrapolation(body));
   PetscCall(PetscFree(body->layer.contains));
   body->layer.contains = contains;
-  if (body->mass.n_keep) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&body->mass.extrapolation));
   body->mass.extrapolated_by = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -129,7 +139,7 @@ PetscErrorCode BodyChooseMass(Body body, PetscInt n, const PetscInt boundary[], 
   BodyMass *mass  = &body->mass;
   PetscInt  n_all = n;
   PetscReal part;
-  PetscBool factor;
+  PetscBool good = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -139,15 +149,13 @@ PetscErrorCode BodyChooseMass(Body body, PetscInt n, const PetscInt boundary[], 
   if (mass->automatic && mass->redistribute && body->integrator->has_inertia && !mass->decided) {
     mass->decided = PETSC_TRUE;
     PetscCall(GetLayerPart(body, &part));
-    factor = (PetscBool)(part > 0 && (part <= SMALL_LAYER || mass->moments != BODY_MASS_INERTIA));
-    if (factor) PetscCall(TryFactor(body, GOOD_FACTOR));
-    if (part > 0 && !mass->moved && body->integrator->divides_by_mass) {
+    if (part > 0 && (part <= SMALL_LAYER || mass->moments != BODY_MASS_INERTIA)) PetscCall(TryFactor(body, &good));
+    if (part > 0 && !good && body->integrator->divides_by_mass) {
       PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &n_all, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
       if (n_all > FEW_NODES) PetscCall(FindThin(body, n, boundary));
     }
-    if (factor && !mass->moved && !mass->n_keep) PetscCall(TryFactor(body, 0));
-    if (part > 0 && !mass->moved && !mass->n_keep) PetscCall(BodyFindExtrapolation(body));
-    mass->extrapolate = (PetscBool)(mass->extrapolation && !mass->n_keep);
+    if (mass->n_keep) PetscCall(DropFactor(mass));
+    else if (part > 0 && !mass->moved) PetscCall(BodyFindExtrapolation(body));
   }
   *thin = (PetscBool)(mass->n_keep > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -179,12 +187,8 @@ PetscErrorCode BodyKeepMass(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   BodyCheckNotSetUp(body);
   if (!mass->automatic || !mass->redistribute) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDestroy(&mass->orphans));
-  PetscCall(PetscFree(mass->factor));
+  PetscCall(DropFactor(mass));
   PetscCall(MatDestroy(&mass->extrapolation));
-  mass->redistribute = mass->extrapolate = mass->moved = PETSC_FALSE;
-  mass->least_factor = mass->largest_factor = 0;
-  mass->inertia_error = mass->turn_error = 0;
-  PetscCall(PetscArrayzero(mass->shift, 3));
+  mass->redistribute = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

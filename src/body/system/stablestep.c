@@ -55,7 +55,7 @@ PetscErrorCode BodyGetElementEigenvalue(Body body, PetscInt e, const PetscScalar
   PetscCall((*body->model.element->ops->stiffness)(body->model.element, e, u, K));
   PetscCall(BodyGetElementMass(body, e, of_nodes));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscBool moves = (PetscBool)(body->mass.extrapolate && IsMassless(body, nodes[i / dim]));
+    const PetscBool moves = (PetscBool)(body->mass.extrapolation && IsMassless(body, nodes[i / dim]));
 
     if (moves || !IsStill(body, nodes[i / dim], i % dim)) kept[n_kept++] = i;
     for (PetscInt j = 0; j < n && moves; j++) K[i * n + j] = K[j * n + i] = 0;
