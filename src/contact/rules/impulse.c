@@ -31,6 +31,7 @@ static void Bond(Contact contact, PetscInt i, PetscReal way)
   contact->start.gap[i] = -way;
 }
 
+/* Rows whose gap is round-off touch: of bodies that lie on each other and are pressed, else none has a force in the first step */
 static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
   const PetscReal half = 0.5 * contact->step;
@@ -41,7 +42,7 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
     const PetscBool tied    = contact->rows.tied[first];
     const PetscBool carried = (PetscBool)(tied || (contact->start.active[first] && contact->start.force[first] > 0));
     const PetscReal middle  = contact->start.gap[first] + half * stepper->rate[first];
-    const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && middle <= 0));
+    const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && middle <= stepper->problem.resolution));
 
     if (!touches && !stepper->touches[first]) continue; /* as it was in the last step */
     for (PetscInt i = first; i < first + pair->components; i++) {
