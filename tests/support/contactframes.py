@@ -71,6 +71,14 @@ class Frames:
         return np.array([self.field("contact_active", frame)[self.face] > 0 for frame in range(len(self.time))])
 
     @cached_property
+    def sag(self):
+        """By how much bent faces, which are polygons, deviate from arcs through their nodes, both faces together, at most: an eighth of the second differences. As they slide,
+        means of their gaps change by so much."""
+        faces = [face for face in (self.face, self.partner) if face is not None]
+        heights = [[np.diff(place[face] @ self.normal, 2) for face in faces] for place in (self.start + self.field("displacement", k)[:, :2] for k in range(len(self.time)))]
+        return max(sum(np.abs(bend).max(initial=0) for bend in frame) for frame in heights) / 8
+
+    @cached_property
     def joins(self):
         """Nodes that are closed, and were not a step before."""
         return np.vstack([np.zeros_like(self.closed[:1]), self.closed[1:] & ~self.closed[:-1]])

@@ -140,18 +140,20 @@ def impulse(run):
     return run.history[f"contact/{pair_of(run)}/impulse"][-1]
 
 
-def momentum_error(run, name):
-    """Change of a free body's momentum less the impulse of contact, by the largest momentum: largest at any time."""
+def momentum_error(run, name, load=0):
+    """Change of a free body's momentum less the impulse of contact, and of a constant load on it [N], by the largest momentum: largest at any time."""
     momentum = run.history[f"body/{name}/momentum"][()]
+    pushed = np.outer(run.history["time"][()], load * np.ones(momentum.shape[1]))
+    change = momentum - momentum[0] - pushed
     of_contact = run.history[f"contact/{pair_of(run)}/impulse"][()][:, : momentum.shape[1]]
     sign = 1 if pair_of(run).startswith(name) else -1
-    return min(np.abs(momentum - momentum[0] - side * of_contact).max() for side in (sign, -sign)) / np.abs(momentum).max()
+    return min(np.abs(change - side * of_contact).max() for side in (sign, -sign)) / max(np.abs(momentum).max(), np.abs(pushed).max())
 
 
-def kept_error(run, what, bodies):
-    """Change of the sum over all bodies of `momentum` or `angular_momentum`, by the largest of one: largest at any time."""
+def kept_error(run, what, bodies, least=0):
+    """Change of the sum over all bodies of `momentum` or `angular_momentum`, by the largest of one, or `least`: largest at any time."""
     of = [run.history[f"body/{body}/{what}"][()] for body in bodies]
-    return np.abs(sum(of) - sum(of)[0]).max() / np.abs(of).max()
+    return np.abs(sum(of) - sum(of)[0]).max() / max(np.abs(of).max(), least)
 
 
 def sweeps(run):

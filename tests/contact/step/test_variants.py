@@ -58,7 +58,7 @@ def variant(seed):
     velocity = (draw.uniform(-3, 3), -(10 ** draw.uniform(-0.3, 1.2)))
     gap, shift = 10 ** draw.uniform(-6, math.log10(5e-5)), draw.choice((0, draw.uniform(-0.05, 0.05)))
     frame, units = draw.choice(((0, 0), (draw.uniform(-20, 20), draw.uniform(-20, 20)))), draw.choice((SI, SI, MM_T_S))
-    v = SimpleNamespace(scene=scene, names=names, kinds=kinds[: len(names)], of=of, step=step, substeps=substeps, mu=mu, ranks=draw.choice((1, 1, 2, 3)), free=[], rows=0, other=1, units=SI, edge=ELEMENT, turns=(1e-6, 2e-5), newton=1e-9)
+    v = SimpleNamespace(scene=scene, names=names, kinds=kinds[: len(names)], of=of, step=step, substeps=substeps, mu=mu, ranks=draw.choice((1, 1, 2, 3)), free=[], rows=0, other=1, units=SI, edge=ELEMENT, turns=(1e-6, 2e-5), newton=1e-9, load=0, way=0, pressed=scene == "pressed", speed=0)
     v.massless = [thick and name not in ("sheet", "p") for name in names]  # bodies of one element through the thickness have no inner nodes
     v.rule = "linear" if all(v.massless) else "impulse"
     kept = [not moved for moved in v.massless]
@@ -114,13 +114,17 @@ def check_momenta(v, run):
     roundoff = 30 * np.finfo(float).eps * (WAVE * v.step / v.edge) ** 2 if "I" in v.kinds else 0
     newton = v.newton if v.rule == "linear" and v.of != "linear_elastic" else 0
     if len(run.history["contact"]) == 1:
-        assert momentum_error(run, v.free[0]) <= max(1e-12, roundoff, newton)
+        assert momentum_error(run, v.free[0], v.load) <= max(1e-12, roundoff, newton)
     if len(v.free) == 1:
         return
-    assert kept_error(run, "momentum", v.free) <= max(1e-12, roundoff, newton)
-    if v.of != "linear_elastic" and v.rule == "impulse" and not v.mu:
-        # Friction acts across the gap, and linear bodies that bend do not keep it themselves; nor does the trapezoidal rule in steps without contact, measured 1.1e-5, of thin bodies, which bend, 5.1e-4; a quarter of the step: a fifth of it. Thin explicit ones of 46 and 107 substeps 2.9e-5
-        assert kept_error(run, "angular_momentum", v.free) <= (v.turns[0] if "I" not in v.kinds else v.turns[1])
+    assert kept_error(run, "momentum", v.free, np.abs(v.load).max() * run.history["time"][-1]) <= max(1e-12, roundoff, newton)
+    if v.of != "linear_elastic" and v.rule == "impulse" and not v.mu and not np.any(v.load):
+        # Friction acts across the gap, and linear bodies that bend do not keep it themselves; nor does the trapezoidal rule in steps without contact, measured 1.1e-5, of thin bodies, which bend, 5.1e-4; a quarter of the step: a fifth of it. Thin explicit ones of 46 and 107 substeps 2.9e-5.
+        # Rows lie where bodies would be in the middle of a step with their velocities at its start: a hit that changes these across its normal by up to half of its speed leaves its impulse a lever of an eighth of the way in a step. Sheet between blocks, 38 times the step that resolves the hit: 1.1e-2, with steps of 1/2, 1/4, 1/8, 1/16 of it 7.1e-3, 1.8e-3, 2.6e-4, 9e-5
+        impulse = sum(pair["force"][()].sum() for pair in run.history["contact"].values()) * v.step
+        largest = max(np.abs(run.history[f"body/{name}/angular_momentum"][()]).max() for name in v.free)
+        lever = v.step * v.speed * v.units[0] / 8
+        assert kept_error(run, "angular_momentum", v.free) <= (v.turns[0] if "I" not in v.kinds else v.turns[1]) + lever * impulse / largest
 
 
 def roundoff(run, metre, scale):
@@ -134,7 +138,7 @@ def check_loss(v, run, frames):
     scale = run.history["energy/scale"][()].max()
     taken = np.diff(run.history["contact_loss"][()])
     exact = v.of == "linear_elastic" and not (v.scene == "plate" and "E" in v.kinds)
-    assert (taken >= -roundoff(run, v.units[0], scale) - (0 if exact else TOLERANCE * scale)).all()
+    assert (taken >= -roundoff(run, v.units[0], scale) - (0 if exact else TOLERANCE * (scale + np.abs(v.load).sum() * v.way))).all()
     if frames is None:
         return
     metre, kilogram = v.units
@@ -145,20 +149,20 @@ def check_loss(v, run, frames):
 
 
 def check_gaps(v, run, frames):
-    """Overlap of a node that joins, of how its gap closes in a step and of waves that come in it: measured up to 1.42 times the first. Gaps of faces that stay closed do not change."""
+    """Overlap of a node that joins, of how its gap closes in a step and of waves that come in it: measured up to 1.42 times the first. Gaps of faces that stay closed do not change, but as bent ones slide."""
     closing = frames.closing.max()
     gaps = np.nan_to_num(frames.gaps, nan=1)
     if v.rule == "linear":
         return
     if closing * v.step > 1e-9 * ELEMENT * v.units[0]:
         assert -gaps.min() <= 1.5 * v.step * closing
-    if v.scene == "pressed":
+    if v.pressed:
         closed = frames.closed.all(1)
         growth = np.where((closed[1:] & closed[:-1])[:, None], np.diff(gaps, axis=0), 0).cumsum(0)
-        assert -growth.min() <= 1e-6 * ELEMENT * max(1, v.steps / 1000)
+        assert -growth.min() <= 1e-6 * ELEMENT * v.units[0] * max(1, v.steps / 1000) + frames.sag
 
 
-THIN = (1, 2, 4)
+THIN = (1, 2, 4, 10, 24, 47, 107)  # each less than 2 s of a core; of the last two, loads press bodies that get a pulse, and that are at rest
 QUICK = (0, 3, 4, 6, 11, 12, 14, 17, 20, 24, 31, 58)  # each less than 2 s of a core, all scenes and rules among them
 
 
@@ -177,9 +181,9 @@ def test_variant(seed, impakt):
         check_gaps(v, run, frames)
 
 
-@pytest.mark.parametrize("seed", [*THIN, *validate(*(seed for seed in range(60) if seed not in THIN))])
+@pytest.mark.parametrize("seed", [*THIN, *validate(*(seed for seed in range(180) if seed not in THIN))])
 def test_thin_variant(seed, impakt, tmp_path):
-    """Sheets, plates, brackets, tubes, on an obstacle, on a thick block, on each other, with both faces in contact."""
+    """Sheets, plates, brackets, tubes, on an obstacle, on a thick block, on each other, with both faces in contact; pressed by loads; in space turned, shifted, in a moving frame."""
     v = thin_variant(random.Random(seed), tmp_path)
     run = impakt(joined(v.options, FIELDS if v.normal is not None else ""), v.ranks, timeout=120)
     assert run.summary["contact"]["steps_in_contact"] > 0
@@ -191,6 +195,8 @@ def test_thin_variant(seed, impakt, tmp_path):
         check_loss(v, run, frames)
     if frames is not None:
         check_gaps(v, run, frames)
+    if v.at_rest:  # of bodies whose stress is that of the loads
+        assert max(np.abs(pair["gap"][()]).max() for pair in run.history["contact"].values()) <= 2e-6 * ELEMENT * v.units[0]
 
 
 LONG = [("II", (1, 1)), ("IE", (1, 19)), ("EI", (23, 1)), ("EE", (21, 20))]
@@ -208,3 +214,21 @@ def test_pressed_for_long(kinds, substeps, at_rest, impakt):
     assert energy(run).max() <= GAIN["linear" if kinds == "II" else "explicit"]
     if at_rest:
         assert np.abs(run.history[f"contact/{pair_of(run)}/gap"][()]).max() <= 2e-6 * ELEMENT
+
+
+@pytest.mark.validate
+@pytest.mark.parametrize("seed", [109, 143, 172, 232, 286, 317])
+def test_thin_pressed_for_long(seed, impakt, tmp_path):
+    """Sheets on each other, on a block, between blocks, pressed by loads, with a pulse and at rest, for 10 ms: nothing is gained."""
+    v = thin_variant(random.Random(seed), tmp_path)
+    assert v.pressed
+    end = math.ceil(1e-2 / v.step) * v.step
+    run = impakt(re.sub(r"-time_end \S+", f"-time_end {end:.17g}", v.options), timeout=300)
+    assert run.summary["contact"]["steps_in_contact"] > 0.5 * len(run.history["time"])
+    scale = run.history["energy/scale"][()].max()
+    if v.rule == "impulse":
+        assert (np.diff(run.history["contact_loss"][()]) >= -roundoff(run, 1, scale)).all()
+    assert energy(run).max() <= GAIN["cap" if v.rule == "linear" else "linear" if "E" not in v.kinds else "explicit"]
+    assert kept_error(run, "momentum", v.free, np.abs(v.load).max() * end) <= 1e-10  # the round-off of so many steps, of implicit bodies; measured 4e-11
+    if v.at_rest:
+        assert max(np.abs(pair["gap"][()]).max() for pair in run.history["contact"].values()) <= 2e-6 * ELEMENT
