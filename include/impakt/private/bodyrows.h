@@ -169,7 +169,7 @@ typedef enum { BODY_FORCE_LINEAR, BODY_FORCE_CONSTANT } BodyForceShape;
 PETSC_EXTERN PetscErrorCode BodySetConstantForces(Body, PetscInt, const PetscInt[], const PetscReal[], const PetscReal[],
                                                   const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetNodalDiagonal(Body, BodyForceShape, Vec *);
-PETSC_EXTERN PetscErrorCode BodyCreateSlabFunctions(Mat, Vec, PetscInt, IS, Mat *);
+PETSC_EXTERN PetscErrorCode BodyCreateSlabFunctions(Mat, Vec, PetscInt, IS, PetscInt, Mat *);
 PETSC_EXTERN PetscErrorCode BodyGetNodalCompliance(Body, BodyForceShape, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *,
                                                    const PetscScalar *[]);
 

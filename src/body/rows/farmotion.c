@@ -11,10 +11,6 @@
 */
 #include <body/layout/bodyimpl.h>
 
-/* Layers of elements beside the surface. With two there is an iteration more, with four half of one less at long steps, for which factors
-   take 1.3 times as long. */
-#define LAYERS 3
-
 /* Edge of a coarse cell, in edges of elements as they are on average */
 #define CELL 4
 
@@ -209,7 +205,7 @@ static PetscErrorCode ListMarked(Vec mark, IS *is)
 }
 
 /* The dofs of this rank within some layers of elements from dofs of any rank, which may come more than once */
-static PetscErrorCode FindNear(Mat A, IS surface, IS *near)
+static PetscErrorCode FindNear(Mat A, IS surface, PetscInt layers, IS *near)
 {
   IS  reach;
   Vec mark;
@@ -219,7 +215,7 @@ static PetscErrorCode FindNear(Mat A, IS surface, IS *near)
   PetscCall(VecZeroEntries(mark));
   PetscCall(Mark(surface, mark));
   PetscCall(ListMarked(mark, &reach));
-  PetscCall(MatIncreaseOverlap(A, 1, &reach, LAYERS));
+  PetscCall(MatIncreaseOverlap(A, 1, &reach, layers));
   PetscCall(Mark(reach, mark));
   PetscCall(ISDestroy(&reach));
   PetscCall(ListMarked(mark, near));
@@ -236,7 +232,8 @@ static PetscErrorCode FindNear(Mat A, IS surface, IS *near)
 + A         - matrix of the body, without entries beside the diagonal in rows of held dofs
 . positions - coordinates of its nodes [m]
 . dim       - of space
-- surface   - dofs of any rank: functions have those one by one that are within three layers of elements of them
+. surface   - dofs of any rank: functions have those one by one that are within some layers of elements of them
+- layers    - how many
 
   Output Parameter:
 . functions - P: all dofs by functions, those near the surface first on each rank
@@ -245,7 +242,7 @@ static PetscErrorCode FindNear(Mat A, IS surface, IS *near)
 
 .seealso: `Body`, `BodyGetNodalCompliance()`
 @*/
-PetscErrorCode BodyCreateSlabFunctions(Mat A, Vec positions, PetscInt dim, IS surface, Mat *functions)
+PetscErrorCode BodyCreateSlabFunctions(Mat A, Vec positions, PetscInt dim, IS surface, PetscInt layers, Mat *functions)
 {
   MPI_Comm   comm   = PetscObjectComm((PetscObject)A);
   Coarse     coarse = {0};
@@ -254,7 +251,7 @@ PetscErrorCode BodyCreateSlabFunctions(Mat A, Vec positions, PetscInt dim, IS su
   IS         near;
 
   PetscFunctionBegin;
-  PetscCall(FindNear(A, surface, &near));
+  PetscCall(FindNear(A, surface, layers, &near));
   PetscCall(MatGetLocalSize(A, &n, NULL));
   PetscCall(ISGetLocalSize(near, &n_near));
   PetscCall(PetscMalloc1(n, &moved));

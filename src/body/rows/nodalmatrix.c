@@ -17,6 +17,7 @@
 
 #define COLUMNS    64    /* that are solved for together */
 #define SHIFT      1e-10 /* what is added to the diagonal of P^T A P, in parts of it */
+#define LAYERS     5     /* of elements that a slab has whole: what it lacks is a hundredth of what one of three does */
 #define MANY       100   /* displacements, from which on a slab is asked and not controller steps */
 #define SMALL_BODY 5000  /* displacements of a body whose own matrix is asked however many they are: a solution costs little then */
 
@@ -196,7 +197,7 @@ static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt do
   PetscCall(GetMatrix(body, kind, &A));
   if (kind == BY_SLAB) {
     PetscCall(ListSurface(body, n, dofs, &surface));
-    PetscCall(BodyCreateSlabFunctions(A, body->mesh.positions, body->mesh.dim, surface, &nodal->functions));
+    PetscCall(BodyCreateSlabFunctions(A, body->mesh.positions, body->mesh.dim, surface, LAYERS, &nodal->functions));
     PetscCall(ISDestroy(&surface));
   }
   PetscCall(FindNear(nodal));

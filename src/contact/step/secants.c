@@ -1,12 +1,15 @@
 /*
-   What passes show of S: secants by the formula of Broyden, Fletcher, Goldfarb and Shanno. The displacements of a body depend on the forces
-   on its own rows alone, so that each has secants of its own, for its block of S.
+   What passes show of S. The displacements of a body depend on the forces on its own rows alone, so that each has secants of its own, for
+   its block of S. Those of a linear body hold all at once by symmetric corrections of rank one, since its compliance is the same in all
+   passes, and more than its block, which lacks motions: so what is wrong falls from step to step, until two passes are enough. Others
+   correct it by the formula of Broyden, Fletcher, Goldfarb and Shanno, after which the last one holds.
 
    They are kept from step to step, as long as the body has the same touching rows: a body that is deformed answers in the next step nearly
    as in this one. A step begins with those of accepted steps of its own size, or with none; its own join them when it is accepted. So a
    step that has failed leaves no trace in those that are made in its place.
 
-   C. G. Broyden, IMA Journal of Applied Mathematics 6 (1970) 76-90 and 222-231, and Fletcher, Goldfarb, Shanno in the same year.
+   C. G. Broyden, IMA Journal of Applied Mathematics 6 (1970) 76-90 and 222-231, and Fletcher, Goldfarb, Shanno in the same year;
+   C. G. Broyden, Mathematics of Computation 21 (1967) 368-381, for that of rank one.
 */
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
@@ -14,6 +17,7 @@
 #define CURVATURE 1e-10 /* a secant counts whose work is at least this part of what S tells of it */
 #define EXACT     1e-9  /* S has told right what differs by less than this part of it, and by the round-off of positions */
 #define SURE      1e3   /* a secant is kept where S has told wrong by more than this many times that round-off */
+#define SURE_WORK 10    /* one of a linear body counts as such where S has told the work of its forces wrong by so many times round-off */
 #define MOST_KEPT 80    /* secants of a body; one more, and the older half of them goes */
 
 PetscErrorCode StepperSecantsDestroy(StepperSecants *secants)
@@ -123,32 +127,51 @@ static PetscReal Multiply(PetscInt n, const PetscScalar block[], const PetscScal
   return work;
 }
 
-/* Corrects the block by a secant, and S with it unless that is NULL; `product`: how the block has it */
-static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscReal told_work,
-                              LawProblem *problem)
+/* Whether a secant is one of those of a linear body that hold all at once; `product`: how the block has it */
+static PetscBool HoldsWithOthers(const StepperEntries *entries, const PetscScalar force[], const PetscScalar product[],
+                                 PetscReal resolution)
+{
+  const PetscScalar *gone = force + entries->n;
+  PetscReal          more = 0, square = 0;
+
+  for (PetscInt k = 0; k < entries->n; k++) {
+    more += PetscRealPart(force[k] * (gone[k] - product[k]));
+    square += PetscRealPart(force[k] * force[k]);
+  }
+  return (PetscBool)(entries->linear && more > SURE_WORK * resolution * PetscSqrtReal(square));
+}
+
+/* Corrects the block by a secant, and S as well if `all`; `product`: how the block has it. The change is a product of one or two vectors
+   with themselves, each by its work. */
+static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool all, LawProblem *problem)
 {
   const PetscInt     n       = entries->n;
   const PetscScalar *gone    = force + n;
+  const PetscBool    one     = HoldsWithOthers(entries, force, product, problem->resolution);
   PetscScalar       *change  = product + n; /* of a column */
   PetscScalar       *S       = NULL;
   PetscInt           leading = 0;
-  PetscReal          work    = 0;
+  PetscReal          work = 0, told_work = 0;
 
   PetscFunctionBegin;
-  if (problem && !problem->sparse) {
+  if (all && !problem->sparse) {
     PetscCall(MatDenseGetLDA(problem->S, &leading));
     PetscCall(MatDenseGetArray(problem->S, &S));
   }
-  for (PetscInt k = 0; k < n; k++) work += PetscRealPart(force[k] * gone[k]);
+  for (PetscInt k = 0; k < n; k++) {
+    if (one) product[k] -= gone[k];
+    work += PetscRealPart(force[k] * gone[k]);
+    told_work += PetscRealPart(force[k] * product[k]);
+  }
   for (PetscInt l = 0; l < n; l++) {
     const PetscInt    j       = entries->places[l];
-    const PetscScalar by_gone = gone[l] / work, by_product = product[l] / told_work;
+    const PetscScalar by_gone = one ? 0 : gone[l] / work, by_product = product[l] / told_work;
 
     for (PetscInt k = 0; k < n; k++) {
       change[k] = by_gone * gone[k] - by_product * product[k];
       entries->block[l * n + k] += change[k];
     }
-    if (!problem) continue;
+    if (!all) continue;
     if (problem->sparse) PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
     for (PetscInt k = 0; k < n && !problem->sparse; k++) S[j * leading + entries->places[k]] += change[k];
     problem->diagonal[j] += PetscRealPart(change[l]);
@@ -158,7 +181,7 @@ static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[]
 }
 
 /* A block of the touching rows, from the body's own one and secants, unless it is there. Those of other rows are forgotten. */
-PetscErrorCode StepperEntriesCorrect(StepperEntries *entries)
+PetscErrorCode StepperEntriesCorrect(StepperEntries *entries, LawProblem *problem)
 {
   const PetscInt  n       = entries->n;
   StepperSecants *secants = &entries->secants;
@@ -173,10 +196,10 @@ PetscErrorCode StepperEntriesCorrect(StepperEntries *entries)
   if (same && entries->corrected) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
   for (PetscInt j = 0; j < secants->n_pairs; j++) {
-    const PetscScalar *force     = secants->values + 2 * n * j;
-    const PetscReal    told_work = Multiply(n, entries->block, force, entries->product);
+    const PetscScalar *force = secants->values + 2 * n * j;
 
-    if (told_work > 0) PetscCall(Correct(entries, force, entries->product, told_work, NULL));
+    if (Multiply(n, entries->block, force, entries->product) > 0)
+      PetscCall(Correct(entries, force, entries->product, PETSC_FALSE, problem));
   }
   entries->corrected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -219,6 +242,7 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
   StepperEntries *entries = &stepper->assembly.of_body[b];
   StepperSecants *secants = &entries->secants;
   const PetscInt  n = entries->n, all = problem->n;
+  PetscBool       sure;
   PetscInt        at   = secants->n_pairs;
   PetscReal       work = 0, told_work, off, largest = 0;
   PetscScalar    *force, *gone, *product = entries->product;
@@ -255,9 +279,10 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Correct(entries, force, product, told_work, problem));
+  sure = (PetscBool)(off > SURE * problem->resolution || HoldsWithOthers(entries, force, product, problem->resolution));
+  PetscCall(Correct(entries, force, product, PETSC_TRUE, problem));
   stepper->assembled = -1;
-  if (off <= SURE * problem->resolution) { /* for this step alone: the next one makes the block anew */
+  if (!sure) { /* for this step alone: the next one makes the block anew */
     secants->n_pairs   = at;
     entries->corrected = PETSC_FALSE;
   }
