@@ -3,7 +3,7 @@
 #include <petsc/private/petscimpl.h>
 
 #define FEW_DENSE 500 /* rows of a dense S whose Jacobian is factored each time it changes */
-#define STALE     20  /* nodes whose derivatives have changed since, after which it is: about as many iterations it takes */
+#define STALE     20  /* sum over nodes of how derivatives have changed since, after which it is: about as many iterations it takes */
 
 static PetscErrorCode GetPattern(const LawProblem *problem, Mat A, LawPattern *pattern)
 {
@@ -89,7 +89,7 @@ static void AddNodes(const LawProblem *problem, const PetscScalar S[], PetscScal
 /* Whether factors of an earlier Jacobian precondition */
 PetscBool LawProblemIsLagged(const LawProblem *problem)
 {
-  return (PetscBool)(!problem->sparse && problem->n > FEW_DENSE);
+  return (PetscBool)(LawProblemHasProducts(problem) || (!problem->sparse && problem->n > FEW_DENSE));
 }
 
 /* Whether the Jacobian is that of other derivatives of P than those at the trial forces, which become its own, or of another S */
@@ -105,15 +105,15 @@ static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar for
     const PetscInt rows = problem->begin[node + 1] - problem->begin[node];
     PetscReal     *last = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
     PetscReal      p[ROW_LAW_ROWS], projected[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
-    PetscBool      same;
+    PetscReal      change = 0;
 
     LawProblemGetTrial(problem, node, force, y, p);
     (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, projected, derivative);
-    PetscCall(PetscArraycmp(derivative, last, rows * rows, &same));
-    if (same) continue;
+    for (PetscInt k = 0; k < rows * rows; k++) change = PetscMax(change, PetscAbsReal(derivative[k] - last[k]));
+    if (change == 0) continue;
     PetscCall(PetscArraycpy(last, derivative, rows * rows));
     *other = PETSC_TRUE;
-    problem->changes++;
+    problem->changes += PetscMin(change, 1);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -228,7 +228,7 @@ PetscErrorCode LawProblemCreateJacobian(LawProblem *problem)
   if (problem->sparse) PetscCall(SetPattern(problem));
   else PetscCall(MatSetUp(problem->jacobian));
   PetscCall(MatDestroy(&problem->operator));
-  if (LawProblemHasProducts(problem) || LawProblemIsLagged(problem)) {
+  if (LawProblemIsLagged(problem)) {
     PetscCall(MatCreateShell(PETSC_COMM_SELF, problem->n, problem->n, problem->n, problem->n, problem, &problem->operator));
     PetscCall(MatShellSetOperation(problem->operator, MATOP_MULT, (void (*)(void))Multiply));
   }
