@@ -297,6 +297,7 @@ PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
                            3 * problem->room, &problem->work));
     PetscCall(PetscMalloc5(problem->room, &problem->diagonal, problem->room, &problem->weight, problem->room, &problem->law, problem->room,
                            &problem->glue, ROW_LAW_ROWS * ROW_LAW_ROWS * problem->room, &problem->derivatives));
+    PetscCall(PetscArrayzero(problem->derivatives, ROW_LAW_ROWS * ROW_LAW_ROWS * problem->room)); /* compared before they are set */
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
