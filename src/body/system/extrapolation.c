@@ -330,8 +330,8 @@ static PetscErrorCode NotePlace(Body body, const PetscBool keeps[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* E, if inner nodes span the body, and how many contact nodes there are around which inner nodes do not span the body: they lie in a plane,
- * or too near to one */
+/* E, if inner nodes span the body around all contact nodes; and around how many they do not: they lie in a plane there, or too near to
+   one */
 PetscErrorCode BodyFindExtrapolation(Body body)
 {
   const PetscInt n    = body->mesh.owned_nodes;

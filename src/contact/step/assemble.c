@@ -369,14 +369,14 @@ static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool is_explicit, *linear = &assembly->of_body[b].linear;
+    PetscBool is_explicit, linear;
     Vec       diagonal;
 
     if (!assembly->of_body[b].n) continue;
     PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
-    PetscCall(BodyIsLinear(contact->bodies[b], linear));
+    PetscCall(BodyIsLinear(contact->bodies[b], &linear));
     PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
-    PetscCall(GetEntries(contact, stepper, b, (PetscBool)(is_explicit && !*linear && !diagonal)));
+    PetscCall(GetEntries(contact, stepper, b, (PetscBool)(is_explicit && !linear && !diagonal)));
     assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
     if (diagonal) PetscCall(ScaleEntries(contact, stepper, b, diagonal));
     else PetscCall(MakeBlock(contact, stepper, b));
@@ -401,9 +401,7 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   if (!same) PetscCall(ContactStepperChooseProducts(contact, stepper));
   if (!same && !stepper->products) PetscCall(GetParts(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    StepperEntries *entries = &assembly->of_body[b];
-
-    if (entries->n && !entries->alone) PetscCall(StepperEntriesCorrect(entries, &stepper->problem));
+    if (assembly->of_body[b].n && !assembly->of_body[b].alone) PetscCall(ContactStepperCorrectBlock(contact, stepper, b));
   }
   if (stepper->products) PetscCall(ContactStepperCreateProducts(contact, stepper, &S, &near));
   else if (!AnyBody(assembly, PETSC_FALSE) && n > FEW_ROWS) {

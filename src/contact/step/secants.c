@@ -127,34 +127,32 @@ static PetscReal Multiply(PetscInt n, const PetscScalar block[], const PetscScal
   return work;
 }
 
-/* Whether a secant is one of those of a linear body that hold all at once; `product`: how the block has it */
-static PetscBool HoldsWithOthers(const StepperEntries *entries, const PetscScalar force[], const PetscScalar product[],
-                                 PetscReal resolution)
+/* Whether a secant of a linear body is one of those that hold all at once; `product`: how the block has it */
+static PetscBool HoldsWithOthers(PetscInt n, const PetscScalar force[], const PetscScalar product[], PetscReal resolution)
 {
-  const PetscScalar *gone = force + entries->n;
+  const PetscScalar *gone = force + n;
   PetscReal          more = 0, square = 0;
 
-  for (PetscInt k = 0; k < entries->n; k++) {
+  for (PetscInt k = 0; k < n; k++) {
     more += PetscRealPart(force[k] * (gone[k] - product[k]));
     square += PetscRealPart(force[k] * force[k]);
   }
-  return (PetscBool)(entries->linear && more > SURE_WORK * resolution * PetscSqrtReal(square));
+  return (PetscBool)(more > SURE_WORK * resolution * PetscSqrtReal(square));
 }
 
-/* Corrects the block by a secant, and S as well if `all`; `product`: how the block has it. The change is a product of one or two vectors
-   with themselves, each by its work. */
-static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool all, LawProblem *problem)
+/* Corrects the block by a secant, and S with it unless that is NULL; `product`: how the block has it. The change is a product of one vector
+   with itself, or of two, each by its work. */
+static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool one, LawProblem *problem)
 {
   const PetscInt     n       = entries->n;
   const PetscScalar *gone    = force + n;
-  const PetscBool    one     = HoldsWithOthers(entries, force, product, problem->resolution);
   PetscScalar       *change  = product + n; /* of a column */
   PetscScalar       *S       = NULL;
   PetscInt           leading = 0;
   PetscReal          work = 0, told_work = 0;
 
   PetscFunctionBegin;
-  if (all && !problem->sparse) {
+  if (problem && !problem->sparse) {
     PetscCall(MatDenseGetLDA(problem->S, &leading));
     PetscCall(MatDenseGetArray(problem->S, &S));
   }
@@ -171,7 +169,7 @@ static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[]
       change[k] = by_gone * gone[k] - by_product * product[k];
       entries->block[l * n + k] += change[k];
     }
-    if (!all) continue;
+    if (!problem) continue;
     if (problem->sparse) PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
     for (PetscInt k = 0; k < n && !problem->sparse; k++) S[j * leading + entries->places[k]] += change[k];
     problem->diagonal[j] += PetscRealPart(change[l]);
@@ -181,11 +179,12 @@ static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[]
 }
 
 /* A block of the touching rows, from the body's own one and secants, unless it is there. Those of other rows are forgotten. */
-PetscErrorCode StepperEntriesCorrect(StepperEntries *entries, LawProblem *problem)
+PetscErrorCode ContactStepperCorrectBlock(Contact contact, ContactStepper *stepper, PetscInt b)
 {
+  StepperEntries *entries = &stepper->assembly.of_body[b];
   const PetscInt  n       = entries->n;
   StepperSecants *secants = &entries->secants;
-  PetscBool       same    = (PetscBool)(secants->n == n);
+  PetscBool       same    = (PetscBool)(secants->n == n), linear;
 
   PetscFunctionBegin;
   if (same) PetscCall(PetscArraycmp(secants->rows, entries->rows, n, &same));
@@ -194,12 +193,16 @@ PetscErrorCode StepperEntriesCorrect(StepperEntries *entries, LawProblem *proble
     PetscCall(PetscArraycpy(secants->rows, entries->rows, n));
   }
   if (same && entries->corrected) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIsLinear(contact->bodies[b], &linear));
   PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
   for (PetscInt j = 0; j < secants->n_pairs; j++) {
-    const PetscScalar *force = secants->values + 2 * n * j;
+    const PetscScalar *force   = secants->values + 2 * n * j;
+    PetscScalar       *product = entries->product;
+    PetscBool          one;
 
-    if (Multiply(n, entries->block, force, entries->product) > 0)
-      PetscCall(Correct(entries, force, entries->product, PETSC_FALSE, problem));
+    if (!(Multiply(n, entries->block, force, product) > 0)) continue;
+    one = (PetscBool)(linear && HoldsWithOthers(n, force, product, stepper->problem.resolution));
+    PetscCall(Correct(entries, force, product, one, NULL));
   }
   entries->corrected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -242,7 +245,7 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
   StepperEntries *entries = &stepper->assembly.of_body[b];
   StepperSecants *secants = &entries->secants;
   const PetscInt  n = entries->n, all = problem->n;
-  PetscBool       sure;
+  PetscBool       one;
   PetscInt        at   = secants->n_pairs;
   PetscReal       work = 0, told_work, off, largest = 0;
   PetscScalar    *force, *gone, *product = entries->product;
@@ -279,10 +282,11 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  sure = (PetscBool)(off > SURE * problem->resolution || HoldsWithOthers(entries, force, product, problem->resolution));
-  PetscCall(Correct(entries, force, product, PETSC_TRUE, problem));
+  PetscCall(BodyIsLinear(contact->bodies[b], &one));
+  one = (PetscBool)(one && HoldsWithOthers(n, force, product, problem->resolution));
+  PetscCall(Correct(entries, force, product, one, problem));
   stepper->assembled = -1;
-  if (!sure) { /* for this step alone: the next one makes the block anew */
+  if (!one && off <= SURE * problem->resolution) { /* for this step alone: the next one makes the block anew */
     secants->n_pairs   = at;
     entries->corrected = PETSC_FALSE;
   }

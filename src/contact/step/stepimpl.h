@@ -46,7 +46,6 @@ typedef struct {
   PetscInt       block_room;        /* room for the block */
   PetscScalar   *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
   PetscScalar   *own;               /* the same, as the body has it, without secants */
-  PetscBool      linear;            /* the body is */
   PetscBool      corrected;         /* `block` is `own` corrected by `secants`, and by no others */
   StepperSecants secants, kept;     /* of this step and those before it; those of accepted steps */
   Vec            force, way;        /* work space of products: of all rows of the body, or NULL */
@@ -160,7 +159,7 @@ PETSC_INTERN PetscErrorCode ContactStepperCorrectS(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperBeginSecants(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperAcceptSecants(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperVisitSecants(Contact, ContactStepper *, Checkpoint);
-PETSC_INTERN PetscErrorCode StepperEntriesCorrect(StepperEntries *, LawProblem *);
+PETSC_INTERN PetscErrorCode ContactStepperCorrectBlock(Contact, ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode StepperSecantsResize(StepperSecants *, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode StepperSecantsDestroy(StepperSecants *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
