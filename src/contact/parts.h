@@ -117,6 +117,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpSharedNodes(Contact, PetscBool);
 PETSC_INTERN PetscReal      ContactForceUnit(Contact, PetscInt);
 PETSC_INTERN void           ContactArrangeShared(Contact);
 PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
+PETSC_INTERN PetscErrorCode ContactGetLeastElement(Contact, const ContactPair *, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactLetTouch(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode ContactGetBoundary(Contact, PetscInt, Surface *);
 PETSC_INTERN PetscErrorCode ContactStartOverlaps(Contact, PetscBool);

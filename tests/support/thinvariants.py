@@ -17,20 +17,18 @@ SHEET = 1e-3  # m, its thickness; the block that it meets is ten times as thick
 SCENES = ("sheet on plane", "sheet on block", "stack", "sheet between", "plate", "bracket", "tube")
 PLAIN = 0.4  # of the size of an element over the speed of waves, 5870 m/s in steel: an explicit step of all formulations
 WAVE = 5870
-PRESSED = 1e-4  # strain of bodies that loads press on each other, at most: 22 MPa in steel
-WAY = 5e-6  # m, that loads move a sheet at most in a step without contact: rows touch by velocities as a step begins, so that loads that move it by its thickness bring it through others
+PRESSED = 1e-4  # strain of bodies that loads press on each other: 22 MPa in steel, which moves a sheet without contact by half its thickness in steps of 2e-5 s
 HALF = 0.012  # m, half of their width
 FACES = {"sheet on block": ("a", "b"), "stack": ("a", "b"), "sheet between": ("a", "c")}  # the bodies with the loads, on their outer faces
 
 
-def pressed(scene, names, turn, units, at_rest, pulse, frame, step):
+def pressed(scene, names, turn, units, at_rest, pulse, frame):
     """Options, and the force on the first, of bodies in plane strain that lie on each other without gaps, as wide as each other, at rest under loads on the outer faces: uniaxial stress. Unless all is `at_rest`, a
     pulse of +-2 m/s, `pulse` degrees from the faces, starts in the middle of the first."""
-    e, nu, rho = STEEL
+    e, nu, _ = STEEL
     modulus, axes = e / (1 - nu**2), turned(np.eye(2), turn)
-    by = min(PRESSED, 2 * WAY * rho * SHEET / modulus / step**2)
-    strain = axes @ np.diag((nu / (1 - nu) * by, -by)) @ axes.T
-    load = -axes[:, 1] * modulus * by * units[1] / units[0]
+    strain = axes @ np.diag((nu / (1 - nu) * PRESSED, -PRESSED)) @ axes.T
+    load = -axes[:, 1] * modulus * PRESSED * units[1] / units[0]
     (top, bottom), along = FACES[scene], axes[:, 0] / units[0]
     place = f"(({along[0]:.17g}*x+{along[1]:.17g}*y)/0.004)"
     bump = f"2.33*{place}*exp(-{place}^2)"  # without momentum, so that none slides off the other
@@ -124,7 +122,7 @@ def thin_variant(draw, folder):
     touching = ["a:t"] if obstacle else [f"{y}:{x}" if swap else f"{x}:{y}" for x, y in pairwise(names)]
     lowest = shift if solid else spin((0, -1e-2 - gap if scene == "tube" else 0))
     up = spin((0, 0, 1) if solid else (0, 1))
-    loaded, force = pressed(scene, names, turn, units, at_rest, pulse, shared * units[0], step) if loads else ("", 0)
+    loaded, force = pressed(scene, names, turn, units, at_rest, pulse, shared * units[0]) if loads else ("", 0)
     options = joined(
         f"-bodies {','.join(names)} -contact_type force -contact_pairs {','.join(touching)} -time_step {step:.17g} -time_end {steps * step:.17g}",
         f"-obstacles t {plane('t', lowest, up)}" if obstacle else "",
@@ -133,7 +131,8 @@ def thin_variant(draw, folder):
         "-units mm-t-s" if units == MM_T_S else "",
         friction(mu),
     )
-    v = SimpleNamespace(scene=scene, names=names, kinds=kinds, of=of, step=step, substeps=substeps, mu=mu, ranks=ranks, steps=steps, units=units, options=options, load=force, way=WAY * units[0], speed=speed, pressed=loads, at_rest=loads and at_rest)
+    way = 0.5 * STEEL[0] / (1 - STEEL[1] ** 2) * PRESSED / (STEEL[2] * SHEET) * step**2  # m, that loads move a sheet without contact in a step
+    v = SimpleNamespace(scene=scene, names=names, kinds=kinds, of=of, step=step, substeps=substeps, mu=mu, ranks=ranks, steps=steps, units=units, options=options, load=force, way=way * units[0], speed=speed, pressed=loads, at_rest=loads and at_rest)
     # Of two elements, inner nodes span an implicit body around one of its faces, not around both; explicit ones keep their mass all the same. The coarse tube is spanned by
     # the arc of its inner nodes: it loses 0.1 % where it loses 3.5 to 15 % with its mass kept.
     flat = kinds if scene == "stack" else kinds[0]

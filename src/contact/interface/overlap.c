@@ -10,7 +10,7 @@
 #define NO_START 0.25
 
 /* Size of the smallest contact element of both bodies [m] */
-static PetscErrorCode LeastElement(Contact contact, const ContactPair *pair, PetscReal *least)
+PetscErrorCode ContactGetLeastElement(Contact contact, const ContactPair *pair, PetscReal *least)
 {
   PetscFunctionBegin;
   *least = PETSC_MAX_REAL;
@@ -37,7 +37,7 @@ PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
 
     if (pair->obstacle || ContactPairTies(pair)) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    PetscCall(LeastElement(contact, pair, &least));
+    PetscCall(ContactGetLeastElement(contact, pair, &least));
     for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
       const PetscReal depth = -contact->start.gap[i], bow = rows.bow[(i - pair->begin) / pair->components];
 

@@ -9,6 +9,10 @@
 #include <contact/step/stepimpl.h>
 
 #define MOST_LOSS 1.1 /* of a row that joins, in parts of the kinetic energy of its node */
+/* How deep rows may end inside their partner that stay open by their rates: as deep as these would bring them, at most by DEEP, and by
+   GRAZES beside that [parts of the smallest contact element] */
+#define DEEP   0.25
+#define GRAZES 1e-3
 
 /* Where a body will be in the middle of the step, if its nodes keep their velocities */
 static PetscErrorCode Place(Contact contact, PetscInt b)
@@ -78,12 +82,40 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
 /* A row that joins takes the kinetic energy of its node, 1/2 m w^2 with m = dt^2/(2 S_ii), by its way q = 1/2 dt |w|. Where forces press
    its node on the partner beside that, they would lose theirs times q too. Then it moves by a part of q, the largest with which it takes at
    most c times as much as alone: with S_ii lambda = (2 + f - part) q that is part (2 + f - part) = c, f what forces press with. */
-static PetscReal Limit(PetscReal way, PetscReal by_force)
+static PetscReal Limit(Contact contact, const ContactStepper *stepper, PetscInt i, PetscReal by_force)
 {
-  const PetscReal pressed = 1 - by_force / way; /* 2 + f */
+  const PetscReal whole = 0.5 * contact->step * PetscMax(-stepper->rate[i], 0), way = -stepper->lets[i];
+  const PetscReal pressed = by_force / whole + way / whole; /* 2 + f */
 
-  if (!(way < 0) || pressed <= 1 + MOST_LOSS) return way;
-  return 2 * MOST_LOSS * way / (pressed + PetscSqrtReal(PetscSqr(pressed) - 4 * MOST_LOSS));
+  if (!stepper->joins[i] || !(whole > 0) || way > whole) return -way;
+  if (pressed <= 1 + MOST_LOSS) return -whole;
+  return -2 * MOST_LOSS * whole / (pressed + PetscSqrtReal(PetscSqr(pressed) - 4 * MOST_LOSS));
+}
+
+/* Rows that stay open by their rates at the start join as well, and the step is made again, where they end deeper inside their partner than
+   rows that join may: forces press them in within the step. They move as others that join do, so that rows which have just opened keep
+   their gap; those which begin far away come as near as they may be deep. */
+static PetscErrorCode More(Contact contact, ContactStepper *stepper, const ContactPair *pair, PetscBool *more)
+{
+  PetscReal size;
+
+  PetscFunctionBegin;
+  PetscCall(ContactGetLeastElement(contact, pair, &size));
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+    const PetscInt  first = contact->rows.near[k];
+    const PetscReal way   = contact->step * stepper->rate[first];
+    const PetscReal most  = PetscMin(PetscAbsReal(way), DEEP * size) + GRAZES * size;
+
+    if (contact->end.gap[first] >= -most || stepper->touches[first] || !contact->rows.opposite[first]) continue;
+    for (PetscInt i = first; i < first + pair->components; i++) {
+      stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
+      stepper->lets[i]                        = 0.5 * contact->step * stepper->rate[i];
+    }
+    stepper->lets[first] = PetscMin(PetscMin(stepper->lets[first], 0), most - contact->start.gap[first]);
+    *more                = PETSC_TRUE;
+  }
+  if (*more) PetscCall(PetscInfo(contact, "rule impulse: rows of %s that end inside their partner join\n", pair->name));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What the step begins with is what it ends with, for all that takes the mean of both */
@@ -114,4 +146,5 @@ const ContactRule ContactRuleImpulse = {
     .load  = Load,
     .shape = BODY_FORCE_CONSTANT,
     .limit = Limit,
+    .more  = More,
     .end   = End};

@@ -24,25 +24,30 @@ static PetscReal Reading(Contact contact, const ContactStepper *stepper, PetscIn
   return (ContactRowRubs(contact, i) ? contact->friction.slip[i] : contact->end.gap[i] - contact->start.gap[i]) - stepper->lets[i];
 }
 
-/* After the first solution of the law in a step: rows that join may move less than their rule has said at first */
+/* After the first solution of the law with the rows that touch: rows that join may move otherwise than their rule has said at first */
 static PetscErrorCode LimitWays(Contact contact, ContactStepper *stepper)
 {
   LawProblem        *problem = &stepper->problem;
-  const PetscScalar *ways    = stepper->gathered;
+  const PetscScalar *changes = stepper->gathered;
   PetscBool          any     = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(ContactStepperGather(contact, stepper, stepper->lets, stepper->gathered));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt     k = problem->begin[node], i = stepper->rows[k] - contact->rows.begin;
     const ContactRule *rule = ContactStepperRule(stepper, &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]]);
-    const PetscReal    way  = PetscRealPart(ways[k]);
-    PetscReal          less = way;
+    PetscReal          way;
 
-    if (rule->limit) less = (*rule->limit)(way, problem->diagonal[k] * PetscRealPart(problem->force[k]));
-    if (less == way) continue;
-    problem->read[k] += way - less;
-    if (i >= 0 && i < contact->rows.n) stepper->lets[i] = less;
+    if (i < 0 || i >= contact->rows.n) continue;
+    way = rule->limit ? (*rule->limit)(contact, stepper, i, problem->diagonal[k] * PetscRealPart(problem->force[k])) : stepper->lets[i];
+    stepper->mine[i] = stepper->lets[i] - way;
+    stepper->lets[i] = way;
+  }
+  PetscCall(ContactStepperGather(contact, stepper, stepper->mine, stepper->gathered));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt k = problem->begin[node];
+
+    if (changes[k] == 0) continue;
+    problem->read[k] += changes[k];
     any = PETSC_TRUE;
   }
   if (any) PetscCall(LawProblemSolve(problem));
@@ -82,6 +87,7 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   Contact            contact = (Contact)ctx;
   ContactStepper    *stepper = Stepper(contact);
   LawProblem        *problem = &stepper->problem;
+  const PetscBool    first   = (PetscBool)!stepper->has_told; /* pass with these rows */
   const PetscInt     n = problem->n, n_acting = contact->rows.n_acting, *acting = contact->rows.acting;
   const PetscScalar *x;
   PetscScalar       *f;
@@ -109,7 +115,8 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
     PetscCall(ContactStepperAssemble(contact, stepper));
     PetscCall(LawProblemSolve(problem));
   }
-  if (!stepper->passes++) PetscCall(LimitWays(contact, stepper));
+  if (first) PetscCall(LimitWays(contact, stepper));
+  stepper->passes++;
   PetscCall(MeasureGroups(contact, stepper));
   if (!problem->solved) {
     PetscCall(ContactRejectResidual(F));

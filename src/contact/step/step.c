@@ -143,12 +143,12 @@ PetscErrorCode ContactStepperStep(Contact contact)
   PetscCall(ContactStepperComputeRates(contact, stepper->rate));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
-  ContactListActingRows(contact, stepper->touches);
-  for (PetscInt k = 0; k < contact->rows.n_acting; k++)
-    stepper->last[contact->rows.acting[k]] = contact->start.force[contact->rows.acting[k]];
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   PetscCall(ContactStepperBeginSecants(contact, stepper));
   while (more) {
+    ContactListActingRows(contact, stepper->touches);
+    for (PetscInt k = 0; k < contact->rows.n_acting; k++)
+      stepper->last[contact->rows.acting[k]] = contact->start.force[contact->rows.acting[k]];
     PetscCall(ContactStepperListRows(contact, stepper));
     if (stepper->problem.n) {
       PetscCall(GetLimits(contact, stepper));

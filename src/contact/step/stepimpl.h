@@ -14,9 +14,8 @@ typedef struct {
   PetscErrorCode (*begin)(Contact, ContactStepper *, const ContactPair *); /* which rows may touch, the guess, what closed rows may move */
   PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);             /* the forces `contact->end.force` on the rows of a body */
   BodyForceShape shape;                                                    /* of forces in the step */
-  /* (NULL) after the first solution of the law: a smaller way of a closed row that joins, from the present one [m] and the way by which its
-     force alone has moved it [m] */
-  PetscReal (*limit)(PetscReal, PetscReal);
+  /* (NULL) after the first solution of the law: the way of a closed row along the normal [m], by that which its force alone makes [m] */
+  PetscReal (*limit)(Contact, const ContactStepper *, PetscInt, PetscReal);
   PetscErrorCode (*more)(Contact, ContactStepper *, const ContactPair *, PetscBool *); /* (NULL) whether rows left out touch after all */
   PetscErrorCode (*end)(Contact, ContactStepper *, const ContactPair *);               /* (NULL) after the step has been made */
 } ContactRule;

@@ -5,8 +5,8 @@ import pytest
 from cases import joined, long, validate
 from contactstep import STEEL, energy
 from overlap import Bodies, depths
-from setups import FIELDS
-from thinbodies import TUBE, WALL, between_tools, crushed, stack
+from setups import FIELDS, box
+from thinbodies import TUBE, WALL, between_tools, crushed, model, stack
 
 E, NU, _ = STEEL
 SPEED = 5  # m/s, of the block that hits the stack
@@ -22,13 +22,14 @@ def deepest(path):
 
 @pytest.mark.parametrize(("kind", "of", "mu"), [("I", "linear_elastic", 0.3), ("E", "neo_hookean", 0.3), *long(("I", "neo_hookean", 0.3), ("E", "linear_elastic", 0))])
 def test_stack(kind, of, mu, impakt):
-    """Ten sheets on a plane. Each hit of sheets that are one element thick takes what their contact nodes have: 0.5 to 0.65 of the energy is lost, none comes in. Impulses are those of all
+    """Ten sheets on a plane. Each hit of sheets that are one element thick takes what their contact nodes have: 0.5 to 0.65 of the energy is lost by explicit ones, none comes in. In an implicit
+    step the hit goes through several sheets, whose rows join in it: 0.29 is lost, 0.59 where they joined in the next one. Impulses are those of all
     momenta, and overlaps no deeper than what the block makes in a step."""
     step = 2e-6 if kind == "I" else 1e-7
     run = impakt(joined(stack(10, kind, of, mu, SPEED, step), FIELDS))
     change = energy(run)
     assert change.max() <= (1e-9 if kind == "I" else 1e-3)
-    assert -0.7 <= change[-1] <= -0.3
+    assert -0.7 <= change[-1] <= -0.25
     assert np.diff(run.history["contact_loss"][()]).min() >= -1e-7 * run.history["energy/scale"][0]
     momenta = {name: body["momentum"][()] for name, body in run.history["body"].items()}
     scale = abs(momenta["block"][0, 1])
@@ -37,6 +38,23 @@ def test_stack(kind, of, mu, impakt):
     assert min(np.abs(total - total[0] - sign * of_plane).max() for sign in (1, -1)) <= 1e-11 * scale
     assert all(np.ptp(momenta[f"s{k}"][:, 1]) > 0.01 * scale for k in range(10))  # the hit goes through all
     assert deepest(run.folder / "fields.h5") <= 1.5 * SPEED * step
+
+
+@pytest.mark.parametrize(("gap", "speed", "load", "step"), [(5e-4, 0, 22e6, 4.2e-5), (3e-3, 100, 0, 4e-5)])
+def test_steps_past_the_partner(gap, speed, load, step, impakt):
+    """A sheet of 1 mm that is loaded by 22 MPa from rest, 2.5 mm a step, or flies 4 mm a step: its rows are open by their rates at the start, and end behind the other sheet. They join
+    in the step: what both have of momentum is what the load gives, they fly on together, and no energy comes in."""
+    sheets = [joined(box(name, (faces, 1), (-0.012, low), (0.012, low + 1e-3)), model(name, "linear_elastic", "I")) for name, faces, low in (("a", 20, gap), ("b", 16, -1e-3))]
+    moves = f"-a_initial_velocity 0,{-speed}" if speed else f"-a_boundary_traction ymax -a_boundary_traction_ymax 0,{-load}"
+    run = impakt(joined(f"-bodies a,b -contact_type force -contact_pairs a:b -time_step {step} -time_end {3 * step:.17g}", *sheets, moves))
+    assert run.summary["contact"]["max_penetration"] <= 1e-5  # measured 0; 2 mm and 1 mm without it
+    scale = run.history["energy/scale"][()].max()
+    assert np.diff(run.history["contact_loss"][()]).min() >= -1e-13 * scale
+    assert energy(run).max() <= 1e-9
+    a, b = (run.history[f"body/{name}/momentum"][-1, 1] for name in "ab")
+    given = -7800 * 0.024 * 1e-3 * speed - load * 0.024 * 3 * step
+    assert a + b == pytest.approx(given, rel=1e-9)
+    assert b / given >= 0.3  # of two that are as heavy: half, but for how both bend
 
 
 def drawn(run, mu, force=2e5):
