@@ -4,6 +4,7 @@
    of a node differs from this mean.
 */
 #include <contact/parts.h>
+#include <impakt/private/simd.h>
 
 /* Surfaces are looked for within this many times the way that bodies can make relative to each other in the step at their speeds */
 #define AHEAD 2
@@ -15,26 +16,58 @@ static PetscReal Norm(const PetscReal v[3])
   return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
+/* Adds up the vectors of nodes, in as many sums at once as an instruction can */
+SIMD_CLONES static void AddNodes(PetscInt n, PetscInt dim, const PetscScalar values[], PetscReal sum[3])
+{
+  const PetscInt width = dim * SIMD_WIDTH;
+  PetscReal      sums[3 * SIMD_WIDTH];
+  PetscInt       i;
+
+  for (PetscInt k = 0; k < width; k++) sums[k] = 0;
+  for (i = 0; i + width <= n; i += width)
+    for (PetscInt k = 0; k < width; k++) sums[k] += PetscRealPart(values[i + k]);
+  for (PetscInt k = 0; i < n; i++, k++) sums[k] += PetscRealPart(values[i]);
+  for (PetscInt k = 0; k < width; k++) sum[k % dim] += sums[k];
+}
+
+/* The square of the most by which the vector of a node in space differs from `mean` */
+SIMD_CLONES static PetscReal LargestSquare(PetscInt n, const PetscScalar values[], const PetscReal mean[3])
+{
+  PetscReal means[3 * SIMD_WIDTH], squares[3 * SIMD_WIDTH];
+  SimdReal  most = {0};
+  PetscInt  i;
+
+  for (PetscInt k = 0; k < 3 * SIMD_WIDTH; k++) means[k] = mean[k % 3];
+  for (i = 0; i + 3 * SIMD_WIDTH <= n; i += 3 * SIMD_WIDTH) {
+    for (PetscInt k = 0; k < 3 * SIMD_WIDTH; k++) squares[k] = PetscSqr(PetscRealPart(values[i + k]) - means[k]);
+    for (PetscInt k = 0; k < SIMD_WIDTH; k++) {
+      const PetscReal square = squares[3 * k] + squares[3 * k + 1] + squares[3 * k + 2];
+
+      most[k] = square > most[k] ? square : most[k];
+    }
+  }
+  for (; i < n; i += 3) {
+    PetscReal square = 0;
+
+    for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscRealPart(values[i + d]) - mean[d]);
+    most[0] = square > most[0] ? square : most[0];
+  }
+  for (PetscInt k = 1; k < SIMD_WIDTH; k++) most[0] = most[k] > most[0] ? most[k] : most[0];
+  return most[0];
+}
+
 /* Adds up the vectors of the nodes of this rank, and their number */
 static PetscErrorCode SumNodes(Vec vec, PetscInt dim, PetscReal sum[4])
 {
   const PetscScalar *values;
-  PetscReal          s[3] = {0, 0, 0};
   PetscInt           n;
 
   PetscFunctionBegin;
   PetscCall(VecGetLocalSize(vec, &n));
   PetscCall(VecGetArrayRead(vec, &values));
-  for (PetscInt i = 0; i < n && dim == 3; i += 3) { /* all at once */
-    s[0] += PetscRealPart(values[i]);
-    s[1] += PetscRealPart(values[i + 1]);
-    s[2] += PetscRealPart(values[i + 2]);
-  }
-  for (PetscInt i = 0; i < n && dim < 3; i += dim)
-    for (PetscInt d = 0; d < dim; d++) s[d] += PetscRealPart(values[i + d]);
-  for (PetscInt d = 0; d < 3; d++) sum[d] += s[d];
-  PetscCall(VecRestoreArrayRead(vec, &values));
+  AddNodes(n, dim, values, sum);
   sum[3] = (PetscReal)n / (PetscReal)dim;
+  PetscCall(VecRestoreArrayRead(vec, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -48,11 +81,11 @@ static PetscErrorCode FindSpread(Vec vec, PetscInt dim, const PetscReal mean[], 
   PetscFunctionBegin;
   PetscCall(VecGetLocalSize(vec, &n));
   PetscCall(VecGetArrayRead(vec, &values));
-  for (PetscInt i = 0; i < n; i += dim) {
+  if (dim == 3) most = LargestSquare(n, values, mean);
+  for (PetscInt i = 0; i < n && dim < 3; i += dim) {
     PetscReal square = PetscSqr(PetscRealPart(values[i]) - mean[0]);
 
     if (dim > 1) square += PetscSqr(PetscRealPart(values[i + 1]) - mean[1]);
-    if (dim > 2) square += PetscSqr(PetscRealPart(values[i + 2]) - mean[2]);
     most = square > most ? square : most;
   }
   PetscCall(VecRestoreArrayRead(vec, &values));
