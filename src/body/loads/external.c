@@ -81,24 +81,53 @@ PetscErrorCode BodySetUpWork(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reactions at the start of a step are those that the last one ended with. Where contact forces are constant in it, they are others from
-   its start on, and so is what holds dofs, or leads the body, against them. */
-static PetscErrorCode SubtractForceChange(Body body, Vec change, Vec applied)
+/* Adds a part of a force to `applied`, on held dofs alone */
+static PetscErrorCode AddOnHeld(Body body, PetscScalar part, Vec force, Vec applied)
 {
-  const PetscScalar *force;
+  const PetscScalar *more;
   PetscScalar       *values;
-  PetscBool          any;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(force, &more));
+  PetscCall(VecGetArray(applied, &values));
+  for (PetscInt i = 0; i < body->held.n; i++) values[body->held.dofs[i]] += part * more[body->held.dofs[i]];
+  PetscCall(VecRestoreArray(applied, &values));
+  PetscCall(VecRestoreArrayRead(force, &more));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much the acceleration at the start of the last substep was more than the one before had ended with, held dofs apart: the mean of
+   it and of that at the end is what the velocities tell */
+static PetscErrorCode ComputeAccelerationChange(Body body, Vec change)
+{
+  PetscFunctionBegin;
+  PetscCall(VecWAXPY(change, -1, body->saved.v, body->state.v));
+  PetscCall(VecScale(change, 2 / body->time.step));
+  PetscCall(VecAXPY(change, -1, body->state.a));
+  PetscCall(VecAXPY(change, -1, body->start.changed ? body->start.a : body->saved.a));
+  PetscCall(BodyZeroHeld(body, change));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reactions at the start of a step are those that the last one ended with. Where contact forces are constant in it, they are others from
+   its start on, and so is what holds dofs, or leads the body, against them. By a mass that is not diagonal held dofs bear inertia of
+   others, which are accelerated by these forces. */
+static PetscErrorCode CountForceChange(Body body, Vec work, Vec applied)
+{
+  PetscBool any;
 
   PetscFunctionBegin;
   if (!body->rows.n_forced || (!body->held.any && !BodyIsLed(body))) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyComputeForceChange(body, &any, change));
-  if (any && BodyIsLed(body)) PetscCall(VecAXPY(applied, -1, change));
+  PetscCall(BodyComputeForceChange(body, &any, work));
+  if (any && BodyIsLed(body)) PetscCall(VecAXPY(applied, -1, work));
   if (!any || BodyIsLed(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(change, &force));
-  PetscCall(VecGetArray(applied, &values));
-  for (PetscInt i = 0; i < body->held.n; i++) values[body->held.dofs[i]] -= force[body->held.dofs[i]];
-  PetscCall(VecRestoreArray(applied, &values));
-  PetscCall(VecRestoreArrayRead(change, &force));
+  PetscCall(AddOnHeld(body, -1, work, applied));
+  if (!body->mass.diagonal) {
+    if (!body->start.change) PetscCall(BodyCreateVec(body, &body->start.change));
+    PetscCall(ComputeAccelerationChange(body, body->start.change));
+    PetscCall(BodyMultiplyMass(body, body->start.change, work));
+    PetscCall(AddOnHeld(body, 1, work, applied));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,7 +139,7 @@ static PetscErrorCode ComputeWork(Body body, Vec start, Vec applied, PetscReal *
   PetscFunctionBegin;
   PetscCall(ComputeApplied(body, applied));
   PetscCall(VecWAXPY(sum, 1, body->state.applied, applied));
-  PetscCall(SubtractForceChange(body, way, sum));
+  PetscCall(CountForceChange(body, way, sum));
   PetscCall(VecWAXPY(way, -1, start, body->state.u));
   if (body->local) PetscCall(BodyGetLocalDot(sum, way, work));
   else PetscCall(VecDot(sum, way, work));
