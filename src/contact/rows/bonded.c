@@ -19,9 +19,9 @@ void ContactGetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscRe
     direction[1] = normal[0];
     return;
   }
-  /* the axis that is farthest from the normal, less its part along the normal */
+  /* the axis that is farthest from the normal, less its part along the normal; on a flat surface the same for all nodes */
   for (PetscInt d = 1; d < 3; d++)
-    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[least])) least = d;
+    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[least]) - PETSC_SQRT_MACHINE_EPSILON) least = d;
   for (PetscInt d = 0; d < 3; d++) {
     first[d] = (d == least ? 1 : 0) - normal[least] * normal[d];
     length += PetscSqr(first[d]);

@@ -10,9 +10,15 @@
    with the areas A. A force on such a row has the same resultant and moment on both sides, since a force on each of its parts has.
 
    The gap of such a row is a mean. If rows may open, the mean must not hide that one of its parts is closed: only rows between parallel
-   surfaces are merged, and held nodes without neighbours of that kind are left out.
+   surfaces are merged.
+
+   Methods that prescribe displacements have no use for a held row, and leave out those without heirs. Where bodies answer to forces, rows of
+   held nodes are dropped at rims alone: see droppedrows.c.
 */
 #include <contact/parts.h>
+
+/* Edges between a held row and its heirs, where held rows that have none are of use: two at the corner of a rim */
+#define RIM 2
 
 /* Surfaces are parallel between two nodes if their gaps differ by less than this part of the distance of the nodes: by half a degree */
 #define PARALLEL 0.01
@@ -37,9 +43,14 @@ static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec 
       const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
 
       if (which == ROW_AREA) values[i] = rows.area[node];
-      else if (which == ROW_GAP) values[i] = tied || !rows.opposite[node] ? 0 : rows.gap[node];
+      else if (which == ROW_GAP) values[i] = tied || k > 0 || !rows.opposite[node] ? 0 : rows.gap[node];
       else if (tied) values[i] = d == k ? 1 : 0;
-      else values[i] = rows.normals[contact->dim * node + d];
+      else {
+        PetscReal direction[3];
+
+        ContactGetFrame(contact->dim, rows.normals + contact->dim * node, k, direction);
+        values[i] = direction[d];
+      }
     }
   }
   PetscCall(VecRestoreArrayWrite(vec, &values));
@@ -94,10 +105,12 @@ static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec n
 }
 
 /* A matrix with the weights w_kh in row h. The share of a held node goes in equal parts to the neighbours that are not held; if there are
-   none, as at a corner, to the heirs of its neighbours. The other rows of the matrix are those of the identity, as are the rows of held
-   nodes without heirs. */
+   none, as at a corner, to the heirs of its neighbours. The other rows of the matrix are those of the identity, and zeros for dropped rows
+   without heirs. */
 static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
 {
+  const PetscInt most = contact->sideless ? RIM : PETSC_INT_MAX;
+
   Mat neighbours, given, inherited;
   Vec known, now, part;
   int any;
@@ -108,7 +121,7 @@ static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
   PetscCall(VecDuplicate(now, &part));
   PetscCall(MatDuplicate(neighbours, MAT_DO_NOT_COPY_VALUES, weights));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    PetscCall(VecSetValue(known, contact->rows.begin + i, contact->rows.opposite[i] ? 1 : 0, INSERT_VALUES));
+    PetscCall(VecSetValue(known, contact->rows.begin + i, contact->rows.opposite[i] && !contact->held.dropped[i] ? 1 : 0, INSERT_VALUES));
     PetscCall(VecSetValue(now, contact->rows.begin + i, contact->held.dropped[i] ? 0 : 1, INSERT_VALUES));
   }
   PetscCall(VecAssemblyBegin(known));
@@ -117,7 +130,7 @@ static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
   PetscCall(VecAssemblyEnd(now));
   PetscCall(MatDiagonalSet(*weights, now, INSERT_VALUES));
   PetscCall(FindNext(contact, neighbours, known, now, part, &any));
-  while (any) {
+  for (PetscInt edges = 0; any && edges < most; edges++) {
     PetscCall(MatDuplicate(neighbours, MAT_COPY_VALUES, &given));
     PetscCall(MatDiagonalScale(given, part, known));
     PetscCall(MatMatMult(given, *weights, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &inherited));
@@ -127,13 +140,9 @@ static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
     PetscCall(MatDestroy(&given));
     PetscCall(FindNext(contact, neighbours, known, now, part, &any));
   }
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const PetscInt row = contact->rows.begin + i;
-    PetscScalar    has;
-
-    PetscCall(VecGetValues(known, 1, &row, &has));
-    PetscCall(VecSetValue(now, row, contact->held.dropped[i] && PetscRealPart(has) > 0 ? 0 : 1, INSERT_VALUES));
-  }
+  if (contact->sideless) PetscCall(ContactKeepHeldRows(contact, known));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    PetscCall(VecSetValue(now, contact->rows.begin + i, contact->held.dropped[i] ? 0 : 1, INSERT_VALUES));
   PetscCall(VecAssemblyBegin(now));
   PetscCall(VecAssemblyEnd(now));
   PetscCall(MatDiagonalSet(*weights, now, INSERT_VALUES));
@@ -228,6 +237,7 @@ PetscErrorCode ContactMergeDroppedRows(Contact contact)
   int any = contact->held.merger ? 1 : 0;
 
   PetscFunctionBegin;
+  if (contact->sideless) PetscCall(ContactMarkHeldRows(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) any |= contact->held.dropped[i];
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
@@ -235,6 +245,7 @@ PetscErrorCode ContactMergeDroppedRows(Contact contact)
   PetscCall(ContactDestroyMerger(contact));
   PetscCall(CreateMerger(contact));
   PetscCall(MarkHeirs(contact));
+  if (contact->sideless) ContactLeaveOutDropped(contact);
   PetscCall(MergeNumbers(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

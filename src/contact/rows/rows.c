@@ -76,19 +76,20 @@ PetscErrorCode ContactLayOutRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether row i is held: the method would prescribe displacements of its Dirichlet node, and the user prescribes all of these already */
-static PetscErrorCode IsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
+/* Whether row i is held: the user prescribes all displacements of its Dirichlet node that it asks for. Rows of a node that rubs are held
+   together. */
+PetscErrorCode ContactRowIsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
 {
   const PetscInt *dofs;
   PetscInt        n;
 
   PetscFunctionBegin;
-  *held = contact->prescribes;
   PetscCall(BodyGetHeldDofs(contact->bodies[pair->body[0]], &n, &dofs));
+  *held = (PetscBool)(n > 0);
   for (PetscInt d = 0; d < contact->dim && *held; d++) {
     PetscInt place;
 
-    if (PetscAbsReal(contact->rows.normal[3 * i + d]) < NO_COMPONENT) continue;
+    if (PetscAbsReal(contact->rows.normal[3 * i + d]) < NO_COMPONENT && pair->law != CONTACT_LAW_FRICTION) continue;
     PetscCall(PetscFindInt(contact->rows.dof[i] + d, n, dofs, &place));
     if (place < 0) *held = PETSC_FALSE;
   }
@@ -130,7 +131,8 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
         contact->rows.opposite[i]    = PETSC_FALSE;
         contact->rows.initial_gap[i] = CONTACT_NO_GAP;
       }
-      PetscCall(IsHeld(contact, pair, i, &held));
+      PetscCall(ContactRowIsHeld(contact, pair, i, &held));
+      held                        = (PetscBool)(held && contact->prescribes);
       contact->held.dropped[i]    = (PetscBool)(held && (ContactPairTies(pair) ? contact->rows.tied[i] : rows.opposite[node]) &&
                                                 !pair->obstacle && dim > 1 && pair->law != CONTACT_LAW_BONDED);
       contact->held.merged_gap[i] = 0;

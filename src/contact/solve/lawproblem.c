@@ -128,7 +128,7 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest force, and largest force that would by itself close what a row reads without any [N] */
+/* Largest force, and largest force that would by itself close what a row reads without any [N]. A row that no force moves tells none. */
 PetscReal LawProblemForceScale(const LawProblem *problem, const PetscScalar force[])
 {
   PetscReal scale = 0;
@@ -136,7 +136,8 @@ PetscReal LawProblemForceScale(const LawProblem *problem, const PetscScalar forc
   for (PetscInt i = 0; i < problem->n; i++) {
     scale = PetscMax(scale, PetscAbsScalar(force[i]));
     scale = PetscMax(scale, PetscAbsScalar(problem->base[i]));
-    scale = PetscMax(scale, PetscAbsScalar(problem->read[i]) / problem->weight[i]);
+    if (problem->diagonal[i] > PETSC_SMALL * problem->largest)
+      scale = PetscMax(scale, PetscAbsScalar(problem->read[i]) / problem->weight[i]);
   }
   return scale;
 }

@@ -392,6 +392,29 @@ static void what_has_no_solution_is_not_solved(void **state)
 }
 
 /* Numbers of any unit: S in m/N of 1e-12, gaps of nanometres */
+/* Bodies may be held where a row acts: what it reads tells nothing of the forces of others */
+static void a_row_that_nothing_moves_sets_no_scale(void **state)
+{
+  LawProblem problem = {0};
+
+  (void)state;
+  resize(&problem, 2);
+  problem.n_nodes = 2;
+  for (PetscInt i = 0; i < 2; i++) {
+    problem.law[i]   = &unilateral;
+    problem.begin[i] = i;
+    problem.base[i] = problem.force[i] = problem.limit[2 * i] = problem.limit[2 * i + 1] = 0;
+  }
+  problem.begin[2]     = 2;
+  entries(&problem)[0] = 1e-6;
+  problem.read[0]      = -1e-7; /* 0.1 N close it, and 1e13 N would be the scale of the other */
+  problem.read[1]      = 1e-3;
+  assert_true(solve(&problem));
+  assert_float_equal(PetscRealPart(problem.force[0]), 0.1, 1e-13);
+  assert_true(problem.force[1] == 0);
+  ok(LawProblemDestroy(&problem));
+}
+
 static void units_do_not_matter(void **state)
 {
   LawProblem problem = {0};
@@ -578,6 +601,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(doubled_rows_give_bodies_the_same),
       cmocka_unit_test(sweeps_help_where_newton_cycles),
       cmocka_unit_test(what_has_no_solution_is_not_solved),
+      cmocka_unit_test(a_row_that_nothing_moves_sets_no_scale),
       cmocka_unit_test(units_do_not_matter),
       cmocka_unit_test(a_sparse_S_and_products_have_the_solution_of_a_dense_one),
       cmocka_unit_test(a_large_dense_S_has_the_solution_of_a_sparse_one),
