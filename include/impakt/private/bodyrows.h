@@ -168,6 +168,7 @@ typedef enum { BODY_FORCE_LINEAR, BODY_FORCE_CONSTANT } BodyForceShape;
 /* Forces of a shape, and how nodes answer */
 PETSC_EXTERN PetscErrorCode BodySetConstantForces(Body, PetscInt, const PetscInt[], const PetscReal[], const PetscReal[],
                                                   const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyEndConstantForces(Body, const PetscScalar[], const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyGetNodalDiagonal(Body, BodyForceShape, Vec *);
 PETSC_EXTERN PetscErrorCode BodyCreateSlabFunctions(Mat, Vec, PetscInt, IS, PetscInt, Mat *);
 PETSC_EXTERN PetscErrorCode BodyGetNodalCompliance(Body, BodyForceShape, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *,

@@ -209,9 +209,11 @@ typedef struct {
 
 /* Which rows tie surfaces that lay on each other at the start, see src/contact/rows/ties.c */
 typedef struct {
-  PetscBool *holds;    /* per row: its node was within the tie distance, whether the user holds it or not */
-  PetscReal *distance; /* per row: the gap of its node along the normal then [m] */
-  PetscBool  by_mean;  /* over the substeps of a body ties with massless nodes act by their mean force, see BodySetMeanForces() */
+  PetscBool           *holds;    /* per row: its node was within the tie distance, whether the user holds it or not */
+  PetscReal           *distance; /* per row: the gap of its node along the normal then [m] */
+  PetscBool            by_mean;  /* over the substeps of a body ties with massless nodes act by their mean force, see BodySetMeanForces() */
+  PetscBool            all_explicit; /* the ties that keep their mass are of explicit bodies, */
+  struct _InverseMass *inverse;      /* and what forces on them do; NULL: there are none, see src/contact/rows/tiedends.c */
 } ContactTies;
 
 /* Rows whose node is held, and their heirs, see src/contact/rows/heldrows.c */

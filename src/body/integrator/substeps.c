@@ -58,7 +58,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
       PetscCall(VecCopy(body->state.v, body->substep_start.v));
     }
     if (body->substep_start.damping) PetscCall(VecCopy(body->state.damping, body->substep_start.damping));
-    if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyTurnToMeanForce(body));
+    if (body->rows.any_by_mean) PetscCall(BodyTurnToMeanForce(body));
     PetscCall(BodyHistoryBegin(body));
     if (body->integrator->ops.step) PetscCall((*body->integrator->ops.step)(body));
     else PetscCall(TSStep(body->time.ts));
@@ -66,7 +66,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     body->state.time = body->saved.time + (body->time.substep + 1) * body->time.step;
     PetscCall(BodyCheckSubstep(body));
     if (BodyHasStopped(body)) break;
-    if (body->rows.any_by_mean && !body->unloaded) PetscCall(BodyEndMeanForce(body));
+    if (body->rows.any_by_mean) PetscCall(BodyEndMeanForce(body));
     PetscCall((*body->integrator->ops.finishsubstep)(body));
     if (!body->state.incomplete) PetscCall(BodyHistoryEnd(body));
     PetscCall(BodyWriteTraces(body, body->time.substep + 1));

@@ -195,6 +195,12 @@ PetscErrorCode BodyGetMeanForces(Body body, const PetscBool *rows[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether forces act by their mean in what the body does now: rows, or a force on nodes whose compliance is found */
+static PetscBool ActsByMean(Body body)
+{
+  return (PetscBool)(!body->unloaded || (body->rows.nodal_force && body->rows.nodal_shape == BODY_FORCE_LINEAR));
+}
+
 /* At the start of a substep, whose acceleration belongs to the forces at the end of the one before: to the forces that have the mean of the
    controller step in this one, see BodySetMeanForces(). Central differences take half of the change here and half at the end of the
    substep: their staggered energy changes by -dt^2/8 (a + b)'M (b - a) where the acceleration goes from a to b, and these then cancel over
@@ -207,13 +213,20 @@ PetscErrorCode BodyTurnToMeanForce(Body body)
   PetscScalar    *start, *end, *more;
 
   PetscFunctionBegin;
-  PetscCall(TraceGetLevel(body->traces.force_in, 0, &start));
-  PetscCall(TraceGetLevel(body->traces.force_in, m, &end));
-  PetscCall(VecGetArrayWrite(body->work.rows[1], &more));
-  for (PetscInt i = 0; i < body->rows.local; i++)
-    more[i] = body->rows.by_mean[i] && body->rows.conditions[i] == BODY_FORCED ? part * (end[i] - start[i]) : 0;
-  PetscCall(ComputeChange(body, more, body->start.change));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[1], &more));
+  if (!ActsByMean(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->unloaded) {
+    PetscCall(VecCopy(body->rows.nodal_force, body->work.nodes[0]));
+    PetscCall(VecScale(body->work.nodes[0], part));
+    PetscCall(BodyAnswerAtStart(body, body->start.change));
+  } else {
+    PetscCall(TraceGetLevel(body->traces.force_in, 0, &start));
+    PetscCall(TraceGetLevel(body->traces.force_in, m, &end));
+    PetscCall(VecGetArrayWrite(body->work.rows[1], &more));
+    for (PetscInt i = 0; i < body->rows.local; i++)
+      more[i] = body->rows.by_mean[i] && body->rows.conditions[i] == BODY_FORCED ? part * (end[i] - start[i]) : 0;
+    PetscCall(ComputeChange(body, more, body->start.change));
+    PetscCall(VecRestoreArrayWrite(body->work.rows[1], &more));
+  }
   PetscCall(VecAXPY(body->state.a, 1, body->start.change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -223,6 +236,7 @@ PetscErrorCode BodyTurnToMeanForce(Body body)
 PetscErrorCode BodyEndMeanForce(Body body)
 {
   PetscFunctionBegin;
+  if (!ActsByMean(body)) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->integrator->staggered > 0) PetscCall(VecAXPY(body->state.v, 0.5 * body->time.step, body->start.change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -54,6 +54,42 @@ PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  BodyEndConstantForces - has constant forces count as ones that go from those at the start of the controller step to others at its end
+
+  Not Collective
+
+  Input Parameters:
++ body  - the `Body`, integrated under the forces of `BodySetConstantForces()`
+. start - for each row of this rank by how much more than at the end of the last step [N]
+- more  - by how much more at the end [N]
+
+  Level: developer
+
+  Note:
+  For what holds dofs against them, and for the next step, which goes on from the forces at the end. The acceleration that these bring there
+  is to be changed with `BodyAddAcceleration()`. To be called before `BodySave()`.
+
+.seealso: `Body`, `BodySetConstantForces()`, `BodyAddAcceleration()`
+@*/
+PetscErrorCode BodyEndConstantForces(Body body, const PetscScalar start[], const PetscScalar more[])
+{
+  PetscScalar *end;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->rows.local) {
+    PetscAssertPointer(start, 2);
+    PetscAssertPointer(more, 3);
+  }
+  PetscCall(TraceGetLevel(body->traces.force_in, body->time.substeps, &end));
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    body->compliance->change[i] = PetscRealPart(start[i]);
+    end[i] += more[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* BodyComputeForceChange - how much more constant forces on the rows are at the start of a step than those that the last one ended with, on
    the nodes; `any`: whether the substep that has been made last is the first one of such a step */
 PetscErrorCode BodyComputeForceChange(Body body, PetscBool *any, Vec change)

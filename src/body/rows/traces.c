@@ -41,7 +41,8 @@ static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All but the displacement of BodyWriteTraces(). Nobody looks at accelerations where forces are constant in a controller step. */
+/* All but the displacement of BodyWriteTraces(). Nobody looks at accelerations where forces are constant in a controller step, but at those
+   of tied nodes with mass. */
 static PetscErrorCode WriteRates(Body body, PetscInt level)
 {
   const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
@@ -52,7 +53,7 @@ static PetscErrorCode WriteRates(Body body, PetscInt level)
   if (body->state.incomplete && !body->held.any) {
     PetscCall(TraceGetLevel(body->traces.acceleration, level, &acceleration));
     for (PetscInt k = 0; k < body->rows.n_near; k++) acceleration[body->rows.near[k]] = 0;
-  } else if (!body->rows.constant) PetscCall(WriteNear(body, body->state.a, body->traces.acceleration, level));
+  } else if (!body->rows.constant || body->rows.tied_mass) PetscCall(WriteNear(body, body->state.a, body->traces.acceleration, level));
   if (body->rows.n_prescribed) {
     Vec             force   = body->state.internal_force;
     const PetscBool inertia = (PetscBool)(body->rows.traction == BODY_TRACTION_REACTION || body->rows.tied_mass);

@@ -131,6 +131,8 @@ static PetscErrorCode ChooseMass(Contact contact)
     if (chooses && kept == n) kept = b;
     keeps[set[b]] = (PetscBool)(keeps[set[b]] || chooses || (contact->sideless && (needs || contact->options.keep_mass)));
   }
+  for (PetscInt p = 0; p < contact->n_pairs && contact->sideless; p++)
+    if (contact->pairs[p].keeps_mass) keeps[set[contact->pairs[p].body[0]]] = PETSC_TRUE;
   for (PetscInt b = 0; b < n; b++)
     if (keeps[set[b]]) PetscCall(BodyKeepMass(contact->bodies[b]));
   PetscCall(PetscFree(keeps));

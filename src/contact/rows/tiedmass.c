@@ -14,7 +14,7 @@ static PetscErrorCode CanKeepMass(Contact contact, const ContactPair *pair, Pets
 {
   PetscFunctionBegin;
   *can = PETSC_FALSE;
-  if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->obstacle || pair->law != CONTACT_LAW_TIED) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyIntegratesLike(contact->bodies[pair->body[0]], contact->bodies[pair->body[1]], can));
   for (PetscInt side = 0; side < 2; side++) {
     PetscBool chosen, massless;
@@ -82,14 +82,31 @@ static PetscErrorCode LeaveOutExplicit(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Bodies that answer to forces do so by one rule in each set: there all pairs keep their mass, or none */
+static PetscErrorCode LeaveOutSets(Contact contact)
+{
+  PetscInt  *set;
+  PetscBool *all;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc2(contact->n_bodies, &set, contact->n_bodies, &all));
+  ContactFindSets(contact, set);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) all[b] = PETSC_TRUE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!contact->pairs[p].keeps_mass) all[set[contact->pairs[p].body[0]]] = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].keeps_mass = all[set[contact->pairs[p].body[0]]];
+  PetscCall(PetscFree2(set, all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds out which pairs keep the mass of their nodes. Before the nodes of the others are made massless, and before bodies are set up. */
 PetscErrorCode ContactChooseTiedMass(Contact contact)
 {
   PetscFunctionBegin;
-  if (!ContactAllPairsTie(contact) || !contact->prescribes) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactAllPairsTie(contact) || !(contact->prescribes || contact->sideless)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CanKeepMass(contact, &contact->pairs[p], &contact->pairs[p].keeps_mass));
   PetscCall(LeaveOutExplicit(contact));
-  PetscCall(LeaveOutMixed(contact));
+  PetscCall(contact->sideless ? LeaveOutSets(contact) : LeaveOutMixed(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool all, any;
 
@@ -111,9 +128,10 @@ PetscErrorCode ContactSetMeanForces(Contact contact)
     const ContactBodyRows *of = &contact->body_rows[b];
 
     for (PetscInt k = 0; k < of->n; k++) {
-      const PetscInt i = of->rows[k];
+      const PetscInt     i    = of->rows[k];
+      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
-      by_mean[k] = (PetscBool)(contact->rows.tied[i] && !contact->pairs[contact->rows.pair[i]].keeps_mass);
+      by_mean[k] = (PetscBool)(contact->rows.tied[i] && pair->law == CONTACT_LAW_TIED && !pair->keeps_mass);
     }
     PetscCall(BodySetMeanForces(contact->bodies[b], by_mean));
   }

@@ -122,6 +122,7 @@ static PetscErrorCode SetUp(Contact contact)
     if (contact->pairs[p].law != CONTACT_LAW_FRICTION && contact->pairs[p].law != CONTACT_LAW_FRICTIONLESS)
       contact->rows.lists = PETSC_FALSE;
   contact->friction.steps     = PETSC_TRUE;
+  contact->ties.by_mean       = (PetscBool)(ContactAllPairsTie(contact) && contact->options.shared_times);
   stepper->rtol               = floating ? RTOL_FLOATING : any_static ? RTOL_STATIC : RTOL;
   stepper->atol               = (floating ? ATOL_FLOATING * CONTACT_POSITION_TOLERANCE : RESOLUTION) * contact->scale.length;
   stepper->assembled          = -1;
@@ -156,6 +157,7 @@ static PetscErrorCode RowsChanged(Contact contact)
 {
   PetscFunctionBegin;
   Stepper(contact)->state++;
+  if (ContactAllPairsTie(contact)) PetscCall(ContactSetUpTiedEnds(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,6 +176,7 @@ static PetscErrorCode Accept(Contact contact)
   ContactStepper *stepper = Stepper(contact);
 
   PetscFunctionBegin;
+  if (contact->ties.inverse) PetscCall(ContactStepperEndTies(contact, stepper));
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) stepper->joined[contact->rows.acting[k]] = stepper->joins[contact->rows.acting[k]];
   PetscCall(ContactStepperAcceptGlue(contact, stepper));
   PetscCall(ContactStepperAcceptSecants(stepper));
@@ -201,6 +204,7 @@ static PetscErrorCode ViewMass(Contact contact, PetscViewer viewer)
   PetscInt  loses = 0, thin = contact->n_bodies;
 
   PetscFunctionBegin;
+  if (ContactAllPairsTie(contact)) PetscFunctionReturn(PETSC_SUCCESS); /* nothing hits */
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal part;
     PetscBool has, is_thin;
@@ -262,6 +266,8 @@ static PetscErrorCode Reset(Contact contact)
   PetscCall(ContactStepperDestroyAssembly(&stepper->assembly));
   PetscCall(LawProblemDestroy(&stepper->problem));
   PetscCall(PetscFree(stepper->laws));
+  PetscCall(ContactDestroyTiedEnds(contact));
+  PetscCall(PetscFree2(stepper->aligns[0], stepper->aligns[1]));
   PetscCall(ContactStepperDestroyGlue(stepper));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));

@@ -113,7 +113,8 @@ struct _ContactStepper {
   PetscScalar *ends;     /* two: how its first body has gone along it in the last pass, and its second one [m] */
   PetscReal   *none;     /* zeros */
   PetscReal   *mine, *before;
-  int         *moves; /* per body */
+  PetscScalar *aligns[2]; /* per row of this rank: see ContactAlignTies(); NULL where no ties keep their mass */
+  int         *moves;     /* per body */
 };
 
 /* Whether a node that pushes slides, by the forces of the last solution */
@@ -169,6 +170,7 @@ PETSC_INTERN PetscErrorCode ContactStepperListRows(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperListBodyRows(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperIterate(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperEndTies(Contact, ContactStepper *);
 
 /* The rule of a pair's set */
 static inline const ContactRule *ContactStepperRule(const ContactStepper *stepper, const ContactPair *pair)

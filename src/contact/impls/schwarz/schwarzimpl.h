@@ -141,10 +141,9 @@ typedef struct {
   Groups        groups;
   /* ties that keep their mass */
   struct {
-    PetscBool    any;     /* there are ties that keep their mass, of whatever bodies */
-    PetscBool    forward; /* all ties are those of explicit bodies, see tiedexplicit.c */
-    InverseMass  inverse;
-    PetscScalar *drift; /* per row */
+    PetscBool    any;      /* there are ties that keep their mass, of whatever bodies */
+    PetscBool    forward;  /* all ties are those of explicit bodies, see tiedexplicit.c */
+    PetscScalar *drift[2]; /* per row */
   } tied;
   /* turns of gaps, see turns.c */
   struct {

@@ -47,8 +47,8 @@ static PetscErrorCode Integrate(Contact contact)
 
 PetscErrorCode SchwarzStepTied(Contact contact)
 {
-  Schwarz       *schwarz = (Schwarz *)contact->data;
-  PetscLogDouble begin, end;
+  PetscScalar *const drift = ((Schwarz *)contact->data)->tied.drift[0];
+  PetscLogDouble     begin, end;
 
   PetscFunctionBegin;
   PetscCall(PetscTime(&begin));
@@ -56,12 +56,48 @@ PetscErrorCode SchwarzStepTied(Contact contact)
   PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES));
   PetscCall(PetscArraycpy(contact->end.force, contact->start.force, contact->rows.n));
   PetscCall(Integrate(contact));
-  PetscCall(GetDrift(contact, schwarz->tied.drift));
-  PetscCall(InverseMassSolve(contact, &schwarz->tied.inverse, schwarz->tied.drift, schwarz->tied.drift));
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.force[i] += PetscRealPart(schwarz->tied.drift[i]);
+  PetscCall(GetDrift(contact, drift));
+  PetscCall(InverseMassSolve(contact, contact->ties.inverse, drift, drift));
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.force[i] += PetscRealPart(drift[i]);
   PetscCall(Integrate(contact));
   contact->counts.sweeps++;
   PetscCall(PetscTime(&end));
   contact->counts.seconds += end - begin;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The end of a controller step of implicit bodies, before the next one starts from it */
+PetscErrorCode SchwarzAcceptTied(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  if (schwarz->tied.any && !schwarz->tied.forward) PetscCall(ContactAlignTies(contact, schwarz->tied.drift));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchwarzSetUpTied(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(ContactSetUpTiedEnds(contact));
+  if (!contact->ties.inverse || schwarz->tied.any) PetscFunctionReturn(PETSC_SUCCESS);
+  schwarz->tied.any         = PETSC_TRUE;
+  schwarz->tied.forward     = contact->ties.all_explicit;
+  contact->energy.unlimited = "tied nodes keep their mass, and their forces are not those of massless layers";
+  contact->attempt.moves_start =
+      schwarz->tied.forward; /* the forces at the end of a step are those that its successor of the same size needs */
+  PetscCall(PetscMalloc2(contact->rows.n, &schwarz->tied.drift[0], contact->rows.n, &schwarz->tied.drift[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode SchwarzDestroyTied(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  PetscCall(ContactDestroyTiedEnds(contact));
+  PetscCall(PetscFree2(schwarz->tied.drift[0], schwarz->tied.drift[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

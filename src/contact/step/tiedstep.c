@@ -1,0 +1,53 @@
+/*
+   The end of a step for ties that keep their mass. Their force is the same throughout the step, by the rule `impulse`, where the uncut body
+   has one that runs from l_0 to l_1. Newmark's trapezoidal rule sees the mean of both alone, so that l_1 = 2 l - l_0. Central differences
+   see l_0 alone, which therefore is what the last step has ended with, and l_1 follows from one acceleration of both sides. So both sides
+   go on as the uncut body does, and pairs are told its forces.
+*/
+#include "stepimpl.h"
+#include <contact/compliance/inversemass.h>
+
+/* Tells the bodies the forces at the start and at the end; `start`: more than the last step has ended with, `more`: than the mean */
+static PetscErrorCode TellForces(Contact contact, const PetscScalar start[], const PetscScalar more[])
+{
+  PetscScalar *const *on_body = contact->ties.inverse->work;
+
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    InverseMassGetBodyForces(contact, b, start, on_body[0]);
+    InverseMassGetBodyForces(contact, b, more, on_body[1]);
+    PetscCall(BodyEndConstantForces(contact->bodies[b], on_body[0], on_body[1]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Before the step is accepted */
+PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
+{
+  const InverseMass *inverse = contact->ties.inverse;
+  PetscScalar      **aligns  = stepper->aligns;
+  PetscReal         *more    = stepper->mine;
+
+  PetscFunctionBegin;
+  if (!aligns[0]) PetscCall(PetscMalloc2(contact->rows.n, &aligns[0], contact->rows.n, &aligns[1]));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    more[i]      = inverse->takes_part[i] && !contact->ties.all_explicit ? contact->end.force[i] - stepper->last[i] : 0;
+    aligns[1][i] = more[i];
+  }
+  for (PetscInt b = 0; b < contact->n_bodies && !contact->ties.all_explicit; b++) {
+    InverseMassGetBodyForces(contact, b, aligns[1], inverse->work[0]);
+    PetscCall(BodyAddAcceleration(contact->bodies[b], inverse->work[0]));
+  }
+  PetscCall(ContactAlignTies(contact, aligns));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscReal mean = contact->end.force[i] + PetscRealPart(aligns[0][i]) / contact->step; /* with what has aligned velocities */
+
+    more[i] += PetscRealPart(aligns[1][i]);
+    aligns[1][i] = more[i];
+    contact->end.force[i] += more[i];
+    if (inverse->takes_part[i]) contact->start.force[i] = 2 * mean - contact->end.force[i];
+    aligns[0][i] = contact->start.force[i] - stepper->last[i];
+  }
+  PetscCall(TellForces(contact, aligns[0], aligns[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
