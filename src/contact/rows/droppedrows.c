@@ -19,8 +19,12 @@ PetscErrorCode ContactMarkHeldRows(Contact contact)
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
+    const PetscInt    *dofs;
+    PetscInt           n;
     TransferRows       rows;
 
+    PetscCall(BodyGetHeldDofs(contact->bodies[pair->body[0]], &n, &dofs));
+    if (!n) continue; /* of this rank, all the time */
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscBool meets = ContactPairTies(pair) ? contact->ties.holds[i] : rows.opposite[(i - pair->begin) / pair->components];

@@ -35,8 +35,8 @@ static PetscErrorCode NoteNodes(Contact contact, PetscInt body, Surface surface)
 }
 
 /* Tells both bodies of a pair which of their nodes may touch, and are to be massless: all nodes of both surfaces, since any of them may
-   come to lie opposite to the partner as bodies slide. None of a pair whose nodes are tied and keep their mass, unless the whole body does, as
-   where it answers to forces */
+   come to lie opposite to the partner as bodies slide. None of a pair whose nodes are tied and keep their mass, unless the whole body does,
+   as where it answers to forces */
 PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
