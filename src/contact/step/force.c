@@ -155,9 +155,12 @@ static PetscErrorCode LayRows(Contact contact)
 
 static PetscErrorCode RowsChanged(Contact contact)
 {
+  PetscScalar **aligns = Stepper(contact)->aligns;
+
   PetscFunctionBegin;
   Stepper(contact)->state++;
   if (ContactAllPairsTie(contact)) PetscCall(ContactSetUpTiedEnds(contact));
+  if (contact->ties.inverse && !aligns[0]) PetscCall(PetscMalloc2(contact->rows.n, &aligns[0], contact->rows.n, &aligns[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,6 +7,22 @@
 #include "stepimpl.h"
 #include <contact/compliance/inversemass.h>
 
+/* What a force that runs in a step of the trapezoidal rule has more at the end than in the mean */
+static PetscErrorCode ExtrapolateForces(Contact contact, const ContactStepper *stepper, PetscReal more[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(more, contact->rows.n));
+  for (PetscInt p = 0; p < contact->n_pairs && !contact->ties.all_explicit; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscInt           substeps;
+
+    PetscCall(BodyGetSubsteps(contact->bodies[pair->body[0]], &substeps));
+    for (PetscInt i = pair->begin; i < pair->end && substeps == 1; i++)
+      if (contact->ties.inverse->takes_part[i]) more[i] = contact->end.force[i] - stepper->last[i];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Tells the bodies the forces at the start and at the end; `start`: more than the last step has ended with, `more`: than the mean */
 static PetscErrorCode TellForces(Contact contact, const PetscScalar start[], const PetscScalar more[])
 {
@@ -14,6 +30,7 @@ static PetscErrorCode TellForces(Contact contact, const PetscScalar start[], con
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    if (!contact->body_rows[b].n_all) continue;
     InverseMassGetBodyForces(contact, b, start, on_body[0]);
     InverseMassGetBodyForces(contact, b, more, on_body[1]);
     PetscCall(BodyEndConstantForces(contact->bodies[b], on_body[0], on_body[1]));
@@ -29,12 +46,10 @@ PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
   PetscReal         *more    = stepper->mine;
 
   PetscFunctionBegin;
-  if (!aligns[0]) PetscCall(PetscMalloc2(contact->rows.n, &aligns[0], contact->rows.n, &aligns[1]));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    more[i]      = inverse->takes_part[i] && !contact->ties.all_explicit ? contact->end.force[i] - stepper->last[i] : 0;
-    aligns[1][i] = more[i];
-  }
+  PetscCall(ExtrapolateForces(contact, stepper, more));
+  for (PetscInt i = 0; i < contact->rows.n; i++) aligns[1][i] = more[i];
   for (PetscInt b = 0; b < contact->n_bodies && !contact->ties.all_explicit; b++) {
+    if (!contact->body_rows[b].n_all) continue;
     InverseMassGetBodyForces(contact, b, aligns[1], inverse->work[0]);
     PetscCall(BodyAddAcceleration(contact->bodies[b], inverse->work[0]));
   }
