@@ -32,13 +32,13 @@
   Where two nodes bear all it helps less, since normals of rows are half way between those of both sides up to 10 degrees alone: balls of 40
   edges spin by 0.003 at 2 m/s, but by 0.008 at 0.4 m/s and 0.023 at 0.04 m/s.
 
-  In two dimensions there is one condition for each pair, in three there are two. They are unknowns of the outer iteration beside those of
-  the rows. In three dimensions the bends of both surfaces count and nodes have the normals of round surfaces, see `SurfaceSetRound()`.
+  In two dimensions there is one condition for each pair, in three there are two. In three dimensions the bends of both surfaces count and
+  nodes have the normals of round surfaces, see `SurfaceSetRound()`.
 
   It means something for rows that follow the surfaces: frictionless pairs of bodies with inertia that are not both linear. It goes with
-  Schwarz's method, massless contact nodes, Dirichlet-Neumann conditions and Newton's method as the outer iteration. For others it is an
-  error. A pair should touch in one place, and faces bend by 11.5 degrees at most. One of its bodies should be free: where both are led
-  moments are no measure of anything, and what turns of gaps bring or take is not limited.
+  `CONTACT_SCHWARZ`, Dirichlet-Neumann conditions and Newton's method as the outer iteration, and with `CONTACT_FORCE`; both with massless
+  contact nodes. For others it is an error. A pair should touch in one place, and faces bend by 11.5 degrees at most. One of its bodies
+  should be free: where both are led moments are no measure of anything, and what turns of gaps bring or take is not limited.
 
 .seealso: `Contact`, `ContactSetAutomaticBalance()`, `ContactGetBalance()`, `ContactSetBounds()`
 @*/
@@ -203,13 +203,14 @@ PetscErrorCode ContactChooseBalance(Contact contact)
 /* Prepares a pair whose gaps can be turned: the place where its surfaces meet may be shifted by a face before contact */
 PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
 {
-  PetscBool linear = PETSC_TRUE, schwarz;
-  PetscReal size   = 0;
+  PetscBool linear = PETSC_TRUE, may = PETSC_FALSE;
+  PetscReal size = 0;
 
   PetscFunctionBegin;
   if (!contact->options.balance) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_SCHWARZ, &schwarz));
-  PetscCheck(schwarz, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_balance goes with -contact_type schwarz");
+  if (contact->ops->maybalance) PetscCall((*contact->ops->maybalance)(contact, &may));
+  PetscCheck(may, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_balance goes with -contact_type schwarz or force and massless contact nodes (-<body>_mass_redistribute true)");
   PetscCheck(contact->dim > 1 && !pair->obstacle && pair->law == CONTACT_LAW_FRICTIONLESS, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_balance: pair %s is not a frictionless one of two bodies in two or three dimensions",
              pair->name);

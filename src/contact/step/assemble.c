@@ -409,6 +409,7 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
     PetscCall(PetscObjectReference((PetscObject)S));
   } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, &S));
   else PetscCall(AssembleDense(stepper, &S));
+  PetscCall(ContactStepperAddTurns(contact, stepper, S));
   PetscCall(LawProblemTakeS(&stepper->problem, &S, near ? &near : NULL));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
   PetscCall(PetscInfo(contact, "S assembled: %s, %" PetscInt_FMT " rows of %" PetscInt_FMT " nodes\n",

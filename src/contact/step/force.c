@@ -132,6 +132,7 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
   PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperCreateOuter(contact, stepper));
+  PetscCall(ContactStepperSetUpTurns(contact, stepper));
   PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
   PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
                          n, &stepper->given));
@@ -272,6 +273,7 @@ static PetscErrorCode Reset(Contact contact)
   PetscCall(ContactDestroyTiedEnds(contact));
   PetscCall(PetscFree2(stepper->aligns[0], stepper->aligns[1]));
   PetscCall(ContactStepperDestroyGlue(stepper));
+  PetscCall(ContactStepperDestroyTurns(&stepper->turns));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));
@@ -334,6 +336,7 @@ PetscErrorCode ContactCreate_Force(Contact contact)
   contact->ops->visit          = Visit;
   contact->ops->pack           = ContactStepperPack;
   contact->ops->unpack         = ContactStepperUnpack;
+  contact->ops->maybalance     = ContactStepperMayTurn;
   contact->ops->mayreplacerows = MayReplaceRows;
   contact->ops->reset          = Reset;
   contact->ops->view           = View;

@@ -70,14 +70,36 @@ static PetscErrorCode MeasureGroups(Contact contact, ContactStepper *stepper)
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt g = ContactStepperGroup(contact, stepper, i);
 
-    stepper->off[g]   = PetscMax(stepper->off[g], PetscAbsScalar(change[i]));
-    stepper->scale[g] = PetscMax(stepper->scale[g], PetscAbsScalar(problem->diagonal[i] * problem->force[i]));
+    stepper->off[g]   = PetscMax(stepper->off[g], PetscAbsScalar(change[i] + stepper->turns.shift[i]));
+    stepper->scale[g] = PetscMax(stepper->scale[g], PetscAbsScalar((problem->diagonal[i] - stepper->turns.own[i]) * problem->force[i]));
   }
   PetscCall(ContactMonitorPass(contact, stepper));
   for (PetscInt g = 0; g < contact->n_bodies; g++) stepper->done[g] = (PetscBool)(stepper->off[g] <= rtol * stepper->scale[g] + atol);
   for (PetscInt i = 0; i < n; i++)
     if (stepper->done[ContactStepperGroup(contact, stepper, i)]) problem->force[i] = problem->base[i];
   PetscCall(ContactStepperTellProducts(contact, stepper));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Forces by the law for what rows have read, and turns of gaps. Where Newton's method fails with products, S gets its entries, for sweeps
+   node by node. */
+static PetscErrorCode SolveLaw(Contact contact, ContactStepper *stepper)
+{
+  LawProblem *problem = &stepper->problem;
+  PetscBool   again   = PETSC_TRUE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
+  while (again) {
+    PetscCall(LawProblemSolve(problem));
+    again = (PetscBool)(!problem->solved && stepper->products);
+    if (again) {
+      stepper->forms             = PETSC_TRUE;
+      stepper->assembly.of_state = -1;
+    } else PetscCall(ContactStepperImproveTurns(contact, stepper, &again));
+    if (again) PetscCall(ContactStepperAssemble(contact, stepper));
+    if (!problem->solved) PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -97,24 +119,17 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(VecGetArrayRead(X, &x));
   for (PetscInt k = 0; k < n_acting; k++) contact->end.force[acting[k]] = stepper->touches[acting[k]] ? PetscRealPart(x[acting[k]]) : 0;
   PetscCall(VecRestoreArrayRead(X, &x));
+  PetscCall(ContactStepperGather(contact, stepper, contact->end.force, problem->base));
+  PetscCall(ContactStepperTurn(contact, stepper));
   PetscCall(ContactStepperAdvance(contact, stepper));
   if (ContactFailed(contact)) {
     PetscCall(ContactRejectResidual(F));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt k = 0; k < n_acting; k++) stepper->mine[acting[k]] = stepper->touches[acting[k]] ? Reading(contact, stepper, acting[k]) : 0;
-  PetscCall(ContactStepperGather(contact, stepper, contact->end.force, problem->base));
   PetscCall(ContactStepperGather(contact, stepper, stepper->mine, problem->read));
-  PetscCall(PetscArraycpy(problem->force, problem->base, n));
   PetscCall(ContactStepperCorrectS(contact, stepper));
-  PetscCall(LawProblemSolve(problem));
-  if (!problem->solved && stepper->products) { /* sweeps node by node may, which take the entries of S */
-    stepper->forms             = PETSC_TRUE;
-    stepper->assembly.of_state = -1;
-    PetscCall(PetscArraycpy(problem->force, problem->base, n));
-    PetscCall(ContactStepperAssemble(contact, stepper));
-    PetscCall(LawProblemSolve(problem));
-  }
+  PetscCall(SolveLaw(contact, stepper));
   if (first) PetscCall(LimitWays(contact, stepper));
   stepper->passes++;
   PetscCall(MeasureGroups(contact, stepper));

@@ -71,6 +71,7 @@ static PetscErrorCode FindMore(Contact contact, ContactStepper *stepper, PetscBo
 
     if (rule->more) PetscCall((*rule->more)(contact, stepper, &contact->pairs[p], &mine));
   }
+  PetscCall(ContactStepperJoinTurned(contact, stepper, &mine));
   any = mine;
   PetscCall(ContactOr(contact, &any));
   *more = (PetscBool)(any > 0);
@@ -145,6 +146,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   PetscCall(ContactStepperBeginSecants(contact, stepper));
+  PetscCall(ContactStepperBeginTurns(contact, stepper));
   while (more) {
     ContactListActingRows(contact, stepper->touches);
     for (PetscInt k = 0; k < contact->rows.n_acting; k++)
@@ -153,6 +155,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
     if (stepper->problem.n) {
       PetscCall(GetLimits(contact, stepper));
       PetscCall(ContactStepperBeginGlue(contact, stepper));
+      PetscCall(ContactStepperListTurns(contact, stepper));
       PetscCall(ContactStepperAssemble(contact, stepper));
       PetscCall(ContactStepperIterate(contact, stepper));
     } else PetscCall(ContactStepperAdvance(contact, stepper));

@@ -63,6 +63,21 @@ typedef struct {
   Mat          rows, transpose, product; /* R, R^T, R R^T */
 } StepperAssembly;
 
+/* Turns of gaps, see turns.c */
+typedef struct {
+  /* per pair */
+  PetscBool *fixed, *joined; /* it is not turned in this step; a row has joined for it */
+  PetscReal *softness;       /* W, by which a turn gives [m/N] */
+  /* per turn [m] */
+  PetscReal *start, *read; /* t_0; with which rows have read what they have */
+  /* per touching row of all ranks */
+  PetscReal   *uneven, *lever; /* C and L, two numbers of each */
+  PetscReal   *own, *shift;    /* what the diagonal of S has of turns [m/N]; by what turns have changed what is read, after the pass [m] */
+  PetscInt    *places;         /* work space */
+  PetscScalar *column;
+  PetscInt     rounds; /* how often the law has been solved for t_0 */
+} StepperTurns;
+
 struct _ContactStepper {
   /* options */
   ContactMonitor     monitor;
@@ -107,6 +122,7 @@ struct _ContactStepper {
   PetscInt64      state, assembled;
   PetscInt        n_assembled, *of_assembled;
   PetscBool       products; /* it is products, see products.c */
+  StepperTurns    turns;    /* what it has of turns */
   /* work space */
   Vec          x, f, field, of_all;
   PetscScalar *gathered; /* a number per touching row */
@@ -162,6 +178,15 @@ PETSC_INTERN PetscErrorCode ContactStepperVisitSecants(Contact, ContactStepper *
 PETSC_INTERN PetscErrorCode ContactStepperCorrectBlock(Contact, ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode StepperSecantsResize(StepperSecants *, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode StepperSecantsDestroy(StepperSecants *);
+PETSC_INTERN PetscErrorCode ContactStepperSetUpTurns(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperDestroyTurns(StepperTurns *);
+PETSC_INTERN PetscErrorCode ContactStepperMayTurn(Contact, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactStepperBeginTurns(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperListTurns(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperAddTurns(Contact, ContactStepper *, Mat);
+PETSC_INTERN PetscErrorCode ContactStepperTurn(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperImproveTurns(Contact, ContactStepper *, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactStepperJoinTurned(Contact, ContactStepper *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperScatter(Contact, ContactStepper *, const PetscReal[]);

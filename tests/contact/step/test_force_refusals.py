@@ -23,7 +23,8 @@ REFUSED = {
     "linear-on-mass": (f"{MASS} -contact_rule linear", ["-contact_rule linear", "impulse", "-<body>_mass_redistribute true", "-contact_allow_unstable"]),
     "unknown-rule": ("-contact_rule sudden", ["-contact_rule", "sudden", "auto", "impulse", "linear"]),
     "dense-limit": (f"{FRICTION} -contact_friction_dense_limit 10", ["-contact_friction_dense_limit", "no effect", "-contact_type force"]),
-    "balance": ("-contact_balance true", ["-contact_balance", "-contact_type schwarz"]),
+    "balance": ("-contact_balance true", ["-contact_balance", "both linear elastic"]),
+    "balance-on-mass": (f"{MASS} -contact_balance true", ["-contact_balance", "massless contact nodes"]),
     "outer-type": ("-schwarz_snes_type newtonls", ["-schwarz_snes_type newtonls", "nrichardson", "anderson", "ngmres", "qn"]),
     # not read by this method
     "traction": ("-schwarz_traction internal", ["-schwarz_traction", "needs -contact_type schwarz"]),
