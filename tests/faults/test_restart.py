@@ -83,6 +83,7 @@ STEPS = {
     "step, linear, springs, nonlinear bodies": BLOCKS + NONLINEAR + STEP + SPRINGS,
     "step, impulse, glue that breaks": BLOCKS + KEPT + BREAKS,
     "step, linear, glue that breaks, nonlinear bodies": BLOCKS + NONLINEAR + STEP + BREAKS,
+    "step, linear, turns of gaps": "-options_file options/discs.opts -time_step 5e-7 -time_end 4e-4 " + STEP,
     "step, impulse, rows on the second, edge, turned": BLOCKS + KEPT + "-contact_rows second -contact_facing false -left_rotate 12 -right_translate 0.98,0.1",
 }
 VARIANTS |= STEPS
