@@ -2,8 +2,9 @@
 #include "lawproblem.h"
 #include <petsc/private/petscimpl.h>
 
-#define FEW_DENSE 500 /* rows of a dense S whose Jacobian is factored each time it changes */
-#define STALE     20  /* sum over nodes of how derivatives have changed since, after which it is: about as many iterations it takes */
+#define FEW_DENSE    500 /* rows of a dense S whose Jacobian is factored each time it changes */
+#define STALE_DENSE  20  /* iterations of the last linear solution beyond which they have grown stale: new ones cost more than 80, */
+#define STALE_SPARSE 5   /* and incomplete ones, where S is products, less than one */
 
 static PetscErrorCode GetPattern(const LawProblem *problem, Mat A, LawPattern *pattern)
 {
@@ -113,8 +114,22 @@ static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar for
     if (change == 0) continue;
     PetscCall(PetscArraycpy(last, derivative, rows * rows));
     *other = PETSC_TRUE;
-    problem->changes += PetscMin(change, 1);
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether factors of an earlier Jacobian do not precondition well any more, or there are none. Incomplete ones, where S is products, cost
+   less than an iteration. */
+static PetscErrorCode AreStale(LawProblem *problem, PetscBool *stale)
+{
+  PetscInt iterations;
+  KSP      ksp;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetKSP(problem->newton, &ksp));
+  PetscCall(KSPGetIterationNumber(ksp, &iterations));
+  *stale            = (PetscBool)(!problem->factored || iterations > (problem->sparse ? STALE_SPARSE : STALE_DENSE));
+  problem->factored = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,7 +140,7 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   const PetscScalar *x, *S;
   PetscScalar       *y = problem->work, *values;
   LawPattern         of_S, of_J;
-  PetscBool          other = PETSC_FALSE;
+  PetscBool          other = PETSC_FALSE, stale = PETSC_TRUE;
 
   PetscFunctionBegin;
   (void)J;
@@ -135,9 +150,9 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscCall(VecRestoreArrayRead(X, &x));
   if (!other) PetscFunctionReturn(PETSC_SUCCESS);
   if (LawProblemIsLagged(problem)) { /* what is multiplied with is J as it is, and its entries are for the preconditioner alone */
-    if (problem->changes <= STALE) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(AreStale(problem, &stale));
+    if (!stale) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(SNESSetLagPreconditioner(snes, LAW_LAG_AFTER_NEXT));
-    problem->changes = 0;
   }
   PetscCall(MatZeroEntries(P));
   PetscCall(LawProblemGetS(problem, &of_S, &S));
@@ -235,6 +250,6 @@ PetscErrorCode LawProblemCreateJacobian(LawProblem *problem)
   PetscCall(SNESSetJacobian(problem->newton, problem->operator ? problem->operator : problem->jacobian, problem->jacobian, ComputeJacobian,
                             problem));
   problem->jacobian_of = -1;
-  problem->changes     = STALE + 1;
+  problem->factored    = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

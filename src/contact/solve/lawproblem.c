@@ -8,8 +8,9 @@
    the last solution, until the term is nothing: single forces are not unique then, what bodies get of them is (proximal point iteration,
    Rockafellar 1976).
 
-   Sources: L. Qi, J. Sun, A nonsmooth version of Newton's method, Mathematical Programming 58 (1993); R. T. Rockafellar, Monotone operators
-   and the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976).
+   Sources: L. Qi, J. Sun, A nonsmooth version of Newton's method, Mathematical Programming 58 (1993); S. C. Eisenstat, H. F. Walker, Choosing
+   the forcing terms in an inexact Newton method, SIAM Journal on Scientific Computing 17 (1996); R. T. Rockafellar, Monotone operators and
+   the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976).
 */
 #include "lawproblem.h"
 #include <petsc/private/petscimpl.h>
@@ -19,8 +20,9 @@
 #define SPARSE_TOLERANCE 1e-13 /* of linear iterations [parts of the residual] */
 #define MOST_LINEAR      200   /* round-off may keep them from either */
 #define MOST_SWEEPS      5120
-#define NODE_ITERATIONS  10  /* for the rows of one node in a sweep */
-#define GAPS_ALONE       1e4 /* r, in parts of the stiffness of glue, with which trial forces have what is read as their gap */
+#define FORCING          1e-2 /* that linear iterations leave of a residual, at most: less as Newton's method gets faster */
+#define NODE_ITERATIONS  10   /* for the rows of one node in a sweep */
+#define GAPS_ALONE       1e4  /* r, in parts of the stiffness of glue, with which trial forces have what is read as their gap */
 
 /* out = S in, which is there where the last product was this one */
 PetscErrorCode LawProblemMultiply(LawProblem *problem, const PetscScalar in[], PetscScalar out[])
@@ -274,6 +276,11 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
     PetscCall(KSPGMRESSetPreAllocateVectors(ksp));
     PetscCall(KSPSetPCSide(ksp, PC_RIGHT)); /* its residual is that of Newton's method */
     PetscCall(SNESSetMaxLinearSolveFailures(problem->newton, PETSC_INT_MAX));
+  }
+  if (LawProblemIsLagged(problem)) { /* each iteration takes a product with a large S: no more of them than Newton's method is good for */
+    PetscCall(SNESKSPSetUseEW(problem->newton, PETSC_TRUE));
+    PetscCall(SNESKSPSetParametersEW(problem->newton, PETSC_CURRENT, FORCING, FORCING, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT,
+                                     PETSC_CURRENT));
   }
   if (LawProblemHasProducts(problem)) PetscCall(KSPSetMinimumIterations(ksp, 1)); /* one row alone may miss its tolerance */
   PetscCall(KSPSetTolerances(ksp, SPARSE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, MOST_LINEAR));

@@ -33,7 +33,7 @@ typedef struct {
   PetscInt64     product_of;         /* state of the S of that; -1: none */
   Mat            jacobian, operator; /* by entries; products with it, where entries precondition alone, or NULL */
   PetscInt64     jacobian_of;        /* state of the entries that it has; -1: none */
-  PetscReal      changes;            /* of derivatives at nodes, since the preconditioner was made */
+  PetscBool      factored;           /* there are factors of an earlier Jacobian of this pattern */
   SNES           newton, nodes;
 } LawProblem;
 
