@@ -21,6 +21,7 @@
 #define MOST_LINEAR      200   /* round-off may keep them from either */
 #define MOST_SWEEPS      5120
 #define FORCING          1e-2 /* that linear iterations leave of a residual, at most: less as Newton's method gets faster */
+#define OF_MANY          4    /* 1/r of many rows, in parts of the diagonal of S */
 #define NODE_ITERATIONS  10   /* for the rows of one node in a sweep */
 #define GAPS_ALONE       1e4  /* r, in parts of the stiffness of glue, with which trial forces have what is read as their gap */
 
@@ -82,9 +83,12 @@ static void WeighGlue(LawProblem *problem, PetscInt node)
   glue->r = glue->times / weight;
 }
 
-/* 1/r of all rows. Rows across the normal of a node have the same r: else friction would not point against the slip */
+/* 1/r of all rows. Rows across the normal of a node have the same r: else friction would not point against the slip. Where S is products
+   there are many rows, which move their neighbours, and Newton's method goes round in circles with a larger r. */
 void LawProblemFindWeights(LawProblem *problem)
 {
+  const PetscReal times = LawProblemHasProducts(problem) ? OF_MANY : 1;
+
   problem->largest = 0;
   problem->softens = PETSC_FALSE;
   for (PetscInt i = 0; i < problem->n; i++) problem->largest = PetscMax(problem->largest, problem->diagonal[i]);
@@ -94,7 +98,7 @@ void LawProblemFindWeights(LawProblem *problem)
 
     for (PetscInt i = first + 1; i < end; i++) across = PetscMax(across, problem->diagonal[i]);
     for (PetscInt i = first; i < end; i++) /* of a row that is held all of the diagonal is zero */
-      problem->weight[i] = PetscMax(i == first ? problem->diagonal[i] : across, PETSC_SMALL * problem->largest);
+      problem->weight[i] = PetscMax(times * (i == first ? problem->diagonal[i] : across), PETSC_SMALL * problem->largest);
     if (problem->law[node]->stiffness) WeighGlue(problem, node);
   }
 }

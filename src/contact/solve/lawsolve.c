@@ -5,6 +5,7 @@
 #define VANISHES      1e-12 /* of what rows read, by themselves or by their own force */
 #define MOST_PROXIMAL 20
 #define FIRST_SWEEPS  5
+#define MOST_NEAR     80  /* sweeps with a matrix near S, each of which takes a product */
 #define ENOUGH        0.5 /* linear iterations leave this part of the tolerance of Newton's method, */
 #define MEAN          0.2 /* or, in the mean, this part of what readings are right to */
 
@@ -69,7 +70,7 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscCall(PetscArraycpy(start, problem->force, problem->n));
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
   PetscCall(SolveBy(problem, problem->newton, &reason));
-  for (; reason < 0 && sweeps <= most && !LawProblemHasProducts(problem); sweeps *= 4) { /* sweeps take entries of S */
+  for (; reason < 0 && sweeps <= (LawProblemHasProducts(problem) ? PetscMin(most, MOST_NEAR) : most); sweeps *= 4) {
     PetscCall(PetscInfo(
         problem->newton, "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps %s\n",
         problem->n, SNESConvergedReasons[reason], problem->iterations, sweeps, problem->softens ? "with secants" : "node by node"));

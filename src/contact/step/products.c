@@ -1,17 +1,19 @@
 /*
    S as products, where it would have many entries: linear bodies that answer by their massless layers alone take one solution with the
    factors of these for each product, and columns of S are not found one by one. Newton's method for the law of rows goes with products, and
-   is preconditioned by a sparse matrix near S. How a layer answers to a force falls to a tenth within one element and to 2 10^-4 within
-   four, since the rest of the body holds it: so products with vectors whose entries are far apart have many columns of S at once, but for
-   what is far from the rows. That is Curtis, Powell and Reid's way to a Jacobian, by the colours of a graph.
+   is preconditioned by a sparse matrix near S. How a layer answers to a force falls to a tenth within one element, since the rest of the
+   body holds it. So a polynomial of degree one in the stiffness K of the layer is near its inverse, and takes no solutions: with D the
+   diagonal of K, it is the one whose product with D^{-1} K is nearest to one on an interval of eigenvalues, which is Chebyshev's.
 
-   Source: A. R. Curtis, M. J. D. Powell, J. K. Reid, On the estimation of sparse Jacobian matrices, Journal of the Institute of Mathematics
-   and its Applications 13 (1974).
+   Source: O. G. Johnson, C. A. Micchelli, G. Paul, Polynomial preconditioners for conjugate gradient calculations, SIAM Journal on Numerical
+   Analysis 20 (1983) 362-376.
 */
 #include "stepimpl.h"
 
 #define FEW_PRODUCTS 500 /* rows up to which S is dense, whose factors take little then */
-#define REACH        1   /* elements beyond those at the rows where a matrix near S has entries */
+#define SPREAD       6   /* eigenvalues of D^{-1} K that count: from the largest down to that part of it; 4 and 10 take 5 % more products */
+#define POWERS       10  /* iterations of the power method */
+#define SMALL        0.03 /* entries of a matrix near S left out, in parts of the diagonal; 0.002 saves 2 % of the products */
 
 /* Whether S is products: of many rows, whose bodies tell them exactly and cheaply */
 PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *stepper)
@@ -30,6 +32,12 @@ PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *ste
   }
   stepper->products = products;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The sign by which the gap of a touching row goes with a body */
+static PetscReal Sign(Contact contact, const ContactStepper *stepper, PetscInt b, PetscInt place)
+{
+  return ContactSign(&contact->pairs[contact->ranks.row_pair[stepper->rows[place]]], b);
 }
 
 /* Adds how the rows of a body go under forces on them, of this rank */
@@ -96,83 +104,131 @@ PetscErrorCode ContactStepperTellProducts(Contact contact, const ContactStepper 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Entries at the rows of a body whose elements are near each other: where B K^REACH B^T has some */
-static PetscErrorCode AddPattern(Contact contact, const StepperEntries *entries, PetscInt b, Mat near)
+/* The largest eigenvalue of D^{-1} K, D the diagonal of K, by the power method: as many digits as a bound needs */
+static PetscErrorCode FindLargest(Mat K, Vec inverse, PetscReal *largest)
 {
-  Mat K, B, product, transpose, next, *rows;
-  IS  touching;
+  Vec x, y;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetLayerMatrices(contact->bodies[b], &K, &B));
-  PetscCall(MatTranspose(B, MAT_INITIAL_MATRIX, &transpose));
-  PetscCall(PetscObjectReference((PetscObject)B));
-  product = B;
-  for (PetscInt k = 0; k <= REACH; k++) {
-    PetscCall(MatMatMult(product, k < REACH ? K : transpose, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &next));
-    PetscCall(MatDestroy(&product));
-    product = next;
+  PetscCall(VecDuplicate(inverse, &x));
+  PetscCall(VecDuplicate(inverse, &y));
+  PetscCall(VecCopy(inverse, x));
+  for (PetscInt k = 0; k < POWERS; k++) {
+    PetscCall(VecNormalize(x, NULL));
+    PetscCall(MatMult(K, x, y));
+    PetscCall(VecPointwiseMult(x, inverse, y));
   }
-  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, entries->n, entries->rows, PETSC_USE_POINTER, &touching));
-  PetscCall(MatCreateSubMatrices(product, 1, &touching, &touching, MAT_INITIAL_MATRIX, &rows));
-  for (PetscInt k = 0; k < entries->n; k++) {
-    const PetscInt *columns;
-    PetscInt        n;
+  PetscCall(VecNorm(x, NORM_2, largest));
+  PetscCall(VecDestroy(&x));
+  PetscCall(VecDestroy(&y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    PetscCall(MatGetRow(rows[0], k, &n, &columns, NULL));
-    for (PetscInt e = 0; e < n; e++) PetscCall(MatSetValue(near, entries->places[k], entries->places[columns[e]], 0, INSERT_VALUES));
-    PetscCall(MatRestoreRow(rows[0], k, &n, &columns, NULL));
-  }
-  PetscCall(MatDestroySubMatrices(1, &rows));
-  PetscCall(ISDestroy(&touching));
-  PetscCall(MatDestroy(&product));
+/* B M B^T, M = s D^{-1} (2 c D - K) D^{-1} near K^{-1}: 1 - M K is the Chebyshev polynomial of degree two in D^{-1} K on the interval of
+   eigenvalues, with the middle c and half of the width w, where it is one at zero: s = 2 / (2 c^2 - w^2) */
+static PetscErrorCode MultiplyNear(Body body, Mat *product)
+{
+  const PetscReal spread = 1 / (PetscReal)SPREAD;
+  PetscReal       largest, middle, width, scale;
+  Mat             K, B, near, transpose;
+  Vec             diagonal, inverse;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetLayerMatrices(body, &K, &B));
+  PetscCall(MatCreateVecs(K, &diagonal, &inverse));
+  PetscCall(MatGetDiagonal(K, diagonal));
+  PetscCall(VecCopy(diagonal, inverse));
+  PetscCall(VecReciprocal(inverse));
+  PetscCall(FindLargest(K, inverse, &largest));
+  middle = largest * (1 + spread) / 2;
+  width  = largest * (1 - spread) / 2;
+  scale  = 2 / (2 * middle * middle - width * width);
+  PetscCall(MatDuplicate(K, MAT_COPY_VALUES, &near));
+  PetscCall(MatScale(near, -scale));
+  PetscCall(VecScale(diagonal, 2 * middle * scale));
+  PetscCall(MatDiagonalSet(near, diagonal, ADD_VALUES));
+  PetscCall(MatTranspose(B, MAT_INITIAL_MATRIX, &transpose));
+  PetscCall(MatDiagonalScale(transpose, inverse, NULL));
+  PetscCall(MatPtAP(near, transpose, MAT_INITIAL_MATRIX, PETSC_DETERMINE, product));
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(VecDestroy(&inverse));
+  PetscCall(MatDestroy(&near));
   PetscCall(MatDestroy(&transpose));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The values of a matrix near S in a symmetric pattern: columns that have no row in common are found by one product */
-static PetscErrorCode FindValues(Mat S, Mat near)
+/* The part of a body in a matrix near S, but for small entries */
+static PetscErrorCode AddNear(Contact contact, ContactStepper *stepper, PetscInt b, Mat near)
 {
-  MatColoring     graph;
-  ISColoring      coloring;
-  IS             *colours;
-  PetscInt        n_colours, n;
-  const PetscInt *begin, *columns;
-  PetscScalar    *values;
-  PetscBool       done;
-  Vec             x, y;
+  const StepperEntries *entries = &stepper->assembly.of_body[b];
+  PetscInt             *places;
+  PetscScalar          *kept;
+  const PetscScalar    *diagonal;
+  Mat                   product, *rows;
+  Vec                   d;
+  IS                    touching;
 
   PetscFunctionBegin;
-  PetscCall(MatColoringCreate(near, &graph));
-  PetscCall(MatColoringSetType(graph, MATCOLORINGSL));
-  PetscCall(MatColoringApply(graph, &coloring));
-  PetscCall(MatColoringDestroy(&graph));
-  PetscCall(ISColoringGetIS(coloring, PETSC_USE_POINTER, &n_colours, &colours));
-  PetscCall(MatCreateVecs(near, &x, &y));
-  PetscCall(MatGetRowIJ(near, 0, PETSC_FALSE, PETSC_FALSE, &n, &begin, &columns, &done));
-  PetscCall(MatSeqAIJGetArray(near, &values));
-  for (PetscInt c = 0; c < n_colours; c++) {
-    const PetscInt    *list;
-    const PetscScalar *answer;
-    PetscInt           size;
+  PetscCall(MultiplyNear(contact->bodies[b], &product));
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, entries->n, entries->rows, PETSC_USE_POINTER, &touching));
+  PetscCall(MatCreateSubMatrices(product, 1, &touching, &touching, MAT_INITIAL_MATRIX, &rows));
+  PetscCall(MatCreateVecs(rows[0], &d, NULL));
+  PetscCall(MatGetDiagonal(rows[0], d));
+  PetscCall(VecGetArrayRead(d, &diagonal));
+  PetscCall(PetscMalloc2(entries->n, &places, entries->n, &kept));
+  for (PetscInt k = 0; k < entries->n; k++) {
+    const PetscInt     place = entries->places[k], *columns;
+    const PetscScalar *values;
+    PetscInt           n, count = 0;
 
-    PetscCall(ISGetLocalSize(colours[c], &size));
-    PetscCall(ISGetIndices(colours[c], &list));
-    PetscCall(VecZeroEntries(x));
-    for (PetscInt k = 0; k < size; k++) PetscCall(VecSetValue(x, list[k], 1, INSERT_VALUES));
-    PetscCall(MatMult(S, x, y));
-    PetscCall(VecGetArrayRead(y, &answer));
-    for (PetscInt k = 0; k < size; k++)
-      for (PetscInt e = begin[list[k]]; e < begin[list[k] + 1]; e++) values[e] = answer[columns[e]];
-    PetscCall(VecRestoreArrayRead(y, &answer));
-    PetscCall(ISRestoreIndices(colours[c], &list));
+    PetscCall(MatGetRow(rows[0], k, &n, &columns, &values));
+    for (PetscInt e = 0; e < n; e++) {
+      const PetscInt other = entries->places[columns[e]];
+
+      if (PetscAbsScalar(values[e]) <= SMALL * PetscSqrtReal(PetscRealPart(diagonal[k] * diagonal[columns[e]]))) continue;
+      places[count] = other;
+      kept[count++] = Sign(contact, stepper, b, place) * Sign(contact, stepper, b, other) * values[e];
+    }
+    PetscCall(MatSetValues(near, 1, &place, count, places, kept, ADD_VALUES));
+    PetscCall(MatRestoreRow(rows[0], k, &n, &columns, &values));
   }
-  PetscCall(PetscInfo(S, "a matrix near S by %" PetscInt_FMT " products for %" PetscInt_FMT " rows\n", n_colours, n));
-  PetscCall(MatSeqAIJRestoreArray(near, &values));
-  PetscCall(MatRestoreRowIJ(near, 0, PETSC_FALSE, PETSC_FALSE, &n, &begin, &columns, &done));
+  PetscCall(PetscFree2(places, kept));
+  PetscCall(VecRestoreArrayRead(d, &diagonal));
+  PetscCall(VecDestroy(&d));
+  PetscCall(MatDestroySubMatrices(1, &rows));
+  PetscCall(ISDestroy(&touching));
+  PetscCall(MatDestroy(&product));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives a matrix near S the trace of S, which laws take their weights from, by that of x x^T S with signs x that are taken at random
+   (Hutchinson 1990). The same on every rank. */
+static PetscErrorCode MatchTrace(Mat S, Mat near)
+{
+  PetscRandom  random;
+  PetscScalar *signs, ours, its;
+  PetscInt     n;
+  Vec          x, y;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreateVecs(near, &x, &y));
+  PetscCall(PetscRandomCreate(PETSC_COMM_SELF, &random));
+  PetscCall(PetscRandomSetType(random, PETSCRANDER48));
+  PetscCall(PetscRandomSetInterval(random, -1, 1));
+  PetscCall(VecSetRandom(x, random));
+  PetscCall(PetscRandomDestroy(&random));
+  PetscCall(VecGetLocalSize(x, &n));
+  PetscCall(VecGetArray(x, &signs));
+  for (PetscInt i = 0; i < n; i++) signs[i] = PetscRealPart(signs[i]) < 0 ? -1 : 1;
+  PetscCall(VecRestoreArray(x, &signs));
+  PetscCall(MatMult(near, x, y));
+  PetscCall(VecDot(x, y, &ours));
+  PetscCall(MatMult(S, x, y));
+  PetscCall(VecDot(x, y, &its));
+  if (PetscRealPart(its) > 0 && PetscRealPart(ours) > 0) PetscCall(MatScale(near, its / ours));
+  PetscCall(PetscInfo(S, "a matrix near S for %" PetscInt_FMT " rows, made %g times as large\n", n, (double)PetscRealPart(its / ours)));
   PetscCall(VecDestroy(&x));
   PetscCall(VecDestroy(&y));
-  PetscCall(ISColoringRestoreIS(coloring, PETSC_USE_POINTER, &colours));
-  PetscCall(ISColoringDestroy(&coloring));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -188,13 +244,13 @@ PetscErrorCode ContactStepperCreateProducts(Contact contact, ContactStepper *ste
   PetscCall(MatSetSizes(*near, n, n, n, n));
   PetscCall(MatSetType(*near, MATSEQAIJ));
   PetscCall(MatSetUp(*near));
-  for (PetscInt k = 0; k < n; k++) PetscCall(MatSetValue(*near, k, k, 0, INSERT_VALUES));
+  for (PetscInt k = 0; k < n; k++) PetscCall(MatSetValue(*near, k, k, 0, ADD_VALUES));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     stepper->assembly.of_body[b].alone = PETSC_TRUE;
-    if (stepper->assembly.of_body[b].n) PetscCall(AddPattern(contact, &stepper->assembly.of_body[b], b, *near));
+    if (stepper->assembly.of_body[b].n) PetscCall(AddNear(contact, stepper, b, *near));
   }
   PetscCall(MatAssemblyBegin(*near, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*near, MAT_FINAL_ASSEMBLY));
-  PetscCall(FindValues(*S, *near));
+  PetscCall(MatchTrace(*S, *near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
