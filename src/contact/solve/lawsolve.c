@@ -4,6 +4,7 @@
 
 #define VANISHES      1e-12 /* of what rows read, by themselves or by their own force */
 #define MOST_PROXIMAL 20
+#define LESS          1e-2 /* of the weights of that term, where S has no factors that need it: it vanishes one solution sooner */
 #define FIRST_SWEEPS  5
 #define MOST_NEAR     80  /* sweeps with a matrix near S, each of which takes a product */
 #define ENOUGH        0.5 /* linear iterations leave this part of the tolerance of Newton's method, */
@@ -135,8 +136,10 @@ PetscErrorCode LawProblemSolve(LawProblem *problem)
   problem->by_nodes = problem->solved = PETSC_FALSE;
   LawProblemFindWeights(problem);
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(proximal) && !problem->solved; k++) {
-    if (problem->proximal != proximal[k]) problem->jacobian_of = -1; /* it has this weight in it */
-    problem->proximal = proximal[k];
+    const PetscReal part = LawProblemHasProducts(problem) ? LESS : 1;
+
+    if (problem->proximal != part * proximal[k]) problem->jacobian_of = -1; /* it has this weight in it */
+    problem->proximal = part * proximal[k];
     if (!slow) PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
     PetscCall(SolveProximal(problem, &slow));
   }
