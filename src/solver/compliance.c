@@ -60,6 +60,15 @@ PetscErrorCode ComplianceDestroy(Compliance *compliance)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All that is known; the room for it stays */
+void ComplianceClear(Compliance c)
+{
+  for (PetscInt i = 0; i < c->n; i++) c->place[c->rows[i]] = -1;
+  c->n = c->n_waiting = c->n_values = 0;
+  c->ramp_valid                     = PETSC_FALSE;
+  c->state++;
+}
+
 /* Room for `more` rows beside those that are known, so that these need not allocate one by one */
 PetscErrorCode ComplianceReserve(Compliance c, PetscInt more)
 {

@@ -12,6 +12,7 @@ typedef struct _n_Compliance *Compliance;
 
 PETSC_INTERN PetscErrorCode ComplianceCreate(MPI_Comm, PetscInt, PetscInt, PetscInt, PetscInt, Compliance *);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *);
+PETSC_INTERN void           ComplianceClear(Compliance);
 PETSC_INTERN PetscErrorCode ComplianceReserve(Compliance, PetscInt);
 PETSC_INTERN PetscErrorCode ComplianceSetColumn(Compliance, PetscInt, PetscInt, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode ComplianceSetWholeColumn(Compliance, PetscInt, const PetscScalar[]);

@@ -158,7 +158,7 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   PetscAssertPointer(matrix, 7);
   if (*nodal && (compliance->nodal_step != body->time.step || compliance->nodal_shape != shape ||
                  (probe && compliance->nodal_time != body->saved.time))) {
-    PetscCall(ComplianceDestroy(nodal));
+    ComplianceClear(*nodal);
     PetscCall(NodalMatrixDestroy(&compliance->nodal_matrix));
   }
   if (*nodal) {
@@ -169,13 +169,13 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   if (unknown) {
     PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
     PetscCall(NodalMatrixRenew(body, shape, known + unknown, n, dofs, &compliance->nodal_kind, &compliance->nodal_matrix, &renewed));
-    if (renewed) PetscCall(ComplianceDestroy(nodal));
-    if (!*nodal) {
+    if (!*nodal) PetscCall(BodyCreateNodalCompliance(body, nodal));
+    if (renewed) ComplianceClear(*nodal);
+    if (renewed || !known) {
       compliance->nodal_time  = body->saved.time;
       compliance->nodal_step  = body->time.step;
       compliance->nodal_shape = shape;
-      PetscCall(BodyCreateNodalCompliance(body, nodal));
-      unknown = n;
+      unknown                 = n;
     }
     PetscCall(PetscInfo(body, "%" PetscInt_FMT " new columns of the compliance of nodes of body '%s', each a %s\n", unknown,
                         ((PetscObject)body)->name, NodalMatrixDescribe(compliance->nodal_matrix)));

@@ -31,12 +31,14 @@ static void RunCase(const char options[])
   ok(PetscOptionsClear(NULL));
   ok(PetscOptionsInsertString(NULL, common));
   ok(PetscOptionsInsertString(NULL, options));
+  count_petsc_allocations(PETSC_TRUE);
   ok(ControllerCreate(PETSC_COMM_WORLD, &controller));
   ok(ControllerSetFromOptions(controller));
   ok(ControllerSetUp(controller));
   ok(ControllerMonitorSet(controller, Count, NULL, NULL));
   ok(ControllerSolve(controller));
   ok(ControllerDestroy(&controller));
+  count_petsc_allocations(PETSC_FALSE);
 #if defined(__SANITIZE_ADDRESS__)
   skip();
 #endif

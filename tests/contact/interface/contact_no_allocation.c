@@ -7,22 +7,6 @@
 #include "count_allocations.h"
 #include <impakt/private/contactimpl.h>
 
-static PetscErrorCode (*allocate)(size_t, PetscBool, int, const char[], const char[], void **);
-static PetscErrorCode (*reallocate)(size_t, int, const char[], const char[], void **);
-static long petsc_allocations;
-
-static PetscErrorCode CountAllocate(size_t size, PetscBool clear, int line, const char function[], const char file[], void **memory)
-{
-  petsc_allocations++;
-  return (*allocate)(size, clear, line, function, file, memory);
-}
-
-static PetscErrorCode CountReallocate(size_t size, int line, const char function[], const char file[], void **memory)
-{
-  petsc_allocations++;
-  return (*reallocate)(size, line, function, file, memory);
-}
-
 /* On one rank each of PETSc's allocations is one of the C library's */
 static long all_allocations(void)
 {
@@ -276,14 +260,10 @@ static void contact_step(void **state)
   }
 }
 
-/* PetscMallocSet() must not be called where an option has set another allocator */
 static int begin(void **state)
 {
   (void)state;
-  allocate       = PetscTrMalloc;
-  reallocate     = PetscTrRealloc;
-  PetscTrMalloc  = CountAllocate;
-  PetscTrRealloc = CountReallocate;
+  count_petsc_allocations(PETSC_TRUE);
   ok(PCInitializePackage());
   ok(PetscLogEventGetId("PCSetUp", &set_up));
   assert_true(set_up >= 0);
@@ -294,8 +274,7 @@ static int begin(void **state)
 static int end(void **state)
 {
   (void)state;
-  PetscTrMalloc  = allocate;
-  PetscTrRealloc = reallocate;
+  count_petsc_allocations(PETSC_FALSE);
   return 0;
 }
 
