@@ -101,6 +101,7 @@ PetscErrorCode ConstrainedSolverSolveFreeColumns(ConstrainedSolver s, Mat b, Mat
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(MatGetSize(b, NULL, &n));
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_FALSE)); /* ConstrainedSolverTakeFailure() tells */
   for (PetscInt k = 0; k < n; k++) {
     Vec of_b, of_x;
 
@@ -110,6 +111,7 @@ PetscErrorCode ConstrainedSolverSolveFreeColumns(ConstrainedSolver s, Mat b, Mat
     PetscCall(MatDenseRestoreColumnVecWrite(x, k, &of_x));
     PetscCall(MatDenseRestoreColumnVecRead(b, k, &of_b));
   }
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, s->shares));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

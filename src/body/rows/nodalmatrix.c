@@ -263,8 +263,17 @@ static PetscErrorCode Solve(Body body, const NodalMatrix nodal, PetscInt n, cons
   PetscCall(MatCreateDense(PetscObjectComm((PetscObject)body), local, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &forces));
   PetscCall(FillForces(body, nodal, n, dofs, forces));
   PetscCall(MatDuplicate(forces, MAT_DO_NOT_COPY_VALUES, answers));
-  if (nodal->solver) PetscCall(ConstrainedSolverSolveFreeColumns(nodal->solver, forces, *answers));
-  else {
+  if (nodal->solver) {
+    KSPConvergedReason reason;
+
+    PetscCall(ConstrainedSolverSolveFreeColumns(nodal->solver, forces, *answers));
+    reason = ConstrainedSolverTakeFailure(nodal->solver);
+    PetscCheck(reason >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
+               "The linear solver of body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
+               "): %s; allow more iterations (-%sksp_max_it), or choose another preconditioner or a direct solver (-%spc_type cholesky)",
+               ((PetscObject)body)->name, (double)(body->saved.time + body->time.step), body->saved.step + 1, KSPConvergedReasons[reason],
+               ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
+  } else {
     PetscCall(KSPGetPC(nodal->ksp, &pc));
     PetscCall(PCFactorGetMatrix(pc, &factors));
     PetscCall(MatMumpsSetIcntl(factors, 27, COLUMNS));
