@@ -17,11 +17,12 @@ typedef struct _p_Contact *Contact;
    ContactType - name of a contact method
 
    Values:
-+ `CONTACT_SCHWARZ`              - Schwarz alternating method
++ `CONTACT_SCHWARZ`              - the contact step: forces of rows by a rule and a law, also on nodes with mass
+. `CONTACT_ALTERNATION`          - the Schwarz alternating method as in the paper: displacements one way, tractions the other
 . `CONTACT_PENALTY`              - penalty method
 . `CONTACT_LAGRANGE`             - Lagrange multipliers, implicit or forward-increment
 . `CONTACT_AUGMENTED_LAGRANGIAN` - penalty method whose forces are added up until the gap is closed
-- `CONTACT_FORCE`                - forces of rows by a rule and a law, also on nodes with mass
+- `CONTACT_FORCE`                - another name of `CONTACT_SCHWARZ`
 
    Level: beginner
 
@@ -29,6 +30,7 @@ typedef struct _p_Contact *Contact;
 J*/
 typedef const char *ContactType;
 #define CONTACT_SCHWARZ              "schwarz"
+#define CONTACT_ALTERNATION          "alternation"
 #define CONTACT_PENALTY              "penalty"
 #define CONTACT_LAGRANGE             "lagrange"
 #define CONTACT_AUGMENTED_LAGRANGIAN "augmented_lagrangian"

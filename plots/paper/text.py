@@ -59,10 +59,9 @@ RECOMMENDATION = """Take the mass off the contact nodes (`-<body>_mass_redistrib
 it alone removes chatter and energy loss together in every coupling (handing over tractions with the inertia of the contact
 nodes does so between implicit bars), and whatever closes the gap then (Schwarz, multipliers, augmented Lagrangian, a stiff
 penalty) finds the same solution. With averaged mass (`-<body>_mass_type averaged`, the default) the errors of kinetic energy
-and position are a quarter of those with lumped mass, at no cost. Solve the interface by Schwarz with Newton on the compliance
-of the bodies (`-schwarz_snes_type newtonls`, the default) from the common velocity of an inelastic collision
-(`-schwarz_predictor inelastic`, the default): one sweep in each step with equal substeps and at most two with others, no
-parameter, and each body is solved with its own integrator and step.
+and position are a quarter of those with lumped mass, at no cost. Solve the interface by the contact step (`-contact_type
+schwarz`, the default): two passes over the bodies in each step, no parameter, and each body is solved with its own
+integrator and step.
 """
 
 

@@ -266,4 +266,5 @@ PETSC_INTERN PetscErrorCode ContactCreate_Schwarz(Contact);
 PETSC_INTERN PetscErrorCode ContactCreate_Penalty(Contact);
 PETSC_INTERN PetscErrorCode ContactCreate_Lagrange(Contact);
 PETSC_INTERN PetscErrorCode ContactCreate_AugmentedLagrangian(Contact);
-PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
+PETSC_INTERN PetscErrorCode ContactCreate_Alternation(Contact);
+PETSC_INTERN PetscErrorCode ContactReadUnconverged(Contact);

@@ -49,6 +49,8 @@ static const char *const late_options[] = {"schwarz_snes_view",
 static const struct {
   const char *name, *now;
 } gone_options[] = {
+    {"schwarz_condense", "bodies are advanced, and only forces between them are solved for"},
+    {"schwarz_dense_limit", "matrices are as the bodies need them"},
     {"schwarz_sweep", "in each sweep the second body of a pair takes the reactions of the first, as with multiplicative"},
 };
 

@@ -10,8 +10,8 @@ static const OptionTopic topics[] = {
     {"time", "start, end, controller step; integrators and their substeps"},
     {"contact", "what may touch what, and by which method and law"},
     {"obstacles", "rigid planes, spheres and cylinders"},
-    {"schwarz", "the Schwarz alternating method and its outer iteration"},
-    {"rules", "-contact_type force: how forces run within a step, and laws of rows"},
+    {"schwarz", "the contact step: its outer iteration, rules and laws of rows"},
+    {"alternation", "the Schwarz alternation of the paper: -contact_type alternation"},
     {"penalty", "the penalty method"},
     {"lagrange", "Lagrange multipliers and the augmented Lagrangian"},
     {"files", "what a run reads, writes, and shows on the terminal"},
@@ -191,14 +191,16 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_rows", "first|second|finer",
      "which body of a pair has a contact row for each of its nodes, and takes displacements: the one named first, which is the default, or "
      "second, or the one whose surface is finer where they may touch; or a value for each pair, with commas"},
-    {"contact", OPTION_OF_RUN, "contact_type", "schwarz|force|penalty|lagrange|augmented_lagrangian",
-     "contact method, default schwarz; force: also where contact nodes have mass, as in sheets and plates, with friction too"},
+    {"contact", OPTION_OF_RUN, "contact_type", "schwarz|alternation|penalty|lagrange|augmented_lagrangian",
+     "contact method, default schwarz, the contact step, where contact nodes may have mass, as in sheets and plates; "
+     "alternation: displacements one way, tractions the other, as in the paper; force "
+     "is "
+     "another name of schwarz"},
     {"contact", OPTION_OF_RUN, "contact_law", "frictionless|tied|bonded|spring|cohesive|coulomb",
      "what surfaces do to each other, default frictionless; bonded: they stick once they have met; spring: glued by springs, cohesive: by "
-     "glue "
-     "that breaks, both with -contact_type force; coulomb: friction"},
+     "glue that breaks, both with -contact_type schwarz; coulomb: friction"},
     {"contact", OPTION_OF_RUN, "contact_law_<pair>", "frictionless|tied|bonded|spring|cohesive|coulomb",
-     "the same of one pair, which is named as in -contact_pairs; pairs of different laws need -contact_type force"},
+     "the same of one pair, which is named as in -contact_pairs; pairs of different laws need -contact_type schwarz"},
     {"contact", OPTION_OF_RUN, "contact_spring_stiffness", "k",
      "stiffness per unit of area of the springs of all pairs that have none of their own [N/m^3]"},
     {"contact", OPTION_OF_RUN, "contact_spring_stiffness_<pair>", "k", "the same of one pair, which is named as in -contact_pairs"},
@@ -217,9 +219,10 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_friction_decay", "d", "d in that [s/m]"},
     {"contact", OPTION_OF_RUN, "contact_friction_dense_limit", "n",
      "rows in contact up to which steps with friction have dense matrices, default 300, and 2000 where products take longer; beyond, "
-     "forces come from GMRES. Not with -contact_type force"},
+     "forces come from GMRES. Not with -contact_type schwarz"},
     {"contact", OPTION_OF_RUN, "contact_separation", "true|false",
-     "whether surfaces that have met may come apart again, default true; false, of frictionless ones under schwarz or force: they slide on "
+     "whether surfaces that have met may come apart again, default true; false, of frictionless ones under schwarz or alternation: they "
+     "slide on "
      "each other, pushed or pulled"},
     {"contact", OPTION_OF_RUN, "contact_tie_distance", "d",
      "gap or overlap at the start up to which nodes are tied, in parts of a face, default 0.01; more is an error"},
@@ -259,53 +262,56 @@ static const KnownOption options[] = {
     {"obstacles", OPTION_OF_OBSTACLE, "velocity", "v,v[,v]",
      "velocity of its surface along itself, as of a belt or a turning roll, which bodies feel by friction [m/s]; formulas in x, y, z, t"},
 
-    {"schwarz", OPTION_OF_RUN, "schwarz_snes_type", "newtonls|anderson|nrichardson|ngmres|qn",
-     "outer iteration, default newtonls; with -contact_type force nrichardson, and not newtonls"},
+    {"schwarz", OPTION_OF_RUN, "schwarz_snes_type", "nrichardson|anderson|ngmres|qn|newtonls",
+     "outer iteration, default nrichardson; with -contact_type alternation newtonls"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_atol", "a",
-     "absolute tolerance on the change of position [m], default 4e-12 of the size of the smallest body, with -contact_type force 2e-15"},
+     "absolute tolerance on the change of position [m], default 2e-15 of the size of the smallest body, with -contact_type alternation "
+     "4e-12"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_rtol", "r",
-     "relative tolerance on it, default 1e-15; with -contact_type force in parts of the largest way that contact makes a row go in the "
-     "step, default 1e-7, 1e-9 where a body is static, and 1e-13 where contact alone holds linear bodies"},
+     "relative tolerance on it, in parts of the largest way that contact makes a row go in the step, default 1e-7, 1e-9 where all bodies "
+     "are linear or one is static, and 1e-13 where contact alone holds linear bodies; with -contact_type alternation 1e-15"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_max_it", "n", "limit of outer iterations, default 50"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_linesearch_damping", "theta", "relaxation of nrichardson, default 1"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_relaxation", "fixed|aitken", "whether nrichardson adapts its relaxation, default fixed"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_traction", "internal|reaction",
-     "nodal force handed to the Neumann side: without or with inertia, default internal"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_traction_waveform", "linear|constant",
-     "traction over the substeps of a partner that makes more of them, default linear"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_transmission", "dirichlet_neumann|robin|impedance",
-     "what is prescribed on the two sides, default dirichlet_neumann"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_robin_parameter", "alpha",
-     "stiffness of Robin conditions [N/m^3; 2-D N/m^2; 1-D N/m], default E/h of the Neumann side; of ties that of the nodes of the first "
-     "side"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_impedance_parameter", "z",
-     "impedance of impedance conditions [N s/m^3; 2-D N s/m^2; 1-D N s/m], default that of plane waves in the Neumann side"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_predictor", "last|trial|extrapolate|inelastic",
-     "where the first sweep of a controller step starts from, default inelastic"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_convergence", "auto|position|contact_position|mismatch",
-     "what change of position is compared with the tolerance, default auto"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_condense", "0|1|auto",
-     "whether sweeps run on the interface compliance of linear bodies, default auto: unless a body makes so many substeps that they take "
-     "less time"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_dense_limit", "n",
-     "interface unknowns up to which matrices on the interface are dense, conjugate gradients beyond, default 2000"},
-    {"schwarz", OPTION_OF_RUN, "schwarz_recheck", "true|false",
-     "whether tensile nodes leave contact within the controller step, default true"},
     {"schwarz", OPTION_OF_RUN, "schwarz_unconverged", "error|accept",
      "what to do with a controller step that does not converge, default error"},
-    {"schwarz", OPTION_OF_RUN, "contact_swap_sides", "true|false",
-     "whether Dirichlet and Neumann side change places with every controller step, default false"},
 
-    {"rules", OPTION_OF_RUN, "contact_monitor", "[ascii[:file]]", "a line for each pass of a contact step, and why it ended; default none"},
-    {"rules", OPTION_OF_RUN, "contact_rule", "auto|impulse|linear",
+    {"schwarz", OPTION_OF_RUN, "contact_monitor", "[ascii[:file]]",
+     "a line for each pass of a contact step, and why it ended; default none"},
+    {"schwarz", OPTION_OF_RUN, "contact_rule", "auto|impulse|linear",
      "how the force of a row runs within a step, and when the row is closed; impulse: constant, and its gap does not change, where contact "
      "nodes have mass; linear: from the last step's to the new one, and it has no gap at the end, where they are massless. Default auto: "
      "impulse for bodies that pairs connect and that have mass on some contact node, else linear"},
-    {"rules", OPTION_OF_RUN, "law_snes_type", "newtonls|...", "solver of the law of all rows, default newtonls"},
-    {"rules", OPTION_OF_RUN, "law_snes_rtol", "r",
+    {"schwarz", OPTION_OF_RUN, "law_snes_type", "newtonls|...", "solver of the law of all rows, default newtonls"},
+    {"schwarz", OPTION_OF_RUN, "law_snes_rtol", "r",
      "its tolerance, in parts of the largest force, or of that which alone would close a row, default 1e-13"},
-    {"rules", OPTION_OF_RUN, "law_snes_max_it", "n", "limit of its iterations, default 50; beyond, sweeps node by node help it"},
-    {"rules", OPTION_OF_RUN, "law_nodes_snes_max_it", "n", "limit of these sweeps, default 5120; less than 5: none"},
+    {"schwarz", OPTION_OF_RUN, "law_snes_max_it", "n", "limit of its iterations, default 50; beyond, sweeps node by node help it"},
+    {"schwarz", OPTION_OF_RUN, "law_nodes_snes_max_it", "n", "limit of these sweeps, default 5120; less than 5: none"},
+
+    {"alternation", OPTION_OF_RUN, "schwarz_relaxation", "fixed|aitken", "whether nrichardson adapts its relaxation, default fixed"},
+    {"alternation", OPTION_OF_RUN, "schwarz_traction", "internal|reaction",
+     "nodal force handed to the Neumann side: without or with inertia, default internal"},
+    {"alternation", OPTION_OF_RUN, "schwarz_traction_waveform", "linear|constant",
+     "traction over the substeps of a partner that makes more of them, default linear"},
+    {"alternation", OPTION_OF_RUN, "schwarz_transmission", "dirichlet_neumann|robin|impedance",
+     "what is prescribed on the two sides, default dirichlet_neumann"},
+    {"alternation", OPTION_OF_RUN, "schwarz_robin_parameter", "alpha",
+     "stiffness of Robin conditions [N/m^3; 2-D N/m^2; 1-D N/m], default E/h of the Neumann side; of ties that of the nodes of the first "
+     "side"},
+    {"alternation", OPTION_OF_RUN, "schwarz_impedance_parameter", "z",
+     "impedance of impedance conditions [N s/m^3; 2-D N s/m^2; 1-D N s/m], default that of plane waves in the Neumann side"},
+    {"alternation", OPTION_OF_RUN, "schwarz_predictor", "last|trial|extrapolate|inelastic",
+     "where the first sweep of a controller step starts from, default inelastic"},
+    {"alternation", OPTION_OF_RUN, "schwarz_convergence", "auto|position|contact_position|mismatch",
+     "what change of position is compared with the tolerance, default auto"},
+    {"alternation", OPTION_OF_RUN, "schwarz_condense", "0|1|auto",
+     "whether sweeps run on the interface compliance of linear bodies, default auto: unless a body makes so many substeps that they take "
+     "less time"},
+    {"alternation", OPTION_OF_RUN, "schwarz_dense_limit", "n",
+     "interface unknowns up to which matrices on the interface are dense, conjugate gradients beyond, default 2000"},
+    {"alternation", OPTION_OF_RUN, "schwarz_recheck", "true|false",
+     "whether tensile nodes leave contact within the controller step, default true"},
+    {"alternation", OPTION_OF_RUN, "contact_swap_sides", "true|false",
+     "whether Dirichlet and Neumann side change places with every controller step, default false"},
 
     {"penalty", OPTION_OF_RUN, "contact_penalty", "tau", "penalty parameter [N/m^3; N/m in 1-D], default from material and element size"},
     {"penalty", OPTION_OF_RUN, "contact_penalty_scale", "s",

@@ -61,10 +61,11 @@ def test_by_force(factor, expected, stands):
 
 
 def test_steps_in_which_nothing_changes(impakt):
-    """Under a load that stays nodes are at the brink of other states: the forces that hold are those of the first step, to round-off."""
+    """Under a load that stays nodes are at the brink of other states: the forces that hold are those of the first step: nodes go on by 1e-9 of
+    the way that contact makes them go, which is 3e-8 of the force of stiff blocks."""
     force = impakt(f"{ARCH} -time_step 0.1").history["contact/b10.right:b11.left/force_vector"][()]
     assert len(force) == 11
-    assert np.abs(force[2:] - force[1]).max() <= 1e-9 * np.abs(force[1]).max()
+    assert np.abs(force[2:] - force[1]).max() <= 1e-7 * np.abs(force[1]).max()
 
 
 @pytest.mark.parametrize(("more", "high"), [("", 4), *long(("-contact_type lagrange", 4), ("", 1))])

@@ -115,16 +115,6 @@ def test_penalty(integrator, shared_run):
     assert force_change(run) <= 0.004  # measured: 0.0032
 
 
-def test_more_rows_than_the_dense_limit(shared_run):
-    """Rows leave in larger numbers than matrices are dense for: the same figures, by conjugate gradients and matrices in turn."""
-    runs = [shared_run(f"{BLOCKS} {PAIRINGS['EE']} -schwarz_dense_limit {limit}").summary for limit in (2000, 4)]
-    assert runs[0]["schwarz"]["inner_iterations"] == 0 < runs[1]["schwarz"]["inner_iterations"]
-    for body in ("left", "right"):
-        for energy in ("kinetic", "potential"):
-            first, second = (run["bodies"][body][energy] for run in runs)
-            assert second == pytest.approx(first, rel=1e-8)  # conjugate gradients to 1e-12 of the force; measured 1.4e-13
-
-
 @pytest.mark.parametrize(
     "steps",
     [

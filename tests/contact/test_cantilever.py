@@ -212,7 +212,7 @@ def test_first_state(shared_run):
 
 
 # The plain alternation: options, most sweeps; measured 7 and 17 (robin), 6, 21 (fixed), 6, 10 (aitken), 6 (impedance, with 26 by its default)
-PLAIN = "-schwarz_snes_type nrichardson -time_end 1e-5"
+PLAIN = "-contact_type alternation -schwarz_snes_type nrichardson -time_end 1e-5"
 FINER = "-clamped_dm_plex_box_faces 25,5,3"
 SWEEPS = {
     "fixed-massless": (f"-schwarz_snes_linesearch_damping 0.39 {MASSLESS}", 33),

@@ -54,7 +54,7 @@ QUICK = "plates, EE"
 @pytest.mark.parametrize("name", [QUICK, *long(*(name for name in CASES if name != QUICK))])
 def test_same_forces(name, shared_run):
     case, tolerance = CASES[name]
-    matrix, products = (shared_run(joined(case, way)) for way in (MATRIX, PRODUCTS))
+    matrix, products = (shared_run(joined(case, "-contact_type lagrange", way)) for way in (MATRIX, PRODUCTS))
     if name in ("plates, II", "plates, EE", "plates, IE"):
         assert matrix.summary["schwarz"]["inner_iterations"] == 0 < products.summary["schwarz"]["inner_iterations"]
     reference = forces(matrix)
@@ -67,7 +67,7 @@ def test_same_forces(name, shared_run):
 
 @pytest.mark.parametrize(("ranks", "integrators"), [(3, f"{LOWER} {UPPER}"), *long((2, ""))])
 def test_on_ranks(ranks, integrators, shared_run):
-    first, other = (shared_run(joined(plates(8, 12, integrators), PRODUCTS), n) for n in (1, ranks))
+    first, other = (shared_run(joined(plates(8, 12, integrators), "-contact_type lagrange", PRODUCTS), n) for n in (1, ranks))
     reference = forces(first)
     np.testing.assert_allclose(forces(other), reference, rtol=0, atol=1e-10 * np.abs(reference).max())
 

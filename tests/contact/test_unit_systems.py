@@ -23,11 +23,11 @@ POWERS = {
 UNITS = {
     "time": "s", "contact_position": "m", "contact_velocity": "m/s", "mean_velocity": "m/s", "momentum": "N s", "angular_momentum": "N m s",
     "kinetic": "J", "potential": "J", "external_work": "J", "penalty_energy": "J", "force": "N", "force_vector": "N", "moment": "J",
-    "impulse": "N s", "change": "J", "scale": "J", "friction_loss": "J", "obstacle_work": "J", "sliding": "1", "gap": "m", "area": "m^2", "active": "1", "iterations": "1",
+    "impulse": "N s", "change": "J", "scale": "J", "friction_loss": "J", "contact_loss": "J", "obstacle_work": "J", "sliding": "1", "gap": "m", "area": "m^2", "active": "1", "iterations": "1",
     "centre": "m", "rotation": "rad", "angular_velocity": "1/s",
 }  # fmt: skip
 # What is compared with the largest value of all of a group, since some of it may be nothing but round-off
-GROUPS = (("kinetic", "potential", "external_work"), ("change", "scale"), ("gap", "contact_position"))
+GROUPS = (("kinetic", "potential", "external_work"), ("change", "scale", "contact_loss"), ("gap", "contact_position"))
 
 NO_GAP = 1e30  # where nothing lies opposite
 TOLERANCE = 1e-9  # of the largest value in a run; 1e-11 was seen

@@ -249,7 +249,7 @@ static void AddFastCollision(void)
   AddBar("left", -1, -1e-3, 8, 0.5);
   AddBar("right", 1e-3, 1, 13, -0.5);
   AddOptions("-bodies left,right -contact_pairs left:right -time_step 0.02 -time_end 1 -left_material_type neo_hookean "
-             "-right_material_type neo_hookean");
+             "-right_material_type neo_hookean -contact_type alternation");
 }
 
 typedef struct {

@@ -53,8 +53,9 @@ def test_mushroom(impakt):
 @pytest.mark.long
 def test_implicit(impakt):
     """The trapezoidal rule with Newton's method and the consistent tangent: energy to 1 %, since the return map is of first order where the strength of a
-    point changes in a step of 15 substeps of the explicit run. Measured: 0.45 %."""
-    run = impakt(TAYLOR + "-rod_rod_elements 16 -rod_ts_type alpha2 -time_step 4e-7 -time_end 2e-5")
+    point changes in a step of 15 substeps of the explicit run. Measured: 0.45 %. Under the forces of a pass of the contact step Newton's method
+    finds no balance of the foot, which flows."""
+    run = impakt(TAYLOR + "-rod_rod_elements 16 -rod_ts_type alpha2 -time_step 4e-7 -time_end 2e-5 -contact_type alternation")
     total, rod = energies(run)
     assert abs(total / total[0] - 1).max() < 1e-2
     assert rod["plastic_work"][-1] > 15

@@ -9,6 +9,8 @@ ANDERSON = "-schwarz_snes_type anderson"
 
 # What computations of the same iterates may differ by: sweeps on the compliance or on the bodies, one rank or several
 SAME = 1e-9
+# Contact forces to round-off: for comparisons of runs of nonlinear bodies, whose default of 1e-7 would be seen
+TIGHT = "-schwarz_snes_rtol 1e-12"
 
 # Integrators of left and right body; substeps of the explicit one in the mixed pairings: 10, once 7
 PAIRINGS = {

@@ -71,7 +71,7 @@ CASES = {
     "damping-negative": (f"{PENALTY} -contact_constraint both -contact_penalty_damping -1", ["-contact_penalty_damping", "positive"]),
     "damping-unstable": (f"{PENALTY} {EXPLICIT} -contact_constraint both -contact_penalty_damping 10", ["-contact_penalty_damping", "unstable"]),
     "naive-massless": (f"{BASE} -contact_stabilization naive", ["-contact_stabilization naive", "massless", "-<body>_mass_redistribute false"]),
-    "stabilized-schwarz": ("-options_file options/paper/high-speed/ii.opts -contact_stabilization contact_stabilized", ["contact_stabilized", "-contact_type lagrange", "schwarz"]),
+    "stabilized-schwarz": ("-options_file options/paper/high-speed/ii.opts -contact_stabilization contact_stabilized", ["contact_stabilized", "-contact_type lagrange", "alternation"]),
     "stabilized-explicit": ("-options_file options/impact-lagrange.opts -contact_stabilization contact_stabilized", ["contact_stabilized", "explicit", "alpha2"]),
     "time-step": (f"{BASE} -time_step 0", ["-time_step", "positive"]),
     "time-end": (f"{BASE} -time_end -1", ["-time_end", "-time_start"]),

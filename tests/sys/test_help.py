@@ -6,7 +6,7 @@ import re
 import pytest
 from conftest import IMPAKT, ROOT, complaints
 
-TOPICS = ["bodies", "meshes", "materials", "loads", "time", "contact", "obstacles", "schwarz", "rules", "penalty", "lagrange", "files"]
+TOPICS = ["bodies", "meshes", "materials", "loads", "time", "contact", "obstacles", "schwarz", "alternation", "penalty", "lagrange", "files"]
 ENTRY = re.compile(r"^  -(\S+) \S+\n      \S.*$", re.MULTILINE)
 
 # Options that Impakt looks at, and that are PETSc's own: their table is PETSc's
@@ -83,8 +83,8 @@ SOME = {
     "time": {"time_end", "<body>_ts_type"},
     "contact": {"contact_pairs", "contact_type"},
     "obstacles": {"obstacles", "<obstacle>_normal"},
-    "schwarz": {"schwarz_snes_type", "contact_swap_sides"},
-    "rules": {"contact_rule", "law_snes_type", "law_snes_max_it", "law_nodes_snes_max_it"},
+    "schwarz": {"schwarz_snes_type", "contact_rule", "law_snes_type", "law_snes_max_it", "law_nodes_snes_max_it"},
+    "alternation": {"schwarz_transmission", "contact_swap_sides"},
     "penalty": {"contact_penalty", "penalty_snes_rtol"},
     "lagrange": {"lagrange_snes_type", "contact_augmentation_tolerance"},
     "files": {"options_file", "output_history"},

@@ -124,6 +124,7 @@ typedef struct {
   PetscReal            slip_bound;       /* slip after which rows are built again [parts of a face] */
   PetscReal            angle_bound;      /* turn of a normal after which they are [rad] */
   PetscBool            allow_unstable;   /* what is known to gain energy runs all the same */
+  SchwarzUnconverged   unconverged;      /* what becomes of a step whose outer iteration does not converge */
   PetscBool            keep_mass;        /* contact nodes keep it where that is left to the bodies */
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
   PetscBool            balanced_start;   /* massless nodes are brought into balance in the first state */

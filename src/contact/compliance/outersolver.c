@@ -81,7 +81,7 @@ static PetscErrorCode RemoveDefault(const char prefix[], const char option[], Pe
 }
 
 /* Line searches that want the slope of the residual's norm multiply with the Jacobian, of which there is only what divides by it */
-static PetscErrorCode RefuseSlopes(Contact contact, const char prefix[], SNESLineSearch line_search)
+PetscErrorCode OuterSolverRefuseSlopes(Contact contact, const char prefix[], SNESLineSearch line_search)
 {
   SNESLineSearchType type;
   PetscBool          slope;
@@ -146,7 +146,7 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
   }
   PetscCall(SNESSetFromOptions(solver->snes));
   PetscCall(FindWatched(prefix, &solver->watched));
-  PetscCall(RefuseSlopes(contact, prefix, line_search));
+  PetscCall(OuterSolverRefuseSlopes(contact, prefix, line_search));
   PetscCall(RemoveDefault(prefix, "-snes_anderson_beta", beta));
   PetscCall(RemoveDefault(prefix, "-snes_anderson_m", size));
   PetscFunctionReturn(PETSC_SUCCESS);

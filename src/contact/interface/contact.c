@@ -102,7 +102,7 @@ PetscErrorCode ContactSetBodies(Contact contact, PetscInt n, const Body bodies[]
 - type    - its name
 
   Options Database Key:
-. -contact_type (schwarz|force|penalty|lagrange|augmented_lagrangian) - the contact method
+. -contact_type (schwarz|alternation|penalty|lagrange|augmented_lagrangian) - the contact method; force is another name of schwarz
 
   Level: beginner
 
@@ -116,6 +116,8 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(type, 2);
+  PetscCall(PetscStrcmp(type, CONTACT_FORCE, &same));
+  if (same) type = CONTACT_SCHWARZ;
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE,

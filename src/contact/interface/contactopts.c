@@ -160,6 +160,26 @@ static PetscErrorCode ReadRowSides(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The first option given that the alternation alone has; it chooses the alternation */
+static PetscErrorCode TakeAlternation(Contact contact, size_t size, char type[])
+{
+  const char *const names[] = {"-schwarz_transmission", "-schwarz_traction",    "-schwarz_traction_waveform", "-schwarz_predictor",
+                               "-schwarz_relaxation",   "-schwarz_convergence", "-schwarz_recheck",           "-contact_swap_sides"};
+  PetscBool         schwarz, given = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrcmp(type, CONTACT_SCHWARZ, &schwarz));
+  for (PetscInt k = 0; k < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(names) && schwarz && !given; k++) {
+    PetscCall(PetscOptionsHasName(NULL, ((PetscObject)contact)->prefix, names[k], &given));
+    if (!given) continue;
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,
+                           "impakt: warning: %s is an option of -contact_type alternation, which is taken; choose it by its name\n",
+                           names[k]));
+    PetscCall(PetscStrncpy(type, CONTACT_ALTERNATION, size));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactSetFromOptions - reads pairs and method from the options
 
@@ -173,7 +193,7 @@ static PetscErrorCode ReadRowSides(Contact contact)
                                                                  that is better; a.top:b.bottom for certain surfaces; default: the two
                                                                  bodies, where there are two
 . -contact_rows (first|second|finer)                            - which body of a pair has the rows; or a value for each pair
-. -contact_type (schwarz|force|penalty|lagrange|augmented_lagrangian) - the contact method
+. -contact_type (schwarz|alternation|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
 . -contact_law (frictionless|tied|bonded|coulomb|...)           - what the surfaces do to each other
@@ -226,6 +246,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactReadLaw(contact, p));
   PetscCall(ContactReadFriction(contact));
   PetscCall(ContactReadGlue(contact));
+  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscCall(TakeAlternation(contact, sizeof(type), type));
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);

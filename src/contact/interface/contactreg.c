@@ -45,10 +45,10 @@ PetscErrorCode ContactRegisterAll(void)
 {
   PetscFunctionBegin;
   PetscCall(ContactRegister(CONTACT_SCHWARZ, ContactCreate_Schwarz));
+  PetscCall(ContactRegister(CONTACT_ALTERNATION, ContactCreate_Alternation));
   PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
   PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
   PetscCall(ContactRegister(CONTACT_AUGMENTED_LAGRANGIAN, ContactCreate_AugmentedLagrangian));
-  PetscCall(ContactRegister(CONTACT_FORCE, ContactCreate_Force));
   PetscCall(ContactLawRegisterAll());
   PetscCall(RowLawRegisterAll());
   PetscFunctionReturn(PETSC_SUCCESS);

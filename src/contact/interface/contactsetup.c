@@ -70,27 +70,6 @@ PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the method by traces alone has; the step by forces takes none of it */
-static PetscErrorCode RefuseOptionsOfTraces(Contact contact, const char body[])
-{
-  const char *const names[] = {"-schwarz_transmission", "-schwarz_traction",    "-schwarz_traction_waveform", "-schwarz_predictor",
-                               "-schwarz_relaxation",   "-schwarz_convergence", "-schwarz_unconverged",       "-schwarz_recheck",
-                               "-schwarz_condense",     "-schwarz_dense_limit", "-contact_swap_sides"};
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(names); k++) {
-    PetscBool given;
-
-    PetscCall(PetscOptionsHasName(NULL, ((PetscObject)contact)->prefix, names[k], &given));
-    PetscCheck(
-        !given, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-        "%s has no effect: contact nodes of body '%s' keep their mass, so that -contact_type force makes the steps; leave it out, or "
-        "choose -%s_mass_redistribute true or false",
-        names[k], body, body);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Which bodies pairs connect, directly or by others: to each one the first of them */
 void ContactFindSets(Contact contact, PetscInt set[])
 {
@@ -101,14 +80,13 @@ void ContactFindSets(Contact contact, PetscInt set[])
 }
 
 /* Lets bodies choose whether their contact nodes are massless. Where some are not, no others of their set are either: their rule is that of
-   impulses, by which massless nodes lose more than the kinetic energy with which those that have mass hit, and cost more. The step by
-   forces then takes the place of that by traces. */
+   impulses, by which massless nodes lose more than the kinetic energy with which those that have mass hit, and cost more. */
 static PetscErrorCode ChooseMass(Contact contact)
 {
   const PetscInt n    = contact->n_bodies;
   PetscInt       kept = n; /* a body that keeps its mass by its own choice */
   PetscInt      *set;
-  PetscBool     *keeps, by_traces;
+  PetscBool     *keeps;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n, &set));
@@ -137,10 +115,40 @@ static PetscErrorCode ChooseMass(Contact contact)
     if (keeps[set[b]]) PetscCall(BodyKeepMass(contact->bodies[b]));
   PetscCall(PetscFree(keeps));
   PetscCall(PetscFree(set));
-  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_SCHWARZ, &by_traces));
-  if (kept == n || !by_traces) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(RefuseOptionsOfTraces(contact, ((PetscObject)contact->bodies[kept])->name));
-  PetscCall(ContactSetType(contact, CONTACT_FORCE));
+  PetscCheck(kept == n || !contact->prescribes, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_type alternation needs massless contact nodes, and body '%s' is thin: it keeps the mass of its own; choose schwarz, "
+             "which is the default, or -%s_mass_redistribute true or false",
+             ((PetscObject)contact->bodies[PetscMin(kept, n - 1)])->name, ((PetscObject)contact->bodies[PetscMin(kept, n - 1)])->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The alternation takes the place of the contact step where that has no answer: constraints on rates, stabilizations, and generalized
+   alpha, whose forces do not act at the ends of steps */
+static PetscErrorCode ChooseMethod(Contact contact)
+{
+  const char *why = NULL;
+  PetscBool   schwarz;
+
+  PetscFunctionBegin;
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_SCHWARZ, &schwarz));
+  if (!schwarz) PetscFunctionReturn(PETSC_SUCCESS);
+  if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) why = "-contact_constraint";
+  if (contact->options.stabilization != CONTACT_STABILIZATION_NONE) why = "-contact_stabilization";
+  for (PetscInt b = 0; b < contact->n_bodies && !why; b++) {
+    PetscReal alpha_m, alpha_f;
+    PetscBool implicit;
+    TS        ts;
+
+    PetscCall(BodyGetTS(contact->bodies[b], &ts));
+    PetscCall(PetscObjectTypeCompare((PetscObject)ts, TSALPHA2, &implicit));
+    if (!implicit) continue;
+    PetscCall(TSAlpha2GetParams(ts, &alpha_m, &alpha_f, NULL, NULL));
+    if (alpha_m != 1 || alpha_f != 1) why = "generalized alpha (-<body>_ts_alpha_...)";
+  }
+  if (!why) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,
+                         "impakt: warning: %s goes with -contact_type alternation, which is taken; choose it by its name\n", why));
+  PetscCall(ContactSetType(contact, CONTACT_ALTERNATION));
   PetscTryTypeMethod(contact, setfromoptions);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,6 +177,7 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   if (contact->surfaces_known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
+  PetscCall(ChooseMethod(contact));
   if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) contact->prescribes = PETSC_FALSE; /* forces are what it finds */
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
@@ -241,7 +250,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   }
   PetscCheck(!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || contact->friction.steps || !contact->rows.n_all,
              PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_law %s: -contact_type %s has no friction; choose schwarz, force, lagrange, penalty or augmented_lagrangian",
+             "-contact_law %s: -contact_type %s has no friction; choose schwarz, lagrange, penalty or augmented_lagrangian",
              contact->friction.name, ((PetscObject)contact)->type_name);
   PetscCheck(!contact->energy.takes || !contact->energy.unlimited || !contact->energy.asked, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "%s has no effect: %s, and no step is made again for what it takes; leave it out", contact->energy.asked,

@@ -318,7 +318,7 @@ static PetscErrorCode Check(Contact contact)
   PetscCall(ContactHasMass(contact, PETSC_FALSE, &has_mass));
   PetscCheck(!has_mass, comm, PETSC_ERR_SUP,
              "-contact_law %s needs massless contact nodes with -contact_type %s: with mass the forces of friction ring from step to step; "
-             "leave -<body>_mass_redistribute at true, or choose -contact_type force",
+             "leave -<body>_mass_redistribute at true, or choose -contact_type schwarz",
              contact->friction.name, ((PetscObject)contact)->type_name);
   PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_SUP,
              "-contact_law %s closes gaps; leave -contact_constraint at gap", contact->friction.name);

@@ -102,7 +102,7 @@ PetscErrorCode ContactGetLaw(Contact contact, ContactLaw *law)
   Level: intermediate
 
   Note:
-  Pairs of different laws need `CONTACT_FORCE`.
+  Pairs of different laws need `CONTACT_SCHWARZ`.
 
 .seealso: `Contact`, `ContactSetLaw()`, `ContactGetPairLaw()`, `ContactAddPair()`
 @*/
@@ -211,14 +211,15 @@ PetscErrorCode ContactCheckLaws(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt p = 1; p < contact->n_pairs && !contact->sideless; p++)
-    PetscCheck(contact->pairs[p].law == contact->pairs[0].law, comm, PETSC_ERR_SUP,
-               "Pair %s has the law %s, and pair %s the law %s: -contact_type %s has one law for all pairs; choose -contact_type force, or "
-               "leave -contact_law_<pair> out",
-               contact->pairs[p].name, ContactNameLaw(contact, &contact->pairs[p]), contact->pairs[0].name, way, type);
+    PetscCheck(
+        contact->pairs[p].law == contact->pairs[0].law, comm, PETSC_ERR_SUP,
+        "Pair %s has the law %s, and pair %s the law %s: -contact_type %s has one law for all pairs; choose -contact_type schwarz, or "
+        "leave -contact_law_<pair> out",
+        contact->pairs[p].name, ContactNameLaw(contact, &contact->pairs[p]), contact->pairs[0].name, way, type);
   PetscCheck(contact->sideless || !ContactAnyPairHas(contact, CONTACT_LAW_GLUE), comm, PETSC_ERR_SUP,
-             "-contact_law %s works with -contact_type force alone, not with %s; choose that, or -contact_law tied", way, type);
+             "-contact_law %s works with -contact_type schwarz alone, not with %s; choose that, or -contact_law tied", way, type);
   PetscCheck(contact->sideless || contact->prescribes || !ContactAnyPairHas(contact, CONTACT_LAW_BONDED), comm, PETSC_ERR_SUP,
-             "-contact_law bonded works with -contact_type schwarz or force alone, not with %s; choose one of these, or -contact_law "
+             "-contact_law bonded works with -contact_type schwarz or alternation alone, not with %s; choose one of these, or -contact_law "
              "frictionless or tied",
              type);
   PetscCall(ContactCheckGlue(contact));
@@ -228,8 +229,9 @@ PetscErrorCode ContactCheckLaws(Contact contact)
   if (ContactAnyPairHas(contact, CONTACT_LAW_BONDED)) way = ContactLaws[CONTACT_LAW_BONDED];
   if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) way = contact->friction.name;
   PetscCall(PetscStrcmp(way, ContactLaws[CONTACT_LAW_FRICTIONLESS], &slides));
-  PetscCheck((contact->sideless || contact->prescribes) && slides, comm, PETSC_ERR_SUP,
-             "-contact_separation false works with -contact_type schwarz or force and -contact_law frictionless alone, not with %s and %s",
-             type, way);
+  PetscCheck(
+      (contact->sideless || contact->prescribes) && slides, comm, PETSC_ERR_SUP,
+      "-contact_separation false works with -contact_type schwarz or alternation and -contact_law frictionless alone, not with %s and %s",
+      type, way);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

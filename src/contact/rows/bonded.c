@@ -124,8 +124,8 @@ PetscErrorCode ContactBond(Contact contact)
   Level: intermediate
 
   Note:
-  `PETSC_FALSE` needs `CONTACT_SCHWARZ` or `CONTACT_FORCE`, and frictionless pairs. Ties beside them stay as they are. Other programs call
-  this contact without separation, or sliding.
+  `PETSC_FALSE` needs `CONTACT_SCHWARZ` or `CONTACT_ALTERNATION`, and frictionless pairs. Ties beside them stay as they are. Other programs
+call this contact without separation, or sliding.
 
 .seealso: `Contact`, `ContactSetLaw()`, `ContactGetSeparation()`, `ContactSetFromOptions()`
 @*/

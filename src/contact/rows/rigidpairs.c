@@ -21,14 +21,14 @@ static PetscErrorCode RefuseRigid(Contact contact, const ContactPair *pair)
   PetscFunctionBegin;
   PetscCheck(
       !pair->obstacle, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-      "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: choose -contact_type force, let the "
+      "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: choose -contact_type schwarz, let the "
       "body deform, or put a body that deforms in place of the obstacle",
       pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
-  SETERRQ(
-      PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-      "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: choose -contact_type force, let one of them deform, or "
-      "leave the pair out (where 'auto' has chosen it, name the other pairs)",
-      pair->name);
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+          "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: choose -contact_type schwarz, let one of them "
+          "deform, or "
+          "leave the pair out (where 'auto' has chosen it, name the other pairs)",
+          pair->name);
 }
 
 /* Turns a pair round whose first body is rigid: rows lie on the side that takes displacements, and a rigid body takes forces */

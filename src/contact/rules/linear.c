@@ -11,7 +11,7 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
   for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
     const PetscReal end     = contact->start.gap[first] + contact->step * stepper->rate[first];
     const PetscBool carried = (PetscBool)(contact->rows.tied[first] || contact->start.active[first]);
-    const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && end <= 0));
+    const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && end <= -contact->options.tolerance));
 
     for (PetscInt i = first; i < first + pair->components; i++) {
       stepper->touches[i]   = touches;

@@ -43,6 +43,8 @@ PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemMultiply(LawProblem *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemSolve(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemDestroy(LawProblem *);
+PETSC_INTERN PetscReal      LawProblemGetFrictionResidual(const LawProblem *);
+PETSC_INTERN PetscErrorCode LawProblemIsAmbiguous(const LawProblem *, PetscBool *);
 
 /* The pattern of a sparse matrix; of a dense one there is none */
 typedef struct {

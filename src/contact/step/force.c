@@ -1,12 +1,13 @@
-/* The contact type `force`: the one contact step, its rule and law. */
+/* The contact type `schwarz`: the contact step, its rule and law. */
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
+#include <sys/citations.h>
 #include <sys/units.h>
 #include <stddef.h>
 
-/* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right. Linear bodies are to round-off. */
-#define RTOL        1e-7
-#define RTOL_STATIC 1e-9 /* without inertia the balance is what is wanted */
+/* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right */
+#define RTOL       1e-7
+#define RTOL_EXACT 1e-9 /* linear bodies, of which S tells right; and static ones: without inertia the balance is what is wanted */
 /* Springs of bodies that contact alone holds find their rest from how the step changes with them, so that it has to be right to round-off:
    with the other tolerances linear stacks took 32 passes for 18. For nonlinear bodies each digit is a pass. */
 #define RTOL_FLOATING 1e-13
@@ -30,6 +31,7 @@ static PetscErrorCode SetFromOptions(Contact contact)
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEList("-contact_rule", "How forces run within a step", "ContactSetType", rules, 3, rules[0], &rule, NULL));
   PetscOptionsEnd();
+  PetscCall(ContactReadUnconverged(contact));
   PetscCall(ContactMonitorSetFromOptions(contact, &Stepper(contact)->monitor));
   Stepper(contact)->asked    = rule == 1 ? &ContactRuleImpulse : rule == 2 ? &ContactRuleLinear : NULL;
   contact->options.keep_mass = (PetscBool)(rule == 1);
@@ -42,32 +44,12 @@ static PetscErrorCode Check(Contact contact)
   MPI_Comm comm = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
-  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP && contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm,
-             PETSC_ERR_USER_INPUT,
-             "-contact_type force has a rule of its own for closed rows and for nodes with mass (-contact_rule); leave -contact_constraint "
-             "and -contact_stabilization out");
   PetscCheck(contact->dim > 1 || !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), comm, PETSC_ERR_SUP,
              "-contact_law %s: bars of one dimension cannot slide; choose frictionless", contact->friction.name);
-  PetscCheck(
-      contact->options.friction_dense < 0, comm, PETSC_ERR_USER_INPUT,
-      "-contact_friction_dense_limit has no effect with -contact_type force, which chooses its matrices by the bodies; leave it out");
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const Body  body = contact->bodies[b];
-    const char *name = ((PetscObject)body)->name;
-    PetscReal   alpha_m, alpha_f;
-    PetscBool   implicit;
-    TS          ts;
-
-    if (!contact->body_rows[b].n_all) continue;
-    PetscCall(BodyGetTS(body, &ts));
-    PetscCall(PetscObjectTypeCompare((PetscObject)ts, TSALPHA2, &implicit));
-    if (!implicit) continue;
-    PetscCall(TSAlpha2GetParams(ts, &alpha_m, &alpha_f, NULL, NULL));
-    PetscCheck(alpha_m == 1 && alpha_f == 1, comm, PETSC_ERR_SUP,
-               "-contact_type force needs forces at the ends of steps, and body '%s' has alpha_m %g and alpha_f %g; leave "
-               "-%s_ts_alpha_... at their defaults",
-               name, (double)alpha_m, (double)alpha_f, name);
-  }
+  if (contact->options.friction_dense >= 0)
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "impakt: warning: -contact_friction_dense_limit has no effect with -contact_type schwarz, which chooses its "
+                           "matrices by the bodies; leave it out\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,13 +80,21 @@ static PetscErrorCode SetUp(Contact contact)
 {
   ContactStepper *stepper    = Stepper(contact);
   const PetscInt  n          = PetscMax(contact->rows.n, 1);
-  PetscBool       any_static = PETSC_FALSE, floating;
+  PetscBool       any_static = PETSC_FALSE, all_linear = PETSC_TRUE, floating;
 
   PetscFunctionBegin;
+  PetscCall(ImpaktCite(CITE_SCHWARZ));
   PetscCall(Check(contact));
   floating = (PetscBool)(contact->floating.n > 0);
   for (PetscInt k = 0; k < contact->floating.n; k++) floating = (PetscBool)(floating && contact->floating.states[k].linear);
-  for (PetscInt b = 0; b < contact->n_bodies && !any_static; b++) PetscCall(BodyIsStatic(contact->bodies[b], &any_static));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    PetscBool is_static, linear;
+
+    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
+    PetscCall(BodyIsLinear(contact->bodies[b], &linear));
+    any_static = (PetscBool)(any_static || is_static);
+    all_linear = (PetscBool)(all_linear && linear);
+  }
   PetscCall(PetscCalloc4(contact->n_bodies, &stepper->rules, contact->n_bodies, &stepper->group, contact->n_bodies, &stepper->moves,
                          contact->n_bodies, &stepper->rests));
   PetscCall(PetscCalloc3(contact->n_bodies, &stepper->done, contact->n_bodies, &stepper->scale, contact->n_bodies, &stepper->off));
@@ -123,7 +113,7 @@ static PetscErrorCode SetUp(Contact contact)
       contact->rows.lists = PETSC_FALSE;
   contact->friction.steps     = PETSC_TRUE;
   contact->ties.by_mean       = (PetscBool)(ContactAllPairsTie(contact) && contact->options.shared_times);
-  stepper->rtol               = floating ? RTOL_FLOATING : any_static ? RTOL_STATIC : RTOL;
+  stepper->rtol               = floating ? RTOL_FLOATING : any_static || all_linear ? RTOL_EXACT : RTOL;
   stepper->atol               = (floating ? ATOL_FLOATING * CONTACT_POSITION_TOLERANCE : RESOLUTION) * contact->scale.length;
   stepper->assembled          = -1;
   stepper->problem.resolution = RESOLUTION * contact->scale.length;
@@ -292,7 +282,7 @@ static PetscErrorCode Destroy(Contact contact)
 }
 
 /*MC
-   CONTACT_FORCE - the one contact step: forces of rows by a rule and a law
+   CONTACT_SCHWARZ - the contact step: forces of rows by a rule and a law; `CONTACT_FORCE` is another name
 
    Options Database Keys:
 +  -contact_monitor                              - a line for each pass of a step
@@ -307,17 +297,16 @@ static PetscErrorCode Destroy(Contact contact)
    Level: beginner
 
    Notes:
-   Contact nodes may have mass: sheets and plates, of which `CONTACT_SCHWARZ` would move the mass to inner nodes. With the rule impulse
-   contact never brings energy, and takes the kinetic energy of the contact nodes in the direction of the hit. Bodies that pairs connect,
-   directly or by others, have one rule.
+   Contact nodes may have mass, as those of sheets and plates. With the rule impulse contact never brings energy, and takes the kinetic
+   energy of the contact nodes in the direction of the hit. Bodies that pairs connect, directly or by others, have one rule.
 
    References:
 .  * - V. Acary, Energy conservation and dissipation properties of time-integration methods for nonsmooth elastodynamics with contact, ZAMM
        96 (2016) 585-603
 
-.seealso: `ContactSetType()`, `CONTACT_SCHWARZ`, `ContactGetLossReason()`
+.seealso: `ContactSetType()`, `CONTACT_ALTERNATION`, `ContactGetLossReason()`
 M*/
-PetscErrorCode ContactCreate_Force(Contact contact)
+PetscErrorCode ContactCreate_Schwarz(Contact contact)
 {
   ContactStepper *stepper;
 

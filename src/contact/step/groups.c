@@ -102,7 +102,7 @@ PetscErrorCode ContactStepperAdvance(Contact contact, ContactStepper *stepper)
   }
   PetscCall(ContactIntegrateSome(contact, stepper->rests));
   PetscCall(ContactAgree(contact));
-  contact->counts.sweeps++;
+  if (stepper->problem.n) contact->counts.sweeps++; /* else nothing touches */
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < contact->rows.n_acting; k++)
     stepper->given[contact->rows.acting[k]] = contact->end.force[contact->rows.acting[k]];

@@ -4,6 +4,7 @@
 */
 #include "stepimpl.h"
 #include <contact/compliance/forces.h>
+#include <contact/compliance/outersolver.h>
 #include <sys/petsccompat.h>
 
 #define MOST_PASSES 50
@@ -202,11 +203,23 @@ PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *steppe
   PetscCall(SNESSetErrorIfNotConverged(stepper->outer, PETSC_FALSE));
   PetscCall(SNESSetFromOptions(stepper->outer));
   PetscCall(SNESGetType(stepper->outer, &type));
+  PetscCall(PetscStrcmp(type, SNESNEWTONLS, &known));
+  if (known) { /* the default of older versions */
+    PetscCall(PetscFPrintf(comm, stderr,
+                           "impakt: warning: -schwarz_snes_type newtonls has no effect any more: the law of rows is solved by Newton's "
+                           "method inside each pass of nrichardson; leave it out\n"));
+    PetscCall(SNESSetType(stepper->outer, SNESNRICHARDSON));
+    PetscCall(SNESGetLineSearch(stepper->outer, &line_search));
+    PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
+    PetscCall(SNESGetType(stepper->outer, &type));
+  }
   PetscCall(PetscObjectTypeCompareAny((PetscObject)stepper->outer, &known, SNESNRICHARDSON, SNESANDERSON, SNESNGMRES, SNESQN, ""));
   PetscCheck(known, comm, PETSC_ERR_USER_INPUT,
-             "-schwarz_snes_type %s: the outer iteration of -contact_type force has no Jacobian, since the law of rows is solved inside "
+             "-schwarz_snes_type %s: the outer iteration of -contact_type schwarz has no Jacobian, since the law of rows is solved inside "
              "it; choose nrichardson, which is the default, anderson, ngmres or qn",
              type);
+  PetscCall(SNESGetLineSearch(stepper->outer, &line_search));
+  PetscCall(OuterSolverRefuseSlopes(contact, "schwarz_", line_search));
   PetscCall(SNESSetConvergenceTest(stepper->outer, TestConvergence, contact, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -251,6 +264,7 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
   PetscCall(SNESGetConvergedReason(stepper->outer, &reason));
   PetscCall(ContactMonitorStep(contact, stepper, reason));
   if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = stepper->touches[i]; /* whose pairs the message names */
   PetscCall(ForcesGetTime(contact, &time));
   if (!stepper->problem.solved) {
     PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
@@ -259,6 +273,10 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
                              " iterations; choose a smaller -time_step, raise -law_snes_max_it and -law_nodes_snes_max_it, or look with "
                              "-law_snes_monitor and -law_nodes_snes_monitor",
                              stepper->problem.n, (double)time, stepper->problem.iterations));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (contact->options.unconverged == SCHWARZ_UNCONVERGED_ACCEPT && reason == SNES_DIVERGED_MAX_IT && !contact->attempt.may_cut) {
+    contact->counts.unconverged_steps++;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(SNESGetTolerances(stepper->outer, &atol, &rtol, NULL, NULL, NULL));

@@ -95,6 +95,19 @@ static PetscErrorCode MarkSliding(Contact contact, const ContactStepper *stepper
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What is told of a step with friction */
+static PetscErrorCode CheckFriction(Contact contact, const ContactStepper *stepper)
+{
+  PetscBool ambiguous;
+
+  PetscFunctionBegin;
+  if (!stepper->problem.n || contact->energy.again || !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->counts.friction_residual = PetscMax(contact->counts.friction_residual, LawProblemGetFrictionResidual(&stepper->problem));
+  PetscCall(LawProblemIsAmbiguous(&stepper->problem, &ambiguous));
+  if (ambiguous) contact->counts.ambiguous_steps++;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* States of rows at the end of the step, and what contact has taken */
 static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
 {
@@ -116,6 +129,7 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
     if (rule->end) PetscCall((*rule->end)(contact, stepper, pair));
   }
   PetscCall(MarkSliding(contact, stepper));
+  PetscCall(CheckFriction(contact, stepper));
   if (stepper->glued) PetscCall(ContactSumStored(contact));
   if (!contact->energy.takes) PetscFunctionReturn(PETSC_SUCCESS);
   sums[0] = stepper->step_loss;

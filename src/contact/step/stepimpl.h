@@ -144,7 +144,6 @@ static inline PetscBool ContactStepperSlides(const LawProblem *problem, PetscInt
   return (PetscBool)(end > first + 1 && !problem->law[node]->pulls && PetscSqrtReal(across) >= bound * (1 - PETSC_SQRT_MACHINE_EPSILON));
 }
 
-PETSC_INTERN PetscErrorCode ContactCreate_Force(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
 PETSC_INTERN PetscReal      ContactStepperStored(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscReal      ContactStepperTaken(Contact, const ContactStepper *, PetscInt);

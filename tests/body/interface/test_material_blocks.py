@@ -5,7 +5,7 @@ import re
 import h5py
 import numpy as np
 import pytest
-from cases import SAME, long, worst_energy_error
+from cases import SAME, TIGHT, long, worst_energy_error
 from conftest import ROOT
 from messages import check_message
 from solidmeshes import write_blocks
@@ -248,8 +248,7 @@ def test_equal_blocks_in_contact(impakt, tmp_path, contact):
     lines = (ROOT / "options/layered-plate.opts").read_text().splitlines()
     plain = tmp_path / "plain.opts"
     plain.write_text("\n".join(line for line in lines if not line.strip().startswith("-skin_")))
-    # 10^-14 m: with the default the sweeps of neo-Hookean bodies end within 10^-9 of the energies, wherever round-off takes them
-    nearer = " -schwarz_snes_atol 1e-14" if contact == "schwarz" else ""
+    nearer = f" {TIGHT}" if contact == "schwarz" else ""
     base = f"-options_file {plain} -time_end 4e-5 -contact_type {contact}{nearer}"
     runs = [impakt(f"{base}{more}") for more in ("", " -plate_skin_density 200")]
     for body in ("block", "plate"):

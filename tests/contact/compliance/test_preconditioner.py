@@ -14,7 +14,7 @@ def blocks(modulus, across):
     step = 0.3 / modulus**0.5
     upper = f"{box('a', (9, 9, 9), (0, 0, 0), (1, 1, 1), f'-a_initial_velocity {across},0,-0.01')} {material('a')}"
     lower = f"{box('b', (7, 7, 7), (0, 0, -1), (1, 1, 0))} {material('b', e=modulus)}"
-    return f"{upper} {lower} -bodies a,b -contact_pairs a:b -time_step {step} -time_end {5 * step} -controller_step_cuts 0"
+    return f"{upper} {lower} -bodies a,b -contact_pairs a:b -time_step {step} -time_end {5 * step} -controller_step_cuts 0 -contact_type alternation"
 
 
 # Sliding, for which rows are built again in each step; the upper cube on an edge of the lower one, so that rows join and leave between steps of Newton's method

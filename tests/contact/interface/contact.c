@@ -63,6 +63,7 @@ static void circles_are_refused(void **state)
   for (PetscInt i = 0; i < 2; i++) {
     Contact contact = CreateNames();
 
+    ok(ContactSetType(contact, CONTACT_ALTERNATION));
     for (PetscInt p = 0; p < 3; p++) ok(ContactAddPair(contact, circles[i][p]));
     refused(PETSC_ERR_USER_INPUT, "circle", ContactSetUp(contact));
     ok(ContactDestroy(&contact));
@@ -121,7 +122,8 @@ static void unknown_type_is_refused(void **state)
 
   AddCollision(4, 3, 0);
   AddOptions("-contact_type schwartz");
-  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'schwartz'|augmented_lagrangian, force, lagrange, penalty, schwarz", SimulationCreate(simulation));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'schwartz'|alternation, augmented_lagrangian, lagrange, penalty, schwarz",
+          SimulationCreate(simulation));
 }
 
 static void overlap_at_the_start_is_refused(void **state)
@@ -383,7 +385,7 @@ static void bad_pairs_are_refused(void **state)
     const char *options, *words;
   } cases[] = {
       {"-contact_pairs a:floor -obstacles floor " FLOOR "-floor_point 0,0.5,0", "a:floor|inside the obstacle"},
-      {"-contact_pairs a:b,b:a", "circle"},
+      {"-contact_type alternation -contact_pairs a:b,b:a", "circle"},
       {"-contact_pairs a.left:b", "left"},
       {"-contact_pairs a.xmin:b.xmax", "a.xmin:b.xmax|do not face each other"},
       {"-contact_pairs a:b,a:floor -obstacles floor -contact_swap_sides " FLOOR, "a:floor|no other side"},

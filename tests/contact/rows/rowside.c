@@ -178,7 +178,7 @@ static void check_rows(Simulation *simulation, PetscInt n, const PetscInt rows[]
   }
 }
 
-/* Each pair has a side of its own, and circles that come of that are turned back or refused */
+/* Each pair has a side of its own, and circles that come of that are turned back or refused where bodies wait for each other */
 static void pairs_have_sides_of_their_own(void **state)
 {
   static const PetscInt rows[] = {0, 1, 1}, finer[] = {1, 0}, circle[] = {0, 0, 0};
@@ -189,7 +189,7 @@ static void pairs_have_sides_of_their_own(void **state)
   AddBox("b", "3,2", "1.01,0", "2.01,1");
   AddBox("c", "3,2", "0,1.01", "2.01,2.01");
   AddOptions("-bodies a,b,c -time_step 0.01 -time_end 0.1 -contact_pairs a.ymax:c.ymin,b.ymax:c.ymin,b.xmin:a.xmax -contact_rows "
-             "first,second,finer");
+             "first,second,finer -contact_type alternation");
   ok(SimulationCreate(simulation));
   check_rows(simulation, 3, rows);
   ok(ContactGetRowSide(simulation->contact, &side));
@@ -219,7 +219,8 @@ static void bad_sides_are_refused(void **state)
        "first,second",
        "a:floor|obstacle"},
       {"-contact_rows second -contact_swap_sides", "swap_sides|a:b|contact_rows"},
-      {"-contact_rows second -b_boundary_displacement xmin -b_boundary_displacement_xmin 0,0", "a:b|body 'b'|contact_rows first"},
+      {"-contact_type alternation -contact_rows second -b_boundary_displacement xmin -b_boundary_displacement_xmin 0,0",
+       "a:b|body 'b'|contact_rows first"},
   };
   Simulation *simulation = (Simulation *)*state;
 

@@ -3,7 +3,7 @@
 import h5py
 import numpy as np
 import pytest
-from cases import SAME, joined, last, long, same, worst_energy_error
+from cases import SAME, TIGHT, joined, last, long, same, worst_energy_error
 from setups import FIELDS, box, linear, material, plane, rotation, words
 
 EXPLICIT = "-a_ts_type centraldifference"
@@ -95,10 +95,10 @@ def check_impulse(run, pairs, body="a"):
 
 @pytest.mark.parametrize(
     ("integrator", "dim", "kind"),
-    [("implicit", 3, ""), ("explicit-substeps", 2, ""), ("implicit", 2, "neo_hookean"), *long(("implicit-substeps", 2, ""), ("explicit", 3, ""), ("explicit", 2, "saint_venant_kirchhoff"))],
+    [("implicit", 3, ""), ("explicit-substeps", 2, ""), ("implicit", 2, "neo_hookean"), *long(("implicit-substeps", 2, ""), ("explicit", 3, ""), ("explicit", 2, "neo_hookean"))],
 )
 def test_thrown_into_a_corner(integrator, dim, kind, shared_run):
-    more = joined(INTEGRATORS[integrator], kind and f"-a_material_type {kind}")
+    more = joined(INTEGRATORS[integrator], kind and f"-a_material_type {kind} {TIGHT}")
     options = thrown(23, more, dim)
     pairs = [f"a:{name}" for name in "lmn"[:dim]]
     run = shared_run(options)
@@ -129,7 +129,7 @@ def grooved(more=""):
 @pytest.mark.parametrize("more", ["", f"{EXPLICIT} -a_material_type neo_hookean"])
 def test_groove(more, shared_run):
     """By symmetry both walls push alike: twice the force times the sine of half the angle is what turns the square back."""
-    run = shared_run(grooved(more))
+    run = shared_run(grooved(joined(more, TIGHT)))
     left, right = (run.history[f"contact/{pair}/force"][()] for pair in ("a:l", "a:r"))
     assert left.max() > 0
     np.testing.assert_allclose(left, right, rtol=0, atol=1e-9 * left.max())
@@ -176,8 +176,8 @@ LEANT = {"concurrent": (0, 0, 0), "before": (0.001, 0.001, 0)}  # a point of the
 
 @pytest.mark.parametrize(("third", "more"), [("concurrent", ""), ("before", "-a_material_type neo_hookean"), *long(("before", EXPLICIT))])
 def test_three_planes_in_two_dimensions(third, more, shared_run):
-    """None is entered, though only two rows of the node can be active at once."""
-    options = joined(thrown(0, more), "-obstacles l,m,n", plane("n", LEANT[third], (1, 1, 0)))
+    """None is entered. Single forces of more rows than a node has displacements are not unique, what the body gets of them is."""
+    options = joined(thrown(0, more), TIGHT, "-obstacles l,m,n", plane("n", LEANT[third], (1, 1, 0)))
     run = shared_run(options)
     pairs = ("a:l", "a:m", "a:n")
     check_impulse(run, pairs)
@@ -185,7 +185,7 @@ def test_three_planes_in_two_dimensions(third, more, shared_run):
     assert run.summary["contact"]["max_penetration"] <= 1e-11
     assert run.summary["contact"]["tension_max"] == 0
     if not more:
-        same(run, shared_run(options, 2), SAME, "a", pairs)
+        same(run, shared_run(options, 2), SAME, "a", ())
 
 
 def test_tied_in_a_corner(shared_run):

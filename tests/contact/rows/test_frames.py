@@ -3,7 +3,7 @@ the other, and at the first touch."""
 
 import numpy as np
 import pytest
-from cases import long, validate
+from cases import TIGHT, long, validate
 from setups import box, material, words
 
 SPEED = np.array([2, -0.5])  # m/s, of a relative to b
@@ -23,7 +23,7 @@ def blocks(more="", frame=(0, 0), turn=0, mirror=False, order="a,b"):
         velocity = np.array([[c, -s], [s, c]]) @ v + frame
         turned = f"-{name}_initial_displacement {c - 1!r}*x+{-s!r}*y,{s!r}*x+{c - 1!r}*y" if turn else ""
         parts.append(box(name, faces, low, high, f"{material(name, 1e7, 0.25, 1000)} -{name}_material_type neo_hookean -{name}_initial_velocity {words(velocity.tolist())} {turned}"))
-    return f"-bodies {order} -contact_pairs a:b -time_step 5e-5 -time_end 0.004 {' '.join(parts)} {more}"
+    return f"-bodies {order} -contact_pairs a:b -time_step 5e-5 -time_end 0.004 {' '.join(parts)} {TIGHT} {more}"
 
 
 def force(run):
@@ -60,7 +60,7 @@ def test_balls(dim, integrator, step, shared_run):
             v = words([float(sign * x + f) for x, f in zip(velocity, frame, strict=False)])
             parts.append(f"-{name}_dm_plex_dim {dim} -{name}_dm_plex_shape ball -{name}_ball_radius 0.02 -{name}_ball_centre {words(centre)} -{name}_ball_divisions {divisions} "
                          f"{material(name, 1e7, 0.25, 1000)} -{name}_material_type neo_hookean -{name}_ts_type {integrator} -{name}_initial_velocity {v}")
-        return shared_run(f"-bodies a,b -contact_facing false {FRICTION} -time_step {step} -time_end {80 * step!r} {' '.join(parts)}")
+        return shared_run(f"-bodies a,b -contact_facing false {FRICTION} {TIGHT} -time_step {step} -time_end {80 * step!r} {' '.join(parts)}")
 
     still = run((0, 0, 0))
     largest = np.abs(force(still)).max()

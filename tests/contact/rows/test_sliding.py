@@ -104,5 +104,5 @@ def test_gaps_do_not_drift(shared_run):
 @pytest.mark.long
 def test_ranks(shared_run):
     """Round-off: measured 1e-14."""
-    one, two = (radial(shared_run(f"{CURVED} -time_end 0.3", ranks))[0] for ranks in (1, 2))
+    one, two = (radial(shared_run(f"{CURVED} -time_end 0.3 -schwarz_snes_rtol 1e-12", ranks))[0] for ranks in (1, 2))
     np.testing.assert_allclose(two, one, rtol=1e-10)

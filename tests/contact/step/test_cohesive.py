@@ -151,7 +151,7 @@ REFUSED = {
     "no-stiffness": ((STRONG, TOUGH), ["-contact_cohesive_stiffness", "E/t"]),
     "negative": ((STIFF, STRONG, "-contact_cohesive_toughness -1"), ["-contact_cohesive_toughness -1", "J/m^2", "positive"]),
     "too-soft": ((STRONG, TOUGH, "-contact_cohesive_stiffness 4e9"), ["left:right", "s^2/(2 G)", "-contact_cohesive_stiffness", "-contact_cohesive_toughness"]),
-    "other-method": ((STIFF, STRONG, TOUGH, "-contact_type schwarz"), ["-contact_law cohesive", "-contact_type force", "schwarz"]),
+    "other-method": ((STIFF, STRONG, TOUGH, "-contact_type alternation"), ["-contact_law cohesive", "-contact_type schwarz", "alternation"]),
     "unused": ((STIFF, "-contact_law tied"), ["-contact_cohesive_stiffness", "needs -contact_law cohesive"]),
     "unknown-pair": ((STIFF, STRONG, TOUGH, "-contact_cohesive_strength_left:rigth 1"), ["-contact_cohesive_strength_left:rigth"]),
 }

@@ -1,4 +1,4 @@
-"""-contact_type force: what it refuses, with the cure; what it says of the energy that it takes; options of its two solvers."""
+"""The contact step: what it refuses, and leaves to the alternation, with the cure; what it says of the energy that it takes; options of its two solvers."""
 
 import pytest
 from cases import DEFAULTS, joined
@@ -14,25 +14,19 @@ FRICTION = "-contact_law coulomb -contact_friction 0.3"
 STATIC = "-left_ts_type static -left_boundary_displacement xmin -left_boundary_displacement_xmin 0,0 -right_mass_redistribute false -left_initial_velocity 0,0"
 
 REFUSED = {
-    "separation": (f"{FRICTION} -contact_separation false", ["-contact_separation false", "schwarz or force", "frictionless", "coulomb"]),
-    "constraint": ("-contact_constraint gap_rate", ["-contact_type force", "-contact_constraint", "-contact_rule", "leave"]),
-    "stabilization": (f"{MASS} -contact_stabilization naive", ["-contact_type force", "-contact_stabilization", "-contact_rule", "leave"]),
+    "separation": (f"{FRICTION} -contact_separation false", ["-contact_separation false", "schwarz or alternation", "frictionless", "coulomb"]),
     "static": (STATIC, ["-contact_rule impulse", "'left'", "static", "-left_ts_type alpha2", "-<body>_mass_redistribute true"]),
-    "alpha": ("-left_ts_alpha_alpha_m 0.9", ["'left'", "alpha_m 0.9", "-left_ts_alpha_"]),
-    "alpha-f": ("-right_ts_alpha_radius 0.5", ["'right'", "alpha_f 0.666667", "-right_ts_alpha_"]),
     "linear-on-mass": (f"{MASS} -contact_rule linear", ["-contact_rule linear", "impulse", "-<body>_mass_redistribute true", "-contact_allow_unstable"]),
     "unknown-rule": ("-contact_rule sudden", ["-contact_rule", "sudden", "auto", "impulse", "linear"]),
-    "dense-limit": (f"{FRICTION} -contact_friction_dense_limit 10", ["-contact_friction_dense_limit", "no effect", "-contact_type force"]),
     "balance": ("-contact_balance true", ["-contact_balance", "both linear elastic"]),
     "balance-on-mass": (f"{MASS} -contact_balance true", ["-contact_balance", "massless contact nodes"]),
-    "outer-type": ("-schwarz_snes_type newtonls", ["-schwarz_snes_type newtonls", "nrichardson", "anderson", "ngmres", "qn"]),
+    "outer-type": ("-schwarz_snes_type newtontr", ["-schwarz_snes_type newtontr", "nrichardson", "anderson", "ngmres", "qn"]),
+    "line-search": ("-schwarz_snes_linesearch_type nleqerr", ["-schwarz_snes_linesearch_type nleqerr", "secant"]),
     # not read by this method
-    "traction": ("-schwarz_traction internal", ["-schwarz_traction", "needs -contact_type schwarz"]),
-    "predictor": ("-schwarz_predictor last", ["-schwarz_predictor", "needs -contact_type schwarz"]),
-    "relaxation": ("-schwarz_relaxation aitken", ["-schwarz_relaxation", "needs -contact_type schwarz"]),
-    "condense": ("-schwarz_condense 1", ["-schwarz_condense", "needs -contact_type schwarz"]),
-    "unconverged": ("-schwarz_unconverged accept", ["-schwarz_unconverged", "needs -contact_type schwarz"]),
-    "swap-sides": ("-contact_swap_sides true", ["-contact_swap_sides", "needs -contact_type schwarz"]),
+    "traction": ("-schwarz_traction internal", ["-schwarz_traction", "needs -contact_type alternation"]),
+    "predictor": ("-schwarz_predictor last", ["-schwarz_predictor", "needs -contact_type alternation"]),
+    "relaxation": ("-schwarz_relaxation aitken", ["-schwarz_relaxation", "needs -contact_type alternation"]),
+    "swap-sides": ("-contact_swap_sides true", ["-contact_swap_sides", "needs -contact_type alternation"]),
     "penalty": ("-contact_penalty 1e9", ["-contact_penalty", "needs -contact_type penalty"]),
     "misspelt": ("-law_snes_max_its 3", ["-law_snes_max_its", "-law_snes_max_it"]),
     # steps are made again for the energy that contact brings, and with this rule it brings none
@@ -40,17 +34,36 @@ REFUSED = {
     "excess": (f"{MASS} -contact_energy_excess 0", ["-contact_energy_excess has no effect", "gains none by its rule"]),
     "tolerance": (f"{MASS} -contact_energy_tolerance 1e-4", ["-contact_energy_tolerance has no effect", "gains none by its rule"]),
     # of other methods
-    "rule-of-another": ("-contact_type schwarz -contact_rule auto", ["-contact_rule auto", "needs -contact_type force"]),
-    "law-of-another": ("-contact_type lagrange -law_snes_max_it 3", ["-law_snes_max_it 3", "needs -contact_type force"]),
-    "outer-of-another": ("-contact_type penalty -schwarz_snes_max_it 3", ["-schwarz_snes_max_it 3", "needs -contact_type schwarz|force"]),
-    "friction-of-another": (f"-contact_type schwarz {MASS} {FRICTION}", ["massless contact nodes", "-contact_type force"]),
+    "rule-of-another": ("-contact_type alternation -contact_rule auto", ["-contact_rule auto", "needs -contact_type schwarz|force"]),
+    "law-of-another": ("-contact_type lagrange -law_snes_max_it 3", ["-law_snes_max_it 3", "needs -contact_type schwarz|force"]),
+    "outer-of-another": ("-contact_type penalty -schwarz_snes_max_it 3", ["-schwarz_snes_max_it 3", "needs -contact_type schwarz|force|alternation"]),
+    "friction-of-another": (f"-contact_type alternation {MASS} {FRICTION}", ["massless contact nodes", "-contact_type schwarz"]),
 }
 
 
-@pytest.mark.parametrize(("case", "ranks"), [*((case, 1) for case in REFUSED), ("alpha", 3), ("outer-type", 3), ("cap", 3)])
+@pytest.mark.parametrize(("case", "ranks"), [*((case, 1) for case in REFUSED), ("traction", 3), ("outer-type", 3), ("cap", 3)])
 def test_refused(case, ranks, impakt):
     options, words = REFUSED[case]
     check_message(impakt(joined(TWO, options), ranks, expect_failure=True), words)
+
+
+# What the alternation alone has chooses it, and what is no more has no effect: both say so
+LEFT = {
+    "-contact_constraint gap_rate": "-contact_constraint goes with -contact_type alternation, which is taken",
+    f"{MASS} -contact_stabilization naive": "-contact_stabilization goes with -contact_type alternation, which is taken",
+    "-left_ts_alpha_alpha_m 0.9": "generalized alpha (-<body>_ts_alpha_...) goes with -contact_type alternation, which is taken",
+    "-contact_type schwarz -schwarz_traction reaction": "-schwarz_traction is an option of -contact_type alternation, which is taken",
+    f"{FRICTION} -contact_friction_dense_limit 10": "-contact_friction_dense_limit has no effect",
+    "-schwarz_snes_type newtonls": "-schwarz_snes_type newtonls has no effect any more",
+    "-schwarz_condense 1": "-schwarz_condense 1 has no effect any more",
+}
+
+
+@pytest.mark.parametrize("options", LEFT)
+def test_left_to_the_alternation(options, impakt):
+    run = impakt(joined(TWO, options, "-time_end 4e-5"))
+    assert f"impakt: warning: {LEFT[options]}" in run.stderr
+    assert run.summary["contact"]["type"] == ("alternation" if "alternation" in LEFT[options] else "schwarz")
 
 
 def test_bars_do_not_slide(impakt):

@@ -1,4 +1,4 @@
-"""The rule `linear` of `-contact_type force`, for contact nodes without mass and for statics: the forces of type `schwarz`, whose iteration is another one."""
+"""The rule `linear` of the contact step, for contact nodes without mass and for statics: the forces of the alternation, whose iteration is another one."""
 
 import numpy as np
 import pytest
@@ -23,7 +23,7 @@ CASES = {
     "blocks, neo-Hookean": ("blocks", NEO_HOOKEAN, "", 1e-6, 1.05),  # 3e-8; 3.50 passes, 3.52 of schwarz; 5.0 without secants of earlier steps
     "bars-high-speed": ("bars-high-speed", "", "", 1e-6, 2),  # 8e-8 as contact begins, by the tolerance of 1e-7; 1.89 passes to 1.00: a second finds the first right
     "three-bars": ("three-bars", "", "", 1e-6, 1.3),  # 8e-8; 1.98 passes to 1.67
-    "discs": ("discs", "", "", 1e-6, 1),  # 8e-8; 2.99 passes to 3.69
+    "discs": ("discs", "", "-contact_balance false", 1e-6, 1.1),  # 1e-7; 2.97 passes to 2.78
     "oblique-disc": ("oblique-disc", "", "", 1e-6, 1.2),  # 9e-8
     "shear-pulse": ("shear-pulse", "", "", 1e-9, 1.2),  # 2.6e-10: many rows, a slab gives S, and the tolerance is 1e-7
     "cantilever-tied": ("cantilever-tied", joined("-time_end 2e-4", MOVED), "", 1e-10, 1.2),  # 4e-14
@@ -44,9 +44,9 @@ def errors(run):
 
 
 @pytest.mark.parametrize("name", [*(name for name in CASES if name not in SLOW), *long(*SLOW)])
-def test_as_schwarz(name, shared_run):
+def test_as_the_alternation(name, shared_run):
     file, more, only, tolerance, ratio = CASES[name]
-    schwarz, force = (shared_run(joined(f"-options_file options/{file}.opts", more, which)) for which in (only, "-contact_type force"))
+    schwarz, force = (shared_run(joined(f"-options_file options/{file}.opts", more, which)) for which in (f"-contact_type alternation {only}", only))
     assert list(force.history["contact"]) == list(schwarz.history["contact"])
     for pair in force.history["contact"]:
         expected, found = (run.history[f"contact/{pair}/force_vector"][()] for run in (schwarz, force))
@@ -70,14 +70,14 @@ COARSE = "-left_dm_plex_box_faces 20,4 -right_dm_plex_box_faces 12,3 -time_end 1
 
 @pytest.mark.parametrize(("more", "most"), [(COARSE, 4), *long(("", 3.5))])
 def test_secants_of_earlier_steps(more, most, impakt):
-    run = impakt(joined(f"-options_file options/blocks.opts {NEO_HOOKEAN} -contact_type force -schwarz_snes_rtol 1e-6", more))
+    run = impakt(joined(f"-options_file options/blocks.opts {NEO_HOOKEAN} -schwarz_snes_rtol 1e-6", more))
     assert run.summary["schwarz"]["mean_contact_steps"] <= most
 
 
-def test_ties_with_mass_are_those_of_schwarz(shared_run):
+def test_ties_with_mass_are_those_of_the_alternation(shared_run):
     """Tied nodes that keep their mass, of bodies of equal steps: the motion of the uncut body with either type, to round-off (measured 1e-13), and its forces."""
     end = f"-options_file options/cantilever-tied.opts -time_end 2e-5 {KEPT}"
-    schwarz, force = shared_run(end), shared_run(f"{end} -contact_type force")
+    schwarz, force = shared_run(f"{end} -contact_type alternation"), shared_run(end)
     for body in ("free", "clamped"):
         for name in ("kinetic", "potential", "mean_velocity", "contact_position"):
             expected = schwarz.history[f"body/{body}/{name}"][()]
@@ -97,10 +97,10 @@ def test_many_rows_of_layers_are_products(shared_run, impakt):
         "-bodies a,b -contact_pairs b.zmin:a.zmax -a_initial_velocity 0,0,1 -b_initial_velocity 0.3,0.2,-1 -time_step 2.5e-7 -time_end 4e-6",
         "-contact_law coulomb -contact_friction 0.2 -all_mass_redistribute true",
     )
-    schwarz, force, ranks = shared_run(run), impakt(f"{run} -contact_type force -info :contact,pc"), impakt(f"{run} -contact_type force", ranks=3)
+    schwarz, force, ranks = shared_run(f"{run} -contact_type alternation"), impakt(f"{run} -info :contact,pc"), impakt(run, ranks=3)
     assert "S assembled: as products" in force.stdout and "S assembled: dense" not in force.stdout
     assert "since reuse preconditioner is set" in force.stdout  # incomplete factors stay while few nodes change their states
-    watched = impakt(f"{run} -contact_type force -contact_monitor")
+    watched = impakt(f"{run} -contact_monitor")
     (pair,) = force.history["contact"]
     expected, found, other = (which.history[f"contact/{pair}/force_vector"][()] for which in (schwarz, force, ranks))
     largest = np.abs(expected).max()

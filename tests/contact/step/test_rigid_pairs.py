@@ -165,4 +165,4 @@ def test_angular_momentum_where_a_disc_slides(more, impakt):
 def test_other_methods_refuse_and_name_this_one(impakt):
     for more, what in (("plane", "obstacle"), ("rigid", "both bodies are rigid")):
         options, bodies = floor(more)
-        check_message(impakt(joined(f"-bodies b{bodies} -contact_pairs b:t -time_step 1e-3 -time_end 1e-2", options, block(2, "")), expect_failure=True), ["b:t", what, "-contact_type force"])
+        check_message(impakt(joined(f"-bodies b{bodies} -contact_pairs b:t -contact_type alternation -time_step 1e-3 -time_end 1e-2", options, block(2, "")), expect_failure=True), ["b:t", what, "-contact_type schwarz"])

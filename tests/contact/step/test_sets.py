@@ -38,7 +38,7 @@ def test_two_rules(shared_run):
     assert both.summary["step_control"]["step_cuts"] > 0
     for name, rule in (("block", "impulse"), ("sheet", "impulse"), ("l", "linear"), ("r", "linear")):
         assert f"\n  rule of body '{name}' and what it may touch: {rule}\n" in both.stdout
-    assert "  rule as bodies need, tolerance 1e-07 of" in both.stdout
+    assert "  rule as bodies need, tolerance 1e-09 of" in both.stdout
     for pair, run in own.items():
         found, expected = (r.history[f"contact/{pair}/impulse"][-1] for r in (both, run))
         assert np.abs(expected).max() > 1  # N s

@@ -36,7 +36,7 @@ def test_slides_straight(impakt):
     assert energy(run).max() <= 1e-7  # 1e-8 measured with damping in proportion to the stiffness, 1e-14 without
 
 
-@pytest.mark.parametrize(("kinds", "step", "substeps", "ranks", "passes"), [("EE", 2e-6, (10, 10), 1, 2), *long(("II", 4e-6, (1, 1), 1, 3), ("IE", 4e-6, (1, 20), 1, 3), ("EE", 2e-6, (10, 10), 3, 2))])
+@pytest.mark.parametrize(("kinds", "step", "substeps", "ranks", "passes"), [("EE", 2e-6, (10, 10), 1, 3), *long(("II", 4e-6, (1, 1), 1, 3), ("IE", 4e-6, (1, 20), 1, 3), ("EE", 2e-6, (10, 10), 3, 3))])
 def test_plate(kinds, step, substeps, ranks, passes, shared_run):
     """A plate one element thick, held at two sides, hit obliquely by a cube. It loses 6 to 13 %, of the nodes that hit: 2 mm of plate below elements of 5 mm. Passes are
     measured: S of many displacements is that of a slab, which at 20 substeps in which waves cross 4 elements is off by a quarter of it."""
@@ -55,8 +55,8 @@ def test_plate(kinds, step, substeps, ranks, passes, shared_run):
 
 @pytest.mark.parametrize("massless", ["true", "false"])
 def test_secants_of_linear_bodies(massless, impakt):
-    """Cubes that meet in full, whose S is that of slabs: secants of linear bodies hold all at once, so that steps after the first few take two passes. Measured 2.1 in
-    10 steps; 3 in each of them where the last secant alone held and slabs had three layers of elements."""
+    """Cubes that meet in full, whose S is that of slabs: secants of linear bodies hold all at once, so that steps after the first few take two passes, to 1e-7, or three. Measured 2.1 and
+    2.6 in 10 steps; 3 in each of them where the last secant alone held and slabs had three layers of elements."""
     bodies = [
         joined(
             box(name, (n,) * 3, (0, 0, low), (0.1, 0.1, high)),
@@ -65,8 +65,8 @@ def test_secants_of_linear_bodies(massless, impakt):
         )
         for name, n, low, high, speed in (("u", 13, 1e-9, 0.1 + 1e-9, -5), ("l", 12, -0.1, 0, 5))
     ]
-    run = impakt(joined("-bodies u,l -contact_type force -contact_pairs u.zmin:l.zmax -time_step 3e-6 -time_end 3e-5", *bodies))
-    assert run.summary["schwarz"]["mean_contact_steps"] <= 2.2
+    run, exact = (impakt(joined("-bodies u,l -contact_pairs u.zmin:l.zmax -time_step 3e-6 -time_end 3e-5", *bodies, more)) for more in ("-schwarz_snes_rtol 1e-7", ""))
+    assert run.summary["schwarz"]["mean_contact_steps"] <= 2.2 and exact.summary["schwarz"]["mean_contact_steps"] <= 2.7
     assert energy(run).max() <= (1e-9 if massless == "false" else 1e-3)
 
 

@@ -102,7 +102,7 @@ def check_energy(v, run, impakt):
     assert np.all(np.isfinite(change))
     if v.rule == "linear":
         if change.max() > GAIN["cap"]:  # steps too large for it: then no more than the same step of type schwarz
-            assert change.max() <= 1.2 * energy(impakt(v.options.replace("-contact_type force", "-contact_type schwarz"), timeout=60)).max()
+            assert change.max() <= 1.2 * energy(impakt(v.options.replace("-contact_type force", "-contact_type alternation"), timeout=60)).max()
     elif "E" in v.kinds:
         assert change.max() <= GAIN["explicit"]
     elif change.max() > GAIN["linear"]:

@@ -232,7 +232,7 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(schwarz->outer.snes, &reason));
   if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (schwarz->unconverged == SCHWARZ_UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN && !contact->attempt.may_cut) {
+  if (contact->options.unconverged == SCHWARZ_UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN && !contact->attempt.may_cut) {
     contact->counts.unconverged_steps++;
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -15,7 +15,6 @@ static const char *const Transmissions[] = {"dirichlet_neumann",     "robin", "i
                                             "SCHWARZ_TRANSMISSION_", NULL};
 static const char *const Predictors[]    = {"last", "trial", "extrapolate", "inelastic", "SchwarzPredictor", "SCHWARZ_PREDICTOR_", NULL};
 static const char *const Waveforms[]     = {"linear", "constant", "SchwarzWaveform", "SCHWARZ_WAVEFORM_", NULL};
-static const char *const Unconvergeds[]  = {"error", "accept", "SchwarzUnconverged", "SCHWARZ_UNCONVERGED_", NULL};
 
 static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
 {
@@ -50,8 +49,7 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
                              (PetscEnum)schwarz->relaxation, (PetscEnum *)&schwarz->relaxation, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "ContactSchwarzSetConvergence", ConvergenceTests,
                              (PetscEnum)schwarz->convergence, (PetscEnum *)&schwarz->convergence, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "ContactSchwarzSetUnconverged",
-                             Unconvergeds, (PetscEnum)schwarz->unconverged, (PetscEnum *)&schwarz->unconverged, NULL));
+  PetscCall(ContactReadUnconverged(contact));
   PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "ContactSchwarzSetRecheck",
                              schwarz->recheck, &schwarz->recheck, NULL));
   PetscOptionsEnd();
@@ -235,7 +233,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
 }
 
 /*MC
-   CONTACT_SCHWARZ - the Schwarz alternating method: displacements one way, tractions the other, until both agree
+   CONTACT_ALTERNATION - the Schwarz alternating method: displacements one way, tractions the other, until both agree
 
    Options Database Keys:
 +  -schwarz_snes_type (newtonls|anderson|nrichardson|ngmres|qn)  - the outer iteration; newtonls uses the interface compliance
@@ -280,7 +278,7 @@ share displacement and force by the areas that they cover, and the mean of their
 
 .seealso: `ContactSetType()`, `CONTACT_PENALTY`, `CONTACT_LAGRANGE`
 M*/
-PetscErrorCode ContactCreate_Schwarz(Contact contact)
+PetscErrorCode ContactCreate_Alternation(Contact contact)
 {
   Schwarz *schwarz;
 

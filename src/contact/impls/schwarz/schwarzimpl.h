@@ -96,7 +96,6 @@ typedef struct {
   /* options */
   SchwarzConvergence  convergence;
   SchwarzRelaxation   relaxation;
-  SchwarzUnconverged  unconverged;
   BodyTractionType    traction;
   SchwarzTransmission transmission;
   SchwarzPredictor    predictor;

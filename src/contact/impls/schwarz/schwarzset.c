@@ -8,7 +8,7 @@
   Logically Collective
 
   Input Parameters:
-+ contact      - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact      - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - transmission - the conditions
 
   Options Database Key:
@@ -16,14 +16,14 @@
 
   Level: intermediate
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzTransmission`
+.seealso: `Contact`, `CONTACT_ALTERNATION`, `SchwarzTransmission`
 @*/
 PetscErrorCode ContactSchwarzSetTransmission(Contact contact, SchwarzTransmission transmission)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, transmission, 2);
   ContactCheckEnum(contact, transmission, SCHWARZ_TRANSMISSION_IMPEDANCE, "transmission condition");
   schwarz->transmission = transmission;
@@ -36,7 +36,7 @@ PetscErrorCode ContactSchwarzSetTransmission(Contact contact, SchwarzTransmissio
   Logically Collective
 
   Input Parameters:
-+ contact   - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact   - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - stiffness - for each unit of area: [N/m^3] in three dimensions; in two for each metre of the contact line, at the thickness of the bodies
               [N/m^2]; in one that of the contact point [N/m]; by default E/h of the Neumann side's contact elements, for ties the stiffness
               of the first side's contact nodes, with 4 m / dt^2 of those that keep their mass
@@ -46,14 +46,14 @@ PetscErrorCode ContactSchwarzSetTransmission(Contact contact, SchwarzTransmissio
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`
+.seealso: `Contact`, `CONTACT_ALTERNATION`
 @*/
 PetscErrorCode ContactSchwarzSetRobinParameter(Contact contact, PetscReal stiffness)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveReal(contact, stiffness, 2);
   PetscCheck(stiffness > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A Robin parameter of %g must be positive",
              (double)stiffness);
@@ -67,7 +67,7 @@ PetscErrorCode ContactSchwarzSetRobinParameter(Contact contact, PetscReal stiffn
   Logically Collective
 
   Input Parameters:
-+ contact   - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact   - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - impedance - for each unit of area: [N s/m^3] in three dimensions; in two for each metre of the contact line, at the thickness of the
 bodies [N s/m^2]; in one that of the contact point [N s/m]; by default that of plane waves in the Neumann side, see `BodyGetImpedance()`
 
@@ -76,14 +76,14 @@ bodies [N s/m^2]; in one that of the contact point [N s/m]; by default that of p
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `ContactSchwarzSetTransmission()`, `ContactSchwarzSetRobinParameter()`
+.seealso: `Contact`, `CONTACT_ALTERNATION`, `ContactSchwarzSetTransmission()`, `ContactSchwarzSetRobinParameter()`
 @*/
 PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact contact, PetscReal impedance)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveReal(contact, impedance, 2);
   PetscCheck(impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "An impedance of %g must be positive",
              (double)impedance);
@@ -97,7 +97,7 @@ PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact contact, PetscReal im
   Logically Collective
 
   Input Parameters:
-+ contact  - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact  - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - traction - without or with the inertia of the nodes
 
   Options Database Key:
@@ -105,14 +105,14 @@ PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact contact, PetscReal im
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `BodyTractionType`
+.seealso: `Contact`, `CONTACT_ALTERNATION`, `BodyTractionType`
 @*/
 PetscErrorCode ContactSchwarzSetTraction(Contact contact, BodyTractionType traction)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, traction, 2);
   ContactCheckEnum(contact, traction, BODY_TRACTION_REACTION, "traction");
   schwarz->traction = traction;
@@ -125,7 +125,7 @@ PetscErrorCode ContactSchwarzSetTraction(Contact contact, BodyTractionType tract
   Logically Collective
 
   Input Parameters:
-+ contact  - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact  - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - waveform - the waveform
 
   Options Database Key:
@@ -133,14 +133,14 @@ PetscErrorCode ContactSchwarzSetTraction(Contact contact, BodyTractionType tract
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzWaveform`
+.seealso: `Contact`, `CONTACT_ALTERNATION`, `SchwarzWaveform`
 @*/
 PetscErrorCode ContactSchwarzSetTractionWaveform(Contact contact, SchwarzWaveform waveform)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, waveform, 2);
   ContactCheckEnum(contact, waveform, SCHWARZ_WAVEFORM_CONSTANT, "waveform");
   schwarz->waveform = waveform;
@@ -153,7 +153,7 @@ PetscErrorCode ContactSchwarzSetTractionWaveform(Contact contact, SchwarzWavefor
   Logically Collective
 
   Input Parameters:
-+ contact   - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact   - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - predictor - the predictor
 
   Options Database Key:
@@ -161,14 +161,14 @@ PetscErrorCode ContactSchwarzSetTractionWaveform(Contact contact, SchwarzWavefor
 
   Level: intermediate
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzPredictor`
+.seealso: `Contact`, `CONTACT_ALTERNATION`, `SchwarzPredictor`
 @*/
 PetscErrorCode ContactSchwarzSetPredictor(Contact contact, SchwarzPredictor predictor)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, predictor, 2);
   ContactCheckEnum(contact, predictor, SCHWARZ_PREDICTOR_INELASTIC, "predictor");
   schwarz->predictor = predictor;
@@ -181,7 +181,7 @@ PetscErrorCode ContactSchwarzSetPredictor(Contact contact, SchwarzPredictor pred
   Logically Collective
 
   Input Parameters:
-+ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - swap    - whether they do
 
   Options Database Key:
@@ -189,14 +189,14 @@ PetscErrorCode ContactSchwarzSetPredictor(Contact contact, SchwarzPredictor pred
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`
+.seealso: `Contact`, `CONTACT_ALTERNATION`
 @*/
 PetscErrorCode ContactSchwarzSetSwapSides(Contact contact, PetscBool swap)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveBool(contact, swap, 2);
   schwarz->swap = swap;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -208,7 +208,7 @@ PetscErrorCode ContactSchwarzSetSwapSides(Contact contact, PetscBool swap)
   Logically Collective
 
   Input Parameters:
-+ contact    - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact    - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - relaxation - the relaxation
 
   Options Database Key:
@@ -216,14 +216,14 @@ PetscErrorCode ContactSchwarzSetSwapSides(Contact contact, PetscBool swap)
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzRelaxation`
+.seealso: `Contact`, `CONTACT_ALTERNATION`, `SchwarzRelaxation`
 @*/
 PetscErrorCode ContactSchwarzSetRelaxation(Contact contact, SchwarzRelaxation relaxation)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, relaxation, 2);
   ContactCheckEnum(contact, relaxation, SCHWARZ_RELAXATION_AITKEN, "relaxation");
   schwarz->relaxation = relaxation;
@@ -236,7 +236,7 @@ PetscErrorCode ContactSchwarzSetRelaxation(Contact contact, SchwarzRelaxation re
   Logically Collective
 
   Input Parameters:
-+ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - test    - the test
 
   Options Database Key:
@@ -244,45 +244,17 @@ PetscErrorCode ContactSchwarzSetRelaxation(Contact contact, SchwarzRelaxation re
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzConvergence`
+.seealso: `Contact`, `CONTACT_ALTERNATION`, `SchwarzConvergence`
 @*/
 PetscErrorCode ContactSchwarzSetConvergence(Contact contact, SchwarzConvergence test)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, test, 2);
   ContactCheckEnum(contact, test, SCHWARZ_CONVERGENCE_MISMATCH, "convergence test");
   schwarz->convergence = test;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSchwarzSetUnconverged - sets what becomes of a controller step that does not converge
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
-- what    - what becomes of it
-
-  Options Database Key:
-. -schwarz_unconverged (error|accept) - what becomes of a controller step that does not converge
-
-  Level: advanced
-
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzUnconverged`
-@*/
-PetscErrorCode ContactSchwarzSetUnconverged(Contact contact, SchwarzUnconverged what)
-{
-  Schwarz *schwarz = NULL;
-
-  PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
-  PetscValidLogicalCollectiveEnum(contact, what, 2);
-  ContactCheckEnum(contact, what, SCHWARZ_UNCONVERGED_ACCEPT, "way to go on unconverged");
-  schwarz->unconverged = what;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -292,7 +264,7 @@ PetscErrorCode ContactSchwarzSetUnconverged(Contact contact, SchwarzUnconverged 
   Logically Collective
 
   Input Parameters:
-+ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - recheck - whether they do; else they leave at its end
 
   Options Database Key:
@@ -300,14 +272,14 @@ PetscErrorCode ContactSchwarzSetUnconverged(Contact contact, SchwarzUnconverged 
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`
+.seealso: `Contact`, `CONTACT_ALTERNATION`
 @*/
 PetscErrorCode ContactSchwarzSetRecheck(Contact contact, PetscBool recheck)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveBool(contact, recheck, 2);
   schwarz->recheck = recheck;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -319,7 +291,7 @@ PetscErrorCode ContactSchwarzSetRecheck(Contact contact, PetscBool recheck)
   Logically Collective
 
   Input Parameters:
-+ contact  - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact  - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - condense - whether they do
 
   Options Database Key:
@@ -327,14 +299,14 @@ PetscErrorCode ContactSchwarzSetRecheck(Contact contact, PetscBool recheck)
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `SchwarzCondense`
+.seealso: `Contact`, `CONTACT_ALTERNATION`, `SchwarzCondense`
 @*/
 PetscErrorCode ContactSchwarzSetCondense(Contact contact, SchwarzCondense condense)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveEnum(contact, condense, 2);
   ContactCheckEnum(contact, condense, SCHWARZ_CONDENSE_AUTO, "condensation");
   schwarz->condense = condense;
@@ -347,7 +319,7 @@ PetscErrorCode ContactSchwarzSetCondense(Contact contact, SchwarzCondense conden
   Logically Collective
 
   Input Parameters:
-+ contact - the `Contact`, of type `CONTACT_SCHWARZ`, not yet set up
++ contact - the `Contact`, of type `CONTACT_ALTERNATION`, not yet set up
 - limit   - the number
 
   Options Database Key:
@@ -355,14 +327,14 @@ PetscErrorCode ContactSchwarzSetCondense(Contact contact, SchwarzCondense conden
 
   Level: advanced
 
-.seealso: `Contact`, `CONTACT_SCHWARZ`
+.seealso: `Contact`, `CONTACT_ALTERNATION`
 @*/
 PetscErrorCode ContactSchwarzSetDenseLimit(Contact contact, PetscInt limit)
 {
   Schwarz *schwarz = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_SCHWARZ, NULL, "CONTACT_SCHWARZ", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
   PetscValidLogicalCollectiveInt(contact, limit, 2);
   PetscCheck(limit >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "A dense limit of %" PetscInt_FMT " must not be negative", limit);

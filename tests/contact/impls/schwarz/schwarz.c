@@ -5,6 +5,13 @@
 
 #define TOLERANCE "-schwarz_snes_atol 1e-12" /* [m] */
 
+/* Two bars that hit each other, by the alternation */
+static void AddAlternation(PetscInt left, PetscInt right, PetscReal damping)
+{
+  AddCollision(left, right, damping);
+  AddOptions("-contact_type alternation");
+}
+
 /*
    The step that ends in contact: the gap is closed to the tolerance of the iteration, and what the force does to one bar it does
    to the other, reversed. Newmark's rule with gamma = 1/2 changes the momentum by dt/2 (F_0 + F_1), and there was no force before.
@@ -31,7 +38,7 @@ static void all_pairings_of_integrators(void **state)
                                   "-left_ts_type centraldifference -right_ts_type alpha2",
                                   "-left_ts_type centraldifference -right_ts_type centraldifference"};
 
-  AddCollision(8, 10, 0);
+  AddAlternation(8, 10, 0);
   AddOptions(TOLERANCE);
   for (PetscInt i = 0; i < 4; i++) {
     PetscReal force;
@@ -53,7 +60,7 @@ static void all_types_of_outer_iteration(void **state)
                                   "-schwarz_snes_type qn"};
   PetscReal         force[6];
 
-  AddCollision(8, 10, 0);
+  AddAlternation(8, 10, 0);
   AddOptions(TOLERANCE);
   for (PetscInt i = 0; i < 6; i++) {
     SimulationRepeat(simulation, types[i]);
@@ -67,7 +74,7 @@ static void unconverged_steps(void **state)
   Simulation   *simulation = (Simulation *)*state;
   ContactCounts counts;
 
-  AddCollision(8, 13, 50);
+  AddAlternation(8, 13, 50);
   AddOptions(TOLERANCE);
   AddOptions("-time_start 1 -time_end 1.2 -schwarz_snes_type nrichardson -schwarz_snes_linesearch_damping 0.5 -schwarz_snes_max_it 1");
   ok(SimulationCreate(simulation));
@@ -93,7 +100,7 @@ static void pulled_pairs_let_go(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
 
-  AddCollision(4, 4, 0);
+  AddAlternation(4, 4, 0);
   AddOptions("-left_dm_plex_box_lower -0.101 -right_dm_plex_box_upper 0.101");
   for (PetscInt recheck = 0; recheck < 2; recheck++) {
     PetscInt  contact = 0, tense = 0;
@@ -125,7 +132,7 @@ static void reaction_of_nodes_with_mass(void **state)
   Simulation *simulation = (Simulation *)*state;
   PetscReal   momentum   = 0;
 
-  AddCollision(8, 10, 0);
+  AddAlternation(8, 10, 0);
   AddOptions("-left_mass_redistribute 0 -right_mass_redistribute 0 -schwarz_traction reaction");
   ok(SimulationCreate(simulation));
   for (PetscInt step = 0; step < 3; step++) {
@@ -142,7 +149,7 @@ static void reaction_needs_an_implicit_partner(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
 
-  AddCollision(8, 10, 0);
+  AddAlternation(8, 10, 0);
   AddOptions("-left_mass_redistribute 0 -right_mass_redistribute 0 -schwarz_traction reaction -right_ts_type centraldifference");
   refused(PETSC_ERR_USER_INPUT, "-schwarz_traction reaction|'left' have mass|'right' must be implicit", SimulationCreate(simulation));
 }
@@ -151,7 +158,7 @@ static void wrong_options_are_refused(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
 
-  AddCollision(8, 10, 0);
+  AddAlternation(8, 10, 0);
   AddOptions("-schwarz_relaxation aitken");
   refused(PETSC_ERR_USER_INPUT, "aitken|nrichardson only", SimulationCreate(simulation));
   ok(ControllerDestroy(&simulation->controller));
@@ -180,7 +187,7 @@ static void transmission_wrong_options_are_refused(void **state)
   for (size_t i = 0; i < sizeof(cases) / sizeof(cases[0]); i++) {
     ok(ControllerDestroy(&simulation->controller));
     ok(PetscOptionsClear(NULL));
-    AddCollision(8, 10, 0);
+    AddAlternation(8, 10, 0);
     AddOptions(cases[i].options);
     refused(cases[i].code, cases[i].words, SimulationCreate(simulation));
   }

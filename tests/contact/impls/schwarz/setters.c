@@ -70,6 +70,7 @@ static void schwarz(void **state)
   Simulation *simulation = (Simulation *)*state;
 
   AddCollision(7, 11, 0.3);
+  AddOptions("-contact_type alternation");
   compare(
       simulation,
       "-schwarz_transmission robin -schwarz_robin_parameter 7 -schwarz_predictor last -contact_swap_sides -schwarz_convergence position "
@@ -82,6 +83,7 @@ static void alternation(void **state)
   Simulation *simulation = (Simulation *)*state;
 
   AddCollision(7, 11, 0.3);
+  AddOptions("-contact_type alternation");
   AddOptions("-schwarz_snes_type nrichardson -right_ts_time_step 0.005");
   compare(
       simulation,
@@ -131,6 +133,7 @@ static void refusals(void **state)
   Contact     contact;
 
   AddCollision(7, 11, 0);
+  AddOptions("-contact_type alternation");
   create(simulation);
   contact = simulation->contact;
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetRobinParameter(contact, 0));
@@ -150,13 +153,13 @@ static void refusals(void **state)
   ok(ContactSchwarzSetTransmission(contact, SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetType(contact, CONTACT_PENALTY)", ContactPenaltySetParameter(contact, 1));
   ok(ContactSetType(contact, CONTACT_PENALTY));
-  refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetType(contact, CONTACT_SCHWARZ)",
+  refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetType(contact, CONTACT_ALTERNATION)",
           ContactSchwarzSetPredictor(contact, SCHWARZ_PREDICTOR_LAST));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactPenaltySetParameter(contact, -1));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactPenaltySetScale(contact, 0));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactPenaltySetDamping(contact, 0));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactPenaltySetAugmentation(contact, 1e-6, 0));
-  ok(ContactSetType(contact, CONTACT_SCHWARZ));
+  ok(ContactSetType(contact, CONTACT_ALTERNATION));
   ok(ControllerSetUp(simulation->controller));
   refused(PETSC_ERR_ARG_WRONGSTATE, "before ContactSetUp()", ContactSchwarzSetRecheck(contact, PETSC_TRUE));
 }
