@@ -36,9 +36,9 @@
   nodes have the normals of round surfaces, see `SurfaceSetRound()`.
 
   It means something for rows that follow the surfaces: frictionless pairs of bodies with inertia that are not both linear. It goes with
-  `CONTACT_ALTERNATION`, Dirichlet-Neumann conditions and Newton's method as the outer iteration, and with `CONTACT_SCHWARZ`; both with
-  massless contact nodes. For others it is an error. A pair should touch in one place, and faces bend by 11.5 degrees at most. One of its bodies
-  should be free: where both are led moments are no measure of anything, and what turns of gaps bring or take is not limited.
+  `CONTACT_SCHWARZ` and massless contact nodes. For others it is an error. A pair should touch in one place, and faces bend by 11.5
+  degrees at most. One of its bodies should be free: where both are led moments are no measure of anything, and what turns of gaps bring
+  or take is not limited.
 
 .seealso: `Contact`, `ContactSetAutomaticBalance()`, `ContactGetBalance()`, `ContactSetBounds()`
 @*/
@@ -208,12 +208,12 @@ PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
 
   PetscFunctionBegin;
   if (!contact->options.balance) PetscFunctionReturn(PETSC_SUCCESS);
-  if (contact->ops->maybalance) PetscCall((*contact->ops->maybalance)(contact, &may));
-  PetscCheck(may, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_balance goes with -contact_type schwarz and massless contact nodes (-<body>_mass_redistribute true)");
   PetscCheck(contact->dim > 1 && !pair->obstacle && pair->law == CONTACT_LAW_FRICTIONLESS, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "-contact_balance: pair %s is not a frictionless one of two bodies in two or three dimensions",
              pair->name);
+  if (contact->ops->maybalance) PetscCall((*contact->ops->maybalance)(contact, &may));
+  PetscCheck(may, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_balance goes with -contact_type schwarz and massless contact nodes (-<body>_mass_redistribute true)");
   for (PetscInt side = 0; side < 2; side++) {
     const char *name = ((PetscObject)contact->bodies[pair->body[side]])->name;
     PetscReal   edge, bend;

@@ -96,7 +96,6 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].displacement, 0, &start));
     sums[1] += PetscSqr(start[i - DirichletShift(pair)]);
   }
-  for (PetscInt t = 0; schwarz->turns.offset >= 0 && t < contact->turns.n; t++) sums[0] += PetscSqr(f[schwarz->turns.offset + t]);
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   *change   = PetscSqrtReal(sums[0]);

@@ -48,7 +48,7 @@ static PetscBool MayRest(Contact contact)
 
   return (PetscBool)(contact->n_bodies > 2 && schwarz->newton && schwarz->step == STEP_WHOLE && schwarz->mode != SCHWARZ_MASS &&
                      schwarz->convergence == SCHWARZ_CONVERGENCE_MISMATCH && schwarz->predictor != SCHWARZ_PREDICTOR_TRIAL &&
-                     !schwarz->jacobian.chain && !schwarz->tied.any && !contact->turns.n);
+                     !schwarz->jacobian.chain && !schwarz->tied.any);
 }
 
 /* Bodies are to be integrated whatever has been found before */

@@ -312,7 +312,6 @@ static PetscErrorCode ApplyCompliance(Contact contact, Vec F, Vec Y)
   PetscCall(VecGetArray(Y, &y));
   if (schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN && !(jacobian->dense && jacobian->chain))
     PetscCall(ApplyRobin(contact, f, y));
-  else if (contact->turns.n) PetscCall(SchwarzApplyTurned(contact, f, y));
   else if (jacobian->dense) PetscCall(ApplyDense(contact, f, y));
   else PetscCall(ApplyByLevels(contact, f, y));
   PetscCall(VecRestoreArray(Y, &y));
@@ -336,7 +335,6 @@ static PetscErrorCode ApplyNewton(PC pc, Vec F, Vec Y)
     PetscCall(SchwarzAddSecants(contact, Y));
   }
   PetscCall(SchwarzHoldUnknowns(contact, Y));
-  PetscCall(SchwarzLimitTurns(contact, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -356,7 +354,7 @@ PetscErrorCode SchwarzComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 PetscErrorCode SchwarzCreateJacobian(Contact contact)
 {
   Schwarz                *schwarz  = (Schwarz *)contact->data;
-  const PetscBool         closes   = (PetscBool)(schwarz->exact && !schwarz->substeps && !contact->turns.n &&
+  const PetscBool         closes   = (PetscBool)(schwarz->exact && !schwarz->substeps &&
                                                  schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
   const InterfaceSettings settings = {.prefix       = "schwarz_interface_",
                                       .tolerance    = closes ? FORCE_ROUND_OFF : FORCE_TOLERANCE,

@@ -7,9 +7,7 @@ PetscReal SchwarzOffset(Contact contact, PetscInt i, PetscReal part)
 {
   const PetscReal left = contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE ? 1 : 1 - part;
 
-  const PetscReal turned = contact->turns.n ? part * contact->turns.turned[i] : 0;
-
-  return contact->rows.initial_gap[i] + turned - contact->start.gap[i] * left;
+  return contact->rows.initial_gap[i] - contact->start.gap[i] * left;
 }
 
 /* All bodies through the step without contact, for where their contact nodes go */

@@ -86,7 +86,6 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
     schwarz->offset[i] = *unknowns;
     *unknowns += schwarz->room[contact->rows.pair[i]];
   }
-  PetscCall(SchwarzSetUpTurns(contact, unknowns));
   PetscCallMPI(MPI_Scan(unknowns, &begin, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
   begin -= *unknowns;
   PetscCall(PetscMalloc1(contact->rows.n, &mine));
@@ -156,7 +155,6 @@ static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
   PetscCall(SchwarzSetUpGroups(contact));
   if (!schwarz->exact || schwarz->substeps) PetscCall(SchwarzSetUpSecants(contact));
   PetscCall(SchwarzSetUpTied(contact));
-  PetscCall(SchwarzCheckTurns(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -218,7 +216,6 @@ static PetscErrorCode ContactReset_Schwarz(Contact contact)
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
   PetscCall(PetscFree4(schwarz->kept_force, schwarz->stall.force, schwarz->previous, schwarz->by_force));
   PetscCall(RoundsDestroy(&schwarz->rounds));
-  PetscCall(SchwarzDestroyTurns(contact));
   PetscCall(PetscFree(schwarz->row_work));
   PetscCall(PetscMemzero((char *)schwarz + offsetof(Schwarz, mode), sizeof(*schwarz) - offsetof(Schwarz, mode)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -299,7 +296,6 @@ PetscErrorCode ContactCreate_Alternation(Contact contact)
   contact->ops->stepback       = SchwarzStepBack;
   contact->ops->steplevel      = SchwarzSetStepLevel;
   contact->ops->accept         = SchwarzAcceptTied;
-  contact->ops->maybalance     = SchwarzMayTurn;
   contact->ops->mayreplacerows = MayReplaceRows;
   contact->ops->reset          = ContactReset_Schwarz;
   contact->ops->view           = ContactView_Schwarz;

@@ -144,19 +144,6 @@ typedef struct {
     PetscBool    forward;  /* all ties are those of explicit bodies, see tiedexplicit.c */
     PetscScalar *drift[2]; /* per row */
   } tied;
-  /* turns of gaps, see turns.c */
-  struct {
-    PetscInt     offset; /* the first unknown on this rank; -1: none is */
-    PetscReal   *hold;   /* per pair: what holds its turns, a matrix of 2 x 2 [N/m] */
-    PetscBool   *fixed;  /* per pair: gaps are not turned in the controller step under way */
-    PetscBool   *joined; /* per pair: a row has been let in that a turn would close */
-    PetscReal   *sums;   /* per turn: of forces times what turns of their rows are */
-    PetscReal   *step;   /* per turn: work space */
-    PetscReal   *matrix; /* turns x turns: what it takes to turn */
-    PetscScalar *rows;   /* work space, three for each row */
-    PetscScalar *forces; /* per turn and row: forces that close the gaps which it opens */
-    PetscReal   *kept;   /* of the contact solution, during a free trial after it */
-  } turns;
   /* Aitken */
   PetscReal damping; /* relaxation of the last iteration */
   Vec       last_residual;
@@ -286,16 +273,6 @@ PETSC_INTERN PetscErrorCode SchwarzTakeMargins(Contact);
 PETSC_INTERN PetscErrorCode SchwarzReadCondensation(Contact);
 PETSC_INTERN PetscErrorCode SchwarzPrepareCondensed(Contact);
 PETSC_INTERN PetscErrorCode SchwarzFinishCondensed(Contact);
-PETSC_INTERN PetscErrorCode SchwarzSetUpTurns(Contact, PetscInt *);
-PETSC_INTERN PetscErrorCode SchwarzCheckTurns(Contact);
-PETSC_INTERN PetscErrorCode SchwarzMayTurn(Contact, PetscBool *);
-PETSC_INTERN PetscErrorCode SchwarzDestroyTurns(Contact);
-PETSC_INTERN PetscErrorCode SchwarzHoldTurns(Contact);
-PETSC_INTERN PetscErrorCode SchwarzTakeTurns(Contact, const PetscScalar[]);
-PETSC_INTERN PetscErrorCode SchwarzCompareTurns(Contact, PetscScalar[]);
-PETSC_INTERN PetscErrorCode SchwarzApplyTurned(Contact, const PetscScalar[], PetscScalar[]);
-PETSC_INTERN PetscErrorCode SchwarzLimitTurns(Contact, Vec);
-PETSC_INTERN PetscErrorCode SchwarzJoinTurned(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode SchwarzSetUpAitken(Contact);
 PETSC_INTERN PetscErrorCode SchwarzMeasureChange(Contact, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode SchwarzTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);

@@ -91,41 +91,6 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What turns of gaps are in the secants: the first rank has them among its unknowns */
-static PetscErrorCode CopyTurns(Contact contact, PetscBool back, Tables tables)
-{
-  Schwarz         *schwarz = (Schwarz *)contact->data;
-  const PetscInt   n       = contact->turns.n;
-  const PetscReal *values;
-  PetscInt         size;
-  PetscReal       *packed, *next;
-  PetscBool       *solved_active;
-  Secants         *secants;
-
-  PetscFunctionBegin;
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  GetWhole(schwarz, &secants, &solved_active);
-  PetscCall(PetscCalloc1(1 + 2 * secants->n * n, &packed)); /* no table without columns */
-  if (back) {
-    PetscCall(TablesGetNumbers(tables, "schwarz/turns", &size, &values));
-    PetscCheck(size == 1 + 2 * secants->n * n, PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
-               "The checkpoint has %" PetscInt_FMT " numbers of turns of gaps: it is of another problem", size);
-    PetscCall(PetscArraycpy(packed, values, size));
-  }
-  next = packed + 1;
-  for (PetscInt k = 0; k < 2 * secants->n && schwarz->turns.offset >= 0; k++) {
-    PetscScalar *unknowns;
-    const Vec    vec = k % 2 ? secants->df[k / 2] : secants->dx[k / 2];
-
-    PetscCall(VecGetArray(vec, &unknowns));
-    TablesCopyReals(back, n, unknowns + schwarz->turns.offset, &next);
-    PetscCall(VecRestoreArray(vec, &unknowns));
-  }
-  if (!back) PetscCall(TablesAddNumbers(tables, "schwarz/turns", 1 + 2 * secants->n * n, packed));
-  PetscCall(PetscFree(packed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds the tables; collective */
 PetscErrorCode SchwarzPack(Contact contact, Tables tables)
 {
@@ -139,7 +104,6 @@ PetscErrorCode SchwarzPack(Contact contact, Tables tables)
                              (PetscReal[N_NUMBERS]){schwarz->started, (PetscReal)schwarz->side, schwarz->rounds.cycled,
                                                     (PetscReal)secants->n, (PetscReal)secants->next}));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, tables));
-  PetscCall(CopyTurns(contact, PETSC_FALSE, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -162,7 +126,6 @@ PetscErrorCode SchwarzUnpack(Contact contact, Tables tables)
   schwarz->secants.n     = (PetscInt)numbers[N_SECANTS];
   schwarz->secants.next  = (PetscInt)numbers[NEXT_SECANT] % SCHWARZ_MAX_SECANTS;
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
-  PetscCall(CopyTurns(contact, PETSC_TRUE, tables));
   /* a whole step after steps that were cut begins without them, as the run without the restart does: see SchwarzSetStepLevel() */
   if (contact->attempt.accepted_level && schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_TRUE);
   PetscFunctionReturn(PETSC_SUCCESS);

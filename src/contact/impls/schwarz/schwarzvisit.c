@@ -119,7 +119,6 @@ PetscErrorCode SchwarzVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointVisitReals(checkpoint, "damping", 1, &schwarz->damping));
   if (schwarz->last_residual) PetscCall(CheckpointVisitVec(checkpoint, "last residual", schwarz->last_residual));
   PetscCall(VisitTraces(contact, checkpoint));
-  if (contact->turns.n) PetscCall(CheckpointVisitReals(checkpoint, "turns held", 4 * contact->n_pairs, schwarz->turns.hold));
   PetscCall(RoundsVisit(&schwarz->rounds, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

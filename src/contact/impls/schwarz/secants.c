@@ -137,12 +137,6 @@ static void ListOfAllRanks(Contact contact)
       secants->at[secants->n_listed++]   = secants->size;
     }
   }
-  /* turns, which all move with the pairs that they belong to; the first rank has them */
-  for (PetscInt t = 0; t < contact->turns.n; t++, secants->size++) {
-    if (schwarz->turns.offset < 0) continue;
-    secants->listed[secants->n_listed] = schwarz->turns.offset + t;
-    secants->at[secants->n_listed++]   = secants->size;
-  }
 }
 
 /* Which unknowns take part: those of groups that rest, which have nothing to say, are most of those of many bodies. With a dense Jacobian

@@ -24,7 +24,6 @@ static PetscErrorCode PrepareSweeps(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(CompareActive(contact));
-  PetscCall(SchwarzHoldTurns(contact));
   if (schwarz->newton || schwarz->mode == SCHWARZ_CONDENSED) PetscCall(SchwarzUpdateJacobian(contact));
   schwarz->step = schwarz->mode == SCHWARZ_CONDENSED && schwarz->jacobian.dense ? STEP_CONDENSED : STEP_WHOLE;
   if (schwarz->step == STEP_CONDENSED) PetscCall(SchwarzPrepareCondensed(contact));
@@ -45,7 +44,7 @@ static PetscErrorCode LeaveLayers(Contact contact)
   PetscFunctionBegin;
   schwarz->leaves = (PetscBool)(schwarz->step == STEP_WHOLE && schwarz->newton && schwarz->exact && schwarz->full_steps &&
                                 !schwarz->substeps && schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN &&
-                                !contact->turns.n && !schwarz->groups.on && !schwarz->outer.watched);
+                                !schwarz->groups.on && !schwarz->outer.watched);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (!contact->pairs[p].by_force) schwarz->leaves = PETSC_FALSE;
   if (!schwarz->leaves) PetscFunctionReturn(PETSC_SUCCESS);
@@ -56,25 +55,20 @@ static PetscErrorCode LeaveLayers(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The outer iteration with the active set as it is; once more for pairs whose gaps would have to be turned too far */
+/* The outer iteration with the active set as it is */
 static PetscErrorCode Iterate(Contact contact)
 {
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool again   = PETSC_TRUE;
+  Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  while (again) {
-    PetscCall(PrepareSweeps(contact));
-    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-    schwarz->swept = PETSC_FALSE;
-    if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_FALSE);
-    PetscCall(LeaveLayers(contact));
-    PetscCall(OuterSolverSolve(contact, &schwarz->outer, SchwarzSweep, &schwarz->converged));
-    PetscCall(SchwarzCheckConverged(contact));
-    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-    schwarz->iterated = schwarz->groups.on;
-    PetscCall(SchwarzJoinTurned(contact, &again));
-  }
+  PetscCall(PrepareSweeps(contact));
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  schwarz->swept = PETSC_FALSE;
+  if (schwarz->secants.dx) SchwarzResetSecants(contact, PETSC_FALSE);
+  PetscCall(LeaveLayers(contact));
+  PetscCall(OuterSolverSolve(contact, &schwarz->outer, SchwarzSweep, &schwarz->converged));
+  PetscCall(SchwarzCheckConverged(contact));
+  if (!ContactFailed(contact)) schwarz->iterated = schwarz->groups.on;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,7 +142,6 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   if (!condensed)
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
   PetscCall(PetscArraycpy(schwarz->kept_force, contact->end.force, contact->rows.n));
-  PetscCall(PetscArraycpy(schwarz->turns.kept, contact->turns.change, contact->turns.n));
   PetscCall(Trial(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SchwarzBreakCycle(contact, &flips));
@@ -157,7 +150,6 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   *taken_back = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
   PetscCall(PetscArraycpy(contact->end.force, schwarz->kept_force, contact->rows.n));
-  PetscCall(ContactTurn(contact, schwarz->turns.kept));
   PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -199,8 +191,6 @@ PetscErrorCode ContactStep_Schwarz(Contact contact)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(RoundsBegin(&schwarz->rounds));
-  PetscCall(PetscArrayzero(schwarz->turns.fixed, contact->n_pairs));
-  PetscCall(PetscArrayzero(schwarz->turns.joined, contact->n_pairs));
   PetscCall(SchwarzBeginGroups(contact));
   PetscCall(ContactBeginRelease(contact, SchwarzPairRests));
   schwarz->have_base = schwarz->iterated = PETSC_FALSE;

@@ -360,7 +360,6 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
   PetscCall(PetscTime(&begin));
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(SchwarzTakeTurns(contact, x));
   PetscCall(SweepBodies(contact, x));
   PetscCall(ContactAgree(contact));
   if (ContactFailed(contact)) PetscCall(ContactRejectResidual(F));
@@ -369,7 +368,6 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
     for (PetscInt p = 0; p < contact->n_pairs; p++)
       if (SchwarzPairMoves(contact, p)) PetscCall(ComparePair(contact, p, x, schwarz->groups.on ? schwarz->groups.residual : f));
     if (schwarz->groups.on) PetscCall(SchwarzCopyResidual(contact, f));
-    PetscCall(SchwarzCompareTurns(contact, f));
     PetscCall(SchwarzMeasureChange(contact, f));
     PetscCall(VecRestoreArrayWrite(F, &f));
   }
