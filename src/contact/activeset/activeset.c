@@ -99,6 +99,28 @@ PetscErrorCode ContactComputeGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gap rates of the first or second order in time of this rank's rows, at the start of the controller step or at its end, from the bodies'
+   traces [m/s, m/s^2] */
+PetscErrorCode ContactComputeRates(Contact contact, PetscInt order, PetscBool at_end, PetscScalar rates[])
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *level[2];
+
+    for (PetscInt side = 0; side < 2; side++) {
+      const BodyTraces *traces = &contact->traces[pair->body[side]];
+      const Trace       trace  = order == 1 ? traces->velocity : traces->acceleration;
+      PetscInt          levels;
+
+      PetscCall(TraceGetSizes(trace, NULL, &levels));
+      PetscCall(TraceGetLevel(trace, at_end ? levels : 0, &level[side]));
+    }
+    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = level[1][i - pair->shift[1]] - level[0][i - pair->shift[0]];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The failure of a body's step is that of the controller step; that of a body of one rank alone once ContactAgree() tells the others */
 static PetscErrorCode TakeFailure(Contact contact, PetscInt b, StepConvergedReason reason)
 {

@@ -9,27 +9,6 @@
 */
 #include <contact/compliance/inversemass.h>
 
-/* Differences of velocity or acceleration of both sides of each tie at the end of the step */
-static PetscErrorCode GetEndRates(Contact contact, PetscInt order, PetscScalar rates[])
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscScalar       *end[2];
-
-    for (PetscInt side = 0; side < 2; side++) {
-      const BodyTraces *traces = &contact->traces[pair->body[side]];
-      const Trace       trace  = order == 1 ? traces->velocity : traces->acceleration;
-      PetscInt          levels;
-
-      PetscCall(TraceGetSizes(trace, NULL, &levels));
-      PetscCall(TraceGetLevel(trace, levels, &end[side]));
-    }
-    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = end[1][i - pair->shift[1]] - end[0][i - pair->shift[0]];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* At the end of a controller step, before the next one starts from it. `change`: per row, impulses [N s], then forces [N]; zero on rows
    that take no part */
 PetscErrorCode ContactAlignTies(Contact contact, PetscScalar *const change[2])
@@ -40,7 +19,7 @@ PetscErrorCode ContactAlignTies(Contact contact, PetscScalar *const change[2])
   for (PetscInt order = 1; order <= 2; order++) {
     PetscScalar *const rates = change[order - 1], *const on_body = ties->inverse->work[0];
 
-    PetscCall(GetEndRates(contact, order, rates));
+    PetscCall(ContactComputeRates(contact, order, PETSC_TRUE, rates));
     PetscCall(InverseMassSolve(contact, ties->inverse, rates, rates));
     for (PetscInt b = 0; b < contact->n_bodies; b++) {
       const Body body = contact->bodies[b];

@@ -139,24 +139,6 @@ PetscErrorCode ContactSetMeanForces(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gap rates of the first or second order in time at the start, from the bodies' traces */
-static PetscErrorCode GetStartRates(Contact contact, PetscInt order, PetscScalar rates[])
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscScalar       *start[2];
-
-    for (PetscInt side = 0; side < 2; side++) {
-      const BodyTraces *traces = &contact->traces[pair->body[side]];
-
-      PetscCall(TraceGetLevel(order == 1 ? traces->velocity : traces->acceleration, 0, &start[side]));
-    }
-    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = start[1][i - pair->shift[1]] - start[0][i - pair->shift[0]];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* One velocity and one acceleration of both sides of the ties that keep their mass, in the state at the start, and the forces that this
    takes */
 PetscErrorCode ContactStartTies(Contact contact)
@@ -171,9 +153,9 @@ PetscErrorCode ContactStartTies(Contact contact)
   PetscCall(PetscMalloc5(contact->rows.n, &rates, contact->rows.n, &impulse, contact->rows.n, &force, contact->rows.n, &on_body[0],
                          contact->rows.n, &on_body[1]));
   PetscCall(InverseMassCreate(contact, INVERSE_MASS_ONCE, &inverse));
-  PetscCall(GetStartRates(contact, 1, rates));
+  PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, rates));
   PetscCall(InverseMassSolve(contact, &inverse, rates, impulse));
-  PetscCall(GetStartRates(contact, 2, rates));
+  PetscCall(ContactComputeRates(contact, 2, PETSC_FALSE, rates));
   PetscCall(InverseMassSolve(contact, &inverse, rates, force));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     InverseMassGetBodyForces(contact, b, impulse, on_body[0]);

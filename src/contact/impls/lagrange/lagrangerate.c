@@ -23,26 +23,6 @@ PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Compl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gap rates of the rows of this rank [m/s], at the start of the controller step or at its end */
-static PetscErrorCode GetRates(Contact contact, PetscBool at_end, PetscScalar rates[])
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscScalar       *velocity[2];
-
-    for (PetscInt side = 0; side < 2; side++) {
-      const BodyTraces *traces = &contact->traces[pair->body[side]];
-      PetscInt          levels;
-
-      PetscCall(TraceGetSizes(traces->velocity, NULL, &levels));
-      PetscCall(TraceGetLevel(traces->velocity, at_end ? levels : 0, &velocity[side]));
-    }
-    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = velocity[1][i - pair->shift[1]] - velocity[0][i - pair->shift[0]];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Impulses [N s] on the rows with a force, at the end of the step, after which their gap rate is zero: the nearest velocities in the
    norm of the mass, so that no energy is gained. With `pushing_only` a gap that opens may go on opening. */
 PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Complementarity *impulses)
@@ -52,7 +32,7 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
   PetscFunctionBegin;
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetRates(contact, PETSC_TRUE, impulses->gaps));
+  PetscCall(ContactComputeRates(contact, 1, PETSC_TRUE, impulses->gaps));
   for (PetscInt i = 0; i < contact->rows.n; i++)
     impulses->active[i] = (PetscBool)(contact->end.active[i] && (contact->rows.tied[i] || !pushing_only || impulses->gaps[i] < 0));
   PetscCall(ComplementaritySolveActive(contact, impulses));
@@ -70,7 +50,7 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
   int any = 0;
 
   PetscFunctionBegin;
-  PetscCall(GetRates(contact, PETSC_FALSE, impulses->gaps));
+  PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, impulses->gaps));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     impulses->gaps[i] = contact->start.gap[i] + step * impulses->gaps[i];
     any |= impulses->gaps[i] < 0;
