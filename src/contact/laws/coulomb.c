@@ -1,6 +1,7 @@
 /* Coulomb's law: the force across the normal is at most a coefficient times the normal force. The coefficient may fall with the speed of
    sliding. */
 #include "friction.h"
+#include "rowlaw.h"
 #include <sys/units.h>
 
 /* Of nodes of a pair that stick */
@@ -72,4 +73,30 @@ PetscErrorCode ContactLawCreate_Coulomb(Contact contact, ContactFrictionLaw *law
   law->getlimit = GetLimit;
   law->view     = View;
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* By how much the forces on the n rows of a node, that along its normal first, miss the law where these open by `opened` [m]: de Saxce's
+   residual. With the slip s, v = (g + mu |s|, s) and the compliance c of the normal row that is c |f - P(f - v/c)|, P being the projection
+   onto the cone of forces that the law admits without cohesion. */
+PetscReal CoulombGetResidual(PetscInt n, PetscReal mu, PetscReal c, const PetscScalar force[], const PetscScalar opened[])
+{
+  PetscReal slip = 0, f[ROW_LAW_ROWS] = {0}, t[ROW_LAW_ROWS] = {0}, size = 0, normal, bound, square;
+
+  for (PetscInt k = 1; k < n; k++) slip += PetscSqr(PetscRealPart(opened[k]));
+  slip = PetscSqrtReal(slip);
+  for (PetscInt k = 0; k < n; k++) {
+    f[k] = PetscRealPart(force[k]);
+    t[k] = f[k] - (PetscRealPart(opened[k]) + (k ? 0 : mu * slip)) / c;
+    if (k) size += PetscSqr(t[k]);
+  }
+  size   = PetscSqrtReal(size);
+  normal = t[0];
+  bound  = size;
+  if (size > mu * t[0]) { /* outside the cone: onto its side, or its tip */
+    normal = PetscMax((t[0] + mu * size) / (1 + mu * mu), 0);
+    bound  = mu * normal;
+  }
+  square = PetscSqr(f[0] - normal);
+  for (PetscInt k = 1; k < n; k++) square += PetscSqr(f[k] - (size > 0 ? bound / size * t[k] : 0));
+  return c * PetscSqrtReal(square);
 }

@@ -1,5 +1,6 @@
 /* The problem of one controller step with friction: its arrays, and how well forces fulfil the law in it. */
 #include "friction.h"
+#include "rowlaw.h"
 #include <solver/densefactor.h>
 
 /* Where S is no matrix: nodes that are looked at for more than one solution, and what mu^2 S_TT is of S_NN at least where these are, half
@@ -70,36 +71,16 @@ PetscErrorCode FrictionProblemMultiply(const FrictionProblem *problem, const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By how much nodes miss the law where rows open by `open` [m]: de Saxce's residual. With the slip s of a node, v = (g + r|s|, s) and the
-   compliance c of its normal row that is c |f - P(f - v/c)|, P being the projection onto the forces that the law admits. */
+/* By how much nodes without cohesion miss the law where rows open by `open` [m] */
 PetscReal FrictionProblemGetResidual(const FrictionProblem *problem, const PetscScalar open[])
 {
-  const PetscInt dim  = problem->dim;
-  PetscReal      most = 0;
+  PetscReal most = 0;
 
-  for (PetscInt first = 0; first < problem->n; first += dim) {
-    const PetscReal c = FrictionCompliance(problem, first, first), cohesion = PetscRealPart(problem->limit[first]);
-    const PetscReal mu   = PetscRealPart(problem->limit[first + 1]);
-    PetscReal       slip = 0, f[3] = {0}, t[3] = {0}, size = 0, normal, bound, square = 0;
+  for (PetscInt first = 0; first < problem->n; first += problem->dim) {
+    const PetscReal c = FrictionCompliance(problem, first, first), mu = PetscRealPart(problem->limit[first + 1]);
 
-    if (!(c > 0) || cohesion != 0) continue;
-    for (PetscInt k = 1; k < dim; k++) slip += PetscSqr(PetscRealPart(open[first + k]));
-    slip = PetscSqrtReal(slip);
-    for (PetscInt k = 0; k < dim; k++) {
-      f[k] = PetscRealPart(problem->force[first + k]);
-      t[k] = f[k] - (PetscRealPart(open[first + k]) + (k ? 0 : mu * slip)) / c;
-      if (k) size += PetscSqr(t[k]);
-    }
-    size   = PetscSqrtReal(size);
-    normal = t[0];
-    bound  = size;
-    if (size > mu * t[0]) { /* outside the cone: onto its side, or its tip */
-      normal = PetscMax((t[0] + mu * size) / (1 + mu * mu), 0);
-      bound  = mu * normal;
-    }
-    square = PetscSqr(f[0] - normal);
-    for (PetscInt k = 1; k < dim; k++) square += PetscSqr(f[k] - (size > 0 ? bound / size * t[k] : 0));
-    most = PetscMax(most, c * PetscSqrtReal(square));
+    if (c > 0 && PetscRealPart(problem->limit[first]) == 0)
+      most = PetscMax(most, CoulombGetResidual(problem->dim, mu, c, problem->force + first, open + first));
   }
   return most;
 }

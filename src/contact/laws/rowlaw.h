@@ -61,6 +61,7 @@ PETSC_INTERN PetscErrorCode RowLawRegisterAll(void);
 PETSC_INTERN PetscErrorCode RowLawDestroyList(void);
 PETSC_INTERN PetscErrorCode RowLawCreate(const char[], RowLaw *);
 PETSC_INTERN PetscErrorCode RowLawListGlue(PetscInt, const char *[], PetscInt *);
+PETSC_INTERN PetscReal      CoulombGetResidual(PetscInt, PetscReal, PetscReal, const PetscScalar[], const PetscScalar[]);
 
 /* The laws that Impakt brings. To add one: its file, and a line here. */
 #define ROW_LAWS(LAW)                                                                                                                      \

@@ -8,36 +8,17 @@ static PetscBool HasFriction(const LawProblem *problem, PetscInt node)
                      problem->limit[2 * node + 1] > 0 && problem->limit[2 * node] == 0);
 }
 
-/* By how much nodes miss the law with the forces and readings of the last pass [m]: de Saxce's residual. With the slip s of a node,
-   v = (g + mu |s|, s) and the compliance c of its normal row that is c |f - P(f - v/c)|, P being the projection onto the cone of friction.
- */
+/* By how much nodes miss Coulomb's law with the forces and readings of the last pass [m] */
 PetscReal LawProblemGetFrictionResidual(const LawProblem *problem)
 {
   PetscReal most = 0;
 
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
-    const PetscInt  first = problem->begin[node], rows = problem->begin[node + 1] - first;
-    const PetscReal c = problem->diagonal[first], mu = problem->limit[2 * node + 1];
-    PetscReal       slip = 0, f[ROW_LAW_ROWS] = {0}, t[ROW_LAW_ROWS] = {0}, size = 0, normal, bound, square;
+    const PetscInt first = problem->begin[node];
 
-    if (!HasFriction(problem, node) || !(c > 0)) continue;
-    for (PetscInt k = 1; k < rows; k++) slip += PetscSqr(PetscRealPart(problem->read[first + k]));
-    slip = PetscSqrtReal(slip);
-    for (PetscInt k = 0; k < rows; k++) {
-      f[k] = PetscRealPart(problem->base[first + k]);
-      t[k] = f[k] - (PetscRealPart(problem->read[first + k]) + (k ? 0 : mu * slip)) / c;
-      if (k) size += PetscSqr(t[k]);
-    }
-    size   = PetscSqrtReal(size);
-    normal = t[0];
-    bound  = size;
-    if (size > mu * t[0]) { /* outside the cone: onto its side, or its tip */
-      normal = PetscMax((t[0] + mu * size) / (1 + mu * mu), 0);
-      bound  = mu * normal;
-    }
-    square = PetscSqr(f[0] - normal);
-    for (PetscInt k = 1; k < rows; k++) square += PetscSqr(f[k] - (size > 0 ? bound / size * t[k] : 0));
-    most = PetscMax(most, c * PetscSqrtReal(square));
+    if (HasFriction(problem, node) && problem->diagonal[first] > 0)
+      most = PetscMax(most, CoulombGetResidual(problem->begin[node + 1] - first, problem->limit[2 * node + 1], problem->diagonal[first],
+                                               problem->base + first, problem->read + first));
   }
   return most;
 }
