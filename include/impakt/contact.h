@@ -198,20 +198,6 @@ typedef enum {
 E*/
 typedef enum { SCHWARZ_UNCONVERGED_ERROR, SCHWARZ_UNCONVERGED_ACCEPT } SchwarzUnconverged;
 
-/*E
-   SchwarzCondense - whether sweeps run on the interface compliance of the bodies
-
-   Values:
-+ `SCHWARZ_CONDENSE_NEVER`  - they integrate every body
-. `SCHWARZ_CONDENSE_ALWAYS` - they do, and it is an error where the compliance does not tell all
-- `SCHWARZ_CONDENSE_AUTO`   - they do where it tells all, and bodies do not make so many substeps that these take less time
-
-   Level: advanced
-
-.seealso: `ContactSchwarzSetCondense()`
-E*/
-typedef enum { SCHWARZ_CONDENSE_NEVER, SCHWARZ_CONDENSE_ALWAYS, SCHWARZ_CONDENSE_AUTO } SchwarzCondense;
-
 PETSC_EXTERN PetscClassId CONTACT_CLASSID;
 
 /* The gap of a row, or of a pair, that has no partner opposite: larger than any gap, in whatever unit, and still a number that
@@ -407,8 +393,6 @@ PETSC_EXTERN PetscErrorCode ContactSchwarzSetRelaxation(Contact, SchwarzRelaxati
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetConvergence(Contact, SchwarzConvergence);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetUnconverged(Contact, SchwarzUnconverged);
 PETSC_EXTERN PetscErrorCode ContactSchwarzSetRecheck(Contact, PetscBool);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetCondense(Contact, SchwarzCondense);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetDenseLimit(Contact, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactPenaltySetParameter(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactPenaltySetScale(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactPenaltySetDamping(Contact, PetscReal);

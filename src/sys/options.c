@@ -45,12 +45,14 @@ static const char *const late_options[] = {"schwarz_snes_view",
                                            "on_error_abort",
                                            "on_error_mpiabort"};
 
-/* Options that are gone, with what happens instead: they are accepted, so that older options files run */
+/* Options that are gone, with what happens instead: they are accepted, so that older options files run. A name that ends in an underscore
+   is that of a solver, before all of its options. */
 static const struct {
   const char *name, *now;
 } gone_options[] = {
-    {"schwarz_condense", "bodies are advanced, and only forces between them are solved for"},
+    {"schwarz_condense", "sweeps advance the bodies themselves"},
     {"schwarz_dense_limit", "matrices are as the bodies need them"},
+    {"schwarz_interface_", "there is no such solver"},
     {"schwarz_sweep", "in each sweep the second body of a pair takes the reactions of the first, as with multiplicative"},
 };
 
@@ -60,9 +62,10 @@ static PetscErrorCode AcceptGone(const char name[], const char value[], PetscBoo
   PetscFunctionBegin;
   *gone = PETSC_FALSE;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(gone_options) && !*gone; k++) {
-    char option[PETSC_MAX_OPTION_NAME];
+    const size_t length = strlen(gone_options[k].name);
+    char         option[PETSC_MAX_OPTION_NAME];
 
-    if (strcasecmp(name, gone_options[k].name) != 0) continue;
+    if (strncasecmp(name, gone_options[k].name, length) != 0 || (name[length] && name[length - 1] != '_')) continue;
     PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", name));
     PetscCall(PetscOptionsHasName(NULL, NULL, option, gone));
     PetscCall(PetscFPrintf(PETSC_COMM_WORLD, stderr, "impakt: warning: %s%s%s has no effect any more: %s; leave it out\n", option,

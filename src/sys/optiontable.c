@@ -262,8 +262,8 @@ static const KnownOption options[] = {
     {"obstacles", OPTION_OF_OBSTACLE, "velocity", "v,v[,v]",
      "velocity of its surface along itself, as of a belt or a turning roll, which bodies feel by friction [m/s]; formulas in x, y, z, t"},
 
-    {"schwarz", OPTION_OF_RUN, "schwarz_snes_type", "nrichardson|anderson|ngmres|qn|newtonls",
-     "outer iteration, default nrichardson; with -contact_type alternation newtonls"},
+    {"schwarz", OPTION_OF_RUN, "schwarz_snes_type", "nrichardson|anderson|ngmres|qn",
+     "outer iteration, default nrichardson; with -contact_type alternation anderson"},
     {"schwarz", OPTION_OF_RUN, "schwarz_snes_atol", "a",
      "absolute tolerance on the change of position [m], default 2e-15 of the size of the smallest body, with -contact_type alternation "
      "4e-12"},
@@ -303,11 +303,6 @@ static const KnownOption options[] = {
      "where the first sweep of a controller step starts from, default inelastic"},
     {"alternation", OPTION_OF_RUN, "schwarz_convergence", "auto|position|contact_position|mismatch",
      "what change of position is compared with the tolerance, default auto"},
-    {"alternation", OPTION_OF_RUN, "schwarz_condense", "0|1|auto",
-     "whether sweeps run on the interface compliance of linear bodies, default auto: unless a body makes so many substeps that they take "
-     "less time"},
-    {"alternation", OPTION_OF_RUN, "schwarz_dense_limit", "n",
-     "interface unknowns up to which matrices on the interface are dense, conjugate gradients beyond, default 2000"},
     {"alternation", OPTION_OF_RUN, "schwarz_recheck", "true|false",
      "whether tensile nodes leave contact within the controller step, default true"},
     {"alternation", OPTION_OF_RUN, "contact_swap_sides", "true|false",

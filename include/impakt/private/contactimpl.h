@@ -65,7 +65,6 @@ typedef struct {
   PetscReal      normal[3];            /* mean outward normal of the body that has the rows */
   PetscBool      bonded;       /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
   PetscBool      keeps_mass;   /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
-  PetscBool      by_force;     /* all its rows have forces as unknowns, see SchwarzSetUpSides() */
   PetscBool      rests;        /* one of its bodies has no inertia */
   PetscBool      ahead;        /* its rows are laid where the last attempt at the step has ended, see src/contact/rows/layahead.c */
   PetscInt       intervals;    /* of the controller step, between whose ends its force is linear */
@@ -96,21 +95,15 @@ typedef struct {
 /* Nodes of this rank that have rows of several pairs, see src/contact/rows/sharednodes.c */
 typedef struct {
   PetscInt   n, *offsets, *rows; /* node k has the rows rows[offsets[k]] to rows[offsets[k + 1] - 1] */
-  PetscBool *free_dofs;          /* per node, 3 each: its displacement along this axis is not held */
   PetscBool *left_out;           /* per entry of `rows`: the row is that of an obstacle behind another one */
-  PetscReal *unit;     /* per pair: stiffness per unit of area by which unknowns in metres are multiplied to give forces [N/m^3] */
-  PetscBool *answers;  /* per pair: the partner moves under forces in the same controller step */
-  PetscBool  arranges; /* rows that depend on others of their node may have forces as unknowns, or be let go */
-  PetscInt  *sorted;   /* work space */
 } SharedNodes;
 
 /* What the rows mean to the bodies in a controller step */
 typedef enum {
-  CONDITIONS_FREE,         /* all rows free */
-  CONDITIONS_SCHWARZ,      /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
-  CONDITIONS_ROBIN,        /* active rows: Robin rows on both sides */
-  CONDITIONS_FORCES,       /* all rows forced on both sides */
-  CONDITIONS_ACTIVE_FORCES /* active rows forced on both sides */
+  CONDITIONS_FREE,    /* all rows free */
+  CONDITIONS_SCHWARZ, /* active rows: prescribed on the Dirichlet side, forced on the Neumann side */
+  CONDITIONS_ROBIN,   /* active rows: Robin rows on both sides */
+  CONDITIONS_FORCES   /* all rows forced on both sides */
 } ContactConditions;
 
 /* What the user chooses */
@@ -165,7 +158,6 @@ typedef struct {
   PetscReal *area;        /* area that it covers [m^2; m in 2-D, 1 in 1-D: times the cross-section of the pair] */
   PetscBool *opposite;    /* it has a partner opposite */
   PetscBool *tied;        /* it stays in contact whatever its force */
-  PetscBool *by_force;    /* its force is an unknown of the method, on both sides; NULL: of no row */
   PetscBool *changed;     /* it was built again at the start of this controller step, and has new entries */
   PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
@@ -241,15 +233,6 @@ typedef struct {
   ContactState start, end;
   PetscInt     rebuilds; /* counted then */
 } ContactSavedRows;
-
-/* Forces of rows that are let go in a controller step */
-typedef struct {
-  PetscBool  fades;     /* these forces fall to zero in the course of the step, not all at once */
-  PetscBool  any;       /* some row of this rank has been let go with a force in this step, or an attempt at it */
-  PetscInt  *intervals; /* per row: intervals of the step at whose ends its force is known; 0 if it was not let go in this step */
-  PetscInt   room;      /* times that each row has room for */
-  PetscReal *forces;    /* per row: its force at these times [N] */
-} ContactRelease;
 
 /* What every rank knows of the rows of all ranks */
 typedef struct {
@@ -391,7 +374,6 @@ typedef struct {
   ContactSprings  *bodies;
   BodySpringState *states;             /* per body: as the step has left it when made last */
   PetscReal       *work, *held;        /* work space, one for each of all bodies */
-  PetscBool        start_counts;       /* a body has inertia, or substeps, or is linear: see MakeStep() */
   PetscInt         n_springs;          /* of all bodies; the following have a number for each, times the square root of its stiffness */
   PetscReal       *root;               /* that root [sqrt(N/m)] */
   PetscReal       *stretch;            /* [sqrt(J)] */
@@ -514,7 +496,6 @@ struct _p_Contact {
   ContactState      end;
   ContactState      start;
   ContactSavedRows  saved;
-  ContactRelease    release;
   ContactEnergy     energy;
   ContactRanks      ranks;
   ContactResultants resultants;

@@ -1,5 +1,5 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
-#include <contact/compliance/interfaceoperator.h>
+#include <contact/parts.h>
 #include <math.h>
 
 /* What its rows mean to a body */
@@ -14,11 +14,8 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
     rows[k] = BODY_FREE;
     if (conditions == CONDITIONS_FREE) continue;
     if (conditions == CONDITIONS_FORCES) rows[k] = BODY_FORCED;
-    if (ContactRowFades(contact, i)) rows[k] = BODY_FORCED;
     if (!contact->end.active[i]) continue;
-    if (conditions == CONDITIONS_ACTIVE_FORCES) rows[k] = BODY_FORCED;
-    if (conditions == CONDITIONS_SCHWARZ)
-      rows[k] = pair->body[pair->dirichlet] == b && !contact->rows.by_force[i] ? BODY_PRESCRIBED : BODY_FORCED;
+    if (conditions == CONDITIONS_SCHWARZ) rows[k] = pair->body[pair->dirichlet] == b ? BODY_PRESCRIBED : BODY_FORCED;
     if (conditions == CONDITIONS_ROBIN) rows[k] = BODY_ROBIN;
   }
 }
@@ -64,14 +61,6 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
   PetscCall(ContactOr(contact, &found));
   *any = (PetscBool)(found > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether forces are sought for each row of this rank: active rows; or known beside them: rows that have been let go in this controller
-   step with a force that fades */
-void ContactMarkActive(Contact contact, InterfaceMark marks[])
-{
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    marks[i] = contact->end.active[i] ? INTERFACE_SOLVED : ContactRowFades(contact, i) ? INTERFACE_KNOWN : INTERFACE_LEFT_OUT;
 }
 
 /* Gaps at the end of the controller step, from the bodies' traces */
@@ -260,8 +249,7 @@ PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
   PetscCall(PetscArrayzero(contact->end.active, contact->rows.n));
   PetscCall(PetscArrayzero(contact->end.force, contact->rows.n));
   PetscCall(ContactTurn(contact, NULL));
-  PetscCall(ContactSetConditions(contact, CONDITIONS_ACTIVE_FORCES)); /* of rows that are let go, as none is active */
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactLoadReleased(contact, b));
+  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
   PetscCall(ContactIntegrateBodies(contact));
   *penetrating = PETSC_FALSE;
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);

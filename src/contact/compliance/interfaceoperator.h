@@ -62,5 +62,4 @@ PETSC_INTERN PetscBool      InterfaceOperatorHasPreconditioner(InterfaceOperator
 PETSC_INTERN PetscErrorCode InterfaceOperatorChoose(InterfaceOperator, const PetscBool[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorPrecondition(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 
-PETSC_INTERN void           ContactMarkActive(Contact, InterfaceMark[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorVisit(InterfaceOperator, Checkpoint);

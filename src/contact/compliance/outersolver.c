@@ -3,7 +3,8 @@
 #include <sys/petsccompat.h>
 #include <strings.h>
 
-/* A SNES of `local` unknowns on this rank, with a dense Jacobian held as a sparse matrix: its size is that of the interface */
+/* A SNES of `local` unknowns on this rank, with a dense Jacobian held as a sparse matrix: its size is that of the interface. Without a
+   function for the Jacobian (NULL) the iteration is a fixed-point iteration, accelerated or not. */
 PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt local, PetscErrorCode (*function)(SNES, Vec, Vec, void *),
                                  PetscErrorCode (*jacobian)(SNES, Vec, Mat, Mat, void *), OuterSolver *solver)
 {
@@ -16,13 +17,14 @@ PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt 
   PetscCall(VecSetSizes(solver->x, local, PETSC_DETERMINE));
   PetscCall(VecSetType(solver->x, VECSTANDARD));
   PetscCall(VecDuplicate(solver->x, &solver->residual));
+  PetscCall(SNESCreate(comm, &solver->snes));
+  PetscCall(SNESSetOptionsPrefix(solver->snes, prefix));
+  PetscCall(SNESSetFunction(solver->snes, solver->residual, function, contact));
+  if (!jacobian) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatCreate(comm, &solver->jacobian));
   PetscCall(MatSetSizes(solver->jacobian, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(solver->jacobian, MATAIJ));
   PetscCall(MatSetUp(solver->jacobian));
-  PetscCall(SNESCreate(comm, &solver->snes));
-  PetscCall(SNESSetOptionsPrefix(solver->snes, prefix));
-  PetscCall(SNESSetFunction(solver->snes, solver->residual, function, contact));
   PetscCall(SNESSetJacobian(solver->snes, solver->jacobian, solver->jacobian, jacobian, contact));
   PetscCall(SNESGetKSP(solver->snes, &ksp));
   PetscCall(KSPSetType(ksp, KSPPREONLY));
@@ -55,28 +57,38 @@ PetscErrorCode OuterSolverSetNewton(Contact contact, OuterSolver *solver, PetscE
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A default for an option that PETSc has no setter for: put in before the options are read, taken out again afterwards */
-static PetscErrorCode InsertDefault(const char prefix[], const char option[], const char value[], PetscBool *inserted)
-{
-  char      full[128];
-  PetscBool set;
+/* A value for an option that PETSc has no setter for: put in before the options are read, taken out again afterwards. One that is given
+   stays, unless it is to be replaced. */
+typedef struct {
+  const char *prefix, *option;
+  char        given[64];
+  PetscBool   is_given, inserted;
+} Insertion;
 
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsHasName(NULL, prefix, option, &set));
-  *inserted = (PetscBool)!set;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "-%s%s", prefix, option + 1));
-  if (!set) PetscCall(PetscOptionsSetValue(NULL, full, value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RemoveDefault(const char prefix[], const char option[], PetscBool inserted)
+static PetscErrorCode SetValue(const Insertion *insertion, const char value[])
 {
   char full[128];
 
   PetscFunctionBegin;
-  if (!inserted) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(full, sizeof(full), "-%s%s", prefix, option + 1));
-  PetscCall(PetscOptionsClearValue(NULL, full));
+  PetscCall(PetscSNPrintf(full, sizeof(full), "-%s%s", insertion->prefix, insertion->option + 1));
+  PetscCall(value ? PetscOptionsSetValue(NULL, full, value) : PetscOptionsClearValue(NULL, full));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode InsertValue(const char value[], PetscBool replaces, Insertion *insertion)
+{
+  PetscFunctionBegin;
+  PetscCall(
+      PetscOptionsGetString(NULL, insertion->prefix, insertion->option, insertion->given, sizeof(insertion->given), &insertion->is_given));
+  insertion->inserted = (PetscBool)(replaces || !insertion->is_given);
+  if (insertion->inserted) PetscCall(SetValue(insertion, value));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode RemoveValue(const Insertion *insertion)
+{
+  PetscFunctionBegin;
+  if (insertion->inserted) PetscCall(SetValue(insertion, insertion->is_given ? insertion->given : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,37 +130,60 @@ static PetscErrorCode FindWatched(const char prefix[], PetscBool *watched)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The type of the iteration, as the options have it: Newton's method needs a Jacobian, and Anderson's acceleration serves where there is
+ * none
+ */
+static PetscErrorCode ReadType(Contact contact, const OuterSolver *solver, const char prefix[], char type[], size_t size)
+{
+  const char *known[] = {SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
+  PetscBool   newton, same = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(PetscStrncpy(type, solver->jacobian ? SNESNEWTONLS : SNESANDERSON, size));
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-snes_type", type, size, NULL));
+  PetscCall(PetscStrcmp(type, SNESNEWTONLS, &newton));
+  if (newton && !solver->jacobian) { /* the default of older versions */
+    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,
+                           "impakt: warning: -%ssnes_type newtonls has no effect any more: sweeps have no Jacobian, and anderson is taken; "
+                           "leave it out\n",
+                           prefix));
+    PetscCall(PetscStrncpy(type, SNESANDERSON, size));
+  }
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(known) && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
+  PetscCheck(same || newton, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
+             "Unknown -%ssnes_type '%s'; known: %sanderson, nrichardson, ngmres, qn", prefix, type, solver->jacobian ? "newtonls, " : "");
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads type and tolerances. The defaults for Anderson (mixing 1/2, eight vectors) suit an iteration with a gain of about -1,
    which is that of the Dirichlet-Neumann alternation between equal bodies. */
 PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, PetscReal atol, PetscReal rtol, PetscInt max_it)
 {
-  const char    *known[] = {SNESNEWTONLS, SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
   const char    *prefix;
-  char           type[64] = SNESNEWTONLS;
-  PetscBool      beta = PETSC_FALSE, size = PETSC_FALSE, same = PETSC_FALSE, anderson;
+  char           type[64];
+  PetscBool      anderson;
   SNESLineSearch line_search;
+  Insertion      inserted[] = {{.option = "-snes_type"}, {.option = "-snes_anderson_beta"}, {.option = "-snes_anderson_m"}};
 
   PetscFunctionBegin;
   PetscCall(SNESGetOptionsPrefix(solver->snes, &prefix));
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-snes_type", type, sizeof(type), NULL));
-  for (PetscInt i = 0; i < 5 && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
-  PetscCheck(same, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
-             "Unknown -%ssnes_type '%s'; known: newtonls, anderson, nrichardson, ngmres, qn", prefix, type);
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(inserted); i++) inserted[i].prefix = prefix;
+  PetscCall(ReadType(contact, solver, prefix, type, sizeof(type)));
   PetscCall(PetscStrcmp(type, SNESANDERSON, &anderson));
   PetscCall(SNESSetType(solver->snes, type));
   /* after the type, which brings a line search of its own */
   PetscCall(SNESGetLineSearch(solver->snes, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESSetTolerances(solver->snes, atol, rtol, 0, max_it, OUTER_MAX_EVALUATIONS));
+  PetscCall(InsertValue(type, PETSC_TRUE, &inserted[0]));
   if (anderson) {
-    PetscCall(InsertDefault(prefix, "-snes_anderson_beta", "0.5", &beta));
-    PetscCall(InsertDefault(prefix, "-snes_anderson_m", "8", &size));
+    PetscCall(InsertValue("0.5", PETSC_FALSE, &inserted[1]));
+    PetscCall(InsertValue("8", PETSC_FALSE, &inserted[2]));
   }
   PetscCall(SNESSetFromOptions(solver->snes));
   PetscCall(FindWatched(prefix, &solver->watched));
   PetscCall(OuterSolverRefuseSlopes(contact, prefix, line_search));
-  PetscCall(RemoveDefault(prefix, "-snes_anderson_beta", beta));
-  PetscCall(RemoveDefault(prefix, "-snes_anderson_m", size));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(inserted); i++) PetscCall(RemoveValue(&inserted[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

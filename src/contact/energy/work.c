@@ -36,7 +36,7 @@ static PetscBool IsLoaded(Contact contact, PetscInt b)
   for (PetscInt k = 0; k < of->n && !any; k++) {
     const PetscInt i = of->rows[k];
 
-    any = (PetscBool)(contact->end.active[i] || force[i] != 0 || last[i] != 0 || ContactRowFades(contact, i));
+    any = (PetscBool)(contact->end.active[i] || force[i] != 0 || last[i] != 0);
   }
   return any;
 }

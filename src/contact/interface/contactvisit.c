@@ -33,7 +33,6 @@ static PetscErrorCode VisitRows(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointVisitBools(checkpoint, "tied", n, rows->tied));
   PetscCall(CheckpointVisitBools(checkpoint, "changed", n, rows->changed));
   PetscCall(CheckpointVisitBools(checkpoint, "followed", n, rows->followed));
-  if (rows->by_force) PetscCall(CheckpointVisitBools(checkpoint, "by force", n, rows->by_force));
   PetscCall(CheckpointVisitBools(checkpoint, "ties hold", n, contact->ties.holds));
   PetscCall(CheckpointVisitReals(checkpoint, "tie distance", n, contact->ties.distance));
   PetscCall(CheckpointVisitBools(checkpoint, "left out", contact->shared.offsets ? contact->shared.offsets[contact->shared.n] : 0,
@@ -100,11 +99,6 @@ static PetscErrorCode VisitRowStates(Contact contact, Checkpoint checkpoint)
     PetscCall(CheckpointVisitReals(checkpoint, "distance", n, contact->friction.distance));
     PetscCall(CheckpointVisitReals(checkpoint, "speed", n, contact->friction.speed));
     PetscCall(CheckpointVisitBools(checkpoint, "slides", n, contact->friction.slides));
-  }
-  if (contact->release.intervals) {
-    PetscCall(CheckpointVisitInts(checkpoint, "intervals", n, contact->release.intervals));
-    PetscCall(CheckpointVisitReals(checkpoint, "released forces", n * contact->release.room, contact->release.forces));
-    if (CheckpointLoads(checkpoint)) contact->release.any = PETSC_TRUE; /* in the last step, perhaps */
   }
   if (contact->floating.n) PetscCall(CheckpointVisitReals(checkpoint, "stretch", contact->floating.n_springs, contact->floating.stretch));
   if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;

@@ -57,13 +57,8 @@ PetscErrorCode ContactSetUpFloating(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc4(n, &f->bodies, n, &f->states, n, &f->work, n, &f->held));
   for (PetscInt b = 0; b < n; b++) {
-    PetscBool floating, is_static, exact;
-    PetscInt  substeps;
+    PetscBool floating;
 
-    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
-    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
-    f->start_counts = (PetscBool)(f->start_counts || !is_static || substeps > 1 || exact);
     PetscCall(BodyIsFloating(contact->bodies[b], &floating));
     if (!floating) continue;
     PetscCall(BodyMeasureSprings(contact->bodies[b], &f->states[f->n]));
@@ -169,15 +164,13 @@ static PetscErrorCode Measure(Contact contact, PetscInt times, PetscBool *rest)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step of the method, from where contact has been the last time; but not where rows that are let go have forces that fade from what
-   they were at the start, if a body is to have these, nor with linear bodies: they would be prescribed to be where they have been at the
-   start, and forces counted from those that this takes, with their round-off */
+/* The step of the method, from where contact has been the last time */
 static PetscErrorCode MakeStep(Contact contact, PetscBool first)
 {
   const PetscBool again = contact->energy.again;
 
   PetscFunctionBegin;
-  if (!first && !(contact->floating.start_counts && contact->release.fades)) {
+  if (!first) {
     PetscCall(PetscArraycpy(contact->start.force, contact->end.force, contact->rows.n));
     PetscCall(PetscArraycpy(contact->start.active, contact->end.active, contact->rows.n));
   }

@@ -73,7 +73,6 @@ static PetscErrorCode TakePairs(Contact contact, PetscInt n, const PetscInt list
     if (old >= 0) {
       PetscCall(PetscFree(pair->name));
       *pair              = kept->pairs[old];
-      pair->by_force     = PETSC_FALSE; /* the method says so anew */
       kept->goes_on[old] = PETSC_TRUE;
       continue;
     }

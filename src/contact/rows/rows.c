@@ -276,7 +276,6 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(ContactDestroyBodyRows(contact));
   PetscCall(PetscFree2(contact->rows.near, contact->rows.acting));
   PetscCall(PetscFree(contact->ranks.visits));
-  PetscCall(PetscFree2(contact->release.intervals, contact->release.forces));
   PetscCall(PetscFree4(contact->ties.holds, contact->ties.distance, contact->work.entry_counts, contact->work.drift));
   PetscCall(ContactDestroySavedRows(contact));
   PetscCall(ContactDestroyTurns(contact));

@@ -159,25 +159,13 @@ static void DropShifts(Contact contact)
   }
 }
 
-/* Intervals of the controller step between which the force of a pair is linear: at their ends its Dirichlet side tells its reaction, or the
-   force is an unknown at the times that both sides have. Methods that do not prescribe displacements know the force at the end alone. */
+/* Intervals of the controller step between which the force of a pair is linear: at their ends its Dirichlet side tells its reaction.
+   Methods that do not prescribe displacements know the force at the end alone. */
 static PetscErrorCode CountIntervals(Contact contact, ContactPair *pair)
 {
-  PetscInt substeps[2], *intervals = &pair->intervals;
-
   PetscFunctionBegin;
-  *intervals = 1;
-  if (!contact->prescribes) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetSubsteps(contact->bodies[pair->body[pair->dirichlet]], &substeps[0]));
-  *intervals = substeps[0];
-  if (!pair->by_force) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetSubsteps(contact->bodies[pair->body[1 - pair->dirichlet]], &substeps[1]));
-  while (substeps[1]) {
-    const PetscInt rest = *intervals % substeps[1];
-
-    *intervals  = substeps[1];
-    substeps[1] = rest;
-  }
+  pair->intervals = 1;
+  if (contact->prescribes) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[pair->dirichlet]], &pair->intervals));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -60,11 +60,11 @@ static PetscErrorCode LeaveOutMixed(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces of explicit bodies act in the step that follows: their ties are solved all at once (schwarz/tiedexplicit.c), or have massless
-   nodes */
+/* The forces of explicit bodies act in the step that follows: their ties are solved for all at once by methods that find forces, or have
+   massless nodes */
 static PetscErrorCode LeaveOutExplicit(Contact contact)
 {
-  PetscBool suits = PETSC_TRUE, is_explicit;
+  PetscBool suits = contact->sideless, is_explicit;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs && suits; p++) {

@@ -8,10 +8,6 @@
 #define STALL_FROM    3
 #define STEADY_FORCE  1e-6
 #define STEADY_SWEEPS 4
-/* Sweeps on the compliance whose forces are steady to this part of them begin anew, with the bodies under these forces as their base: at
-   most so many times in a step */
-#define NEAR_FORCE 1e-2
-#define MOST_BASES 3
 
 /* How far the contact nodes of a body on one side of the pairs have moved since the last sweep, and where they are [m] */
 static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *change, PetscReal *position)
@@ -73,16 +69,9 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
 static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], PetscReal *change, PetscReal *position)
 {
   Schwarz  *schwarz = (Schwarz *)contact->data;
-  Groups   *groups  = &schwarz->groups;
   PetscReal sums[2] = {0, 0};
 
   PetscFunctionBegin;
-  if (groups->on) {
-    PetscCall(SchwarzSettleGroups(contact, sums));
-    *change   = PetscSqrtReal(sums[0]);
-    *position = PetscSqrtReal(sums[1]);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
     const PetscReal    scale = SchwarzResidualScale(contact, i);
@@ -104,8 +93,7 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
 }
 
 /* Whether the change of position is round-off, which no sweep makes smaller. Where a body that is hardly held, by a soft spring or its
-   inertia in a long step, touches a stiff one, the round-off of forces moves it by more than the tolerance. Sweeps on the compliance also
-   have the round-off of how far bodies would go without contact, and are made again from where the bodies are with it. */
+   inertia in a long step, touches a stiff one, the round-off of forces moves it by more than the tolerance. */
 static PetscErrorCode FindStall(Contact contact)
 {
   Schwarz     *schwarz = (Schwarz *)contact->data;
@@ -122,11 +110,8 @@ static PetscErrorCode FindStall(Contact contact)
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  part                  = sums[1] > 0 ? PetscSqrtReal(sums[0] / sums[1]) : PETSC_INFINITY;
-  schwarz->stall.rebase = (PetscBool)(schwarz->step == STEP_CONDENSED && schwarz->stall.bases < MOST_BASES && part > STEADY_FORCE);
-  if (schwarz->stall.sweeps > STALL_FROM && schwarz->change >= schwarz->stall.least &&
-      part <= (schwarz->stall.rebase ? NEAR_FORCE : STEADY_FORCE))
-    schwarz->stall.steady++;
+  part = sums[1] > 0 ? PetscSqrtReal(sums[0] / sums[1]) : PETSC_INFINITY;
+  if (schwarz->stall.sweeps > STALL_FROM && schwarz->change >= schwarz->stall.least && part <= STEADY_FORCE) schwarz->stall.steady++;
   else schwarz->stall.steady = 0;
   schwarz->stall.least = PetscMin(schwarz->stall.least, schwarz->change);
   PetscCall(PetscInfo(contact, "change of position %g m, the least before %g m; of forces %g in parts of them\n", (double)schwarz->change,
@@ -149,8 +134,7 @@ PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
     schwarz->stall.sweeps = schwarz->stall.steady = 0;
     schwarz->stall.least                          = PETSC_MAX_REAL;
   }
-  schwarz->stall.rebase = PETSC_FALSE;
-  schwarz->converged    = PETSC_TRUE;
+  schwarz->converged = PETSC_TRUE;
   for (PetscInt k = 0; k < measures; k++) {
     PetscReal change, position;
 
@@ -164,13 +148,8 @@ PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
   }
   schwarz->growth = schwarz->change > 0 && !PetscIsInfOrNanReal(worst) ? worst / schwarz->change : 0;
   schwarz->change = worst;
-  /* what is left of the gap of a tie with mass becomes a force of 4 / dt^2 times that mass: Newton's method closes it to round-off, where
-     the predictor alone would be near enough for positions */
-  if (schwarz->tied.any && schwarz->newton && !schwarz->swept && worst > 0) schwarz->converged = PETSC_FALSE;
-  if (schwarz->leaves) schwarz->converged = PETSC_FALSE;
-  if (!schwarz->converged && !schwarz->leaves) PetscCall(FindStall(contact));
-  schwarz->swept  = PETSC_TRUE;
-  schwarz->leaves = PETSC_FALSE;
+  if (!schwarz->converged) PetscCall(FindStall(contact));
+  schwarz->swept = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

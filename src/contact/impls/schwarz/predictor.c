@@ -34,13 +34,13 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   PetscCall(TraceGetLevel(dirichlet->velocity, 0, &other));
   *displacement = u[k];
   if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
-  if (schwarz->predictor == SCHWARZ_PREDICTOR_EXTRAPOLATE && !schwarz->goes_on) *displacement += time * v[k];
-  if (schwarz->predictor == SCHWARZ_PREDICTOR_INELASTIC && !schwarz->goes_on) {
+  if (schwarz->predictor == SCHWARZ_PREDICTOR_EXTRAPOLATE) *displacement += time * v[k];
+  if (schwarz->predictor == SCHWARZ_PREDICTOR_INELASTIC) {
     const PetscReal m_d = schwarz->mass[pair->dirichlet][i], m_n = schwarz->mass[1 - pair->dirichlet][i];
 
     *displacement += time * (m_d * other[i - DirichletShift(pair)] + m_n * v[k]) / (m_d + m_n);
   }
-  if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL || schwarz->goes_on) {
+  if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL) {
     PetscInt levels;
 
     /* a level of the trace: it has as many as the unknowns, or these are its last one alone */
@@ -51,70 +51,40 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A row that goes on from the round before has joined or left since then: what it has handed over is nothing any more, or not yet */
-static PetscErrorCode ClearReactions(Contact contact, PetscInt i)
-{
-  const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-
-  PetscFunctionBegin;
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    const Trace  trace = contact->traces[pair->body[side]].reaction;
-    PetscScalar *reaction;
-    PetscInt     levels;
-
-    PetscCall(TraceGetSizes(trace, NULL, &levels));
-    for (PetscInt level = 1; level <= levels; level++) {
-      PetscCall(TraceGetLevel(trace, level, &reaction));
-      reaction[i - pair->shift[side]] = 0;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Start of the outer iteration, and of what partners hand to each other in the first sweep: where the round before ended, or the start of
-   the step. The bodies' conditions are free afterwards, if it needed a trial. */
+/* Start of the outer iteration, and of what partners hand to each other in the first sweep. The bodies' conditions are free afterwards, if
+   it needed a trial. */
 PetscErrorCode SchwarzPredict(Contact contact)
 {
-  Schwarz         *schwarz = (Schwarz *)contact->data;
-  const PetscBool *before  = schwarz->goes_on ? RoundsBefore(&schwarz->rounds) : NULL;
-  PetscScalar     *x;
+  Schwarz     *schwarz = (Schwarz *)contact->data;
+  PetscScalar *x;
 
   PetscFunctionBegin;
   if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
-  else if (!before)
-    for (PetscInt b = 0; b < contact->n_bodies; b++)
-      if (!schwarz->groups.rests[b]) PetscCall(BodyResetTraces(contact->bodies[b]));
-  if (!schwarz->groups.on) PetscCall(VecZeroEntries(schwarz->outer.x));
+  else
+    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
+  PetscCall(VecZeroEntries(schwarz->outer.x));
   PetscCall(VecGetArray(schwarz->outer.x, &x));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscInt     p = contact->rows.pair[i], levels = schwarz->levels[p];
     const ContactPair *pair = &contact->pairs[p];
-    const PetscReal    sign = NeumannSign(pair), width = schwarz->controller_step / levels;
-    const PetscBool    stays   = (PetscBool)(before && before[i] == contact->end.active[i]);
-    PetscReal          force   = contact->start.force[i];
+    const PetscReal    sign = NeumannSign(pair), width = schwarz->controller_step / levels, force = contact->start.force[i];
     PetscScalar       *unknown = x + schwarz->offset[i], *reaction;
 
-    if (SchwarzPairRests(contact, p) || (stays && schwarz->by_force[i] == contact->rows.by_force[i])) continue;
-    schwarz->by_force[i] = contact->rows.by_force[i];
-    if (before) force = stays ? contact->end.force[i] : 0;
-    if (before && !stays) PetscCall(ClearReactions(contact, i));
-    for (PetscInt level = 0; level < schwarz->room[p]; level++) unknown[level] = 0;
     for (PetscInt level = 1; level <= levels; level++) {
       const PetscReal part     = (PetscReal)level / levels;
       PetscScalar     position = 0;
 
       PetscCall(PredictNeumann(contact, i, level * width, part, &position));
       position += sign * SchwarzOffset(contact, i, part);
-      if (ByForce(contact, i)) unknown[level - 1] = -sign * force / ContactForceUnit(contact, i);
-      else if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
+      if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
       else unknown[level - 1] = -sign * force + schwarz->weight[i] * position;
     }
     /* what has been a Neumann side until now has no reaction yet */
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, 0, &reaction));
-    reaction[i - DirichletShift(pair)] = -sign * contact->start.force[i];
+    reaction[i - DirichletShift(pair)] = -sign * force;
     if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) continue;
     PetscCall(TraceGetLevel(contact->traces[NeumannBody(pair)].reaction, 0, &reaction));
-    reaction[i - NeumannShift(pair)] = sign * contact->start.force[i];
+    reaction[i - NeumannShift(pair)] = sign * force;
   }
   PetscCall(VecRestoreArray(schwarz->outer.x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -5,9 +5,6 @@
 #include <stddef.h>
 #include <sys/units.h>
 
-/* Interface unknowns up to which matrices are dense: their factors take 32 MB on every rank then */
-#define DENSE_LIMIT 2000
-
 static const char *const ConvergenceTests[] = {
     "auto", "position", "contact_position", "mismatch", "SchwarzConvergence", "SCHWARZ_CONVERGENCE_", NULL};
 static const char *const Relaxations[]   = {"fixed", "aitken", "SchwarzRelaxation", "SCHWARZ_RELAXATION_", NULL};
@@ -22,8 +19,6 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
   PetscBool set = PETSC_FALSE, set_impedance = PETSC_FALSE;
 
   PetscFunctionBegin;
-  /* with friction none of them has an effect */
-  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "ContactSchwarzSetTransmission", Transmissions,
                              (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
@@ -53,7 +48,6 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
   PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "ContactSchwarzSetRecheck",
                              schwarz->recheck, &schwarz->recheck, NULL));
   PetscOptionsEnd();
-  PetscCall(SchwarzReadCondensation(contact));
   PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-schwarz_robin_parameter %g must be positive", (double)schwarz->robin_parameter);
   PetscCheck(!set_impedance || schwarz->impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -65,11 +59,9 @@ static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
 static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
-  PetscInt begin, *mine;
 
   PetscFunctionBegin;
-  PetscCall(
-      PetscCalloc3(contact->n_bodies, &schwarz->exchange, contact->rows.n, &schwarz->offset, contact->rows.n_all, &schwarz->all_offset));
+  PetscCall(PetscCalloc2(contact->n_bodies, &schwarz->exchange, contact->rows.n, &schwarz->offset));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal dt;
     PetscInt  substeps;
@@ -81,98 +73,97 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
     PetscCall(TSGetTimeStep(ts, &dt));
     schwarz->controller_step = substeps * dt;
   }
-  *unknowns = 0;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     schwarz->offset[i] = *unknowns;
     *unknowns += schwarz->room[contact->rows.pair[i]];
   }
-  PetscCallMPI(MPI_Scan(unknowns, &begin, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-  begin -= *unknowns;
-  PetscCall(PetscMalloc1(contact->rows.n, &mine));
-  for (PetscInt i = 0; i < contact->rows.n; i++) mine[i] = begin + schwarz->offset[i];
-  PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->rows.n, MPIU_INT, schwarz->all_offset, contact->ranks.counts,
-                              contact->ranks.offsets, MPIU_INT, PetscObjectComm((PetscObject)contact)));
-  PetscCall(PetscFree(mine));
-  PetscCall(PetscMalloc4(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->stall.force, 2 * contact->rows.n,
-                         &schwarz->previous, contact->rows.n, &schwarz->by_force));
-  PetscCall(PetscCalloc2(contact->rows.n, &schwarz->known, contact->rows.n, &schwarz->solved_active));
+  PetscCall(PetscMalloc3(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->stall.force, 2 * contact->rows.n,
+                         &schwarz->previous));
   PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &schwarz->rounds));
   schwarz->rounds.recheck = schwarz->recheck;
-  PetscCall(PetscCalloc1(3 * contact->rows.n, &schwarz->row_work));
+  PetscCall(PetscMalloc1(contact->rows.n, &schwarz->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
+/* The outer iteration, as the options have it */
+static PetscErrorCode SetUpOuterSolver(Contact contact, PetscInt unknowns)
 {
   Schwarz       *schwarz = (Schwarz *)contact->data;
-  PetscInt       unknowns;
   PetscBool      richardson, damping_set;
   SNESLineSearch line_search;
 
   PetscFunctionBegin;
-  PetscCall(ImpaktCite(CITE_SCHWARZ));
-  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) {
-    PetscCall(ContactStepByFriction(contact, NULL));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCheck(contact->options.constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_constraint both: with -contact_type schwarz a closed gap has no rate already, since contact nodes with mass take "
-             "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
-  PetscCall(SchwarzChooseMode(contact));
-  if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscCall(ContactWarnOfStages(contact, PETSC_TRUE));
-  PetscCall(SchwarzSetUpSides(contact));
-  PetscCall(SetUpUnknowns(contact, &unknowns));
-  PetscCall(SchwarzSetUpTransmission(contact));
-  PetscCall(ContactSetUpSharedNodes(
-      contact,
-      (PetscBool)(schwarz->mode != SCHWARZ_MASS && schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN && !schwarz->swap)));
-  PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, SchwarzComputeJacobian, &schwarz->outer));
+  PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, NULL, &schwarz->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, OUTER_POSITION_RTOL,
                                       OUTER_MAX_ITERATIONS));
   PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
-  PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNEWTONLS, &schwarz->newton));
-  if (schwarz->newton) PetscCall(SchwarzPreferForces(contact));
-  PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
-  PetscCall(PetscObjectTypeCompare((PetscObject)line_search, LINESEARCH_FULL_STEP, &schwarz->full_steps));
-  schwarz->has_forces = (PetscBool)(contact->shared.n > 0);
-  for (PetscInt p = 0; p < contact->n_pairs; p++) schwarz->has_forces = (PetscBool)(schwarz->has_forces || contact->pairs[p].by_force);
   PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNRICHARDSON, &richardson));
   if (schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN) {
     PetscCheck(richardson, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-schwarz_relaxation aitken goes with -schwarz_snes_type nrichardson only");
     PetscCall(PetscOptionsHasName(NULL, "schwarz_", "-snes_linesearch_damping", &damping_set));
     PetscCall(SchwarzSetUpAitken(contact));
+    PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
-  /* on the compliance alone bodies stay where they are from sweep to sweep, whatever the rows do */
   if (schwarz->convergence == SCHWARZ_CONVERGENCE_AUTO)
-    schwarz->convergence = richardson && schwarz->relaxation == SCHWARZ_RELAXATION_FIXED && schwarz->mode != SCHWARZ_CONDENSED
-                               ? SCHWARZ_CONVERGENCE_POSITION
-                               : SCHWARZ_CONVERGENCE_MISMATCH;
-  PetscCall(SchwarzSetUpJacobian(contact));
-  PetscCall(SchwarzSetUpGroups(contact));
-  if (!schwarz->exact || schwarz->substeps) PetscCall(SchwarzSetUpSecants(contact));
-  PetscCall(SchwarzSetUpTied(contact));
+    schwarz->convergence = richardson && schwarz->relaxation == SCHWARZ_RELAXATION_FIXED ? SCHWARZ_CONVERGENCE_POSITION
+                                                                                         : SCHWARZ_CONVERGENCE_MISMATCH;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is known of rows that have changed is not known any more */
-static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
+/* Ties that keep their mass, with the rows as they are */
+static PetscErrorCode SetUpTies(Contact contact)
 {
   Schwarz *schwarz = (Schwarz *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (contact->rows.changed[i] || contact->rows.followed[i]) {
-      schwarz->known[i] = PETSC_FALSE;
-      for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++)
-        if (schwarz->memory[k].known) schwarz->memory[k].known[i] = PETSC_FALSE;
-    }
-  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) schwarz->memory[k].stale = PETSC_TRUE;
-  schwarz->stale = PETSC_TRUE;
-  if (schwarz->tied.any) PetscCall(SchwarzSetUpTied(contact));
+  PetscCall(ContactSetUpTiedEnds(contact));
+  if (!contact->ties.inverse || schwarz->drift[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  contact->energy.unlimited = "tied nodes keep their mass, and their forces are not those of massless layers";
+  PetscCall(PetscMalloc2(contact->rows.n, &schwarz->drift[0], contact->rows.n, &schwarz->drift[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
+{
+  Schwarz *schwarz  = (Schwarz *)contact->data;
+  PetscInt unknowns = 0;
+
+  PetscFunctionBegin;
+  PetscCall(ImpaktCite(CITE_SCHWARZ));
+  PetscCheck(!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "-contact_law %s: -contact_type alternation has no friction; choose schwarz, which is the default", contact->friction.name);
+  PetscCheck(
+      contact->options.constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "-contact_constraint both: with -contact_type alternation a closed gap has no rate already, since contact nodes with mass take "
+      "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
+  if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscCall(ContactWarnOfStages(contact, PETSC_TRUE));
+  PetscCall(SchwarzSetUpSides(contact));
+  PetscCall(SetUpUnknowns(contact, &unknowns));
+  PetscCall(SchwarzSetUpTransmission(contact));
+  PetscCall(ContactWeighSharedRows(contact));
+  PetscCall(SetUpOuterSolver(contact, unknowns));
+  PetscCall(SetUpTies(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
+{
+  PetscFunctionBegin;
+  if (((Schwarz *)contact->data)->drift[0]) PetscCall(SetUpTies(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The end of a controller step, before the next one starts from it */
+static PetscErrorCode ContactAccept_Schwarz(Contact contact)
+{
+  Schwarz *schwarz = (Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  if (contact->ties.inverse) PetscCall(ContactAlignTies(contact, schwarz->drift));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -208,16 +199,15 @@ static PetscErrorCode ContactReset_Schwarz(Contact contact)
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
   PetscCall(OuterSolverDestroy(&schwarz->outer));
   PetscCall(VecDestroy(&schwarz->last_residual));
-  PetscCall(SchwarzDestroyTied(contact));
-  PetscCall(SchwarzDestroyGroups(contact));
-  PetscCall(SchwarzDestroyMemory(contact));
+  PetscCall(ContactDestroyTiedEnds(contact));
+  PetscCall(PetscFree2(schwarz->drift[0], schwarz->drift[1]));
   PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
-  PetscCall(PetscFree3(schwarz->exchange, schwarz->offset, schwarz->all_offset));
+  PetscCall(PetscFree2(schwarz->exchange, schwarz->offset));
   PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
-  PetscCall(PetscFree4(schwarz->kept_force, schwarz->stall.force, schwarz->previous, schwarz->by_force));
+  PetscCall(PetscFree3(schwarz->kept_force, schwarz->stall.force, schwarz->previous));
   PetscCall(RoundsDestroy(&schwarz->rounds));
   PetscCall(PetscFree(schwarz->row_work));
-  PetscCall(PetscMemzero((char *)schwarz + offsetof(Schwarz, mode), sizeof(*schwarz) - offsetof(Schwarz, mode)));
+  PetscCall(PetscMemzero((char *)schwarz + offsetof(Schwarz, mass_prescribed), sizeof(*schwarz) - offsetof(Schwarz, mass_prescribed)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -233,7 +223,7 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
    CONTACT_ALTERNATION - the Schwarz alternating method: displacements one way, tractions the other, until both agree
 
    Options Database Keys:
-+  -schwarz_snes_type (newtonls|anderson|nrichardson|ngmres|qn)  - the outer iteration; newtonls uses the interface compliance
++  -schwarz_snes_type (anderson|nrichardson|ngmres|qn) - the outer iteration, anderson
 .  -schwarz_snes_atol, -schwarz_snes_rtol                        - tolerances on the change of position: [m], 4e-12 of the size of the
                                                                    smallest body; relative, 1e-15
 .  -schwarz_snes_max_it n                                        - limit of iterations, 50
@@ -252,23 +242,17 @@ static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
                                                                    start
 .  -contact_swap_sides (true|false)                              - whether the sides change with every controller step
 .  -schwarz_convergence (auto|position|contact_position|mismatch) - what is compared with the tolerances from sweep to sweep: the change of
-                                                                   all positions (the paper's, for which sweeps integrate every body), of
+                                                                   all positions (the paper's), of
                                                                    those of the contact nodes, or the change of the contact nodes that a
                                                                    plain sweep would bring
-.  -schwarz_condense (0|1|auto)                                  - whether sweeps run on the interface compliance of the bodies; auto:
-                                                                   where it tells all that they do
-.  -schwarz_dense_limit n                                        - interface unknowns up to which its matrices are dense, 2000
 .  -schwarz_recheck (true|false)                                 - whether tensile nodes leave contact within the step
 -  -schwarz_unconverged (error|accept)                           - what to do with a step that does not converge
 
    Level: beginner
 
    Note:
-   A node may belong to several pairs: in a corner, or over the joint of two bodies side by side. The gap to each partner is closed by a
-force of its own, as under Lagrange multipliers, momentum and energy being kept; of the rows of a node that depend on each other the first
-are prescribed, and the others have their force for an unknown. Where partners do not answer to forces, as obstacles and explicit bodies
-with mass on their contact nodes, the nearest ones count. Where the Dirichlet side has mass on its contact nodes, partners side by side
-share displacement and force by the areas that they cover, and the mean of their gaps is closed.
+   A node may belong to several pairs: in a corner, or over the joint of two bodies side by side. Partners side by side share its
+displacement and force by the areas that they cover, and the mean of their gaps is closed. Of obstacles with one normal the nearest counts.
 
    Reference:
 .  * - J. Hoy, I. Tezaur, A. Mota, The Schwarz alternating method for multiscale contact mechanics, 2021
@@ -284,8 +268,6 @@ PetscErrorCode ContactCreate_Alternation(Contact contact)
   schwarz->traction            = BODY_TRACTION_INTERNAL;
   schwarz->predictor           = SCHWARZ_PREDICTOR_INELASTIC;
   schwarz->recheck             = PETSC_TRUE;
-  schwarz->condense            = SCHWARZ_CONDENSE_AUTO;
-  schwarz->dense_limit         = DENSE_LIMIT;
   contact->prescribes          = PETSC_TRUE;
   contact->data                = schwarz;
   contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
@@ -293,9 +275,8 @@ PetscErrorCode ContactCreate_Alternation(Contact contact)
   contact->ops->step           = ContactStep_Schwarz;
   contact->ops->stored         = ContactStoresNothing;
   contact->ops->rowschanged    = ContactRowsChanged_Schwarz;
-  contact->ops->stepback       = SchwarzStepBack;
   contact->ops->steplevel      = SchwarzSetStepLevel;
-  contact->ops->accept         = SchwarzAcceptTied;
+  contact->ops->accept         = ContactAccept_Schwarz;
   contact->ops->mayreplacerows = MayReplaceRows;
   contact->ops->reset          = ContactReset_Schwarz;
   contact->ops->view           = ContactView_Schwarz;

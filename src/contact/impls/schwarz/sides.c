@@ -4,21 +4,8 @@
 /* By how much the weight of a node that lies opposite may be off one, and those of others off zero: round-off of geometry */
 #define OPPOSITE 1e-9
 
-static PetscInt CommonDivisor(PetscInt a, PetscInt b)
-{
-  while (b) {
-    const PetscInt rest = a % b;
-
-    a = b;
-    b = rest;
-  }
-  return a;
-}
-
 /* Times in the controller step at which the trace of a pair is an unknown: one for each substep of the Neumann side, but the Dirichlet side
-   sees nothing of the interior ones if it makes one substep. Where a Dirichlet side holds its reaction at times that the Neumann side does
-   not have, the force that this takes would bring another impulse. There the force itself is the unknown, at the times that both have, and
-   linear between them for both; the gap is closed at these times. */
+   sees nothing of the interior ones if it makes one substep */
 static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichlet, PetscInt *levels)
 {
   const ContactPair *pair = &contact->pairs[p];
@@ -28,8 +15,7 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichle
   PetscCall(BodyGetSubsteps(contact->bodies[pair->body[0]], &substeps[0]));
   substeps[1] = substeps[0]; /* of an obstacle */
   if (!pair->obstacle) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[1]], &substeps[1]));
-  if (pair->by_force) *levels = contact->options.shared_times ? 1 : CommonDivisor(substeps[0], substeps[1]);
-  else *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
+  *levels = substeps[dirichlet] == 1 ? 1 : substeps[1 - dirichlet];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,6 +111,24 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether contact nodes with mass are prescribed: their force is not the one that would move them */
+static PetscErrorCode PrescribesMass(Contact contact, PetscBool *prescribes)
+{
+  const Schwarz *schwarz = (const Schwarz *)contact->data;
+
+  PetscFunctionBegin;
+  *prescribes = PETSC_FALSE;
+  if (schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (PetscInt side = 0; side <= (schwarz->swap && !contact->pairs[p].obstacle ? 1 : 0); side++) {
+      PetscBool has;
+
+      PetscCall(BodyPrescribesMass(contact->bodies[contact->pairs[p].body[side]], &has));
+      *prescribes = (PetscBool)(*prescribes || has);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Levels and traces of all pairs, for both choices of sides if they are to be swapped */
 PetscErrorCode SchwarzSetUpSides(Contact contact)
 {
@@ -156,6 +160,8 @@ PetscErrorCode SchwarzSetUpSides(Contact contact)
     }
   schwarz->levels = schwarz->side_levels[0];
   for (PetscInt b = 0; b < contact->n_bodies && schwarz->swap; b++) PetscCall(CheckSwappable(contact, b));
+  PetscCall(PrescribesMass(contact, &schwarz->mass_prescribed));
+  if (schwarz->mass_prescribed) contact->energy.unlimited = "nodes with mass take velocity and acceleration from their partner";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -167,7 +173,6 @@ PetscErrorCode SchwarzSwapSides(Contact contact)
   PetscFunctionBegin;
   schwarz->side   = 1 - schwarz->side;
   schwarz->levels = schwarz->side_levels[schwarz->side];
-  schwarz->stale  = PETSC_TRUE;
   for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].dirichlet = schwarz->side;
   for (PetscInt b = 0; b < contact->n_bodies / 2; b++) {
     const PetscInt first = contact->order[b];

@@ -79,52 +79,6 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows whose unknown is a force: it holds the Dirichlet side */
-static PetscErrorCode LoadByForce(Contact contact, PetscInt p, const PetscScalar x[])
-{
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[p];
-  const BodyTraces  *to      = &contact->traces[DirichletBody(pair)];
-  Trace              trace   = schwarz->trace[SideIndex(schwarz, p)];
-  PetscScalar       *start, *values;
-
-  PetscFunctionBegin;
-  PetscCall(TraceGetLevel(to->reaction, 0, &start));
-  for (PetscInt i = pair->begin; i < pair->end; i++) {
-    const PetscInt k = i - pair->begin, to_row = i - DirichletShift(pair);
-
-    if (!ByForce(contact, i)) continue;
-    PetscCall(TraceGetLevel(trace, 0, &values));
-    values[k] = start[to_row];
-    for (PetscInt level = 1; level <= schwarz->levels[p]; level++) {
-      PetscCall(TraceGetLevel(trace, level, &values));
-      values[k] = x[schwarz->offset[i] + level - 1] * ContactForceUnit(contact, i);
-    }
-    PetscCall(TraceResample(trace, k, 1, 1, to->force_in, to_row));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* After the body has been integrated: to its partner, that force is as good as a reaction */
-PetscErrorCode SchwarzReportByForce(Contact contact, PetscInt b)
-{
-  const ContactBodyRows *of     = &contact->body_rows[b];
-  const BodyTraces      *traces = &contact->traces[b];
-  PetscInt               levels;
-
-  PetscFunctionBegin;
-  PetscCall(TraceGetSizes(traces->reaction, NULL, &levels));
-  for (PetscInt level = 1; level <= levels; level++) {
-    PetscScalar *reaction, *force;
-
-    PetscCall(TraceGetLevel(traces->reaction, level, &reaction));
-    PetscCall(TraceGetLevel(traces->force_in, level, &force));
-    for (PetscInt k = 0; k < of->n; k++)
-      if (ByForce(contact, of->rows[k]) && DirichletBody(&contact->pairs[contact->rows.pair[of->rows[k]]]) == b) reaction[k] = force[k];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The reaction holds the Dirichlet side of a pair; the Neumann side gets its opposite, over other substeps perhaps. Held at F' where the
    partner takes the trapezium of F and F', forces bring more impulse in a step dt of n substeps by (1 - 1/n) (F' - F) dt / 2: ahead by that
    part of the present force, they give it back as it falls. */
@@ -197,43 +151,13 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
     const PetscInt     p    = contact->body_rows[b].pairs[k];
     const ContactPair *pair = &contact->pairs[p];
 
-    if (!SchwarzPairTells(contact, p)) continue;
     if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
-      if (DirichletBody(pair) == b) {
-        PetscCall(PrescribePair(contact, p, x));
-        if (contact->shared.n || pair->by_force) PetscCall(LoadByForce(contact, p, x));
-      }
+      if (DirichletBody(pair) == b) PetscCall(PrescribePair(contact, p, x));
       if (NeumannBody(pair) == b) PetscCall(HandReactionOn(contact, pair));
     } else {
       if (DirichletBody(pair) == b) PetscCall(LoadDirichlet(contact, p, x));
       if (NeumannBody(pair) == b) PetscCall(LoadNeumann(contact, p));
     }
-  }
-  PetscCall(ContactLoadReleased(contact, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where the Dirichlet side of a row has got at a part of the controller step, as far as it answers to its unknown there. One that makes
-   fewer substeps than there are unknowns feels the force at the end alone, and the others are on the way there. */
-static PetscErrorCode GetAnswer(Contact contact, PetscInt i, PetscReal part, const PetscScalar x[], PetscBool *answers,
-                                PetscScalar *position)
-{
-  const Schwarz     *schwarz = (const Schwarz *)contact->data;
-  const PetscInt     p = contact->rows.pair[i], levels = schwarz->levels[p];
-  const ContactPair *pair = &contact->pairs[p];
-  const BodyTraces  *from = &contact->traces[DirichletBody(pair)];
-  PetscInt           substeps;
-
-  PetscFunctionBegin;
-  PetscCall(TraceGetSizes(from->displacement, NULL, &substeps));
-  *answers = (PetscBool)(part == 1 || substeps >= levels);
-  if (*answers) {
-    PetscCall(TraceInterpolate(from->displacement, part, i - DirichletShift(pair), 1, position));
-  } else {
-    PetscScalar *start;
-
-    PetscCall(TraceGetLevel(from->reaction, 0, &start));
-    *position = (1 - part) * start[i - DirichletShift(pair)] / ContactForceUnit(contact, i) + part * x[schwarz->offset[i] + levels - 1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -247,8 +171,7 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
   const PetscInt     levels  = schwarz->levels[p];
   const PetscReal    sign    = NeumannSign(pair);
   PetscInt           from_levels;
-  PetscBool          answers = PETSC_FALSE;
-  PetscScalar       *displacement, *r, *force, position = 0;
+  PetscScalar       *displacement, *r, *force;
 
   PetscFunctionBegin;
   PetscCall(TraceGetSizes(from->displacement, NULL, &from_levels));
@@ -267,10 +190,6 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
         answer = displacement[k] + sign * SchwarzOffset(contact, i, part);
       else answer = r[k] - 2 * force[k] + sign * schwarz->weight[i] * SchwarzOffset(contact, i, part);
       f[unknown] = contact->end.active[i] ? x[unknown] - answer : 0;
-      if (!ByForce(contact, i)) continue;
-      /* the gap, or what keeps unknowns without an answer in line */
-      PetscCall(GetAnswer(contact, i, part, x, &answers, &position));
-      f[unknown] = answers ? position - answer : x[unknown] - position;
     }
   }
   for (PetscInt i = pair->begin; i < pair->end; i++)
@@ -278,79 +197,10 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether what comes in along all rows is known before any body is integrated: of pairs of bodies forces alone are the unknowns */
-static PetscBool KnowsInputs(Contact contact)
-{
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (!contact->pairs[p].obstacle && !contact->pairs[p].by_force && SchwarzPairTells(contact, p)) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
-/* What a body makes of what comes in along its rows */
-static PetscErrorCode Answer(Contact contact, PetscInt b)
-{
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
-
-  PetscFunctionBegin;
-  if (schwarz->step == STEP_CONDENSED) PetscCall(BodyRespond(contact->bodies[b]));
-  else PetscCall(ContactIntegrateBody(contact, b));
-  if (schwarz->has_forces) PetscCall(SchwarzReportByForce(contact, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What all bodies that do not rest make of what comes in by their compliance; what ranks have to know of inputs they tell of all at once */
-static PetscErrorCode RespondAtOnce(Contact contact)
-{
-  const PetscBool *rests = ((const Schwarz *)contact->data)->groups.rests;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    contact->work.words[b].n = 0;
-    if (!rests[b]) PetscCall(BodyProposeInputs(contact->bodies[b], &contact->work.words[b]));
-  }
-  PetscCall(ContactTellWords(contact, contact->work.words));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (!rests[b]) PetscCall(BodyRespond(contact->bodies[b]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All bodies that do not rest, of which none waits for another */
-static PetscErrorCode AnswerAtOnce(Contact contact)
-{
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
-
-  PetscFunctionBegin;
-  if (schwarz->step == STEP_CONDENSED) PetscCall(RespondAtOnce(contact));
-  else PetscCall(ContactIntegrateSome(contact, schwarz->groups.rests));
-  for (PetscInt b = 0; b < contact->n_bodies && schwarz->has_forces; b++)
-    if (!schwarz->groups.rests[b]) PetscCall(SchwarzReportByForce(contact, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All bodies that do not rest, each after those whose answer it waits for */
-static PetscErrorCode SweepBodies(Contact contact, const PetscScalar x[])
-{
-  const PetscBool *rests = ((const Schwarz *)contact->data)->groups.rests;
-  const PetscBool  known = KnowsInputs(contact);
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < contact->n_bodies; k++) {
-    const PetscInt b = contact->order[k];
-
-    if (rests[b]) continue;
-    PetscCall(LoadBody(contact, b, x));
-    if (known) PetscCall(SchwarzReportByForce(contact, b)); /* to partners that come later */
-    else PetscCall(Answer(contact, b));
-  }
-  if (known) PetscCall(AnswerAtOnce(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* F = x - G(x); not a number where a body's step fails */
 PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
 {
   Contact            contact = (Contact)ctx;
-  const Schwarz     *schwarz = (const Schwarz *)contact->data;
   const PetscScalar *x;
   PetscScalar       *f;
   PetscLogDouble     begin, end;
@@ -360,14 +210,15 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
   PetscCall(PetscTime(&begin));
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(SweepBodies(contact, x));
+  for (PetscInt k = 0; k < contact->n_bodies; k++) {
+    PetscCall(LoadBody(contact, contact->order[k], x));
+    PetscCall(ContactIntegrateBody(contact, contact->order[k]));
+  }
   PetscCall(ContactAgree(contact));
   if (ContactFailed(contact)) PetscCall(ContactRejectResidual(F));
   else {
     PetscCall(VecGetArrayWrite(F, &f));
-    for (PetscInt p = 0; p < contact->n_pairs; p++)
-      if (SchwarzPairMoves(contact, p)) PetscCall(ComparePair(contact, p, x, schwarz->groups.on ? schwarz->groups.residual : f));
-    if (schwarz->groups.on) PetscCall(SchwarzCopyResidual(contact, f));
+    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));
     PetscCall(SchwarzMeasureChange(contact, f));
     PetscCall(VecRestoreArrayWrite(F, &f));
   }

@@ -77,7 +77,7 @@ static PetscErrorCode SetUpMasses(Contact contact, PetscInt b, const PetscReal s
     const PetscInt i    = contact->body_rows[b].rows[k];
     const PetscInt side = contact->pairs[contact->rows.pair[i]].body[1] == b ? 1 : 0;
 
-    schwarz->mass[side][i] = schwarz->mode == SCHWARZ_MASS ? PetscSqr(impedance * contact->rows.area[i]) / stiffness[k] : impedance;
+    schwarz->mass[side][i] = schwarz->mass_prescribed ? PetscSqr(impedance * contact->rows.area[i]) / stiffness[k] : impedance;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -137,7 +137,7 @@ static PetscErrorCode RefuseUnshared(Contact contact)
 }
 
 /* Gives the bodies the weights as their springs */
-PetscErrorCode SchwarzSetRobin(Contact contact)
+static PetscErrorCode SetRobin(Contact contact)
 {
   const Schwarz *schwarz = (const Schwarz *)contact->data;
 
@@ -169,13 +169,29 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
     PetscReal impedance;
 
     PetscCall(BodyGetImpedance(contact->bodies[b], &impedance));
-    if (robin || schwarz->mode == SCHWARZ_MASS) PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
+    if (robin || schwarz->mass_prescribed) PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
     PetscCall(SetUpMasses(contact, b, stiffness, impedance));
     if (tied) PetscCall(SetUpTiedWeights(contact, b, stiffness));
     else if (robin) PetscCall(SetUpWeights(contact, b, stiffness, impedance));
   }
   PetscCall(PetscFree(stiffness));
-  if (robin) PetscCall(SchwarzSetRobin(contact));
+  if (robin) PetscCall(SetRobin(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The controller step is another: so are the weights of impedances */
+PetscErrorCode SchwarzSetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+{
+  Schwarz        *schwarz = (Schwarz *)contact->data;
+  const PetscReal ratio   = schwarz->controller_step / contact->step; /* a power of two */
+
+  PetscFunctionBegin;
+  (void)level;
+  (void)goes_on;
+  schwarz->controller_step = contact->step;
+  if (schwarz->transmission != SCHWARZ_TRANSMISSION_IMPEDANCE) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) schwarz->weight[i] *= ratio;
+  PetscCall(SetRobin(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -60,8 +60,6 @@ static PetscErrorCode SetAlternation(Contact contact)
   PetscCall(ContactSchwarzSetTractionWaveform(contact, SCHWARZ_WAVEFORM_CONSTANT));
   PetscCall(ContactSchwarzSetRelaxation(contact, SCHWARZ_RELAXATION_AITKEN));
   PetscCall(ContactSchwarzSetRecheck(contact, PETSC_FALSE));
-  PetscCall(ContactSchwarzSetCondense(contact, SCHWARZ_CONDENSE_NEVER));
-  PetscCall(ContactSchwarzSetDenseLimit(contact, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,11 +83,8 @@ static void alternation(void **state)
   AddCollision(7, 11, 0.3);
   AddOptions("-contact_type alternation");
   AddOptions("-schwarz_snes_type nrichardson -right_ts_time_step 0.005");
-  compare(
-      simulation,
-      "-schwarz_traction reaction -schwarz_traction_waveform constant -schwarz_relaxation aitken -schwarz_recheck 0 -schwarz_condense 0 "
-      "-schwarz_dense_limit 0",
-      SetAlternation);
+  compare(simulation, "-schwarz_traction reaction -schwarz_traction_waveform constant -schwarz_relaxation aitken -schwarz_recheck 0",
+          SetAlternation);
 }
 
 static PetscErrorCode SetPenalty(Contact contact)
@@ -138,7 +133,6 @@ static void refusals(void **state)
   contact = simulation->contact;
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetRobinParameter(contact, 0));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "must be positive", ContactSchwarzSetImpedanceParameter(contact, -1));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "must not be negative", ContactSchwarzSetDenseLimit(contact, -1));
   for (int value = -1; value <= 4; value += 5) { /* one less and one more than there are, of the largest enum */
     refused(PETSC_ERR_ARG_OUTOFRANGE, "no transmission condition", ContactSchwarzSetTransmission(contact, (SchwarzTransmission)value));
     refused(PETSC_ERR_ARG_OUTOFRANGE, "no traction", ContactSchwarzSetTraction(contact, (BodyTractionType)value));
@@ -147,7 +141,6 @@ static void refusals(void **state)
     refused(PETSC_ERR_ARG_OUTOFRANGE, "no relaxation", ContactSchwarzSetRelaxation(contact, (SchwarzRelaxation)value));
     refused(PETSC_ERR_ARG_OUTOFRANGE, "no convergence test", ContactSchwarzSetConvergence(contact, (SchwarzConvergence)value));
     refused(PETSC_ERR_ARG_OUTOFRANGE, "no way to go on", ContactSchwarzSetUnconverged(contact, (SchwarzUnconverged)value));
-    refused(PETSC_ERR_ARG_OUTOFRANGE, "no condensation", ContactSchwarzSetCondense(contact, (SchwarzCondense)value));
   }
   ok(ContactSchwarzSetTransmission(contact, SCHWARZ_TRANSMISSION_IMPEDANCE));
   ok(ContactSchwarzSetTransmission(contact, SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN));
