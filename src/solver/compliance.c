@@ -17,7 +17,6 @@ struct _n_Compliance {
   PetscScalar *matrices;                     /* levels of them, room x room by columns [m/N] */
   PetscScalar *ramp;                         /* room x room; made when asked for */
   PetscBool    ramp_valid;
-  PetscInt64   state; /* counts changes of what is known */
   /* columns that have been set since ComplianceWait(), one after the other, level by level */
   PetscBool    waits;
   PetscInt     n_waiting, most_waiting; /* how many; how many there is room for */
@@ -66,7 +65,6 @@ void ComplianceClear(Compliance c)
   for (PetscInt i = 0; i < c->n; i++) c->place[c->rows[i]] = -1;
   c->n = c->n_waiting = c->n_values = 0;
   c->ramp_valid                     = PETSC_FALSE;
-  c->state++;
 }
 
 /* Room for `more` rows beside those that are known, so that these need not allocate one by one */
@@ -188,7 +186,6 @@ static PetscErrorCode BeginColumn(Compliance c, PetscInt row, PetscInt levels, P
   c->n_values += levels * c->n;
   c->known[j]   = PetscMax(c->known[j], levels);
   c->ramp_valid = PETSC_FALSE;
-  c->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -249,7 +246,6 @@ PetscErrorCode ComplianceForget(Compliance c, const PetscMPIInt changed[])
   }
   c->n          = n;
   c->ramp_valid = PETSC_FALSE;
-  c->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -261,7 +257,6 @@ PetscErrorCode ComplianceTruncate(Compliance c, PetscInt n)
   for (PetscInt j = n; j < c->n; j++) c->place[c->rows[j]] = -1;
   c->n          = n;
   c->ramp_valid = PETSC_FALSE;
-  c->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -308,28 +303,19 @@ PetscErrorCode ComplianceGetRamp(Compliance c, PetscInt *leading, const PetscSca
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Another number than before whenever a matrix, or a place, has changed */
-PetscInt64 ComplianceGetState(Compliance c)
-{
-  return c->state;
-}
-
 /* State for a checkpoint: the known rows in their order, with their matrices */
 PetscErrorCode ComplianceVisit(Compliance c, Checkpoint checkpoint)
 {
-  PetscInt   sizes[3] = {c->n, c->room, c->levels};
-  PetscInt64 state    = c->state;
+  PetscInt sizes[3] = {c->n, c->room, c->levels};
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitInts(checkpoint, "compliance", 3, sizes));
-  PetscCall(CheckpointVisitInt64s(checkpoint, "compliance state", 1, &state));
   if (CheckpointLoads(checkpoint)) {
     PetscCheck(sizes[2] == c->levels, c->comm, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has another number of substeps");
     for (PetscInt j = 0; j < c->global; j++) c->place[j] = -1;
     c->n = 0;
     PetscCall(ComplianceReserve(c, sizes[1]));
     c->n          = sizes[0];
-    c->state      = state;
     c->ramp_valid = PETSC_FALSE;
   }
   PetscCall(CheckpointVisitInts(checkpoint, "compliance rows", c->n, c->rows));
@@ -378,7 +364,6 @@ PetscErrorCode ComplianceUnpack(Compliance c, const char name[], const PetscInt 
   PetscCall(ComplianceReserve(c, n));
   c->n          = n;
   c->ramp_valid = PETSC_FALSE;
-  c->state++;
   for (PetscInt j = 0; j < n; j++) {
     const PetscReal row = *packed++;
 

@@ -26,7 +26,6 @@ PETSC_INTERN void           ComplianceGetRows(Compliance, PetscInt *, const Pets
 PETSC_INTERN PetscBool      ComplianceKnows(Compliance, PetscInt);
 PETSC_INTERN void           ComplianceGetMatrix(Compliance, PetscInt, PetscInt *, const PetscScalar *[]);
 PETSC_INTERN PetscErrorCode ComplianceGetRamp(Compliance, PetscInt *, const PetscScalar *[]);
-PETSC_INTERN PetscInt64     ComplianceGetState(Compliance);
 PETSC_INTERN PetscErrorCode ComplianceVisit(Compliance, Checkpoint);
 PETSC_INTERN PetscErrorCode CompliancePack(Compliance, const char[], Tables);
 PETSC_INTERN PetscErrorCode ComplianceUnpack(Compliance, const char[], const PetscInt[], Tables);

@@ -129,13 +129,9 @@ PETSC_EXTERN PetscErrorCode BodyBeginExchange(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyEndExchange(Body);
 PETSC_EXTERN PetscErrorCode BodyExpectRepeat(Body, const PetscScalar[], const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyExpectApplied(Body, Vec);
-PETSC_EXTERN PetscErrorCode BodyLeaveLayer(Body);
-PETSC_EXTERN PetscErrorCode BodyGetLayerMissing(Body, PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyHasFreeRows(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyComputeFreeRows(Body, PetscScalar[]);
 
 /* Matrices of rows of a body that one of several ranks has all of, which is that rank's `owner` */
 PETSC_EXTERN PetscErrorCode BodyWholeRowsTellColumns(Mat, PetscBool, PetscInt, const PetscInt[]);
@@ -187,13 +183,6 @@ PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyCountUnknown(Body, PetscInt, const PetscInt[], PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetComplianceFlops(Body, PetscInt, const PetscInt[], PetscLogDouble *, PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
-PETSC_EXTERN PetscErrorCode BodySetBase(Body);
-PETSC_EXTERN PetscErrorCode BodySetFreeBase(Body);
-PETSC_EXTERN PetscErrorCode BodySetRestBase(Body);
-PETSC_EXTERN PetscErrorCode BodyProposeRoles(Body, const BodyCondition[], BodyWord *);
-PETSC_EXTERN PetscErrorCode BodyTakeRoles(Body);
-PETSC_EXTERN PetscErrorCode BodyProposeInputs(Body, BodyWord *);
-PETSC_EXTERN PetscErrorCode BodyRespond(Body);
 PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
 
 /* The balance of the massless layer in the first state */

@@ -6,7 +6,7 @@ typedef struct {
   PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
   /* NULL where the layer does not answer linearly and alone: how far it goes under forces that are to come, and what it lacks for balance
      where it has been left */
-  Vec       expected, missing;
+  Vec       expected;
   FrontStep front; /* NULL until a substep of several is made that may be made again in a part of the nodes */
 } BodyExplicit;
 
@@ -62,7 +62,7 @@ static PetscReal GetPosition(Body body)
   return (PetscReal)(body->time.substep + 1) / body->time.substeps;
 }
 
-/* Held and contact conditions on U, with the massless layer in balance, or left where it is. Where there are forces from outside, and a
+/* Held and contact conditions on U, with the massless layer in balance. Where there are forces from outside, and a
    layer, `force` becomes them. */
 static PetscErrorCode PlaceRows(Body body, PetscReal t, Vec U, Vec force)
 {
@@ -72,10 +72,7 @@ static PetscErrorCode PlaceRows(Body body, PetscReal t, Vec U, Vec force)
   PetscFunctionBegin;
   PetscCall(BodyPrescribeHeld(body, t, U, NULL, NULL));
   PetscCall(BodyPrescribe(body, body->traces.displacement_in, position, U));
-  body->layer.left = body->layer.leave;
-  if (body->layer.left)
-    PetscCall(LayerBalanceFindMissing(layer, body, t, position, U, force, ((BodyExplicit *)body->integrator->data)->missing));
-  else if (layer) PetscCall(LayerBalanceSolve(layer, body, t, position, PETSC_TRUE, U, force));
+  if (layer) PetscCall(LayerBalanceSolve(layer, body, t, position, U, force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,7 +129,7 @@ static PetscBool IsEarly(Body body)
 static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
-  if (GetLayer(body) && !body->layer.left) PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
+  if (GetLayer(body)) PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
   if (body->held.n && !body->state.incomplete) PetscCall(VecZeroEntries(A)); /* of held nodes it is not */
   else PetscCall(PetscObjectStateIncrease((PetscObject)A));
   body->state.incomplete = PETSC_TRUE;
@@ -264,16 +261,14 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
 }
 
 /* Where the layer alone answers: it is moved by what is known, or else (NULL) put in place anew from where it is, and all else is as it was
-   at mid-step. One that was left off balance gets into it. */
+   at mid-step */
 static PetscErrorCode MoveLayer(Body body, Vec known)
 {
   PetscFunctionBegin;
   body->time.substep = 0;
   if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
-  if (known) {
-    PetscCall(LayerBalanceMove(GetLayer(body), known, body->state.u));
-    body->layer.left = PETSC_FALSE;
-  } else PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
+  if (known) PetscCall(LayerBalanceMove(GetLayer(body), known, body->state.u));
+  else PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
   PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
   PetscCall(FinishSubstep(body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -307,17 +302,6 @@ static PetscErrorCode Follow(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GetMissing(Body body, PetscScalar missing[])
-{
-  const PetscScalar *lacks;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(((BodyExplicit *)body->integrator->data)->missing, &lacks));
-  PetscCall(PetscArraycpy(missing, lacks, body->layer.n_dofs));
-  PetscCall(VecRestoreArrayRead(((BodyExplicit *)body->integrator->data)->missing, &lacks));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The elements' forces, the acceleration, and the velocity at the end of the step */
 static PetscErrorCode Complete(Body body)
 {
@@ -326,42 +310,6 @@ static PetscErrorCode Complete(Body body)
   PetscCall(Accelerate(body, body->state.time, PETSC_FALSE, body->work.nodes[0], body->state.u, body->state.a));
   PetscCall(VecAXPY(body->state.v, 0.5 * body->time.step, body->state.a));
   PetscCall(FinishSubstep(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Central differences know the displacement of all nodes with mass before the forces of the substep's end, so that the layer's balance
-   alone, without contact, tells where contact nodes get in one substep. Only the displacements that it depends on are computed. */
-static PetscErrorCode ComputeFreeRows(Body body, PetscScalar displacement[])
-{
-  const PetscReal    end = body->saved.time + body->time.step, dt = body->time.step;
-  const PetscScalar *u, *v, *a, *rows;
-  PetscScalar       *moved;
-  const PetscInt    *near;
-  PetscInt           n;
-  Vec                way = body->work.nodes[1];
-
-  PetscFunctionBegin;
-  BodyGetNearLayer(body, &n, &near);
-  if (!body->model.linear) PetscCall(VecCopy(body->saved.u, way)); /* the tolerance of its balance depends on the norm of all of it */
-  PetscCall(VecGetArrayRead(body->saved.u, &u));
-  PetscCall(VecGetArrayRead(body->saved.v, &v));
-  PetscCall(VecGetArrayRead(body->saved.a, &a));
-  PetscCall(VecGetArray(way, &moved));
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscInt i = near[k];
-
-    moved[i] = u[i] + dt * (v[i] + 0.5 * dt * a[i]);
-  }
-  PetscCall(VecRestoreArray(way, &moved));
-  PetscCall(VecRestoreArrayRead(body->saved.a, &a));
-  PetscCall(VecRestoreArrayRead(body->saved.v, &v));
-  PetscCall(VecRestoreArrayRead(body->saved.u, &u));
-  PetscCall(BodyPrescribeHeld(body, end, way, NULL, NULL));
-  PetscCall(LayerBalanceSolve(GetLayer(body), body, end, 1, PETSC_FALSE, way, body->work.nodes[0]));
-  PetscCall(MatMult(body->rows.matrix, way, body->work.rows[0]));
-  PetscCall(VecGetArrayRead(body->work.rows[0], &rows));
-  PetscCall(PetscArraycpy(displacement, rows, body->rows.local));
-  PetscCall(VecRestoreArrayRead(body->work.rows[0], &rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -410,15 +358,12 @@ static PetscErrorCode SetUp(Body body)
   integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
   if (body->time.substeps == 1) integrator->ops.complete = Complete;
   else integrator->ops.step = Step;
-  if (layer && body->time.substeps == 1) integrator->ops.freerows = ComputeFreeRows;
   if (explicit->layer_alone) {
     integrator->ops.repeat = RepeatLayer;
     if (body->model.linear) {
-      integrator->ops.expect     = Expect;
-      integrator->ops.follow     = Follow;
-      integrator->ops.getmissing = GetMissing;
+      integrator->ops.expect = Expect;
+      integrator->ops.follow = Follow;
       PetscCall(LayerBalanceCreateVec(explicit->layer, &explicit->expected));
-      PetscCall(LayerBalanceCreateVec(explicit->layer, &explicit->missing));
     }
   } else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
@@ -433,7 +378,6 @@ static PetscErrorCode Destroy(Body body)
 {
   PetscFunctionBegin;
   PetscCall(VecDestroy(&((BodyExplicit *)body->integrator->data)->expected));
-  PetscCall(VecDestroy(&((BodyExplicit *)body->integrator->data)->missing));
   PetscCall(FrontStepDestroy(&((BodyExplicit *)body->integrator->data)->front));
   PetscCall(LayerBalanceDestroy(&((BodyExplicit *)body->integrator->data)->layer));
   PetscCall(PetscFree(body->integrator->data));

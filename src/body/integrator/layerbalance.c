@@ -71,18 +71,9 @@ static PetscErrorCode CopyOrigin(LayerBalance layer, const Factors *from, Factor
 /* Of one balance */
 typedef struct {
   PetscReal time, position;
-  PetscBool contact, outside; /* with contact; with forces of it or from outside */
-  Vec       force;            /* of these, of the body */
+  PetscBool outside; /* with forces of contact or from outside */
+  Vec       force;   /* of these, of the body */
 } LoadCase;
-
-/* With contact: under the constraints of the rows; else as if there were no rows */
-static PetscErrorCode SolveLayer(LayerBalance layer, Body body, PetscBool contact)
-{
-  PetscFunctionBegin;
-  if (contact) PetscCall(ConstrainedSolverSolve(body->solver, layer->rhs, layer->solution));
-  else PetscCall(ConstrainedSolverSolveFree(body->solver, layer->rhs, layer->solution));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 static PetscErrorCode Refactor(LayerBalance layer, Body body)
 {
@@ -169,25 +160,12 @@ PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body, BodySlot slot)
 static PetscErrorCode ComputeMissing(LayerBalance layer, Body body, const LoadCase *load, PetscBool follows, Vec u)
 {
   PetscFunctionBegin;
-  if (follows) PetscCall(BodyComputeOutsideForce(body, load->time, load->position, load->contact, u, load->force));
+  if (follows) PetscCall(BodyComputeOutsideForce(body, load->time, load->position, PETSC_TRUE, u, load->force));
   if (load->outside) {
     PetscCall(VecScatterBegin(layer->scatter, load->force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
     PetscCall(VecScatterEnd(layer->scatter, load->force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
   } else PetscCall(VecZeroEntries(layer->rhs));
   PetscCall(BodySubtractLayerForce(body, u, layer->rhs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What LayerBalanceSolve() with contact would balance, of a linear layer, which stays where it is: the force that is `missing`, a vector of
-   the layer */
-PetscErrorCode LayerBalanceFindMissing(LayerBalance layer, Body body, PetscReal time, PetscReal position, Vec u, Vec force, Vec missing)
-{
-  const LoadCase load = {
-      .time = time, .position = position, .contact = PETSC_TRUE, .outside = BodyHasOutsideForce(body, PETSC_TRUE), .force = force};
-
-  PetscFunctionBegin;
-  PetscCall(ComputeMissing(layer, body, &load, load.outside, u));
-  PetscCall(VecCopy(layer->rhs, missing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -241,36 +219,36 @@ static PetscErrorCode TakeBack(LayerBalance layer, Body body, const LoadCase *lo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves the layer in u into balance at a time, with contact or, to see where it would get, as if there were none. Where there are forces
-   from outside or of contact, `force` becomes their sum, with Robin rows where they were before the last round; else it is left alone. */
-PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
+/* Moves the layer in u into balance at a time. Where there are forces from outside or of contact, `force` becomes their sum, with Robin
+   rows where they were before the last round; else it is left alone. */
+PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, PetscReal position, Vec u, Vec force)
 {
-  const PetscBool outside = BodyHasOutsideForce(body, contact), linear = (PetscBool)(body->model.linear || body->model.linearized),
-                  robin = (PetscBool)(contact && body->rows.n_robin);
-  const LoadCase  load  = {.time = time, .position = position, .contact = contact, .outside = outside, .force = force};
+  const PetscBool outside = BodyHasOutsideForce(body, PETSC_TRUE), linear = (PetscBool)(body->model.linear || body->model.linearized),
+                  robin = (PetscBool)(body->rows.n_robin > 0);
+  const LoadCase  load  = {.time = time, .position = position, .outside = outside, .force = force};
   PetscReal       first = 0, previous = PETSC_MAX_REAL, round_off = 0, work = 0;
 
   PetscFunctionBegin;
   if (!linear) {
-    if (contact && layer->now.rounds >= SLOW_ROUNDS_WITHIN_STEP) PetscCall(RefactorAt(layer, body, u));
+    if (layer->now.rounds >= SLOW_ROUNDS_WITHIN_STEP) PetscCall(RefactorAt(layer, body, u));
     PetscCall(BodyGetNorm(body, u, &round_off));
     round_off = ROUND_OFF * (round_off + layer->reach);
   }
-  if (outside) PetscCall(BodyComputeOutsideForce(body, time, position, contact, u, force));
+  if (outside) PetscCall(BodyComputeOutsideForce(body, time, position, PETSC_TRUE, u, force));
   for (PetscInt round = 0; round < (linear ? 1 : MAX_ROUNDS); round++) {
     PetscReal change;
 
-    if (body->history && contact && round && round % ROUNDS_OF_FACTORS == 0) PetscCall(RefactorAt(layer, body, u));
+    if (body->history && round && round % ROUNDS_OF_FACTORS == 0) PetscCall(RefactorAt(layer, body, u));
     PetscCall(ComputeMissing(layer, body, &load, (PetscBool)(round && robin), u));
     if (body->history && round > 1) PetscCall(TakeBack(layer, body, &load, robin, work, u)); /* the first puts held rows in their places */
-    PetscCall(SolveLayer(layer, body, contact));
+    PetscCall(ConstrainedSolverSolve(body->solver, layer->rhs, layer->solution));
     if (body->history) PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &work));
     PetscCall(LayerBalanceMove(layer, layer->solution, u));
     if (linear) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(BodyGetNorm(body, layer->solution, &change));
     first = PetscMax(first, change);
     /* what is not a number is told when the substep is over */
-    if (contact) layer->now.rounds = round + 1;
+    layer->now.rounds = round + 1;
     if (change <= TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
     if (change >= previous && change <= AMPLIFIED * round_off) PetscFunctionReturn(PETSC_SUCCESS);
     previous = change;

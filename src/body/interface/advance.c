@@ -58,7 +58,6 @@ PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
   StepFailureClear(&body->failure);
   if (reason) *reason = STEP_CONVERGED;
   if (BodyIsElsewhere(body)) {
-    body->layer.leave = PETSC_FALSE;
     CountSubsteps(body);
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -67,7 +66,6 @@ PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
   PetscCall(BodyCheckStableStep(body));
   if (!BodyHasStopped(body)) PetscCall(BodyRepeat(body, &done));
   if (!BodyHasStopped(body) && !done) PetscCall(BodyMakeSubsteps(body));
-  body->layer.leave = PETSC_FALSE;
   PetscCall(CheckSolver(body));
   if (!done && !BodyHasStopped(body)) PetscCall(BodyNoteInputs(body));
   PetscCall(PetscTime(&end));
@@ -102,8 +100,6 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (BodyIsElsewhere(body)) body->state.incomplete = PETSC_FALSE;
-  PetscCheck(!body->layer.left || BodyHasStopped(body), PetscObjectComm((PetscObject)body), PETSC_ERR_PLIB,
-             "The massless layer of body '%s' has been left off balance", body->hdr.name);
   if (body->state.incomplete && !BodyHasStopped(body)) {
     PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
     PetscCall(PetscTime(&begin));

@@ -207,7 +207,6 @@ PetscErrorCode BodyTakeRows(Body body, const PetscInt now[], Tables tables)
   if (!GoesOn(body) || !body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Name(body, "compliance", name, sizeof(name)));
   PetscCall(ComplianceUnpack(body->compliance->matrices, name, now, tables));
-  body->compliance->factored_state = -1;
   PetscCall(BodyNoteKnownRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

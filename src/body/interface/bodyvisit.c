@@ -92,9 +92,6 @@ static PetscErrorCode VisitCompliance(Body body, struct _BodyCompliance *complia
   PetscCall(VisitNodal(body, compliance, checkpoint));
   PetscCall(ComplianceVisit(compliance->matrices, checkpoint));
   PetscCall(CheckpointVisitInts(checkpoint, "kept rows", 1, &compliance->n_kept));
-  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
-  compliance->has_base = compliance->base_gathered = PETSC_FALSE;
-  compliance->factored_state                       = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

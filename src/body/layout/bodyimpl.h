@@ -111,8 +111,6 @@ typedef struct {
   PetscInt     *dofs;     /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */
   LayerElements elements; /* those that touch massless nodes; NULL until somebody balances them */
   LayerSolver   solver;   /* NULL until BodySolveLayer() */
-  PetscBool     leave;    /* the next integration leaves the layer where it is, off balance */
-  PetscBool     left;     /* the last one has */
 } BodyLayer;
 
 typedef struct {
@@ -462,7 +460,6 @@ PETSC_INTERN PetscErrorCode BodyLayerCreateHistory(Body, PetscInt *, char **, Pe
 PETSC_INTERN PetscErrorCode BodyLayerCopyHistory(Body, PetscReal[], PetscReal *);
 PETSC_INTERN PetscErrorCode BodyAssembleLayer(Body, Vec, const PetscReal[], PetscReal, PetscScalar[], Mat);
 PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
-PETSC_INTERN void           BodyGetNearLayer(Body, PetscInt *, const PetscInt *[]);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyPrepareLayer(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyApplyLayerCompliance(Body, Vec, Vec);

@@ -36,7 +36,6 @@ typedef struct {
      setup() */
   PetscErrorCode (*expect)(Body, const PetscScalar[]);
   PetscErrorCode (*follow)(Body);
-  PetscErrorCode (*getmissing)(Body, PetscScalar[]); /* with those: what a layer that was left where it is lacks for balance [N] */
   /* (NULL) finds what TSStep() and repeat() have left out of the state, since rows do not depend on it, where they have marked it as
      incomplete; may be set in setup() */
   PetscErrorCode (*complete)(Body);
@@ -52,8 +51,6 @@ typedef struct {
   /* (NULL) of a nonlinear body: where its factors for whole controller steps have been made, and two numbers of them, to a vector of the
      body; or (true) back, with factors that are made there */
   PetscErrorCode (*copypoint)(Body, PetscBool, Vec, PetscReal[2]);
-  PetscErrorCode (*freerows)(Body, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of the controller step if no
-                                                      contact acts on any, without integrating [m]; may be set in setup() */
   /* (NULL) the columns of some rows of any rank, into a compliance, where there is no simpler way to one of them; may be set in setup() */
   PetscErrorCode (*compliancecolumns)(Body, PetscInt, const PetscInt[], Compliance);
   PetscErrorCode (*compliancecolumn)(Body, PetscInt, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of each substep,

@@ -15,10 +15,7 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree5(c->roles, c->base_displacement, c->all_roles, c->told_roles, c->all_flexibility));
-  PetscCall(PetscFree2(c->solved, c->unknown));
-  PetscCall(PetscFree4(c->known_displacement, c->force, c->displacement, c->rhs));
-  PetscCall(DenseFactorDestroy(&c->factor));
+  PetscCall(PetscFree2(c->mine, c->unknown));
   PetscCall(ComplianceDestroy(&c->matrices));
   PetscCall(ComplianceDestroy(&c->nodal));
   PetscCall(NodalMatrixDestroy(&c->nodal_matrix));
@@ -31,8 +28,7 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 /* Before the solvers of the body are made, since that of a linear body keeps the compliance of prescribed rows in the same place */
 PetscErrorCode BodyCreateCompliance(Body body)
 {
-  const BodyRows         *rows   = &body->rows;
-  const PetscInt          levels = body->time.substeps * rows->local;
+  const BodyRows         *rows = &body->rows;
   struct _BodyCompliance *c;
 
   PetscFunctionBegin;
@@ -41,11 +37,7 @@ PetscErrorCode BodyCreateCompliance(Body body)
   c->nodal_kind = NODAL_BY_STEPS;
   PetscCall(
       ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->time.substeps, &c->matrices));
-  PetscCall(PetscCalloc5(rows->local, &c->roles, 3 * levels, &c->base_displacement, rows->global, &c->all_roles, rows->global,
-                         &c->told_roles, rows->global, &c->all_flexibility));
-  c->base_force = c->base_displacement + levels;
-  c->mine       = c->base_force + levels;
-  PetscCall(PetscMalloc2(rows->global, &c->solved, rows->global, &c->unknown));
+  PetscCall(PetscMalloc2(body->time.substeps * rows->local, &c->mine, rows->global, &c->unknown));
   PetscCall(PetscCalloc1(rows->local, &c->change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -112,7 +104,7 @@ static PetscErrorCode ProbeCompliance(Body body, PetscInt n, const PetscInt rows
   Each new row costs one solution with factored matrices: of the whole body, if it is implicit, of its massless layer, if it is explicit;
   for each substep, and of explicit bodies with substeps these themselves.
 
-.seealso: `Body`, `BodyGetCompliance()`, `BodyRespond()`
+.seealso: `Body`, `BodyGetCompliance()`
 @*/
 PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[])
 {
@@ -288,7 +280,7 @@ PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *plac
 
   Level: developer
 
-.seealso: `Body`, `BodyRespond()`
+.seealso: `Body`, `BodyGetCompliance()`
 @*/
 PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
 {

@@ -1,7 +1,5 @@
-/* The interface compliance of a body: displacements of its rows under forces on them. Private to compliance.c, which finds
-   it, and respond.c, which applies it. */
+/* The interface compliance of a body: displacements of its rows under forces on them. Private to the files of this folder that find it. */
 #pragma once
-#include <solver/densefactor.h>
 #include <body/layout/bodyimpl.h>
 
 #define NODAL_BY_STEPS (-1) /* columns by controller steps */
@@ -20,26 +18,9 @@ struct _BodyCompliance {
   Vec            diagonal;      /* see BodyGetNodalDiagonal(); or NULL */
   PetscReal      diagonal_step; /* the substep that it is of [s] */
   PetscInt       n_kept;        /* known rows that stay when a step fails */
-  PetscScalar   *mine;          /* work space: of the rows of this rank, for each substep; behind base_displacement and base_force */
+  PetscScalar   *mine;          /* work space: of the rows of this rank, for each substep */
+  PetscInt      *unknown;       /* work space: rows that become known */
   PetscReal     *change;        /* of this rank's rows: how much more constant forces are than those at the end of the last step [N] */
-  /* an integration from which changes are counted: this rank's rows, for each substep */
-  PetscScalar *base_displacement, *base_force;
-  PetscBool    has_base, base_gathered; /* known_displacement and known_force are those, at the matrices' state `gathered_state` */
-  PetscInt64   gathered_state;
-  /* what each row is in BodyRespond() */
-  BodyCondition *roles;             /* of this rank's rows */
-  PetscMPIInt   *all_roles;         /* of all ranks' */
-  PetscScalar   *told_roles;        /* the same, as ranks add them up */
-  PetscReal     *all_flexibility;   /* of Robin rows [m/N] */
-  PetscInt       n_solved, *solved; /* prescribed and Robin rows, whose force follows from the others */
-  PetscInt      *unknown;           /* work space: rows that become known */
-  PetscInt64     factored_state;
-  DenseFactor    factor; /* of the first level on them */
-  /* known rows, for each substep: base, inputs, forces, displacements */
-  PetscInt     room;
-  PetscScalar *known_displacement, *known_force, *input, *force, *displacement;
-  PetscBool    told; /* inputs are those that BodyRespond() is to answer */
-  PetscScalar *rhs;
 };
 
 PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], PetscInt *, NodalMatrix *,

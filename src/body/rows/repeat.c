@@ -219,58 +219,6 @@ PetscErrorCode BodyExpectApplied(Body body, Vec change)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyLeaveLayer - lets the next `BodyTryIntegrateRows()` leave the massless layer where it is, off balance
-
-  Not Collective, but all ranks have to call it
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-  Notes:
-  For a caller that finds the balance of the layers of several bodies together with the forces between them. What the next
-  `BodyExpectRepeat()` tells has to make up for what `BodyGetLayerMissing()` gives, too, and another `BodyTryIntegrateRows()` takes it,
-  which balances the layer itself where it is told nothing, or where something else comes in.
-
-  Bodies that do not answer linearly by a layer alone are as if they were not asked.
-
-.seealso: `Body`, `BodyTryIntegrateRows()`, `BodyGetLayerMissing()`, `BodyExpectRepeat()`, `BodyGetLayerMatrices()`
-@*/
-PetscErrorCode BodyLeaveLayer(Body body)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  body->layer.leave = (PetscBool)(body->integrator->ops.getmissing && !body->rows.n_prescribed && !body->rows.n_robin);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetLayerMissing - what a massless layer lacks for balance
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. missing - force on the dofs of the layer that this rank has, in the order of the rows of its stiffness in `BodyGetLayerMatrices()`;
-            zero where the layer is in balance [N]
-
-  Level: developer
-
-.seealso: `Body`, `BodyLeaveLayer()`
-@*/
-PetscErrorCode BodyGetLayerMissing(Body body, PetscScalar missing[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->layer.left) PetscCall((*body->integrator->ops.getmissing)(body, missing));
-  else PetscCall(PetscArrayzero(missing, body->layer.n_dofs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A whole integration has just been done */
 PetscErrorCode BodyNoteInputs(Body body)
 {
@@ -298,7 +246,7 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
     if (repeat->told) news[k] = (PetscBool)(repeat->news[k] != 0);
     else if (TellsOthers(body)) PetscCall(BodyAnyRank(body, &news[k]));
   }
-  any          = (PetscBool)(news[0] || body->layer.left);
+  any          = news[0];
   repeat->told = repeat->expects = PETSC_FALSE;
   /* Without a change a state in balance stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and
      acceleration, which others feel through a mass matrix that is not diagonal alone. */

@@ -250,13 +250,6 @@ PetscErrorCode BodyLayerLinearize(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The owned dofs, rank numbering, on which the balance of the layer and the rows of contact nodes depend */
-void BodyGetNearLayer(Body body, PetscInt *n, const PetscInt *dofs[])
-{
-  *n    = body->layer.elements->n_near;
-  *dofs = body->layer.elements->near;
-}
-
 /* rhs -= internal force of the layer for displacement u of the body [N] */
 PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
 {

@@ -67,7 +67,7 @@ PetscErrorCode BodyRestore(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(body, &body->saved, &body->state));
   BodyHistoryRestore(body);
-  body->repeats = body->layer.left = PETSC_FALSE;
+  body->repeats = PETSC_FALSE;
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   if (body->integrator->ops.restore && !BodyIsElsewhere(body)) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_SAVED));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -13,17 +13,12 @@
    S (f - f') cannot be. It is no such problem: over the substeps of both bodies a row pushes at several times in the step, which its end
    does not tell. Such rows are held to the end of the step, so that nothing penetrates, and let go at the start of the next if they are
    still pulled. The others go on.
-
-   A round may be left early, before its set has been solved for, where rows are wrong by more than forces and gaps will still change. What
-   it was left with is no solution, so that a set that comes up again says nothing of a circle: from then on rounds are solved to their end.
 */
 #include "rounds.h"
 #include <checkpoint/checkpoint.h>
 
 /* Rounds after which no row leaves any more, so that a step with a set seen twice ends with an answer */
 #define LAST_ROUNDS (ROUNDS_MAX / 2)
-/* and so many after which none is left early */
-#define HASTY_ROUNDS 20
 
 /* For rows of this rank whose state is in these arrays, which stay where they are */
 PetscErrorCode RoundsCreate(Contact contact, PetscBool active[], const PetscReal force[], const PetscReal gap[], Rounds *rounds)
@@ -65,8 +60,7 @@ PetscErrorCode RoundsBegin(Rounds *rounds)
   if (rounds->cycled) PetscCall(PetscArrayzero(rounds->kept, rounds->contact->rows.n));
   rounds->n = rounds->first = 0;
   rounds->cycled = rounds->single = PETSC_FALSE;
-  rounds->early = rounds->hasty = rounds->patient = PETSC_FALSE;
-  rounds->fewest                                  = PETSC_INT_MAX;
+  rounds->fewest                  = PETSC_INT_MAX;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,7 +78,6 @@ PetscErrorCode RoundsNext(Rounds *rounds)
   }
   PetscCall(PetscArraycpy(rounds->tried + rounds->n * n, rounds->active, n));
   rounds->n++;
-  rounds->early = PETSC_FALSE;
   if (!rounds->cycled || rounds->n < LAST_ROUNDS) PetscFunctionReturn(PETSC_SUCCESS);
   rounds->single = PETSC_FALSE;
   for (PetscInt i = 0; i < n; i++) rounds->kept[i] = PETSC_TRUE;
@@ -92,35 +85,9 @@ PetscErrorCode RoundsNext(Rounds *rounds)
 }
 
 /* The active set of the last round, NULL before the first */
-const PetscBool *RoundsLast(const Rounds *rounds)
+static const PetscBool *RoundsLast(const Rounds *rounds)
 {
   return rounds->n ? rounds->tried + (rounds->n - 1) * rounds->contact->rows.n : NULL;
-}
-
-/* The active set of the round before the last, NULL where there is none */
-const PetscBool *RoundsBefore(const Rounds *rounds)
-{
-  return rounds->n > 1 ? rounds->tried + (rounds->n - 2) * rounds->contact->rows.n : NULL;
-}
-
-/* Whether the round under way may be left before its active set has been solved for */
-PetscBool RoundsMayLeave(const Rounds *rounds)
-{
-  return (PetscBool)(!rounds->patient && !rounds->cycled && rounds->n < HASTY_ROUNDS);
-}
-
-/* It is; `margin` says by how much rows have to be wrong then */
-void RoundsLeaveEarly(Rounds *rounds)
-{
-  rounds->early = rounds->hasty = PETSC_TRUE;
-}
-
-/* From now on rounds are solved to their end; what came before is no solution that sets are compared with */
-void RoundsBePatient(Rounds *rounds)
-{
-  rounds->patient = PETSC_TRUE;
-  rounds->hasty   = PETSC_FALSE;
-  rounds->first   = rounds->n;
 }
 
 /* Whether the active set is another than that of the last round; collective */
@@ -136,17 +103,11 @@ PetscErrorCode RoundsHaveChanged(const Rounds *rounds, PetscBool *changed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row penetrates without being active by more than `gap`, or is active and pulled by more than `force` */
-PetscBool RoundsRowIsWrong(const Rounds *rounds, PetscInt i, PetscReal force, PetscReal gap)
-{
-  if (rounds->active[i])
-    return (PetscBool)(rounds->recheck && rounds->force[i] < -force && !rounds->contact->rows.tied[i] && !rounds->kept[i]);
-  return (PetscBool)(rounds->gap[i] < -rounds->tolerance - gap && (!rounds->known || rounds->known[i]));
-}
-
+/* Whether a row penetrates without being active, or is active and pulled */
 static PetscBool RowIsWrong(const Rounds *rounds, PetscInt i)
 {
-  return rounds->early ? RoundsRowIsWrong(rounds, i, rounds->margin[0][i], rounds->margin[1][i]) : RoundsRowIsWrong(rounds, i, 0, 0);
+  if (rounds->active[i]) return (PetscBool)(rounds->recheck && rounds->force[i] < 0 && !rounds->contact->rows.tied[i] && !rounds->kept[i]);
+  return (PetscBool)(rounds->gap[i] < -rounds->tolerance && (!rounds->known || rounds->known[i]));
 }
 
 /* The first of all ranks' rows that are wrong, by its number on this rank, or -1; and whether all rows may change at once again */
@@ -208,12 +169,8 @@ PetscErrorCode RoundsBreakCycle(Rounds *rounds, PetscBool *flips)
 
   PetscFunctionBegin;
   PetscCall(FindActiveSet(rounds, &ago));
-  *flips = (PetscBool)(ago == 2 && !rounds->hasty);
+  *flips = (PetscBool)(ago == 2);
   if (!ago) PetscFunctionReturn(PETSC_SUCCESS);
-  if (rounds->hasty) {
-    RoundsBePatient(rounds);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   if (!rounds->cycled) rounds->contact->counts.set_cycles++;
   rounds->cycled = PETSC_TRUE;
   rounds->first  = rounds->n;

@@ -12,32 +12,21 @@ typedef struct {
   const PetscReal *force, *gap; /* of active rows [N], less than 0 where they are pulled; of the others [m] */
   const PetscBool *known;       /* whether a row's gap is told; NULL: of all */
   PetscReal        tolerance;   /* gaps above minus this are not penetration [m] */
-  const PetscReal
-           *margin[2]; /* by which forces [N] and gaps [m] are to be beyond that, of rounds that were left early; NULL: none is left */
-  PetscBool recheck;   /* rows that are pulled leave */
+  PetscBool        recheck;     /* rows that are pulled leave */
   /* the step under way */
   PetscBool *tried;    /* those seen, one after the other */
   PetscInt   n, first; /* how many; those before the first were under another rule */
   PetscBool  cycled;   /* one has been seen twice */
   PetscBool  single;   /* one row changes in a round, not all */
-  PetscBool  early;    /* the round was left before its active set had been solved for */
-  PetscBool  hasty;    /* one since the first was */
-  PetscBool  patient;  /* none is any more */
   PetscInt   fewest;   /* wrong rows in any round since */
   PetscBool *kept;     /* per row: it stays active to the end of the step */
 } Rounds;
 
-PETSC_INTERN PetscErrorCode   RoundsCreate(Contact, PetscBool[], const PetscReal[], const PetscReal[], Rounds *);
-PETSC_INTERN PetscErrorCode   RoundsDestroy(Rounds *);
-PETSC_INTERN PetscErrorCode   RoundsBegin(Rounds *);
-PETSC_INTERN PetscErrorCode   RoundsNext(Rounds *);
-PETSC_INTERN PetscErrorCode   RoundsChange(Rounds *);
-PETSC_INTERN PetscErrorCode   RoundsHaveChanged(const Rounds *, PetscBool *);
-PETSC_INTERN const PetscBool *RoundsLast(const Rounds *);
-PETSC_INTERN const PetscBool *RoundsBefore(const Rounds *);
-PETSC_INTERN PetscBool        RoundsRowIsWrong(const Rounds *, PetscInt, PetscReal, PetscReal);
-PETSC_INTERN PetscBool        RoundsMayLeave(const Rounds *);
-PETSC_INTERN void             RoundsLeaveEarly(Rounds *);
-PETSC_INTERN void             RoundsBePatient(Rounds *);
-PETSC_INTERN PetscErrorCode   RoundsBreakCycle(Rounds *, PetscBool *);
-PETSC_INTERN PetscErrorCode   RoundsVisit(Rounds *, Checkpoint);
+PETSC_INTERN PetscErrorCode RoundsCreate(Contact, PetscBool[], const PetscReal[], const PetscReal[], Rounds *);
+PETSC_INTERN PetscErrorCode RoundsDestroy(Rounds *);
+PETSC_INTERN PetscErrorCode RoundsBegin(Rounds *);
+PETSC_INTERN PetscErrorCode RoundsNext(Rounds *);
+PETSC_INTERN PetscErrorCode RoundsChange(Rounds *);
+PETSC_INTERN PetscErrorCode RoundsHaveChanged(const Rounds *, PetscBool *);
+PETSC_INTERN PetscErrorCode RoundsBreakCycle(Rounds *, PetscBool *);
+PETSC_INTERN PetscErrorCode RoundsVisit(Rounds *, Checkpoint);

@@ -1,30 +1,20 @@
 /*
-   S body by body, where it is not only multiplied with: each body's compliance on the rows of its own that are solved for, copied once for
-   all maps. Among many bodies that is little beside n by n entries, and products with it are short. The block of one body stands for
+   S body by body, where it is not only multiplied with: each body's compliance on the rows of its own that are solved for. Among many bodies that is little beside n by n entries, and products with it are short. The block of one body stands for
    a sparse S that is given as a matrix.
 */
 #include "interfaceimpl.h"
 #include <checkpoint/checkpoint.h>
 
-/* The places of the rows of a body that are solved for, which come before those that are known beside them; returns how many */
+/* The places of the rows of a body; returns how many */
 PetscInt InterfaceBlockPlaces(InterfaceOperator op, PetscInt b, const PetscInt *places[])
 {
-  PetscInt n = op->body_begin[b + 1] - op->body_begin[b];
-
   *places = op->of_body + op->body_begin[b];
-  if (!op->has_rows[b]) return 0;
-  while (n && (*places)[n - 1] >= op->n) n--;
-  return n;
+  return op->has_rows[b] ? op->body_begin[b + 1] - op->body_begin[b] : 0;
 }
 
-static PetscInt SignIn(InterfaceOperator op, InterfaceMap map, PetscInt place, PetscInt b)
+static PetscInt Sign(InterfaceOperator op, PetscInt place, PetscInt b)
 {
-  return op->matrix ? 1 : InterfaceSideIn(map, &op->contact->pairs[op->contact->ranks.row_pair[op->rows[place]]], b);
-}
-
-static PetscInt SignOut(InterfaceOperator op, InterfaceMap map, PetscInt place, PetscInt b)
-{
-  return op->matrix ? 1 : InterfaceSideOut(map, &op->contact->pairs[op->contact->ranks.row_pair[op->rows[place]]], b);
+  return op->matrix ? 1 : InterfaceSide(&op->contact->pairs[op->contact->ranks.row_pair[op->rows[place]]], b);
 }
 
 /* One level of a body's block */
@@ -35,7 +25,7 @@ static PetscErrorCode CopyBody(InterfaceOperator op, PetscInt b, PetscInt level,
   PetscInt           leading, n = 0;
 
   PetscFunctionBegin;
-  if (op->has_rows[b]) PetscCall(InterfaceOperatorListBodyRows(op, b, 0, op->n, &n));
+  if (op->has_rows[b]) PetscCall(InterfaceOperatorListBodyRows(op, b, &n));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetCompliance(op->contact->bodies[b], level, &place, &leading, &W));
   for (PetscInt j = 0; j < n; j++)
@@ -108,57 +98,53 @@ PetscErrorCode InterfaceBlocksUpdate(InterfaceOperator op)
 }
 
 /* Adds what one body does at the first level to a matrix by columns; `to`: for each listed row its place there, less than 0: it has none */
-void InterfaceBlocksAdd(InterfaceOperator op, InterfaceMap map, PetscInt b, const PetscInt to[], PetscInt leading, PetscScalar matrix[])
+void InterfaceBlocksAdd(InterfaceOperator op, PetscInt b, const PetscInt to[], PetscInt leading, PetscScalar matrix[])
 {
   const PetscScalar *block = op->blocks + op->block_begin[b];
   const PetscInt    *places, n = InterfaceBlockPlaces(op, b, &places);
 
   for (PetscInt l = 0; l < n; l++) {
-    const PetscInt j = to[places[l]], sign_j = SignIn(op, map, places[l], b);
+    const PetscInt j = to[places[l]], sign_j = Sign(op, places[l], b);
 
     for (PetscInt k = 0; k < n && sign_j && j >= 0; k++) {
-      const PetscInt i = to[places[k]], sign_i = SignOut(op, map, places[k], b);
+      const PetscInt i = to[places[k]], sign_i = Sign(op, places[k], b);
 
       if (sign_i && i >= 0) matrix[j * leading + i] += sign_i * sign_j * block[l * n + k];
     }
   }
 }
 
-/* A map's matrix at the first level on the rows that are solved for, n x n by columns [m/N], of the bodies as they are now */
+/* S at the first level on the rows that are solved for, n x n by columns [m/N], of the bodies as they are now */
 PetscErrorCode InterfaceOperatorAssemble(InterfaceOperator op, InterfaceMap map, PetscScalar matrix[])
 {
   PetscFunctionBegin;
+  (void)map;
   PetscCheck(op->dense, PetscObjectComm((PetscObject)op->contact), PETSC_ERR_ARG_WRONGSTATE,
              "The interface is too large for dense matrices");
   op->assembled = PETSC_FALSE;
   PetscCall(InterfaceBlocksUpdate(op));
   PetscCall(PetscArrayzero(matrix, op->n * op->n));
   for (PetscInt i = 0; i < op->n; i++) op->body_places[i] = i;
-  for (PetscInt b = 0; b < op->contact->n_bodies; b++) InterfaceBlocksAdd(op, map, b, op->body_places, op->n, matrix);
+  for (PetscInt b = 0; b < op->contact->n_bodies; b++) InterfaceBlocksAdd(op, b, op->body_places, op->n, matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += scale M x on the rows that are solved for */
-PetscErrorCode InterfaceOperatorMultiplyListed(InterfaceOperator op, InterfaceMap map, PetscInt level, PetscReal scale,
-                                               const PetscScalar x[], PetscScalar y[])
+/* y += S x at the first level on the rows that are solved for */
+PetscErrorCode InterfaceBlocksMultiply(InterfaceOperator op, const PetscScalar x[], PetscScalar y[])
 {
-  const PetscInt n_bodies = op->contact->n_bodies;
-  PetscScalar   *in = op->gathered, *out = in + op->n;
+  PetscScalar *in = op->gathered, *out = in + op->n;
 
   PetscFunctionBegin;
   PetscCall(InterfaceBlocksUpdate(op));
-  for (PetscInt b = 0; b < n_bodies; b++) {
+  for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
     const PetscInt *places, n = InterfaceBlockPlaces(op, b, &places);
-    PetscBool       moved = PETSC_FALSE;
 
     for (PetscInt k = 0; k < n; k++) {
-      in[k]  = SignIn(op, map, places[k], b) * x[places[k]];
+      in[k]  = Sign(op, places[k], b) * x[places[k]];
       out[k] = 0;
-      if (SignOut(op, map, places[k], b)) moved = PETSC_TRUE;
     }
-    if (!moved) continue;
-    PetscCall(DenseMultiplyAdd(n, n, op->blocks + level * op->block_begin[n_bodies] + op->block_begin[b], scale, in, out));
-    for (PetscInt k = 0; k < n; k++) y[places[k]] += SignOut(op, map, places[k], b) * out[k];
+    PetscCall(DenseMultiplyAdd(n, n, op->blocks + op->block_begin[b], 1, in, out));
+    for (PetscInt k = 0; k < n; k++) y[places[k]] += Sign(op, places[k], b) * out[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -46,7 +46,7 @@ static PetscErrorCode FillBlocks(InterfaceOperator op, const PetscScalar diagona
 
     if (op->block_begin[b + 1] == op->block_begin[b]) continue;
     block = DenseFactorGetBlock(&op->factor, op->group[op->of_body[op->body_begin[b]]], &order);
-    InterfaceBlocksAdd(op, INTERFACE_GAP, b, to, order, block);
+    InterfaceBlocksAdd(op, b, to, order, block);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -81,7 +81,7 @@ static PetscErrorCode CreateSparse(InterfaceOperator op, const PetscScalar diago
 
     for (PetscInt k = 0; k < n; k++) numbers[places[k]] = k;
     PetscCall(PetscArrayzero(values, n * n));
-    InterfaceBlocksAdd(op, INTERFACE_GAP, b, numbers, n, values);
+    InterfaceBlocksAdd(op, b, numbers, n, values);
     for (PetscInt k = 0; k < n; k++) {
       numbers[places[k]] = -1;
       entries[k]         = to[places[k]]; /* those below 0 are left out */
@@ -127,7 +127,6 @@ static PetscErrorCode Factor(InterfaceOperator op, const PetscBool in[], const P
   for (PetscInt i = 0; i < op->contact->rows.n; i++)
     op->diagonal[i] = op->marks[i] != INTERFACE_SOLVED || (in && !in[i]) ? -1 : diagonal ? diagonal[i] : 0;
   op->factored = PETSC_TRUE;
-  InterfaceDirectForget(op->direct);
   if (!op->dense) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(InterfaceBlocksUpdate(op));
   PetscCall(Compute(op));

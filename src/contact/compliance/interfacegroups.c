@@ -21,11 +21,11 @@ static void ListByBody(InterfaceOperator op)
   const Contact contact = op->contact;
   PetscInt     *next    = op->body_begin + 1; /* where the next row of body b comes; in the end that of body b + 1 begins there */
 
-  for (PetscInt b = 0; b <= contact->n_bodies; b++) op->body_begin[b] = op->matrix && b ? op->n_known : 0;
-  for (PetscInt place = 0; place < op->n_known && op->matrix; place++) op->of_body[place] = place;
+  for (PetscInt b = 0; b <= contact->n_bodies; b++) op->body_begin[b] = op->matrix && b ? op->n : 0;
+  for (PetscInt place = 0; place < op->n && op->matrix; place++) op->of_body[place] = place;
   if (op->matrix) return;
   for (PetscInt pass = 0; pass < 2; pass++) {
-    for (PetscInt place = 0; place < op->n_known; place++) {
+    for (PetscInt place = 0; place < op->n; place++) {
       const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[op->rows[place]]];
 
       for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
@@ -55,7 +55,7 @@ PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator op)
     root[b]         = b;
     op->has_rows[b] = PETSC_FALSE;
   }
-  for (PetscInt i = 0; i < op->n_known; i++) {
+  for (PetscInt i = 0; i < op->n; i++) {
     const PetscInt n = GetBodies(op, &contact->pairs[contact->ranks.row_pair[op->rows[i]]], bodies);
 
     for (PetscInt k = 0; k < n; k++) op->has_rows[bodies[k]] = PETSC_TRUE;

@@ -4,7 +4,6 @@
 #include <solver/densefactor.h>
 #include <solver/sparsefactor.h>
 
-typedef struct _n_InterfaceDirect         *InterfaceDirect;
 typedef struct _n_InterfacePreconditioner *InterfacePreconditioner;
 
 struct _n_InterfaceOperator {
@@ -13,11 +12,11 @@ struct _n_InterfaceOperator {
   PetscBool        *feels;  /* per body: its displacements answer to forces at the end of the step */
   Mat               matrix; /* S where it is given as a sparse matrix, else NULL: from the compliance of the bodies */
   PetscInt          levels; /* matrices for forces at as many times in the controller step, as a convolution */
-  /* listed rows of all ranks, on every rank, in ascending order: first those that are solved for, then those that are known beside them */
-  PetscInt  n, n_known, room;
+  /* rows of all ranks that are solved for, on every rank, in ascending order */
+  PetscInt  n, room;
   PetscInt *rows;
   PetscInt *body_rows, *body_places; /* work space: those that concern a body, by its own numbers; their places in the list */
-  /* groups of the rows that are solved for, between which S is zero: each row's, and how many rows each has */
+  /* groups of these, between which S is zero: each row's, and how many rows each has */
   PetscInt   n_groups, *group, *group_rows;
   PetscInt  *body_group;           /* work space, per body */
   PetscInt  *of_body, *body_begin; /* places of the rows of each body in the list, body by body; where those of each begin, and the end */
@@ -35,9 +34,8 @@ struct _n_InterfaceOperator {
   PetscScalar *listed[2];     /* work space */
   PetscScalar *grouped;       /* work space, in the order of places */
   /* rows of this rank */
-  InterfaceMark  *marks;
-  PetscScalar    *diagonal; /* added to that of S, less than 0 on rows that are not solved for at present */
-  InterfaceDirect direct;   /* sparse factors; NULL: the bodies do not answer by massless layers alone, or factors are not wanted */
+  InterfaceMark *marks;
+  PetscScalar   *diagonal; /* added to that of S, less than 0 on rows that are not solved for at present */
   /* conjugate gradients */
   InterfacePreconditioner preconditioner; /* NULL: the diagonal alone */
   KSP                     iterative;
@@ -47,38 +45,23 @@ struct _n_InterfaceOperator {
 };
 
 PETSC_INTERN PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator, PetscInt);
-PETSC_INTERN PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator, PetscInt, PetscInt, PetscInt, PetscInt *);
+PETSC_INTERN PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator, PetscInt, PetscInt *);
 PETSC_INTERN PetscErrorCode InterfaceOperatorFindGroups(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceBlocksUpdate(InterfaceOperator);
-PETSC_INTERN void           InterfaceBlocksAdd(InterfaceOperator, InterfaceMap, PetscInt, const PetscInt[], PetscInt, PetscScalar[]);
+PETSC_INTERN void           InterfaceBlocksAdd(InterfaceOperator, PetscInt, const PetscInt[], PetscInt, PetscScalar[]);
+PETSC_INTERN PetscErrorCode InterfaceBlocksMultiply(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceBlocksVisit(InterfaceOperator, Checkpoint);
 PETSC_INTERN PetscInt       InterfaceBlockPlaces(InterfaceOperator, PetscInt, const PetscInt *[]);
+PETSC_INTERN PetscErrorCode InterfaceOperatorSolveListed(InterfaceOperator, PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceFactorVisit(InterfaceOperator, Checkpoint);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateVecs(InterfaceOperator);
-PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, InterfaceMap, Vec, Vec);
+PETSC_INTERN PetscErrorCode InterfaceOperatorApply(InterfaceOperator, Vec, Vec);
 PETSC_INTERN PetscErrorCode InterfaceOperatorIterate(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateProducts(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator);
-PETSC_INTERN PetscErrorCode InterfaceDirectCreate(InterfaceOperator, InterfaceDirect *);
-PETSC_INTERN PetscErrorCode InterfaceDirectDestroy(InterfaceDirect *);
-PETSC_INTERN void           InterfaceDirectForget(InterfaceDirect);
-PETSC_INTERN PetscErrorCode InterfaceDirectSolve(InterfaceOperator, const PetscScalar[], PetscScalar[], PetscBool *);
-PETSC_INTERN PetscErrorCode InterfaceDirectIsReady(InterfaceOperator, PetscBool *);
-PETSC_INTERN PetscErrorCode InterfaceDirectTell(InterfaceOperator);
-
 PETSC_INTERN PetscErrorCode InterfacePreconditionerCreate(InterfaceOperator, InterfacePreconditioner *);
 PETSC_INTERN PetscErrorCode InterfacePreconditionerDestroy(InterfacePreconditioner *);
-PETSC_INTERN PetscErrorCode InterfacePreconditionerUpdate(InterfaceOperator);
-PETSC_INTERN PetscErrorCode InterfacePreconditionerApply(PC, Vec, Vec);
-
-PETSC_INTERN PetscErrorCode InterfaceDirectVisit(InterfaceOperator, Checkpoint);
-
-/* Whether S has sparse factors: it has no other levels than the first where all bodies answer by massless layers */
-static inline PetscBool InterfaceIsDirect(InterfaceOperator op)
-{
-  return (PetscBool)(op->direct && !op->matrix);
-}
 
 /* Where matrices of bodies are joined to one: the number in it of a row of one of them, with this layout, that any rank has; `shift` is
    what comes to numbers of each rank, of which this one is `mine` */
@@ -98,16 +81,7 @@ static inline PetscBool InterfaceIsIn(InterfaceOperator op, PetscInt i)
 }
 
 /* With what sign forces on row i act on body b, and its displacement counts */
-static inline PetscInt InterfaceSideIn(InterfaceMap map, const ContactPair *pair, PetscInt b)
+static inline PetscInt InterfaceSide(const ContactPair *pair, PetscInt b)
 {
-  const PetscInt dirichlet = pair->body[pair->dirichlet] == b, neumann = pair->body[1 - pair->dirichlet] == b;
-
-  return map == INTERFACE_GAP || map == INTERFACE_DIRICHLET ? dirichlet - neumann : neumann;
-}
-
-static inline PetscInt InterfaceSideOut(InterfaceMap map, const ContactPair *pair, PetscInt b)
-{
-  const PetscInt dirichlet = pair->body[pair->dirichlet] == b, neumann = pair->body[1 - pair->dirichlet] == b;
-
-  return map == INTERFACE_GAP || map == INTERFACE_NEUMANN_GAP ? dirichlet - neumann : dirichlet;
+  return (pair->body[pair->dirichlet] == b) - (pair->body[1 - pair->dirichlet] == b);
 }

@@ -29,8 +29,8 @@ PetscErrorCode InterfaceOperatorDestroyIterative(InterfaceOperator op)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What one body adds to y = M x on the rows that are solved for */
-static PetscErrorCode ApplyBody(InterfaceOperator op, InterfaceMap map, PetscInt b, Vec x, Vec y)
+/* What one body adds to y = S x on the rows that are solved for */
+static PetscErrorCode ApplyBody(InterfaceOperator op, PetscInt b, Vec x, Vec y)
 {
   const Contact          contact = op->contact;
   const ContactBodyRows *of      = &contact->body_rows[b];
@@ -44,7 +44,7 @@ static PetscErrorCode ApplyBody(InterfaceOperator op, InterfaceMap map, PetscInt
   for (PetscInt k = 0; k < of->n; k++) {
     const PetscInt i = of->rows[k];
 
-    force[k] = op->marks[i] == INTERFACE_SOLVED ? InterfaceSideIn(map, &contact->pairs[contact->rows.pair[i]], b) * in[i] : 0;
+    force[k] = op->marks[i] == INTERFACE_SOLVED ? InterfaceSide(&contact->pairs[contact->rows.pair[i]], b) * in[i] : 0;
   }
   PetscCall(VecRestoreArrayWrite(forces, &force));
   PetscCall(VecRestoreArrayRead(x, &in));
@@ -54,20 +54,20 @@ static PetscErrorCode ApplyBody(InterfaceOperator op, InterfaceMap map, PetscInt
   for (PetscInt k = 0; k < of->n; k++) {
     const PetscInt i = of->rows[k];
 
-    if (op->marks[i] == INTERFACE_SOLVED) out[i] += InterfaceSideOut(map, &contact->pairs[contact->rows.pair[i]], b) * moved[k];
+    if (op->marks[i] == INTERFACE_SOLVED) out[i] += InterfaceSide(&contact->pairs[contact->rows.pair[i]], b) * moved[k];
   }
   PetscCall(VecRestoreArray(y, &out));
   PetscCall(VecRestoreArrayRead(displacements, &moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = M x on the rows that are solved for, zero on the others; x counts on the former alone. Bodies without such rows add nothing. */
-PetscErrorCode InterfaceOperatorApply(InterfaceOperator op, InterfaceMap map, Vec x, Vec y)
+/* y = S x on the rows that are solved for, zero on the others; x counts on the former alone. Bodies without such rows add nothing. */
+PetscErrorCode InterfaceOperatorApply(InterfaceOperator op, Vec x, Vec y)
 {
   PetscFunctionBegin;
   PetscCall(VecZeroEntries(y));
   for (PetscInt b = 0; b < op->contact->n_bodies; b++)
-    if (op->has_rows[b]) PetscCall(ApplyBody(op, map, b, x, y));
+    if (op->has_rows[b]) PetscCall(ApplyBody(op, b, x, y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,7 +81,7 @@ static PetscErrorCode Multiply(Mat shell, Vec x, Vec y)
   PetscFunctionBegin;
   PetscCall(MatShellGetContext(shell, &op));
   if (op->matrix) PetscCall(MatMult(op->matrix, x, y));
-  else PetscCall(InterfaceOperatorApply(op, INTERFACE_GAP, x, y));
+  else PetscCall(InterfaceOperatorApply(op, x, y));
   PetscCall(VecGetArrayRead(x, &in));
   PetscCall(VecGetArray(y, &out));
   for (PetscInt i = 0; i < op->contact->rows.n; i++) {
@@ -116,12 +116,9 @@ static PetscErrorCode GetDiagonal(Mat shell, Vec diagonal)
 /* What products take, and what preconditions */
 PetscErrorCode InterfaceOperatorCreateProducts(InterfaceOperator op)
 {
-  /* rows whose matrix is dense where there are neither products nor sparse factors */
-  const PetscInt dense = op->settings.products || op->direct ? op->settings.few : op->settings.dense_limit;
-
   PetscFunctionBegin;
   if (!op->unknown) PetscCall(InterfaceOperatorCreateVecs(op));
-  if (op->settings.precondition && !op->matrix && op->contact->rows.n_all > dense)
+  if (op->settings.precondition && !op->matrix && op->contact->rows.n_all > op->settings.few)
     PetscCall(InterfacePreconditionerCreate(op, &op->preconditioner));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -144,15 +141,10 @@ PetscErrorCode InterfaceOperatorCreateIterative(InterfaceOperator op)
   PetscCall(KSPSetOperators(op->iterative, shell, shell));
   PetscCall(KSPSetType(op->iterative, KSPCG));
   PetscCall(KSPGetPC(op->iterative, &pc));
-  if (op->preconditioner) {
-    PetscCall(PCSetType(pc, PCSHELL));
-    PetscCall(PCShellSetContext(pc, op));
-    PetscCall(PCShellSetApply(pc, InterfacePreconditionerApply));
-    PetscCall(PCShellSetName(pc, "what the sides of the pairs answer with, near the surface"));
-  } else PetscCall(PCSetType(pc, PCJACOBI));
+  PetscCall(PCSetType(pc, PCJACOBI));
   PetscCall(KSPSetNormType(op->iterative, KSP_NORM_UNPRECONDITIONED));
   PetscCall(KSPSetInitialGuessNonzero(op->iterative, op->settings.warm));
-  PetscCall(KSPSetTolerances(op->iterative, op->settings.tolerance, op->settings.enough, PETSC_CURRENT, MAX_ITERATIONS));
+  PetscCall(KSPSetTolerances(op->iterative, op->settings.tolerance, 0, PETSC_CURRENT, MAX_ITERATIONS));
   PetscCall(KSPSetFromOptions(op->iterative));
   PetscCall(MatDestroy(&shell));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -191,7 +183,6 @@ PetscErrorCode InterfaceOperatorIterate(InterfaceOperator op, const PetscScalar 
 
   PetscFunctionBegin;
   if (!op->iterative) PetscCall(InterfaceOperatorCreateIterative(op));
-  PetscCall(InterfacePreconditionerUpdate(op));
   PetscCall(VecGetArrayWrite(op->rhs, &values));
   for (PetscInt i = 0; i < op->contact->rows.n; i++) values[i] = InterfaceIsIn(op, i) ? x[i] : 0;
   PetscCall(VecRestoreArrayWrite(op->rhs, &values));

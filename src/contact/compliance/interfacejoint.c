@@ -205,7 +205,7 @@ static PetscErrorCode JoinRows(const Contact contact, InterfaceJoint j)
       const PetscInt i = of->rows[l], p = contact->rows.pair[i];
 
       if (!j->pairs[p]) continue;
-      PetscCall(JoinRow(contact, j, k, of->begin + l, i, InterfaceSideIn(INTERFACE_GAP, &contact->pairs[p], j->slabs[k].body)));
+      PetscCall(JoinRow(contact, j, k, of->begin + l, i, InterfaceSide(&contact->pairs[p], j->slabs[k].body)));
     }
   }
   PetscCall(MatAssemblyBegin(j->C, MAT_FINAL_ASSEMBLY));

@@ -16,7 +16,6 @@ PetscErrorCode InterfaceOperatorCreate(Contact contact, const InterfaceSettings 
                          &op->body_group, contact->n_bodies, &op->has_rows, contact->n_bodies + 1, &op->body_begin));
   PetscCall(PetscCalloc1(contact->n_bodies + 1, &op->block_begin));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyFeelsEndForce(contact->bodies[b], &op->feels[b]));
-  if (settings->direct) PetscCall(InterfaceDirectCreate(op, &op->direct));
   if (contact->rows.n_all > PetscMin(settings->few, settings->dense_limit)) {
     if (settings->products) PetscCall(InterfaceOperatorCreateProducts(op));
     else PetscCall(InterfaceOperatorCreateIterative(op));
@@ -40,7 +39,6 @@ PetscErrorCode InterfaceOperatorDestroy(InterfaceOperator *operator)
   PetscCall(DenseFactorDestroy(&op->factor));
   PetscCall(SparseFactorDestroy(&op->sparse));
   PetscCall(InterfaceOperatorDestroyIterative(op));
-  PetscCall(InterfaceDirectDestroy(&op->direct));
   PetscCall(PetscFree(*operator));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,11 +104,8 @@ static PetscErrorCode Solve(InterfaceOperator op, const PetscScalar x[], PetscSc
 {
   PetscFunctionBegin;
   if (!op->dense) {
-    PetscBool solved = PETSC_FALSE;
-
     if (!op->factored) PetscCall(InterfaceOperatorFactor(op, NULL, NULL));
-    if (InterfaceIsDirect(op)) PetscCall(InterfaceDirectSolve(op, x, y, &solved));
-    if (!solved) PetscCall(InterfaceOperatorIterate(op, x, y));
+    PetscCall(InterfaceOperatorIterate(op, x, y));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(InterfaceOperatorGather(op, x, op->listed[0]));
@@ -131,31 +126,15 @@ PetscErrorCode InterfaceOperatorSolve(InterfaceOperator op, const PetscScalar x[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the next solution finds the balance of massless layers that have been left where they are with the forces between them */
-PetscErrorCode InterfaceOperatorBalances(InterfaceOperator op, PetscBool *balances)
-{
-  PetscFunctionBegin;
-  *balances = PETSC_FALSE;
-  if (!op->dense && op->factored && InterfaceIsDirect(op)) PetscCall(InterfaceDirectIsReady(op, balances));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The forces of the last solution are to be taken from those on the rows: bodies whose answer has been found with it are told */
-PetscErrorCode InterfaceOperatorTellAnswers(InterfaceOperator op)
-{
-  PetscFunctionBegin;
-  if (!op->dense && InterfaceIsDirect(op)) PetscCall(InterfaceDirectTell(op));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* y = M x on this rank's rows that are solved for, zero on the others, at one level; x and y are not the same */
 PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator op, InterfaceMap map, const PetscScalar x[], PetscScalar y[])
 {
   PetscFunctionBegin;
+  (void)map;
   if (op->dense) {
     PetscCall(InterfaceOperatorGather(op, x, op->listed[0]));
     PetscCall(PetscArrayzero(op->listed[1], op->n));
-    PetscCall(InterfaceOperatorMultiplyListed(op, map, 0, 1, op->listed[0], op->listed[1]));
+    PetscCall(InterfaceBlocksMultiply(op, op->listed[0], op->listed[1]));
     InterfaceOperatorScatter(op, op->listed[1], y);
   } else {
     const PetscScalar *moved;
@@ -165,7 +144,7 @@ PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator op, InterfaceMap map,
     PetscCall(VecGetArrayWrite(op->unknown, &force));
     PetscCall(PetscArraycpy(force, x, op->contact->rows.n));
     PetscCall(VecRestoreArrayWrite(op->unknown, &force));
-    PetscCall(InterfaceOperatorApply(op, map, op->unknown, op->rhs));
+    PetscCall(InterfaceOperatorApply(op, op->unknown, op->rhs));
     PetscCall(VecGetArrayRead(op->rhs, &moved));
     PetscCall(PetscArraycpy(y, moved, op->contact->rows.n));
     PetscCall(VecRestoreArrayRead(op->rhs, &moved));
@@ -176,7 +155,7 @@ PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator op, InterfaceMap map,
 /* State for a checkpoint. What the bodies' compliance knows they load themselves; a sparse S is the caller's to set again. */
 PetscErrorCode InterfaceOperatorVisit(InterfaceOperator op, Checkpoint checkpoint)
 {
-  PetscInt        sizes[] = {op->levels, op->n, op->n_known, op->n_in};
+  PetscInt        sizes[] = {op->levels, op->n, op->n_in};
   PetscBool       flags[] = {op->dense, op->factored, op->is_sparse};
   PetscLogDouble  flops[] = {op->product_flops, op->spent, op->dense_flops};
   const PetscInt  mine    = op->contact->rows.n;
@@ -187,11 +166,10 @@ PetscErrorCode InterfaceOperatorVisit(InterfaceOperator op, Checkpoint checkpoin
   PetscCall(CheckpointVisitBools(checkpoint, "dense", PETSC_STATIC_ARRAY_LENGTH(flags), flags));
   PetscCall(CheckpointVisitReals(checkpoint, "flops", PETSC_STATIC_ARRAY_LENGTH(flops), flops));
   if (loads) {
-    PetscCall(InterfaceOperatorMakeRoom(op, sizes[2]));
+    PetscCall(InterfaceOperatorMakeRoom(op, sizes[1]));
     op->levels        = sizes[0];
     op->n             = sizes[1];
-    op->n_known       = sizes[2];
-    op->n_in          = sizes[3];
+    op->n_in          = sizes[2];
     op->dense         = flags[0];
     op->factored      = flags[1];
     op->is_sparse     = flags[2];
@@ -199,13 +177,12 @@ PetscErrorCode InterfaceOperatorVisit(InterfaceOperator op, Checkpoint checkpoin
     op->spent         = flops[1];
     op->dense_flops   = flops[2];
   }
-  PetscCall(CheckpointVisitInts(checkpoint, "rows", op->n_known, op->rows));
+  PetscCall(CheckpointVisitInts(checkpoint, "rows", op->n, op->rows));
   if (loads) PetscCall(InterfaceOperatorFindGroups(op));
   PetscCall(CheckpointVisitInts(checkpoint, "places", op->n_in, op->places));
   PetscCall(CheckpointVisitBytes(checkpoint, "marks", (size_t)mine * sizeof(*op->marks), op->marks));
   PetscCall(CheckpointVisitReals(checkpoint, "diagonal", mine, op->diagonal));
   PetscCall(InterfaceBlocksVisit(op, checkpoint));
   PetscCall(InterfaceFactorVisit(op, checkpoint));
-  PetscCall(InterfaceDirectVisit(op, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

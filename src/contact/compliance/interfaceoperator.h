@@ -11,30 +11,22 @@
 
 typedef struct _n_InterfaceOperator *InterfaceOperator;
 
-/* What forces on both sides of the rows do to the displacements of both sides: factors of each side, as t_b has them in S */
-typedef enum {
-  INTERFACE_GAP,              /* S: opposite forces on both sides; Dirichlet minus Neumann displacement */
-  INTERFACE_DIRICHLET,        /* opposite forces on both sides; displacement of the Dirichlet side */
-  INTERFACE_NEUMANN_GAP,      /* forces on the Neumann side; Dirichlet minus Neumann displacement */
-  INTERFACE_NEUMANN_DIRICHLET /* forces on the Neumann side; displacement of the Dirichlet side */
-} InterfaceMap;
+/* What forces on both sides of the rows do to the displacements of both sides */
+typedef enum { INTERFACE_GAP /* S: opposite forces on both sides; Dirichlet minus Neumann displacement */ } InterfaceMap;
 
-typedef enum { INTERFACE_LEFT_OUT, INTERFACE_SOLVED, INTERFACE_KNOWN } InterfaceMark;
+typedef enum { INTERFACE_LEFT_OUT, INTERFACE_SOLVED } InterfaceMark;
 
 typedef struct {
   const char *prefix;       /* of the options of conjugate gradients */
   PetscReal   tolerance;    /* of conjugate gradients, relative to the right-hand side */
-  PetscReal   enough;       /* what they may leave at any rate, in the unit of the right-hand side */
   PetscReal   worst;        /* what they may leave of it all the same where round-off keeps them from `tolerance`, relative */
   PetscInt    dense_limit;  /* rows, times levels, up to which matrices are dense */
   PetscInt    few;          /* up to which they are so from the start */
-  PetscReal   at_once;      /* the same where they cost no more than so many products */
   PetscBool   warm;         /* conjugate gradients begin with what the solution is before */
   PetscBool   precondition; /* products have a preconditioner, where rows are too many for dense matrices and bodies let it be made */
   PetscBool   sparse;       /* factors of S may be sparse, with more rows than dense_limit, where the bodies are many */
   PetscBool products; /* where matrices are not dense S is multiplied with alone, and nothing is iterated for here: they are so beyond `few`
                          where products cost little */
-  PetscBool direct;   /* sparse factors, where the bodies answer by massless layers alone, in place of conjugate gradients */
 } InterfaceSettings;
 
 PETSC_INTERN PetscErrorCode InterfaceOperatorCreate(Contact, const InterfaceSettings *, InterfaceOperator *);
@@ -44,18 +36,12 @@ PETSC_INTERN PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator, const In
 PETSC_INTERN void           InterfaceOperatorGetRows(InterfaceOperator, PetscInt *, const PetscInt *[], PetscBool *);
 PETSC_INTERN PetscErrorCode InterfaceOperatorAssemble(InterfaceOperator, InterfaceMap, PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorFactor(InterfaceOperator, const PetscBool[], const PetscReal[]);
-PETSC_INTERN PetscBool      InterfaceOperatorWantsDense(InterfaceOperator);
 /* on the listed rows of all ranks, where matrices are dense */
 PETSC_INTERN PetscErrorCode InterfaceOperatorSum(InterfaceOperator, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode InterfaceOperatorGather(InterfaceOperator, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN void           InterfaceOperatorScatter(InterfaceOperator, const PetscScalar[], PetscScalar[]);
-PETSC_INTERN PetscErrorCode InterfaceOperatorSolveListed(InterfaceOperator, PetscScalar[]);
-PETSC_INTERN PetscErrorCode InterfaceOperatorMultiplyListed(InterfaceOperator, InterfaceMap, PetscInt, PetscReal, const PetscScalar[],
-                                                            PetscScalar[]);
 /* on the rows of this rank, dense or not */
 PETSC_INTERN PetscErrorCode InterfaceOperatorSolve(InterfaceOperator, const PetscScalar[], PetscScalar[]);
-PETSC_INTERN PetscErrorCode InterfaceOperatorBalances(InterfaceOperator, PetscBool *);
-PETSC_INTERN PetscErrorCode InterfaceOperatorTellAnswers(InterfaceOperator);
 PETSC_INTERN PetscErrorCode InterfaceOperatorMultiply(InterfaceOperator, InterfaceMap, const PetscScalar[], PetscScalar[]);
 /* on the rows of this rank, where S is only multiplied with: what preconditions it */
 PETSC_INTERN PetscBool      InterfaceOperatorHasPreconditioner(InterfaceOperator);

@@ -57,36 +57,6 @@ PetscErrorCode InterfacePreconditionerDestroy(InterfacePreconditioner *precondit
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes the matrices of the bodies, and the rows that are in, as they are now */
-PetscErrorCode InterfacePreconditionerUpdate(InterfaceOperator op)
-{
-  InterfacePreconditioner p = op->preconditioner;
-
-  PetscFunctionBegin;
-  if (!p) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(InterfaceJointUpdate(op, p->joint));
-  for (PetscInt k = 0; k < p->n; k++) PetscCall(InterfaceLayerUpdate(op, &p->layers[k]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* y = P x; rows that are not in stay as they are, and so do those whose Dirichlet side has no part in P */
-PetscErrorCode InterfacePreconditionerApply(PC pc, Vec x, Vec y)
-{
-  InterfaceOperator  op;
-  const PetscScalar *in;
-  PetscScalar       *out;
-
-  PetscFunctionBegin;
-  PetscCall(PCShellGetContext(pc, &op));
-  PetscCall(VecCopy(x, y));
-  PetscCall(VecGetArrayRead(x, &in));
-  PetscCall(VecGetArray(y, &out));
-  PetscCall(InterfaceOperatorPrecondition(op, in, out));
-  PetscCall(VecRestoreArray(y, &out));
-  PetscCall(VecRestoreArrayRead(x, &in));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether P is there, for some row */
 PetscBool InterfaceOperatorHasPreconditioner(InterfaceOperator op)
 {
@@ -96,9 +66,13 @@ PetscBool InterfaceOperatorHasPreconditioner(InterfaceOperator op)
 /* From now on P is for the rows of this rank that are `in`, with the matrices of the bodies as they are */
 PetscErrorCode InterfaceOperatorChoose(InterfaceOperator op, const PetscBool in[])
 {
+  InterfacePreconditioner p = op->preconditioner;
+
   PetscFunctionBegin;
   PetscCall(InterfaceOperatorFactor(op, in, NULL));
-  PetscCall(InterfacePreconditionerUpdate(op));
+  if (!p) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(InterfaceJointUpdate(op, p->joint));
+  for (PetscInt k = 0; k < p->n; k++) PetscCall(InterfaceLayerUpdate(op, &p->layers[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,9 +1,6 @@
 /* The rows of S, and whether its matrices are dense on them. */
 #include "interfaceimpl.h"
 
-/* Groups from which on small dense blocks are preferred to sparse factors of all, which rows that come and go would have made again */
-#define MANY_GROUPS 8
-
 /* Factors of S are sparse where it has so many times more places than entries, and dense factors would take so many operations */
 #define SPARSE_PART 8
 #define CHEAP_FLOPS 1e6
@@ -27,30 +24,18 @@ PetscErrorCode InterfaceOperatorMakeRoom(InterfaceOperator op, PetscInt n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds those of the listed rows from `begin` to `end` - 1 that concern a body to the `n` that body_rows has: their numbers among the rows
-   of the body, and into body_places their places in the list. Each part of the list ascends. */
-PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator op, PetscInt b, PetscInt begin, PetscInt end, PetscInt *n)
+/* The listed rows that concern a body: into body_rows their numbers among the rows of the body, and into body_places their places in the
+   list, which ascend */
+PetscErrorCode InterfaceOperatorListBodyRows(InterfaceOperator op, PetscInt b, PetscInt *n)
 {
   const ContactBodyRows *of = &op->contact->body_rows[b];
 
   PetscFunctionBegin;
-  for (PetscInt k = op->body_begin[b]; k < op->body_begin[b + 1]; k++) {
-    const PetscInt place = op->of_body[k];
-
-    if (place < begin || place >= end) continue;
-    PetscCall(PetscFindInt(op->rows[place], of->n_all, of->all, &op->body_rows[*n]));
-    op->body_places[(*n)++] = place;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same of those that are solved for, then of those that are known */
-static PetscErrorCode ListKnownRows(InterfaceOperator op, PetscInt b, PetscInt *n)
-{
-  PetscFunctionBegin;
   *n = 0;
-  PetscCall(InterfaceOperatorListBodyRows(op, b, 0, op->n, n));
-  PetscCall(InterfaceOperatorListBodyRows(op, b, op->n, op->n_known, n));
+  for (PetscInt k = op->body_begin[b]; k < op->body_begin[b + 1]; k++) {
+    PetscCall(PetscFindInt(op->rows[op->of_body[k]], of->n_all, of->all, &op->body_rows[*n]));
+    op->body_places[(*n)++] = op->of_body[k];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,7 +78,7 @@ static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, 
     PetscInt       n;
 
     if (!op->has_rows[b]) continue;
-    PetscCall(ListKnownRows(op, b, &n));
+    PetscCall(InterfaceOperatorListBodyRows(op, b, &n));
     PetscCall(BodyGetComplianceFlops(op->contact->bodies[b], n, op->body_rows, &apply, &extend));
     if (op->feels[b]) *product += apply;
     *dense += extend;
@@ -106,7 +91,7 @@ static PetscErrorCode CountFlops(InterfaceOperator op, PetscLogDouble *product, 
    a product is not all of S, and iterations take more sweeps: there matrices are dense up to the limit. */
 static PetscErrorCode ChooseDense(InterfaceOperator op)
 {
-  const PetscInt size     = op->n_known * op->levels;
+  const PetscInt size     = op->n * op->levels;
   PetscBool      substeps = PETSC_FALSE;
 
   PetscFunctionBegin;
@@ -120,10 +105,6 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (!op->dense || size <= op->settings.few || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
-  if (InterfaceIsDirect(op) && op->n_groups < MANY_GROUPS && !op->is_sparse) {
-    op->dense = PETSC_FALSE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   for (PetscInt b = 0; b < op->contact->n_bodies; b++) {
     PetscInt n;
 
@@ -132,17 +113,15 @@ static PetscErrorCode ChooseDense(InterfaceOperator op)
   }
   if (substeps) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CountFlops(op, &op->product_flops, &op->dense_flops));
-  op->dense = (PetscBool)(op->dense_flops <= op->settings.at_once * op->product_flops || op->spent >= op->dense_flops);
-  if (InterfaceIsDirect(op) && !op->dense) op->dense_flops = 0;
+  op->dense = (PetscBool)(op->spent >= op->dense_flops);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lists the rows of the problem: `marks` of this rank's rows. Where matrices are dense, the bodies get to know the rows that are solved for
-   or known, those too that answer to their forces in later substeps alone; else nothing but the marks is kept. Collective. */
+/* Lists the rows of the problem: `marks` of this rank's rows. Where matrices are dense, the bodies get to know the rows that are solved
+   for, those too that answer to their forces in later substeps alone; else nothing but the marks is kept. Collective. */
 PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMark marks[], PetscInt levels)
 {
-  Contact  contact  = op->contact;
-  PetscInt count[3] = {0, 0, 0}, next[3];
+  Contact contact = op->contact;
 
   PetscFunctionBegin;
   op->levels    = levels;
@@ -154,37 +133,28 @@ PetscErrorCode InterfaceOperatorSetRows(InterfaceOperator op, const InterfaceMar
   }
   PetscCallMPI(MPI_Allgatherv(contact->ranks.mine_active, (PetscMPIInt)contact->rows.n, MPI_INT, contact->ranks.all_active,
                               contact->ranks.counts, contact->ranks.offsets, MPI_INT, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt i = 0; i < contact->rows.n_all; i++) count[contact->ranks.all_active[i]]++;
-  op->n       = count[INTERFACE_SOLVED];
-  op->n_known = op->n + count[INTERFACE_KNOWN];
-  PetscCall(InterfaceOperatorMakeRoom(op, op->n_known));
-  next[INTERFACE_SOLVED] = 0;
-  next[INTERFACE_KNOWN]  = op->n;
-  for (PetscInt i = 0; i < contact->rows.n_all; i++)
-    if (contact->ranks.all_active[i]) op->rows[next[contact->ranks.all_active[i]]++] = i;
+  op->n = 0;
+  for (PetscInt i = 0; i < contact->rows.n_all; i++) op->n += contact->ranks.all_active[i] == INTERFACE_SOLVED;
+  PetscCall(InterfaceOperatorMakeRoom(op, op->n));
+  for (PetscInt i = 0, k = 0; i < contact->rows.n_all; i++)
+    if (contact->ranks.all_active[i] == INTERFACE_SOLVED) op->rows[k++] = i;
   PetscCall(InterfaceOperatorFindGroups(op));
   PetscCall(ChooseDense(op));
   if (!op->dense || op->matrix) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies && contact->ranks.size > 1; b++) {
     PetscInt n;
 
-    PetscCall(ListKnownRows(op, b, &n));
+    PetscCall(InterfaceOperatorListBodyRows(op, b, &n));
     if (n) PetscCall(BodyPrepareCompliance(contact->bodies[b], n, op->body_rows));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscInt n;
 
-    PetscCall(ListKnownRows(op, b, &n));
+    PetscCall(InterfaceOperatorListBodyRows(op, b, &n));
     contact->work.words[b].n = 0;
     if (n) PetscCall(BodyProposeCompliance(contact->bodies[b], n, op->body_rows, &contact->work.words[b]));
   }
   PetscCall(ContactTellWords(contact, contact->work.words));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeCompliance(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether iterations have cost as much by now as dense matrices of these rows would: then it is time to set the rows again */
-PetscBool InterfaceOperatorWantsDense(InterfaceOperator op)
-{
-  return (PetscBool)(!op->dense && op->dense_flops > 0 && op->spent >= op->dense_flops);
 }

@@ -100,8 +100,6 @@ static void check(const char integrator[], const char more[], PetscInt substeps,
   BodyTraces   traces;
   NodeRows     rows;
   End          end;
-  PetscBool    free_rows;
-  PetscScalar  free_displacement[ROWS];
   PetscOptions options = solid_body_create(&body, BLOCK "-ts_type %s -ts_time_step %.17g %s", integrator, STEP / substeps, more);
 
   touch_side(body, "ymax");
@@ -109,7 +107,6 @@ static void check(const char integrator[], const char more[], PetscInt substeps,
   set_node_rows(body, ROWS, row_nodes, row_directions, &rows);
   ok(BodySetUp(body));
   ok(BodyGetTraces(body, &traces));
-  ok(BodyHasFreeRows(body, &free_rows));
   ok(BodySetInitialState(body, Spinning, NULL));
   condition_rows(body, &rows, BODY_FORCED);
   create_end(body, &end);
@@ -121,9 +118,7 @@ static void check(const char integrator[], const char more[], PetscInt substeps,
     expect_same(body, &end, k, "the same");
     load(&rows, &traces, substeps, k, 5e-2);
     ok(BodyIntegrate(body));
-    if (free_rows) ok(BodyComputeFreeRows(body, free_displacement));
     ok(BodyRestore(body));
-    if (free_rows) ok(BodyComputeFreeRows(body, free_displacement));
     load(&rows, &traces, substeps, k, 1e-3);
     ok(BodyIntegrate(body));
     expect_same(body, &end, k, "another load");
