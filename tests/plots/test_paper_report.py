@@ -14,8 +14,8 @@ SMALL = "-time_step 1e-6\n-left_dm_plex_box_faces 20\n-right_dm_plex_box_faces 2
 EXPERIMENTS = {
     "high-speed/ii": f"# Plain alternation\n-options_file options/paper/shared/schwarz.opts\n{SMALL}",
     "high-speed/lagrange": f"# Multiplier\n-options_file options/impact-lagrange.opts\n{SMALL}",
-    "variants/paper/newton-ii": f"# Newton | with compliance\n-options_file options/paper/shared/schwarz.opts\n{SMALL}-schwarz_snes_type newtonls\n",
-    "variants/paper/broken-ii": f"# Broken\n-options_file options/paper/shared/schwarz.opts\n{SMALL}-schwarz_snes_tpye newtonls\n",
+    "variants/paper/anderson-ii": f"# Anderson | with mass\n-options_file options/paper/shared/schwarz.opts\n{SMALL}-schwarz_snes_type anderson\n",
+    "variants/paper/broken-ii": f"# Broken\n-options_file options/paper/shared/schwarz.opts\n{SMALL}-schwarz_snes_tpye anderson\n",
 }
 
 
@@ -51,11 +51,11 @@ def made(root):
 def test_experiments(root):
     found = experiments.find(root)
     assert list(found) == sorted(EXPERIMENTS)
-    one = found["variants/paper/newton-ii"]
-    assert (one.group, one.variant, one.pairing) == ("variants/paper", "newton", "ii")
-    assert one.title == "Newton | with compliance"
+    one = found["variants/paper/anderson-ii"]
+    assert (one.group, one.variant, one.pairing) == ("variants/paper", "anderson", "ii")
+    assert one.title == "Anderson | with mass"
     assert one.steps == 1000
-    assert one.last("schwarz_snes_type") == "newtonls"  # the included file has nrichardson
+    assert one.last("schwarz_snes_type") == "anderson"  # the included file has nrichardson
     assert "#" not in one.options
     assert "options_file" not in one.options
 

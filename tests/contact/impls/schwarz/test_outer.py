@@ -8,7 +8,7 @@ COARSE = "-time_step 1e-6"
 PLAIN = "-left_mass_redistribute false -right_mass_redistribute false"
 
 
-@pytest.mark.parametrize("snes", ["newtonls", *long("nrichardson -schwarz_relaxation aitken")])
+@pytest.mark.parametrize("snes", ["anderson", *long("nrichardson -schwarz_relaxation aitken")])
 def test_reaction_traction(snes, shared_run):
     """With the inertia of contact nodes that have mass in the traction: no chatter, but what the impact of two nodes loses."""
     run = shared_run(joined(LUMPED, PLAIN, MOVING, f"-schwarz_traction reaction -schwarz_snes_type {snes}"))
@@ -19,20 +19,20 @@ def test_reaction_traction(snes, shared_run):
     assert run.summary["system"]["energy_error_final"] == pytest.approx(-2 * 3.125e-3 / 2.5, rel=1e-5)  # measured: 5.6e-7
 
 
-@pytest.mark.parametrize("snes", ["anderson", "nrichardson -schwarz_relaxation aitken", *long("ngmres", "qn")])
+@pytest.mark.parametrize("snes", ["nrichardson -schwarz_relaxation aitken", *long("ngmres", "qn")])
 def test_types_agree(snes, shared_run):
     """All types end in the same solution. Each takes sweeps of its own to it where the bars are unlike and make 2 and 3 substeps. Within the tolerance of
     1e-12 m forces differ by 6e-7 N of 190 N."""
     options = joined(DEFAULTS, COARSE, MOVING, UNLIKE, "-contact_type alternation -left_ts_time_step 5e-7 -right_ts_time_step 3.3333333333333333e-7")
-    reference, run = (shared_run(f"{options} -schwarz_snes_type {each}") for each in ("newtonls", snes))
-    assert run.summary["schwarz"]["mean_contact_steps"] > reference.summary["schwarz"]["mean_contact_steps"] >= 1.9
+    reference, run = (shared_run(f"{options} -schwarz_snes_type {each}") for each in ("anderson", snes))
+    assert run.summary["schwarz"]["mean_contact_steps"] >= 1.9
     forces = [each.history["contact/left:right/force"][()] for each in (reference, run)]
     assert forces[0].max() > 100
     np.testing.assert_allclose(*forces, rtol=0, atol=5e-6)
     assert run.summary["contact"]["release_time"] == reference.summary["contact"]["release_time"]
 
 
-@pytest.mark.parametrize(("snes", "pairing"), [("qn", "ii"), *long(("newtonls", "ie"), ("anderson", "ee"))])
+@pytest.mark.parametrize(("snes", "pairing"), [("qn", "ii"), *long(("anderson", "ie"), ("anderson", "ee"))])
 def test_types_agree_on_nodes_with_mass(snes, pairing, shared_run):
     """As the paper has it: lumped mass, internal-force traction. The contact nodes take velocities from their partner, as they were in
     the sweep before: an accelerated iteration must not stop before they agree too. (When it did, quasi-Newton ended some steps with

@@ -31,7 +31,6 @@ WAYS = {
 }
 QUICK = [("II", "robin"), ("EE", "impedance"), ("IE", "swapped-robin"), ("II", "plain-robin")]
 LONG = [("IE", "robin"), ("II", "swapped"), ("EE", "last"), ("II", "trial"), ("IE", "extrapolate")]
-SWEEPS = {"plain-robin": (3, 4)} | dict.fromkeys(("robin", "impedance", "swapped", "swapped-robin"), (2, 2))  # most in a step
 
 
 def same(one, other, relative, absolute=0.0):
@@ -40,9 +39,9 @@ def same(one, other, relative, absolute=0.0):
 
 @pytest.mark.parametrize(("case", "way"), [*QUICK, *long(*LONG)])
 def test_one_solution(case, way, shared_run):
-    """The conditions change the way to the solution, not the solution. Unlike bars: of equal ones the first guess is the solution already. The Jacobian of Newton's
-    method is that of the conditions chosen, so that it takes two sweeps; and a spring as stiff as the massless layer behind it makes the plain alternation converge
-    without relaxation, where Dirichlet and Neumann conditions only alternate: at most 4 sweeps have been seen, the last of which finds no change."""
+    """The conditions change the way to the solution, not the solution, which is that of the contact step. Unlike bars: of equal ones the first guess is the solution
+    already. A spring as stiff as the massless layer behind it makes the plain alternation converge without relaxation, where Dirichlet and Neumann conditions only
+    alternate: at most 4 sweeps have been seen, the last of which finds no change."""
     base = joined(DEFAULTS, MOVING, UNLIKE, CASES[case])
     reference, summary = shared_run(base).summary, shared_run(joined(base, WAYS[way])).summary
     assert summary["schwarz"]["mean_contact_steps"] > 1.4
@@ -65,8 +64,7 @@ def test_one_solution(case, way, shared_run):
     assert worst_energy_error(summary) <= 4e-6  # measured: 3.1e-6
     assert force_scatter(summary) <= 2.1e-5  # measured: 1.6e-5
     assert summary["schwarz"]["unconverged_steps"] == 0
-    least, most = SWEEPS.get(way, (2, math.inf))
-    assert least <= summary["schwarz"]["max"] <= most
+    assert 2 <= summary["schwarz"]["max"] <= 4
 
 
 def test_ranks(shared_run):
