@@ -32,15 +32,3 @@ def test_redistributed(pairing, frame, shared_run):
     assert bodies["left"]["substeps"] >= 10000 * left
 
 
-def test_partner_with_mass_on_the_compliance(impakt):
-    """An explicit partner with mass on its contact nodes and one substep does not answer to forces at the end of the step; sweeps on the compliance ask
-    for its rows all the same. They were not known to it, which ended the run."""
-    blocks = " ".join(
-        f"-{name}_dm_plex_dim 2 -{name}_dm_plex_box_faces 3,3 -{name}_dm_plex_box_lower {lower} -{name}_dm_plex_box_upper {upper} -{name}_density 1000 -{name}_youngs_modulus 1e8 "
-        f"-{name}_ts_type centraldifference"
-        for name, lower, upper in (("a", "-0.6,0", "0.6,0.412"), ("b", "-0.9,0.416", "0.09,1"))
-    )
-    options = f"-bodies a,b -contact_pairs a:b {blocks} -b_mass_redistribute false -b_initial_velocity 0,-2.83 -time_step 1.6e-4 -time_end 3e-3"
-    condensed, whole = (impakt(f"{options} -schwarz_condense {condense}").history["contact/a:b/force"][()] for condense in (1, 0))
-    assert whole.max() > 0
-    np.testing.assert_allclose(condensed, whole, rtol=0, atol=1e-9 * whole.max())

@@ -69,14 +69,6 @@ def test_impact(shape, method, shared_run):
         assert momentum <= 1e-12  # round-off of 500 steps; measured: 1.3e-13 at most
 
 
-@pytest.mark.parametrize(("shape", "method"), [("quad4-turned", "IE"), *long(("hex8-turned", "robin"))])
-def test_condensed(shape, method, shared_run):
-    """Sweeps on the interface compliance have the iterates of sweeps of whole bodies: measured 6e-13."""
-    runs = [shared_run(options(shape, f"{METHODS[method]} -schwarz_condense {condense}")) for condense in (0, 1)]
-    compare(*(figures(run, shape) for run in runs), 1e-10)
-    np.testing.assert_array_equal(*(run.history["schwarz/iterations"][()] for run in runs))
-
-
 @pytest.mark.parametrize(("pairs", "shape"), [("auto", "quad4-turned"), ("l:r", "hex8"), *long(("auto", "hex8-over"), ("l:r", "quad4-over"))])
 def test_surfaces_not_named(shape, pairs, shared_run):
     """Of all the surface of the bars only the ends that face each other have gaps, and the figures are the same."""

@@ -98,13 +98,12 @@ TAYLOR = "-options_file options/taylor-bar.opts -rod_rod_divisions 2 -rod_rod_el
 VARIANTS |= {
     "balance, rows on the second": BLOCKS + NONLINEAR + "-contact_balance true -contact_rows second",
     "gap rate, dissipation, mass not diagonal": BLOCKS + "-contact_constraint gap_rate -left_ts_alpha_radius 0.8 -left_mass_type consistent -right_mass_type averaged",
-    "sparse factors": BLOCKS + EXPLICIT + NONLINEAR + "-contact_type alternation -schwarz_dense_limit 0",
-    "conjugate gradients, sliding": BLOCKS + "-contact_type alternation -schwarz_dense_limit 0 -left_initial_velocity 20,20",  # what preconditions is made again as rows follow
+    "alternation, sliding": BLOCKS + "-contact_type alternation -left_initial_velocity 20,20",
     "edge, turned": BLOCKS + NONLINEAR + "-contact_facing false -left_rotate 12 -right_translate 0.98,0.1",
     "curved obstacle": "-bodies left -obstacles drum -drum_obstacle_type cylinder -drum_point 1.5,0.4 -drum_radius 0.45 -contact_pairs left:drum "
     "-contact_law coulomb -contact_friction 0.3 -left_dm_plex_box_faces 8,8 -left_density 1000 -left_youngs_modulus 1e9 -left_poissons_ratio 0.25 "
     "-left_initial_velocity 60,20 -time_step 2e-5 -time_end 2.4e-3",
-    "sweeps on bodies": BLOCKS + "-schwarz_condense 0 -schwarz_snes_type anderson -schwarz_transmission robin",
+    "sweeps on bodies": BLOCKS + "-contact_type alternation -schwarz_transmission robin",
     "plastic": BLOCKS + "-left_material_type j2 -left_yield_stress 5e6 -left_hardening_modulus 1e8 -time_end 8e-4",
     "plastic, enhanced": BLOCKS + EXPLICIT + "-left_material_type j2 -left_yield_stress 5e6 -left_hardening_modulus 1e8 -left_element_formulation enhanced -time_end 8e-4",
     "plastic, explicit": TAYLOR + "-rod_mass_redistribute true",
@@ -492,7 +491,6 @@ def test_contact_of_three_ranks(run_in, folder):
     [
         ("-left_ksp_type cg -left_pc_type gamg", 1, "the solver of body 'left'"),
         ("-left_pc_type cholesky -left_pc_factor_mat_solver_type mumps", 2, "the solver of body 'left'"),
-        ("-contact_type alternation -schwarz_dense_limit 0", 2, "the factors of contact that ranks make together"),
     ],
 )
 def test_solver_that_does_not_repeat(run_in, folder, solver, ranks, words):
