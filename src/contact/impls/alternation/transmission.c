@@ -13,22 +13,22 @@
    An impedance condition, f + z dw/dt = r, is one with alpha = z / dt as soon as time is discrete: dt is the controller step here,
    so that it is the mean velocity over it that counts, and the gap closes whatever the substeps.
 */
-#include "schwarzimpl.h"
+#include "alternationimpl.h"
 
 /* Stiffness of the springs of each row: as given, or that of the partner, which answers best */
 static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  if (schwarz->impedance > 0) impedance = schwarz->impedance;
+  if (alternation->impedance > 0) impedance = alternation->impedance;
   for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
     const PetscInt i = contact->body_rows[b].rows[k];
 
     if (contact->pairs[contact->rows.pair[i]].body[1] != b) continue;
-    if (schwarz->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
-      schwarz->weight[i] = impedance * contact->rows.area[i] / schwarz->controller_step;
-    else schwarz->weight[i] = schwarz->robin_parameter > 0 ? schwarz->robin_parameter * contact->rows.area[i] : stiffness[k];
+    if (alternation->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
+      alternation->weight[i] = impedance * contact->rows.area[i] / alternation->controller_step;
+    else alternation->weight[i] = alternation->robin_parameter > 0 ? alternation->robin_parameter * contact->rows.area[i] : stiffness[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -38,7 +38,7 @@ static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal 
    Newmark's trapezoidal rule has 4 m / dt^2; a cantilever of implicit halves takes 7 sweeps with it, and 127 without. */
 static PetscErrorCode SetUpTiedWeights(Contact contact, PetscInt b, const PetscReal stiffness[])
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
+  Alternation       *alternation = (Alternation *)contact->data;
   const PetscScalar *flexibility;
   PetscInt           substeps;
   PetscReal          shift;
@@ -47,7 +47,7 @@ static PetscErrorCode SetUpTiedWeights(Contact contact, PetscInt b, const PetscR
 
   PetscFunctionBegin;
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-  shift = 4 * PetscSqr(substeps / schwarz->controller_step);
+  shift = 4 * PetscSqr(substeps / alternation->controller_step);
   PetscCall(BodyComputeInverseLumpedMass(contact->bodies[b], &inverse));
   PetscCall(MatCreateVecs(inverse, &diagonal, NULL));
   PetscCall(MatGetDiagonal(inverse, diagonal));
@@ -57,8 +57,8 @@ static PetscErrorCode SetUpTiedWeights(Contact contact, PetscInt b, const PetscR
     const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
     if (pair->body[0] != b) continue;
-    schwarz->weight[i] = stiffness[k];
-    if (pair->keeps_mass && PetscRealPart(flexibility[k]) > 0) schwarz->weight[i] += shift / PetscRealPart(flexibility[k]);
+    alternation->weight[i] = stiffness[k];
+    if (pair->keeps_mass && PetscRealPart(flexibility[k]) > 0) alternation->weight[i] += shift / PetscRealPart(flexibility[k]);
   }
   PetscCall(VecRestoreArrayRead(diagonal, &flexibility));
   PetscCall(VecDestroy(&diagonal));
@@ -70,14 +70,14 @@ static PetscErrorCode SetUpTiedWeights(Contact contact, PetscInt b, const PetscR
    prescribed, the masses of the elements beside the row. E A / h and sqrt(E rho) A make rho A h. */
 static PetscErrorCode SetUpMasses(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
     const PetscInt i    = contact->body_rows[b].rows[k];
     const PetscInt side = contact->pairs[contact->rows.pair[i]].body[1] == b ? 1 : 0;
 
-    schwarz->mass[side][i] = schwarz->mass_prescribed ? PetscSqr(impedance * contact->rows.area[i]) / stiffness[k] : impedance;
+    alternation->mass[side][i] = alternation->mass_prescribed ? PetscSqr(impedance * contact->rows.area[i]) / stiffness[k] : impedance;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -139,29 +139,30 @@ static PetscErrorCode RefuseUnshared(Contact contact)
 /* Gives the bodies the weights as their springs */
 static PetscErrorCode SetRobin(Contact contact)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
+  const Alternation *alternation = (const Alternation *)contact->data;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const ContactBodyRows *of = &contact->body_rows[b];
 
-    for (PetscInt k = 0; k < of->n; k++) schwarz->row_work[k] = schwarz->weight[of->rows[k]];
-    PetscCall(BodySetRobin(contact->bodies[b], schwarz->row_work));
+    for (PetscInt k = 0; k < of->n; k++) alternation->row_work[k] = alternation->weight[of->rows[k]];
+    PetscCall(BodySetRobin(contact->bodies[b], alternation->row_work));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Masses for the inelastic predictor; weights, and springs of the bodies, for Robin conditions */
-PetscErrorCode SchwarzSetUpTransmission(Contact contact)
+PetscErrorCode AlternationSetUpTransmission(Contact contact)
 {
-  Schwarz        *schwarz = (Schwarz *)contact->data;
-  const PetscBool robin   = (PetscBool)(schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
-  const PetscBool tied    = (PetscBool)(schwarz->transmission == SCHWARZ_TRANSMISSION_ROBIN && schwarz->robin_parameter == 0 &&
-                                        ContactAllPairsTie(contact));
+  Alternation    *alternation = (Alternation *)contact->data;
+  const PetscBool robin       = (PetscBool)(alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
+  const PetscBool tied        = (PetscBool)(alternation->transmission == SCHWARZ_TRANSMISSION_ROBIN && alternation->robin_parameter == 0 &&
+                                            ContactAllPairsTie(contact));
   PetscReal      *stiffness;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc3(contact->rows.n, &schwarz->weight, contact->rows.n, &schwarz->mass[0], contact->rows.n, &schwarz->mass[1]));
+  PetscCall(
+      PetscCalloc3(contact->rows.n, &alternation->weight, contact->rows.n, &alternation->mass[0], contact->rows.n, &alternation->mass[1]));
   if (robin) PetscCall(CheckBodies(contact));
   if (robin) PetscCall(RefuseUnshared(contact));
   PetscCall(PetscCalloc1(contact->rows.n, &stiffness));
@@ -169,7 +170,7 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
     PetscReal impedance;
 
     PetscCall(BodyGetImpedance(contact->bodies[b], &impedance));
-    if (robin || schwarz->mass_prescribed) PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
+    if (robin || alternation->mass_prescribed) PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
     PetscCall(SetUpMasses(contact, b, stiffness, impedance));
     if (tied) PetscCall(SetUpTiedWeights(contact, b, stiffness));
     else if (robin) PetscCall(SetUpWeights(contact, b, stiffness, impedance));
@@ -180,25 +181,25 @@ PetscErrorCode SchwarzSetUpTransmission(Contact contact)
 }
 
 /* The controller step is another: so are the weights of impedances */
-PetscErrorCode SchwarzSetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+PetscErrorCode AlternationSetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
 {
-  Schwarz        *schwarz = (Schwarz *)contact->data;
-  const PetscReal ratio   = schwarz->controller_step / contact->step; /* a power of two */
+  Alternation    *alternation = (Alternation *)contact->data;
+  const PetscReal ratio       = alternation->controller_step / contact->step; /* a power of two */
 
   PetscFunctionBegin;
   (void)level;
   (void)goes_on;
-  schwarz->controller_step = contact->step;
-  if (schwarz->transmission != SCHWARZ_TRANSMISSION_IMPEDANCE) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->rows.n; i++) schwarz->weight[i] *= ratio;
+  alternation->controller_step = contact->step;
+  if (alternation->transmission != SCHWARZ_TRANSMISSION_IMPEDANCE) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) alternation->weight[i] *= ratio;
   PetscCall(SetRobin(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Metres of mismatch between both sides for a unit of the residual in row i */
-PetscReal SchwarzResidualScale(Contact contact, PetscInt i)
+PetscReal AlternationResidualScale(Contact contact, PetscInt i)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
+  const Alternation *alternation = (const Alternation *)contact->data;
 
-  return schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? 1 : 1 / (2 * schwarz->weight[i]);
+  return alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? 1 : 1 / (2 * alternation->weight[i]);
 }

@@ -1,9 +1,9 @@
 /* Where the first sweep of a controller step starts from. */
-#include "schwarzimpl.h"
+#include "alternationimpl.h"
 
 /* By how much the displacement of the Dirichlet side exceeds that of its partner at a part (0 to 1) of the controller step, against the
    row's direction: a gap that is open at its start closes linearly over it, or stays as it is if only its rate is constrained */
-PetscReal SchwarzOffset(Contact contact, PetscInt i, PetscReal part)
+PetscReal AlternationOffset(Contact contact, PetscInt i, PetscReal part)
 {
   const PetscReal left = contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE ? 1 : 1 - part;
 
@@ -22,8 +22,8 @@ static PetscErrorCode IntegrateTrial(Contact contact)
 /* Predicted displacement of the Neumann side of row i */
 static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time, PetscReal part, PetscScalar *displacement)
 {
-  const Schwarz     *schwarz = (const Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[contact->rows.pair[i]];
+  const Alternation *alternation = (const Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[contact->rows.pair[i]];
   const BodyTraces  *neumann = &contact->traces[NeumannBody(pair)], *dirichlet = &contact->traces[DirichletBody(pair)];
   const PetscInt     k = i - NeumannShift(pair);
   PetscScalar       *u, *v, *other;
@@ -34,13 +34,13 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   PetscCall(TraceGetLevel(dirichlet->velocity, 0, &other));
   *displacement = u[k];
   if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
-  if (schwarz->predictor == SCHWARZ_PREDICTOR_EXTRAPOLATE) *displacement += time * v[k];
-  if (schwarz->predictor == SCHWARZ_PREDICTOR_INELASTIC) {
-    const PetscReal m_d = schwarz->mass[pair->dirichlet][i], m_n = schwarz->mass[1 - pair->dirichlet][i];
+  if (alternation->predictor == SCHWARZ_PREDICTOR_EXTRAPOLATE) *displacement += time * v[k];
+  if (alternation->predictor == SCHWARZ_PREDICTOR_INELASTIC) {
+    const PetscReal m_d = alternation->mass[pair->dirichlet][i], m_n = alternation->mass[1 - pair->dirichlet][i];
 
     *displacement += time * (m_d * other[i - DirichletShift(pair)] + m_n * v[k]) / (m_d + m_n);
   }
-  if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL) {
+  if (alternation->predictor == SCHWARZ_PREDICTOR_TRIAL) {
     PetscInt levels;
 
     /* a level of the trace: it has as many as the unknowns, or these are its last one alone */
@@ -53,39 +53,39 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
 
 /* Start of the outer iteration, and of what partners hand to each other in the first sweep. The bodies' conditions are free afterwards, if
    it needed a trial. */
-PetscErrorCode SchwarzPredict(Contact contact)
+PetscErrorCode AlternationPredict(Contact contact)
 {
-  Schwarz     *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
   PetscScalar *x;
 
   PetscFunctionBegin;
-  if (schwarz->predictor == SCHWARZ_PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
+  if (alternation->predictor == SCHWARZ_PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
   else
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
-  PetscCall(VecZeroEntries(schwarz->outer.x));
-  PetscCall(VecGetArray(schwarz->outer.x, &x));
+  PetscCall(VecZeroEntries(alternation->outer.x));
+  PetscCall(VecGetArray(alternation->outer.x, &x));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const PetscInt     p = contact->rows.pair[i], levels = schwarz->levels[p];
+    const PetscInt     p = contact->rows.pair[i], levels = alternation->levels[p];
     const ContactPair *pair = &contact->pairs[p];
-    const PetscReal    sign = NeumannSign(pair), width = schwarz->controller_step / levels, force = contact->start.force[i];
-    PetscScalar       *unknown = x + schwarz->offset[i], *reaction;
+    const PetscReal    sign = NeumannSign(pair), width = alternation->controller_step / levels, force = contact->start.force[i];
+    PetscScalar       *unknown = x + alternation->offset[i], *reaction;
 
     for (PetscInt level = 1; level <= levels; level++) {
       const PetscReal part     = (PetscReal)level / levels;
       PetscScalar     position = 0;
 
       PetscCall(PredictNeumann(contact, i, level * width, part, &position));
-      position += sign * SchwarzOffset(contact, i, part);
-      if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
-      else unknown[level - 1] = -sign * force + schwarz->weight[i] * position;
+      position += sign * AlternationOffset(contact, i, part);
+      if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
+      else unknown[level - 1] = -sign * force + alternation->weight[i] * position;
     }
     /* what has been a Neumann side until now has no reaction yet */
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, 0, &reaction));
     reaction[i - DirichletShift(pair)] = -sign * force;
-    if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) continue;
+    if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) continue;
     PetscCall(TraceGetLevel(contact->traces[NeumannBody(pair)].reaction, 0, &reaction));
     reaction[i - NeumannShift(pair)] = sign * force;
   }
-  PetscCall(VecRestoreArray(schwarz->outer.x, &x));
+  PetscCall(VecRestoreArray(alternation->outer.x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,5 @@
 /* Setters of the Schwarz alternating method, beside its options. */
-#include "schwarzimpl.h"
+#include "alternationimpl.h"
 #include "../methodset.h"
 
 /*@
@@ -20,13 +20,13 @@
 @*/
 PetscErrorCode ContactSchwarzSetTransmission(Contact contact, SchwarzTransmission transmission)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveEnum(contact, transmission, 2);
   ContactCheckEnum(contact, transmission, SCHWARZ_TRANSMISSION_IMPEDANCE, "transmission condition");
-  schwarz->transmission = transmission;
+  alternation->transmission = transmission;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,14 +50,14 @@ PetscErrorCode ContactSchwarzSetTransmission(Contact contact, SchwarzTransmissio
 @*/
 PetscErrorCode ContactSchwarzSetRobinParameter(Contact contact, PetscReal stiffness)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveReal(contact, stiffness, 2);
   PetscCheck(stiffness > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A Robin parameter of %g must be positive",
              (double)stiffness);
-  schwarz->robin_parameter = stiffness;
+  alternation->robin_parameter = stiffness;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,14 +80,14 @@ bodies [N s/m^2]; in one that of the contact point [N s/m]; by default that of p
 @*/
 PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact contact, PetscReal impedance)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveReal(contact, impedance, 2);
   PetscCheck(impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "An impedance of %g must be positive",
              (double)impedance);
-  schwarz->impedance = impedance;
+  alternation->impedance = impedance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -109,13 +109,13 @@ PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact contact, PetscReal im
 @*/
 PetscErrorCode ContactSchwarzSetTraction(Contact contact, BodyTractionType traction)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveEnum(contact, traction, 2);
   ContactCheckEnum(contact, traction, BODY_TRACTION_REACTION, "traction");
-  schwarz->traction = traction;
+  alternation->traction = traction;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -137,13 +137,13 @@ PetscErrorCode ContactSchwarzSetTraction(Contact contact, BodyTractionType tract
 @*/
 PetscErrorCode ContactSchwarzSetTractionWaveform(Contact contact, SchwarzWaveform waveform)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveEnum(contact, waveform, 2);
   ContactCheckEnum(contact, waveform, SCHWARZ_WAVEFORM_CONSTANT, "waveform");
-  schwarz->waveform = waveform;
+  alternation->waveform = waveform;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,13 +165,13 @@ PetscErrorCode ContactSchwarzSetTractionWaveform(Contact contact, SchwarzWavefor
 @*/
 PetscErrorCode ContactSchwarzSetPredictor(Contact contact, SchwarzPredictor predictor)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveEnum(contact, predictor, 2);
   ContactCheckEnum(contact, predictor, SCHWARZ_PREDICTOR_INELASTIC, "predictor");
-  schwarz->predictor = predictor;
+  alternation->predictor = predictor;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,12 +193,12 @@ PetscErrorCode ContactSchwarzSetPredictor(Contact contact, SchwarzPredictor pred
 @*/
 PetscErrorCode ContactSchwarzSetSwapSides(Contact contact, PetscBool swap)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveBool(contact, swap, 2);
-  schwarz->swap = swap;
+  alternation->swap = swap;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -220,13 +220,13 @@ PetscErrorCode ContactSchwarzSetSwapSides(Contact contact, PetscBool swap)
 @*/
 PetscErrorCode ContactSchwarzSetRelaxation(Contact contact, SchwarzRelaxation relaxation)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveEnum(contact, relaxation, 2);
   ContactCheckEnum(contact, relaxation, SCHWARZ_RELAXATION_AITKEN, "relaxation");
-  schwarz->relaxation = relaxation;
+  alternation->relaxation = relaxation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -248,13 +248,13 @@ PetscErrorCode ContactSchwarzSetRelaxation(Contact contact, SchwarzRelaxation re
 @*/
 PetscErrorCode ContactSchwarzSetConvergence(Contact contact, SchwarzConvergence test)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveEnum(contact, test, 2);
   ContactCheckEnum(contact, test, SCHWARZ_CONVERGENCE_MISMATCH, "convergence test");
-  schwarz->convergence = test;
+  alternation->convergence = test;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -276,11 +276,11 @@ PetscErrorCode ContactSchwarzSetConvergence(Contact contact, SchwarzConvergence 
 @*/
 PetscErrorCode ContactSchwarzSetRecheck(Contact contact, PetscBool recheck)
 {
-  Schwarz *schwarz = NULL;
+  Alternation *alternation = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&schwarz);
+  ContactGetMethod(contact, CONTACT_ALTERNATION, NULL, "CONTACT_ALTERNATION", (void **)&alternation);
   PetscValidLogicalCollectiveBool(contact, recheck, 2);
-  schwarz->recheck = recheck;
+  alternation->recheck = recheck;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -54,7 +54,7 @@ typedef struct {
   PetscScalar *previous;   /* displacements of the rows of both bodies of each pair in the last sweep */
   PetscScalar *row_work;   /* one for each row */
   PetscReal   *kept_force; /* of the contact solution, during a free trial after it */
-} Schwarz;
+} Alternation;
 
 /* The bodies of a pair by what they take in this controller step */
 static inline PetscInt DirichletBody(const ContactPair *pair)
@@ -84,31 +84,31 @@ static inline PetscInt NeumannShift(const ContactPair *pair)
 }
 
 /* Index of a pair in arrays that have an entry for each choice of sides */
-static inline PetscInt SideIndex(const Schwarz *schwarz, PetscInt p)
+static inline PetscInt SideIndex(const Alternation *alternation, PetscInt p)
 {
-  return 2 * p + schwarz->side;
+  return 2 * p + alternation->side;
 }
 
 /* What active rows mean to the bodies */
-static inline ContactConditions SchwarzConditions(const Schwarz *schwarz)
+static inline ContactConditions AlternationConditions(const Alternation *alternation)
 {
-  return schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? CONDITIONS_SCHWARZ : CONDITIONS_ROBIN;
+  return alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? CONDITIONS_SCHWARZ : CONDITIONS_ROBIN;
 }
 
-PETSC_INTERN PetscErrorCode ContactStep_Schwarz(Contact);
-PETSC_INTERN PetscErrorCode SchwarzSweep(SNES, Vec, Vec, void *);
-PETSC_INTERN PetscReal      SchwarzOffset(Contact, PetscInt, PetscReal);
-PETSC_INTERN PetscErrorCode SchwarzPredict(Contact);
-PETSC_INTERN PetscErrorCode SchwarzSetUpTransmission(Contact);
-PETSC_INTERN PetscErrorCode SchwarzSetStepLevel(Contact, PetscInt, PetscBool);
-PETSC_INTERN PetscReal      SchwarzResidualScale(Contact, PetscInt);
-PETSC_INTERN PetscErrorCode SchwarzSetUpSides(Contact);
-PETSC_INTERN PetscErrorCode SchwarzSwapSides(Contact);
-PETSC_INTERN PetscErrorCode SchwarzGetForces(Contact, PetscScalar[]);
-PETSC_INTERN PetscErrorCode SchwarzSetUpAitken(Contact);
-PETSC_INTERN PetscErrorCode SchwarzMeasureChange(Contact, const PetscScalar[]);
-PETSC_INTERN PetscErrorCode SchwarzTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
-PETSC_INTERN PetscErrorCode SchwarzCheckConverged(Contact);
-PETSC_INTERN PetscErrorCode SchwarzVisit(Contact, Checkpoint);
-PETSC_INTERN PetscErrorCode SchwarzPack(Contact, Tables);
-PETSC_INTERN PetscErrorCode SchwarzUnpack(Contact, Tables);
+PETSC_INTERN PetscErrorCode ContactStep_Alternation(Contact);
+PETSC_INTERN PetscErrorCode AlternationSweep(SNES, Vec, Vec, void *);
+PETSC_INTERN PetscReal      AlternationOffset(Contact, PetscInt, PetscReal);
+PETSC_INTERN PetscErrorCode AlternationPredict(Contact);
+PETSC_INTERN PetscErrorCode AlternationSetUpTransmission(Contact);
+PETSC_INTERN PetscErrorCode AlternationSetStepLevel(Contact, PetscInt, PetscBool);
+PETSC_INTERN PetscReal      AlternationResidualScale(Contact, PetscInt);
+PETSC_INTERN PetscErrorCode AlternationSetUpSides(Contact);
+PETSC_INTERN PetscErrorCode AlternationSwapSides(Contact);
+PETSC_INTERN PetscErrorCode AlternationGetForces(Contact, PetscScalar[]);
+PETSC_INTERN PetscErrorCode AlternationSetUpAitken(Contact);
+PETSC_INTERN PetscErrorCode AlternationMeasureChange(Contact, const PetscScalar[]);
+PETSC_INTERN PetscErrorCode AlternationTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
+PETSC_INTERN PetscErrorCode AlternationCheckConverged(Contact);
+PETSC_INTERN PetscErrorCode AlternationVisit(Contact, Checkpoint);
+PETSC_INTERN PetscErrorCode AlternationPack(Contact, Tables);
+PETSC_INTERN PetscErrorCode AlternationUnpack(Contact, Tables);

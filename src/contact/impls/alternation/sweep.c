@@ -4,35 +4,35 @@
    force -> the right-hand side of the second -> its force -> that of the first, G(x). Written as the residual x - G(x) of the
    outer SNES.
 */
-#include "schwarzimpl.h"
+#include "alternationimpl.h"
 
 /* The velocity and acceleration that the Neumann side would have if it were where the unknowns put the Dirichlet side: with the
    inertia of the nodes in the traction, those of its last sweep would be another unknown that the SNES does not see. */
 static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[p];
-  const BodyTraces  *from    = &contact->traces[NeumannBody(pair)];
+  Alternation       *alternation = (Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[p];
+  const BodyTraces  *from        = &contact->traces[NeumannBody(pair)];
   PetscScalar       *x, *u0, *v0, *a0, *v, *a;
   PetscReal          dv, da, v_v, v_a, a_v, a_a;
 
   PetscFunctionBegin;
   PetscCall(BodyGetNewmark(contact->bodies[NeumannBody(pair)], &dv, &v_v, &v_a, &da, &a_v, &a_a));
-  PetscCall(TraceGetLevel(schwarz->trace[SideIndex(schwarz, p)], 1, &x));
+  PetscCall(TraceGetLevel(alternation->trace[SideIndex(alternation, p)], 1, &x));
   PetscCall(TraceGetLevel(from->displacement, 0, &u0));
   PetscCall(TraceGetLevel(from->velocity, 0, &v0));
   PetscCall(TraceGetLevel(from->acceleration, 0, &a0));
-  PetscCall(TraceGetLevel(schwarz->rate[0], 1, &v));
-  PetscCall(TraceGetLevel(schwarz->rate[1], 1, &a));
+  PetscCall(TraceGetLevel(alternation->rate[0], 1, &v));
+  PetscCall(TraceGetLevel(alternation->rate[1], 1, &a));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt    k     = i - NeumannShift(pair);
-    const PetscScalar moved = x[i - pair->begin] - NeumannSign(pair) * SchwarzOffset(contact, i, 1) - u0[k];
+    const PetscScalar moved = x[i - pair->begin] - NeumannSign(pair) * AlternationOffset(contact, i, 1) - u0[k];
 
     v[i] = dv * moved + v_v * v0[k] + v_a * a0[k];
     a[i] = da * moved + a_v * v0[k] + a_a * a0[k];
   }
-  PetscCall(TraceGetLevel(schwarz->rate[0], 0, &v));
-  PetscCall(TraceGetLevel(schwarz->rate[1], 0, &a));
+  PetscCall(TraceGetLevel(alternation->rate[0], 0, &v));
+  PetscCall(TraceGetLevel(alternation->rate[1], 0, &a));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     v[i] = v0[i - NeumannShift(pair)];
     a[i] = a0[i - NeumannShift(pair)];
@@ -43,14 +43,14 @@ static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
 /* The unknowns of a pair as a waveform */
 static PetscErrorCode CopyUnknowns(Contact contact, PetscInt p, const PetscScalar x[], Trace trace)
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[p];
+  Alternation       *alternation = (Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[p];
   PetscScalar       *values;
 
   PetscFunctionBegin;
-  for (PetscInt level = 1; level <= schwarz->levels[p]; level++) {
+  for (PetscInt level = 1; level <= alternation->levels[p]; level++) {
     PetscCall(TraceGetLevel(trace, level, &values));
-    for (PetscInt i = pair->begin; i < pair->end; i++) values[i - pair->begin] = x[schwarz->offset[i] + level - 1];
+    for (PetscInt i = pair->begin; i < pair->end; i++) values[i - pair->begin] = x[alternation->offset[i] + level - 1];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,11 +58,11 @@ static PetscErrorCode CopyUnknowns(Contact contact, PetscInt p, const PetscScala
 /* Puts the unknowns of a pair on its Dirichlet side, with the velocity and acceleration that the Neumann side has */
 static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScalar x[])
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[p];
+  Alternation       *alternation = (Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[p];
   const BodyTraces  *to = &contact->traces[DirichletBody(pair)], *from = &contact->traces[NeumannBody(pair)];
-  Trace              trace     = schwarz->trace[SideIndex(schwarz, p)];
-  const PetscBool    kinematic = schwarz->kinematic[SideIndex(schwarz, p)];
+  Trace              trace     = alternation->trace[SideIndex(alternation, p)];
+  const PetscBool    kinematic = alternation->kinematic[SideIndex(alternation, p)];
   const PetscInt     n = pair->end - pair->begin, to_begin = pair->begin - DirichletShift(pair);
   const PetscInt     rate_begin = kinematic ? pair->begin : pair->begin - NeumannShift(pair);
   PetscScalar       *start, *values;
@@ -74,8 +74,8 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   PetscCall(CopyUnknowns(contact, p, x, trace));
   PetscCall(TraceResample(trace, 0, n, 1, to->displacement_in, to_begin));
   if (kinematic) PetscCall(PrescribeKinematics(contact, p));
-  PetscCall(TraceResample(kinematic ? schwarz->rate[0] : from->velocity, rate_begin, n, 1, to->velocity_in, to_begin));
-  PetscCall(TraceResample(kinematic ? schwarz->rate[1] : from->acceleration, rate_begin, n, 1, to->acceleration_in, to_begin));
+  PetscCall(TraceResample(kinematic ? alternation->rate[0] : from->velocity, rate_begin, n, 1, to->velocity_in, to_begin));
+  PetscCall(TraceResample(kinematic ? alternation->rate[1] : from->acceleration, rate_begin, n, 1, to->acceleration_in, to_begin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,12 +84,12 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
    part of the present force, they give it back as it falls. */
 static PetscErrorCode HandReactionOn(Contact contact, const ContactPair *pair)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
-  const Trace    from = contact->traces[DirichletBody(pair)].reaction, to = contact->traces[NeumannBody(pair)].force_in;
-  const PetscInt begin = pair->begin - DirichletShift(pair), to_begin = pair->begin - NeumannShift(pair), n = pair->end - pair->begin;
+  const Alternation *alternation = (const Alternation *)contact->data;
+  const Trace        from = contact->traces[DirichletBody(pair)].reaction, to = contact->traces[NeumannBody(pair)].force_in;
+  const PetscInt     begin = pair->begin - DirichletShift(pair), to_begin = pair->begin - NeumannShift(pair), n = pair->end - pair->begin;
 
   PetscFunctionBegin;
-  if (schwarz->waveform == SCHWARZ_WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, n, -1, to, to_begin));
+  if (alternation->waveform == SCHWARZ_WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, n, -1, to, to_begin));
   else PetscCall(TraceResample(from, begin, n, -1, to, to_begin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -97,10 +97,10 @@ static PetscErrorCode HandReactionOn(Contact contact, const ContactPair *pair)
 /* Under Robin conditions, the unknowns of a pair are the right-hand side of its Dirichlet side */
 static PetscErrorCode LoadDirichlet(Contact contact, PetscInt p, const PetscScalar x[])
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[p];
-  const BodyTraces  *to      = &contact->traces[DirichletBody(pair)];
-  Trace              trace   = schwarz->trace[SideIndex(schwarz, p)];
+  Alternation       *alternation = (Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[p];
+  const BodyTraces  *to          = &contact->traces[DirichletBody(pair)];
+  Trace              trace       = alternation->trace[SideIndex(alternation, p)];
   PetscScalar       *force, *displacement, *values;
 
   PetscFunctionBegin;
@@ -108,7 +108,7 @@ static PetscErrorCode LoadDirichlet(Contact contact, PetscInt p, const PetscScal
   PetscCall(TraceGetLevel(to->displacement, 0, &displacement));
   PetscCall(TraceGetLevel(trace, 0, &values));
   for (PetscInt i = pair->begin; i < pair->end; i++)
-    values[i - pair->begin] = force[i - DirichletShift(pair)] + schwarz->weight[i] * displacement[i - DirichletShift(pair)];
+    values[i - pair->begin] = force[i - DirichletShift(pair)] + alternation->weight[i] * displacement[i - DirichletShift(pair)];
   PetscCall(CopyUnknowns(contact, p, x, trace));
   PetscCall(TraceResample(trace, 0, pair->end - pair->begin, 1, to->force_in, pair->begin - DirichletShift(pair)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,10 +117,10 @@ static PetscErrorCode LoadDirichlet(Contact contact, PetscInt p, const PetscScal
 /* Right-hand side of the Neumann side from what the Dirichlet side has answered: r' = r - 2 f - s alpha o */
 static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[p];
-  const BodyTraces  *from    = &contact->traces[DirichletBody(pair)];
-  Trace              to      = schwarz->exchange[DirichletBody(pair)];
+  Alternation       *alternation = (Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[p];
+  const BodyTraces  *from        = &contact->traces[DirichletBody(pair)];
+  Trace              to          = alternation->exchange[DirichletBody(pair)];
   PetscInt           levels;
   PetscScalar       *values, *r, *f;
 
@@ -133,7 +133,7 @@ static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscInt k = i - DirichletShift(pair);
 
-      values[k] = r[k] - 2 * f[k] - NeumannSign(pair) * schwarz->weight[i] * SchwarzOffset(contact, i, (PetscReal)level / levels);
+      values[k] = r[k] - 2 * f[k] - NeumannSign(pair) * alternation->weight[i] * AlternationOffset(contact, i, (PetscReal)level / levels);
     }
   }
   PetscCall(TraceResample(to, pair->begin - DirichletShift(pair), pair->end - pair->begin, 1, contact->traces[NeumannBody(pair)].force_in,
@@ -144,14 +144,14 @@ static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
 /* What the rows of a body take in: it is prescribed or loaded by its partners as they are now */
 static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[])
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
     const PetscInt     p    = contact->body_rows[b].pairs[k];
     const ContactPair *pair = &contact->pairs[p];
 
-    if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
+    if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
       if (DirichletBody(pair) == b) PetscCall(PrescribePair(contact, p, x));
       if (NeumannBody(pair) == b) PetscCall(HandReactionOn(contact, pair));
     } else {
@@ -165,11 +165,11 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
 /* f = x - G(x) for the unknowns of a pair, after all bodies have been integrated; zero on rows that are not active */
 static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar x[], PetscScalar f[])
 {
-  Schwarz           *schwarz = (Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[p];
-  const BodyTraces  *from    = &contact->traces[NeumannBody(pair)];
-  const PetscInt     levels  = schwarz->levels[p];
-  const PetscReal    sign    = NeumannSign(pair);
+  Alternation       *alternation = (Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[p];
+  const BodyTraces  *from        = &contact->traces[NeumannBody(pair)];
+  const PetscInt     levels      = alternation->levels[p];
+  const PetscReal    sign        = NeumannSign(pair);
   PetscInt           from_levels;
   PetscScalar       *displacement, *r, *force;
 
@@ -183,22 +183,22 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
     PetscCall(TraceGetLevel(from->force_in, at, &r));
     PetscCall(TraceGetLevel(from->reaction, at, &force));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscInt unknown = schwarz->offset[i] + level - 1, k = i - NeumannShift(pair);
+      const PetscInt unknown = alternation->offset[i] + level - 1, k = i - NeumannShift(pair);
       PetscScalar    answer;
 
-      if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
-        answer = displacement[k] + sign * SchwarzOffset(contact, i, part);
-      else answer = r[k] - 2 * force[k] + sign * schwarz->weight[i] * SchwarzOffset(contact, i, part);
+      if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
+        answer = displacement[k] + sign * AlternationOffset(contact, i, part);
+      else answer = r[k] - 2 * force[k] + sign * alternation->weight[i] * AlternationOffset(contact, i, part);
       f[unknown] = contact->end.active[i] ? x[unknown] - answer : 0;
     }
   }
   for (PetscInt i = pair->begin; i < pair->end; i++)
-    for (PetscInt unused = levels; unused < schwarz->room[p]; unused++) f[schwarz->offset[i] + unused] = 0;
+    for (PetscInt unused = levels; unused < alternation->room[p]; unused++) f[alternation->offset[i] + unused] = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* F = x - G(x); not a number where a body's step fails */
-PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
+PetscErrorCode AlternationSweep(SNES snes, Vec X, Vec F, void *ctx)
 {
   Contact            contact = (Contact)ctx;
   const PetscScalar *x;
@@ -219,7 +219,7 @@ PetscErrorCode SchwarzSweep(SNES snes, Vec X, Vec F, void *ctx)
   else {
     PetscCall(VecGetArrayWrite(F, &f));
     for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ComparePair(contact, p, x, f));
-    PetscCall(SchwarzMeasureChange(contact, f));
+    PetscCall(AlternationMeasureChange(contact, f));
     PetscCall(VecRestoreArrayWrite(F, &f));
   }
   PetscCall(VecRestoreArrayRead(X, &x));

@@ -1,5 +1,5 @@
 /* When the outer iteration has converged. */
-#include "schwarzimpl.h"
+#include "alternationimpl.h"
 #include <sys/petsccompat.h>
 #include <sys/units.h>
 
@@ -12,9 +12,9 @@
 /* How far the contact nodes of a body on one side of the pairs have moved since the last sweep, and where they are [m] */
 static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *change, PetscReal *position)
 {
-  Schwarz     *schwarz  = (Schwarz *)contact->data;
-  PetscReal    sums[2]  = {0, 0};
-  PetscScalar *previous = schwarz->previous + side * contact->rows.n, *end;
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscReal    sums[2]     = {0, 0};
+  PetscScalar *previous    = alternation->previous + side * contact->rows.n, *end;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -34,7 +34,7 @@ static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *cha
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  *change   = schwarz->swept ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
+  *change   = alternation->swept ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
   *position = PetscSqrtReal(sums[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -43,9 +43,9 @@ static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *cha
    the Dirichlet side of row i was given is from what its partner has now, in terms of displacement [m] */
 static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
 {
-  const Schwarz     *schwarz = (const Schwarz *)contact->data;
-  const ContactPair *pair    = &contact->pairs[contact->rows.pair[i]];
-  const Body         body    = contact->bodies[DirichletBody(pair)];
+  const Alternation *alternation = (const Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[contact->rows.pair[i]];
+  const Body         body        = contact->bodies[DirichletBody(pair)];
   const Trace        given = contact->traces[DirichletBody(pair)].velocity_in, has = contact->traces[NeumannBody(pair)].velocity;
   PetscInt           given_levels, has_levels;
   PetscScalar       *from, *to;
@@ -54,34 +54,34 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
   PetscFunctionBegin;
   *lag = 0;
   PetscCall(BodyPrescribesMass(body, &mass));
-  if (!mass || schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ||
-      schwarz->kinematic[SideIndex(schwarz, contact->rows.pair[i])])
+  if (!mass || alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ||
+      alternation->kinematic[SideIndex(alternation, contact->rows.pair[i])])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TraceGetSizes(given, NULL, &given_levels));
   PetscCall(TraceGetSizes(has, NULL, &has_levels));
   PetscCall(TraceGetLevel(given, given_levels, &to));
   PetscCall(TraceGetLevel(has, has_levels, &from));
-  *lag = PetscAbsScalar(to[i - DirichletShift(pair)] - from[i - NeumannShift(pair)]) * schwarz->controller_step / has_levels;
+  *lag = PetscAbsScalar(to[i - DirichletShift(pair)] - from[i - NeumannShift(pair)]) * alternation->controller_step / has_levels;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The distance between both sides of the active rows that one more plain sweep would close [m] */
 static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], PetscReal *change, PetscReal *position)
 {
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscReal sums[2] = {0, 0};
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscReal    sums[2]     = {0, 0};
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
-    const PetscReal    scale = SchwarzResidualScale(contact, i);
+    const PetscReal    scale = AlternationResidualScale(contact, i);
     PetscScalar       *start;
     PetscReal          lag;
 
     if (!contact->end.active[i]) continue;
     PetscCall(MeasureLag(contact, i, &lag));
     sums[0] += PetscSqr(lag);
-    for (PetscInt k = 0; k < schwarz->room[contact->rows.pair[i]]; k++) sums[0] += PetscSqr(scale * f[schwarz->offset[i] + k]);
+    for (PetscInt k = 0; k < alternation->room[contact->rows.pair[i]]; k++) sums[0] += PetscSqr(scale * f[alternation->offset[i] + k]);
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].displacement, 0, &start));
     sums[1] += PetscSqr(start[i - DirichletShift(pair)]);
   }
@@ -96,13 +96,13 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
    inertia in a long step, touches a stiff one, the round-off of forces moves it by more than the tolerance. */
 static PetscErrorCode FindStall(Contact contact)
 {
-  Schwarz     *schwarz = (Schwarz *)contact->data;
-  PetscScalar *last = schwarz->stall.force, *now = last + contact->rows.n;
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscScalar *last = alternation->stall.force, *now = last + contact->rows.n;
   PetscReal    sums[2] = {0, 0}, part;
 
   PetscFunctionBegin;
-  if (++schwarz->stall.sweeps < STALL_FROM) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchwarzGetForces(contact, now));
+  if (++alternation->stall.sweeps < STALL_FROM) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(AlternationGetForces(contact, now));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     sums[0] += PetscSqr(now[i] - last[i]);
     sums[1] += PetscSqr(now[i]);
@@ -111,53 +111,54 @@ static PetscErrorCode FindStall(Contact contact)
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
   part = sums[1] > 0 ? PetscSqrtReal(sums[0] / sums[1]) : PETSC_INFINITY;
-  if (schwarz->stall.sweeps > STALL_FROM && schwarz->change >= schwarz->stall.least && part <= STEADY_FORCE) schwarz->stall.steady++;
-  else schwarz->stall.steady = 0;
-  schwarz->stall.least = PetscMin(schwarz->stall.least, schwarz->change);
-  PetscCall(PetscInfo(contact, "change of position %g m, the least before %g m; of forces %g in parts of them\n", (double)schwarz->change,
-                      (double)schwarz->stall.least, (double)part));
-  if (schwarz->stall.steady >= STEADY_SWEEPS) schwarz->converged = PETSC_TRUE;
+  if (alternation->stall.sweeps > STALL_FROM && alternation->change >= alternation->stall.least && part <= STEADY_FORCE)
+    alternation->stall.steady++;
+  else alternation->stall.steady = 0;
+  alternation->stall.least = PetscMin(alternation->stall.least, alternation->change);
+  PetscCall(PetscInfo(contact, "change of position %g m, the least before %g m; of forces %g in parts of them\n",
+                      (double)alternation->change, (double)alternation->stall.least, (double)part));
+  if (alternation->stall.steady >= STEADY_SWEEPS) alternation->converged = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Compares the change of position with the tolerances, and notes the worst one */
-PetscErrorCode SchwarzMeasureChange(Contact contact, const PetscScalar f[])
+PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
 {
-  Schwarz       *schwarz  = (Schwarz *)contact->data;
-  const PetscInt measures = schwarz->convergence == SCHWARZ_CONVERGENCE_MISMATCH           ? 1
-                            : schwarz->convergence == SCHWARZ_CONVERGENCE_CONTACT_POSITION ? 2
-                                                                                           : contact->n_bodies;
-  PetscReal      worst    = -1;
+  Alternation   *alternation = (Alternation *)contact->data;
+  const PetscInt measures    = alternation->convergence == SCHWARZ_CONVERGENCE_MISMATCH           ? 1
+                               : alternation->convergence == SCHWARZ_CONVERGENCE_CONTACT_POSITION ? 2
+                                                                                                  : contact->n_bodies;
+  PetscReal      worst       = -1;
 
   PetscFunctionBegin;
-  if (!schwarz->swept) {
-    schwarz->stall.sweeps = schwarz->stall.steady = 0;
-    schwarz->stall.least                          = PETSC_MAX_REAL;
+  if (!alternation->swept) {
+    alternation->stall.sweeps = alternation->stall.steady = 0;
+    alternation->stall.least                              = PETSC_MAX_REAL;
   }
-  schwarz->converged = PETSC_TRUE;
+  alternation->converged = PETSC_TRUE;
   for (PetscInt k = 0; k < measures; k++) {
     PetscReal change, position;
 
-    if (schwarz->convergence == SCHWARZ_CONVERGENCE_MISMATCH) PetscCall(MeasureMismatch(contact, f, &change, &position));
-    else if (schwarz->convergence == SCHWARZ_CONVERGENCE_CONTACT_POSITION) PetscCall(MeasureRows(contact, k, &change, &position));
+    if (alternation->convergence == SCHWARZ_CONVERGENCE_MISMATCH) PetscCall(MeasureMismatch(contact, f, &change, &position));
+    else if (alternation->convergence == SCHWARZ_CONVERGENCE_CONTACT_POSITION) PetscCall(MeasureRows(contact, k, &change, &position));
     else PetscCall(BodyGetPositionChange(contact->bodies[k], &change, &position));
-    if (!(change <= schwarz->atol || change <= schwarz->rtol * position)) schwarz->converged = PETSC_FALSE;
+    if (!(change <= alternation->atol || change <= alternation->rtol * position)) alternation->converged = PETSC_FALSE;
     if (change <= worst) continue;
-    worst             = change;
-    schwarz->position = position;
+    worst                 = change;
+    alternation->position = position;
   }
-  schwarz->growth = schwarz->change > 0 && !PetscIsInfOrNanReal(worst) ? worst / schwarz->change : 0;
-  schwarz->change = worst;
-  if (!schwarz->converged) PetscCall(FindStall(contact));
-  schwarz->swept = PETSC_TRUE;
+  alternation->growth = alternation->change > 0 && !PetscIsInfOrNanReal(worst) ? worst / alternation->change : 0;
+  alternation->change = worst;
+  if (!alternation->converged) PetscCall(FindStall(contact));
+  alternation->swept = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Stops on the change of position that the last sweep brought, as the paper does; the norm of F serves for NaN only */
-PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
-                                      SNESConvergedReason *reason, void *ctx)
+PetscErrorCode AlternationTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
+                                          SNESConvergedReason *reason, void *ctx)
 {
-  const Schwarz *schwarz = (const Schwarz *)((Contact)ctx)->data;
+  const Alternation *alternation = (const Alternation *)((Contact)ctx)->data;
 
   PetscFunctionBegin;
   (void)snes;
@@ -166,7 +167,7 @@ PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   (void)gnorm;
   *reason = SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
-  else if (schwarz->converged) *reason = SNES_CONVERGED_FNORM_ABS;
+  else if (alternation->converged) *reason = SNES_CONVERGED_FNORM_ABS;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,39 +177,39 @@ PetscErrorCode SchwarzTestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
    m is the smallest ratio, as between two sides that mirror each other. The error with the largest m may not have come up yet. */
 static PetscErrorCode AdviseRelaxation(Contact contact, char advice[], size_t size)
 {
-  Schwarz       *schwarz = (Schwarz *)contact->data;
+  Alternation   *alternation = (Alternation *)contact->data;
   SNESLineSearch line_search;
   PetscReal      damping, ratio;
   PetscBool      richardson;
 
   PetscFunctionBegin;
   advice[0] = 0;
-  PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNRICHARDSON, &richardson));
-  if (!richardson || schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
+  PetscCall(PetscObjectTypeCompare((PetscObject)alternation->outer.snes, SNESNRICHARDSON, &richardson));
+  if (!richardson || alternation->relaxation == SCHWARZ_RELAXATION_AITKEN) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetLineSearch(alternation->outer.snes, &line_search));
   PetscCall(SNESLineSearchGetDamping(line_search, &damping));
-  ratio = (1 + schwarz->growth) / damping - 1;
-  if (!(schwarz->growth > 1 - damping) || !(ratio > 0)) PetscFunctionReturn(PETSC_SUCCESS);
+  ratio = (1 + alternation->growth) / damping - 1;
+  if (!(alternation->growth > 1 - damping) || !(ratio > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSNPrintf(
       advice, size,
       "The change becomes %.3g times as large in each sweep, since a sweep answers an error with %.3g times as much, or more: "
       "-schwarz_snes_linesearch_damping, now %g, converges below %.2g, or less, best near %.2g; -schwarz_relaxation aitken and "
       "-schwarz_transmission robin need no such number. ",
-      (double)schwarz->growth, (double)ratio, (double)damping, (double)(2 / (1 + ratio)), (double)(2 / (2 + ratio + 1 / ratio))));
+      (double)alternation->growth, (double)ratio, (double)damping, (double)(2 / (1 + ratio)), (double)(2 / (2 + ratio + 1 / ratio))));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Where the iteration did not converge, the step has failed, or is counted */
-PetscErrorCode SchwarzCheckConverged(Contact contact)
+PetscErrorCode AlternationCheckConverged(Contact contact)
 {
-  Schwarz            *schwarz = (Schwarz *)contact->data;
+  Alternation        *alternation = (Alternation *)contact->data;
   SNESConvergedReason reason;
   PetscReal           time;
   TS                  ts;
   char                advice[512];
 
   PetscFunctionBegin;
-  PetscCall(SNESGetConvergedReason(schwarz->outer.snes, &reason));
+  PetscCall(SNESGetConvergedReason(alternation->outer.snes, &reason));
   if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   if (contact->options.unconverged == SCHWARZ_UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN && !contact->attempt.may_cut) {
     contact->counts.unconverged_steps++;
@@ -222,7 +223,8 @@ PetscErrorCode SchwarzCheckConverged(Contact contact)
       "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
       " sweeps the change of position is %g%s (%s; absolute tolerance %g%s, relative %g). %sRaise -schwarz_snes_max_it, loosen "
       "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
-      (double)time, contact->counts.sweeps, (double)schwarz->change, UnitsOf((PetscObject)contact, UNIT_LENGTH),
-      SNESConvergedReasons[reason], (double)schwarz->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)schwarz->rtol, advice));
+      (double)time, contact->counts.sweeps, (double)alternation->change, UnitsOf((PetscObject)contact, UNIT_LENGTH),
+      SNESConvergedReasons[reason], (double)alternation->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)alternation->rtol,
+      advice));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

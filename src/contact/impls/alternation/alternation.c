@@ -1,5 +1,5 @@
 /* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, destruction. */
-#include "schwarzimpl.h"
+#include "alternationimpl.h"
 #include <sys/citations.h>
 #include <sys/petsccompat.h>
 #include <stddef.h>
@@ -13,208 +13,212 @@ static const char *const Transmissions[] = {"dirichlet_neumann",     "robin", "i
 static const char *const Predictors[]    = {"last", "trial", "extrapolate", "inelastic", "SchwarzPredictor", "SCHWARZ_PREDICTOR_", NULL};
 static const char *const Waveforms[]     = {"linear", "constant", "SchwarzWaveform", "SCHWARZ_WAVEFORM_", NULL};
 
-static PetscErrorCode ContactSetFromOptions_Schwarz(Contact contact)
+static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
 {
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool set = PETSC_FALSE, set_impedance = PETSC_FALSE;
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscBool    set = PETSC_FALSE, set_impedance = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "ContactSchwarzSetTransmission", Transmissions,
-                             (PetscEnum)schwarz->transmission, (PetscEnum *)&schwarz->transmission, NULL));
+                             (PetscEnum)alternation->transmission, (PetscEnum *)&alternation->transmission, NULL));
   /* only where it has an effect, so that it is an unused option elsewhere */
-  if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
+  if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
     PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "ContactSchwarzSetTraction",
-                               BodyTractionTypes, (PetscEnum)schwarz->traction, (PetscEnum *)&schwarz->traction, NULL));
+                               BodyTractionTypes, (PetscEnum)alternation->traction, (PetscEnum *)&alternation->traction, NULL));
     PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course",
-                               "ContactSchwarzSetTractionWaveform", Waveforms, (PetscEnum)schwarz->waveform,
-                               (PetscEnum *)&schwarz->waveform, NULL));
+                               "ContactSchwarzSetTractionWaveform", Waveforms, (PetscEnum)alternation->waveform,
+                               (PetscEnum *)&alternation->waveform, NULL));
   }
-  if (schwarz->transmission == SCHWARZ_TRANSMISSION_ROBIN)
+  if (alternation->transmission == SCHWARZ_TRANSMISSION_ROBIN)
     PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]",
-                               "ContactSchwarzSetRobinParameter", schwarz->robin_parameter, &schwarz->robin_parameter, &set));
-  if (schwarz->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
+                               "ContactSchwarzSetRobinParameter", alternation->robin_parameter, &alternation->robin_parameter, &set));
+  if (alternation->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
     PetscCall(PetscOptionsReal("-schwarz_impedance_parameter", "Impedance of impedance conditions [N s/m for each unit of area]",
-                               "ContactSchwarzSetImpedanceParameter", schwarz->impedance, &schwarz->impedance, &set_impedance));
+                               "ContactSchwarzSetImpedanceParameter", alternation->impedance, &alternation->impedance, &set_impedance));
   PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "ContactSchwarzSetPredictor", Predictors,
-                             (PetscEnum)schwarz->predictor, (PetscEnum *)&schwarz->predictor, NULL));
-  PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "ContactSchwarzSetSwapSides", schwarz->swap,
-                             &schwarz->swap, NULL));
+                             (PetscEnum)alternation->predictor, (PetscEnum *)&alternation->predictor, NULL));
+  PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "ContactSchwarzSetSwapSides",
+                             alternation->swap, &alternation->swap, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "ContactSchwarzSetRelaxation", Relaxations,
-                             (PetscEnum)schwarz->relaxation, (PetscEnum *)&schwarz->relaxation, NULL));
+                             (PetscEnum)alternation->relaxation, (PetscEnum *)&alternation->relaxation, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "ContactSchwarzSetConvergence", ConvergenceTests,
-                             (PetscEnum)schwarz->convergence, (PetscEnum *)&schwarz->convergence, NULL));
+                             (PetscEnum)alternation->convergence, (PetscEnum *)&alternation->convergence, NULL));
   PetscCall(ContactReadUnconverged(contact));
   PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "ContactSchwarzSetRecheck",
-                             schwarz->recheck, &schwarz->recheck, NULL));
+                             alternation->recheck, &alternation->recheck, NULL));
   PetscOptionsEnd();
-  PetscCheck(!set || schwarz->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-schwarz_robin_parameter %g must be positive", (double)schwarz->robin_parameter);
-  PetscCheck(!set_impedance || schwarz->impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-schwarz_impedance_parameter %g must be positive", (double)schwarz->impedance);
+  PetscCheck(!set || alternation->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-schwarz_robin_parameter %g must be positive", (double)alternation->robin_parameter);
+  PetscCheck(!set_impedance || alternation->impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-schwarz_impedance_parameter %g must be positive", (double)alternation->impedance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Unknowns: one for each row and level */
 static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc2(contact->n_bodies, &schwarz->exchange, contact->rows.n, &schwarz->offset));
+  PetscCall(PetscCalloc2(contact->n_bodies, &alternation->exchange, contact->rows.n, &alternation->offset));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal dt;
     PetscInt  substeps;
     TS        ts;
 
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    PetscCall(TraceCreate(contact->body_rows[b].n, substeps, &schwarz->exchange[b]));
+    PetscCall(TraceCreate(contact->body_rows[b].n, substeps, &alternation->exchange[b]));
     PetscCall(BodyGetTS(contact->bodies[b], &ts));
     PetscCall(TSGetTimeStep(ts, &dt));
-    schwarz->controller_step = substeps * dt;
+    alternation->controller_step = substeps * dt;
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    schwarz->offset[i] = *unknowns;
-    *unknowns += schwarz->room[contact->rows.pair[i]];
+    alternation->offset[i] = *unknowns;
+    *unknowns += alternation->room[contact->rows.pair[i]];
   }
-  PetscCall(PetscMalloc3(contact->rows.n, &schwarz->kept_force, 2 * contact->rows.n, &schwarz->stall.force, 2 * contact->rows.n,
-                         &schwarz->previous));
-  PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &schwarz->rounds));
-  schwarz->rounds.recheck = schwarz->recheck;
-  PetscCall(PetscMalloc1(contact->rows.n, &schwarz->row_work));
+  PetscCall(PetscMalloc3(contact->rows.n, &alternation->kept_force, 2 * contact->rows.n, &alternation->stall.force, 2 * contact->rows.n,
+                         &alternation->previous));
+  PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &alternation->rounds));
+  alternation->rounds.recheck = alternation->recheck;
+  PetscCall(PetscMalloc1(contact->rows.n, &alternation->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The outer iteration, as the options have it */
 static PetscErrorCode SetUpOuterSolver(Contact contact, PetscInt unknowns)
 {
-  Schwarz       *schwarz = (Schwarz *)contact->data;
+  Alternation   *alternation = (Alternation *)contact->data;
   PetscBool      richardson, damping_set;
   SNESLineSearch line_search;
 
   PetscFunctionBegin;
-  PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, SchwarzSweep, NULL, &schwarz->outer));
-  PetscCall(OuterSolverSetFromOptions(contact, &schwarz->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, OUTER_POSITION_RTOL,
+  PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, AlternationSweep, NULL, &alternation->outer));
+  PetscCall(OuterSolverSetFromOptions(contact, &alternation->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, OUTER_POSITION_RTOL,
                                       OUTER_MAX_ITERATIONS));
-  PetscCall(SNESGetTolerances(schwarz->outer.snes, &schwarz->atol, &schwarz->rtol, NULL, NULL, NULL));
-  PetscCall(SNESSetConvergenceTest(schwarz->outer.snes, SchwarzTestConvergence, contact, NULL));
-  PetscCall(PetscObjectTypeCompare((PetscObject)schwarz->outer.snes, SNESNRICHARDSON, &richardson));
-  if (schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN) {
+  PetscCall(SNESGetTolerances(alternation->outer.snes, &alternation->atol, &alternation->rtol, NULL, NULL, NULL));
+  PetscCall(SNESSetConvergenceTest(alternation->outer.snes, AlternationTestConvergence, contact, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)alternation->outer.snes, SNESNRICHARDSON, &richardson));
+  if (alternation->relaxation == SCHWARZ_RELAXATION_AITKEN) {
     PetscCheck(richardson, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-schwarz_relaxation aitken goes with -schwarz_snes_type nrichardson only");
     PetscCall(PetscOptionsHasName(NULL, "schwarz_", "-snes_linesearch_damping", &damping_set));
-    PetscCall(SchwarzSetUpAitken(contact));
-    PetscCall(SNESGetLineSearch(schwarz->outer.snes, &line_search));
+    PetscCall(AlternationSetUpAitken(contact));
+    PetscCall(SNESGetLineSearch(alternation->outer.snes, &line_search));
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
-  if (schwarz->convergence == SCHWARZ_CONVERGENCE_AUTO)
-    schwarz->convergence = richardson && schwarz->relaxation == SCHWARZ_RELAXATION_FIXED ? SCHWARZ_CONVERGENCE_POSITION
-                                                                                         : SCHWARZ_CONVERGENCE_MISMATCH;
+  if (alternation->convergence == SCHWARZ_CONVERGENCE_AUTO)
+    alternation->convergence = richardson && alternation->relaxation == SCHWARZ_RELAXATION_FIXED ? SCHWARZ_CONVERGENCE_POSITION
+                                                                                                 : SCHWARZ_CONVERGENCE_MISMATCH;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Ties that keep their mass, with the rows as they are */
 static PetscErrorCode SetUpTies(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
   PetscCall(ContactSetUpTiedEnds(contact));
-  if (!contact->ties.inverse || schwarz->drift[0]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->ties.inverse || alternation->drift[0]) PetscFunctionReturn(PETSC_SUCCESS);
   contact->energy.unlimited = "tied nodes keep their mass, and their forces are not those of massless layers";
-  PetscCall(PetscMalloc2(contact->rows.n, &schwarz->drift[0], contact->rows.n, &schwarz->drift[1]));
+  PetscCall(PetscMalloc2(contact->rows.n, &alternation->drift[0], contact->rows.n, &alternation->drift[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactSetUp_Schwarz(Contact contact)
+static PetscErrorCode ContactSetUp_Alternation(Contact contact)
 {
-  Schwarz *schwarz  = (Schwarz *)contact->data;
-  PetscInt unknowns = 0;
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscInt     unknowns    = 0;
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SCHWARZ));
   PetscCheck(!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_law %s: -contact_type alternation has no friction; choose -contact_type schwarz, which is the default", contact->friction.name);
+             "-contact_law %s: -contact_type alternation has no friction; choose -contact_type schwarz, which is the default",
+             contact->friction.name);
   PetscCheck(
       contact->options.constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
       "-contact_constraint both: with -contact_type alternation a closed gap has no rate already, since contact nodes with mass take "
       "velocity and acceleration from their partner and massless ones have none of their own; choose gap or gap_rate");
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], schwarz->traction));
-  if (schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscCall(ContactWarnOfStages(contact, PETSC_TRUE));
-  PetscCall(SchwarzSetUpSides(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetTractionType(contact->bodies[b], alternation->traction));
+  if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscCall(ContactWarnOfStages(contact, PETSC_TRUE));
+  PetscCall(AlternationSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
-  PetscCall(SchwarzSetUpTransmission(contact));
+  PetscCall(AlternationSetUpTransmission(contact));
   PetscCall(ContactWeighSharedRows(contact));
   PetscCall(SetUpOuterSolver(contact, unknowns));
   PetscCall(SetUpTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactRowsChanged_Schwarz(Contact contact)
+static PetscErrorCode ContactRowsChanged_Alternation(Contact contact)
 {
   PetscFunctionBegin;
-  if (((Schwarz *)contact->data)->drift[0]) PetscCall(SetUpTies(contact));
+  if (((Alternation *)contact->data)->drift[0]) PetscCall(SetUpTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The end of a controller step, before the next one starts from it */
-static PetscErrorCode ContactAccept_Schwarz(Contact contact)
+static PetscErrorCode ContactAccept_Alternation(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  if (contact->ties.inverse) PetscCall(ContactAlignTies(contact, schwarz->drift));
+  if (contact->ties.inverse) PetscCall(ContactAlignTies(contact, alternation->drift));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactView_Schwarz(Contact contact, PetscViewer viewer)
+static PetscErrorCode ContactView_Alternation(Contact contact, PetscViewer viewer)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
-  SNESType       type;
+  const Alternation *alternation = (const Alternation *)contact->data;
+  SNESType           type;
 
   PetscFunctionBegin;
-  PetscCall(SNESGetType(schwarz->outer.snes, &type));
+  PetscCall(SNESGetType(alternation->outer.snes, &type));
   PetscCall(PetscViewerASCIIPrintf(
       viewer, "  outer iteration %s%s, %s conditions, %s traction, %s predictor, tolerances %g%s and %g relative\n", type,
-      schwarz->relaxation == SCHWARZ_RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[schwarz->transmission],
-      schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[schwarz->traction] : "whole",
-      Predictors[schwarz->predictor], (double)schwarz->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)schwarz->rtol));
+      alternation->relaxation == SCHWARZ_RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[alternation->transmission],
+      alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? BodyTractionTypes[alternation->traction] : "whole",
+      Predictors[alternation->predictor], (double)alternation->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH),
+      (double)alternation->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Sides that change with every step would have to go over to other pairs */
 static PetscBool MayReplaceRows(Contact contact)
 {
-  return (PetscBool) !((Schwarz *)contact->data)->swap;
+  return (PetscBool) !((Alternation *)contact->data)->swap;
 }
 
 /* All but the options */
-static PetscErrorCode ContactReset_Schwarz(Contact contact)
+static PetscErrorCode ContactReset_Alternation(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; schwarz->trace && p < schwarz->n_traces; p++) PetscCall(TraceDestroy(&schwarz->trace[p]));
-  for (PetscInt b = 0; schwarz->exchange && b < contact->n_bodies; b++) PetscCall(TraceDestroy(&schwarz->exchange[b]));
-  for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&schwarz->rate[k]));
-  PetscCall(OuterSolverDestroy(&schwarz->outer));
-  PetscCall(VecDestroy(&schwarz->last_residual));
+  for (PetscInt p = 0; alternation->trace && p < alternation->n_traces; p++) PetscCall(TraceDestroy(&alternation->trace[p]));
+  for (PetscInt b = 0; alternation->exchange && b < contact->n_bodies; b++) PetscCall(TraceDestroy(&alternation->exchange[b]));
+  for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&alternation->rate[k]));
+  PetscCall(OuterSolverDestroy(&alternation->outer));
+  PetscCall(VecDestroy(&alternation->last_residual));
   PetscCall(ContactDestroyTiedEnds(contact));
-  PetscCall(PetscFree2(schwarz->drift[0], schwarz->drift[1]));
-  PetscCall(PetscFree5(schwarz->side_levels[0], schwarz->side_levels[1], schwarz->trace, schwarz->room, schwarz->kinematic));
-  PetscCall(PetscFree2(schwarz->exchange, schwarz->offset));
-  PetscCall(PetscFree3(schwarz->weight, schwarz->mass[0], schwarz->mass[1]));
-  PetscCall(PetscFree3(schwarz->kept_force, schwarz->stall.force, schwarz->previous));
-  PetscCall(RoundsDestroy(&schwarz->rounds));
-  PetscCall(PetscFree(schwarz->row_work));
-  PetscCall(PetscMemzero((char *)schwarz + offsetof(Schwarz, mass_prescribed), sizeof(*schwarz) - offsetof(Schwarz, mass_prescribed)));
+  PetscCall(PetscFree2(alternation->drift[0], alternation->drift[1]));
+  PetscCall(
+      PetscFree5(alternation->side_levels[0], alternation->side_levels[1], alternation->trace, alternation->room, alternation->kinematic));
+  PetscCall(PetscFree2(alternation->exchange, alternation->offset));
+  PetscCall(PetscFree3(alternation->weight, alternation->mass[0], alternation->mass[1]));
+  PetscCall(PetscFree3(alternation->kept_force, alternation->stall.force, alternation->previous));
+  PetscCall(RoundsDestroy(&alternation->rounds));
+  PetscCall(PetscFree(alternation->row_work));
+  PetscCall(PetscMemzero((char *)alternation + offsetof(Alternation, mass_prescribed),
+                         sizeof(*alternation) - offsetof(Alternation, mass_prescribed)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactDestroy_Schwarz(Contact contact)
+static PetscErrorCode ContactDestroy_Alternation(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(ContactReset_Schwarz(contact));
+  PetscCall(ContactReset_Alternation(contact));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -261,28 +265,28 @@ displacement and force by the areas that they cover, and the mean of their gaps 
 M*/
 PetscErrorCode ContactCreate_Alternation(Contact contact)
 {
-  Schwarz *schwarz;
+  Alternation *alternation;
 
   PetscFunctionBegin;
-  PetscCall(PetscNew(&schwarz));
-  schwarz->traction            = BODY_TRACTION_INTERNAL;
-  schwarz->predictor           = SCHWARZ_PREDICTOR_INELASTIC;
-  schwarz->recheck             = PETSC_TRUE;
+  PetscCall(PetscNew(&alternation));
+  alternation->traction        = BODY_TRACTION_INTERNAL;
+  alternation->predictor       = SCHWARZ_PREDICTOR_INELASTIC;
+  alternation->recheck         = PETSC_TRUE;
   contact->prescribes          = PETSC_TRUE;
-  contact->data                = schwarz;
-  contact->ops->setfromoptions = ContactSetFromOptions_Schwarz;
-  contact->ops->setup          = ContactSetUp_Schwarz;
-  contact->ops->step           = ContactStep_Schwarz;
+  contact->data                = alternation;
+  contact->ops->setfromoptions = ContactSetFromOptions_Alternation;
+  contact->ops->setup          = ContactSetUp_Alternation;
+  contact->ops->step           = ContactStep_Alternation;
   contact->ops->stored         = ContactStoresNothing;
-  contact->ops->rowschanged    = ContactRowsChanged_Schwarz;
-  contact->ops->steplevel      = SchwarzSetStepLevel;
-  contact->ops->accept         = ContactAccept_Schwarz;
+  contact->ops->rowschanged    = ContactRowsChanged_Alternation;
+  contact->ops->steplevel      = AlternationSetStepLevel;
+  contact->ops->accept         = ContactAccept_Alternation;
   contact->ops->mayreplacerows = MayReplaceRows;
-  contact->ops->reset          = ContactReset_Schwarz;
-  contact->ops->view           = ContactView_Schwarz;
-  contact->ops->visit          = SchwarzVisit;
-  contact->ops->pack           = SchwarzPack;
-  contact->ops->unpack         = SchwarzUnpack;
-  contact->ops->destroy        = ContactDestroy_Schwarz;
+  contact->ops->reset          = ContactReset_Alternation;
+  contact->ops->view           = ContactView_Alternation;
+  contact->ops->visit          = AlternationVisit;
+  contact->ops->pack           = AlternationPack;
+  contact->ops->unpack         = AlternationUnpack;
+  contact->ops->destroy        = ContactDestroy_Alternation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,8 +1,8 @@
 /* One controller step: trial, contact, and the nodes that join and leave. */
-#include "schwarzimpl.h"
+#include "alternationimpl.h"
 
 /* Forces of this rank's rows at the end of the controller step, from the bodies' traces [N] */
-PetscErrorCode SchwarzGetForces(Contact contact, PetscScalar force[])
+PetscErrorCode AlternationGetForces(Contact contact, PetscScalar force[])
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -22,17 +22,17 @@ PetscErrorCode SchwarzGetForces(Contact contact, PetscScalar force[])
 /* The outer iteration with the active set as it is, then forces and gaps */
 static PetscErrorCode SolveActive(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(SchwarzPredict(contact));
-  PetscCall(ContactSetConditions(contact, SchwarzConditions(schwarz)));
+  PetscCall(AlternationPredict(contact));
+  PetscCall(ContactSetConditions(contact, AlternationConditions(alternation)));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  schwarz->swept = PETSC_FALSE;
-  PetscCall(OuterSolverSolve(contact, &schwarz->outer, SchwarzSweep, &schwarz->converged));
-  PetscCall(SchwarzCheckConverged(contact));
+  alternation->swept = PETSC_FALSE;
+  PetscCall(OuterSolverSolve(contact, &alternation->outer, AlternationSweep, &alternation->converged));
+  PetscCall(AlternationCheckConverged(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SchwarzGetForces(contact, contact->end.force));
+  PetscCall(AlternationGetForces(contact, contact->end.force));
   PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -40,11 +40,11 @@ static PetscErrorCode SolveActive(Contact contact)
 /* Rows that penetrate join, rows that are pulled leave, or the first of them alone */
 static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(RoundsChange(&schwarz->rounds));
-  PetscCall(RoundsHaveChanged(&schwarz->rounds, changed));
+  PetscCall(RoundsChange(&alternation->rounds));
+  PetscCall(RoundsHaveChanged(&alternation->rounds, changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,7 +53,7 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
 {
   PetscFunctionBegin;
   PetscCall(ContactIntegrateFree(contact, in_contact));
-  if (*in_contact) PetscCall(RoundsChange(&((Schwarz *)contact->data)->rounds));
+  if (*in_contact) PetscCall(RoundsChange(&((Alternation *)contact->data)->rounds));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,49 +61,50 @@ static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
    the contact solution is the better of both, and is taken back. */
 static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *taken_back)
 {
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool flips;
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscBool    flips;
 
   PetscFunctionBegin;
   *taken_back = PETSC_FALSE;
-  PetscCall(RoundsNext(&schwarz->rounds));
+  PetscCall(RoundsNext(&alternation->rounds));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
-  PetscCall(PetscArraycpy(schwarz->kept_force, contact->end.force, contact->rows.n));
+  PetscCall(PetscArraycpy(alternation->kept_force, contact->end.force, contact->rows.n));
   PetscCall(Trial(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(RoundsBreakCycle(&schwarz->rounds, &flips));
-  if (!flips || schwarz->rounds.single) PetscFunctionReturn(PETSC_SUCCESS); /* where single rows change, others may penetrate */
+  PetscCall(RoundsBreakCycle(&alternation->rounds, &flips));
+  if (!flips || alternation->rounds.single) PetscFunctionReturn(PETSC_SUCCESS); /* where single rows change, others may penetrate */
   *taken_back = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
-  PetscCall(PetscArraycpy(contact->end.force, schwarz->kept_force, contact->rows.n));
+  PetscCall(PetscArraycpy(contact->end.force, alternation->kept_force, contact->rows.n));
   PetscCall(ContactComputeGaps(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContactStep_Schwarz(Contact contact)
+PetscErrorCode ContactStep_Alternation(Contact contact)
 {
-  Schwarz  *schwarz = (Schwarz *)contact->data;
-  PetscBool in_contact, changed, flips, taken_back = PETSC_FALSE;
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscBool    in_contact, changed, flips, taken_back = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(RoundsBegin(&schwarz->rounds));
-  if (schwarz->swap && schwarz->started && !contact->energy.again && !contact->attempt.again) PetscCall(SchwarzSwapSides(contact));
-  schwarz->started = PETSC_TRUE;
+  PetscCall(RoundsBegin(&alternation->rounds));
+  if (alternation->swap && alternation->started && !contact->energy.again && !contact->attempt.again)
+    PetscCall(AlternationSwapSides(contact));
+  alternation->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
   for (PetscInt i = 0; i < contact->rows.n; i++)
     contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || (contact->start.active[i] && contact->start.force[i] > 0));
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
   while (in_contact && !taken_back) {
-    PetscCall(RoundsNext(&schwarz->rounds));
+    PetscCall(RoundsNext(&alternation->rounds));
     if (!ContactFailed(contact)) PetscCall(SolveActive(contact));
     if (ContactFailed(contact)) break;
     PetscCall(UpdateActiveSet(contact, &changed));
     if (!changed) break;
     contact->counts.set_changes++;
     PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-    if (in_contact) PetscCall(RoundsBreakCycle(&schwarz->rounds, &flips));
+    if (in_contact) PetscCall(RoundsBreakCycle(&alternation->rounds, &flips));
     else PetscCall(TrialAfterContact(contact, &in_contact, &taken_back));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

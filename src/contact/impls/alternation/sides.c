@@ -1,5 +1,5 @@
 /* Which body of a pair takes displacements, and what the unknowns of the outer iteration are then. */
-#include "schwarzimpl.h"
+#include "alternationimpl.h"
 
 /* By how much the weight of a node that lies opposite may be off one, and those of others off zero: round-off of geometry */
 #define OPPOSITE 1e-9
@@ -87,14 +87,15 @@ static PetscErrorCode CheckReactionSubsteps(Contact contact, Body dirichlet)
    displacement where the Neumann side is implicit and makes one substep. */
 static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscInt side)
 {
-  Schwarz           *schwarz   = (Schwarz *)contact->data;
-  const ContactPair *pair      = &contact->pairs[p];
+  Alternation       *alternation = (Alternation *)contact->data;
+  const ContactPair *pair        = &contact->pairs[p];
   const Body         dirichlet = contact->bodies[pair->body[side]], neumann = pair->obstacle ? NULL : contact->bodies[pair->body[1 - side]];
   PetscBool          mass, is_explicit;
   PetscInt           substeps;
 
   PetscFunctionBegin;
-  if (pair->obstacle || schwarz->traction != BODY_TRACTION_REACTION || schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
+  if (pair->obstacle || alternation->traction != BODY_TRACTION_REACTION ||
+      alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyPrescribesMass(dirichlet, &mass));
   if (!mass) PetscFunctionReturn(PETSC_SUCCESS);
@@ -105,22 +106,22 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
              "controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true",
              ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
   PetscCall(CheckReactionSubsteps(contact, dirichlet));
-  schwarz->kinematic[2 * p + side] = PETSC_TRUE;
+  alternation->kinematic[2 * p + side] = PETSC_TRUE;
   for (PetscInt k = 0; k < 2; k++)
-    if (!schwarz->rate[k]) PetscCall(TraceCreate(contact->rows.n, 1, &schwarz->rate[k]));
+    if (!alternation->rate[k]) PetscCall(TraceCreate(contact->rows.n, 1, &alternation->rate[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether contact nodes with mass are prescribed: their force is not the one that would move them */
 static PetscErrorCode PrescribesMass(Contact contact, PetscBool *prescribes)
 {
-  const Schwarz *schwarz = (const Schwarz *)contact->data;
+  const Alternation *alternation = (const Alternation *)contact->data;
 
   PetscFunctionBegin;
   *prescribes = PETSC_FALSE;
-  if (schwarz->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
+  if (alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt side = 0; side <= (schwarz->swap && !contact->pairs[p].obstacle ? 1 : 0); side++) {
+    for (PetscInt side = 0; side <= (alternation->swap && !contact->pairs[p].obstacle ? 1 : 0); side++) {
       PetscBool has;
 
       PetscCall(BodyPrescribesMass(contact->bodies[contact->pairs[p].body[side]], &has));
@@ -130,50 +131,51 @@ static PetscErrorCode PrescribesMass(Contact contact, PetscBool *prescribes)
 }
 
 /* Levels and traces of all pairs, for both choices of sides if they are to be swapped */
-PetscErrorCode SchwarzSetUpSides(Contact contact)
+PetscErrorCode AlternationSetUpSides(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCheck(!contact->pairs[p].obstacle || (!schwarz->swap && schwarz->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN),
+    PetscCheck(!contact->pairs[p].obstacle || (!alternation->swap && alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN),
                PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_pairs %s: an obstacle has no other side, neither for -contact_swap_sides nor for -schwarz_transmission robin or "
                "impedance",
                contact->pairs[p].name);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCheck(!schwarz->swap || !contact->pairs[p].turned, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+    PetscCheck(!alternation->swap || !contact->pairs[p].turned, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_swap_sides: the rows of pair %s are on its second body, and the first one takes displacements first; leave "
                "-contact_rows at first",
                contact->pairs[p].name);
-  PetscCall(PetscCalloc5(contact->n_pairs, &schwarz->side_levels[0], contact->n_pairs, &schwarz->side_levels[1], 2 * contact->n_pairs,
-                         &schwarz->trace, contact->n_pairs, &schwarz->room, 2 * contact->n_pairs, &schwarz->kinematic));
-  schwarz->n_traces = 2 * contact->n_pairs;
-  for (PetscInt side = 0; side <= (schwarz->swap ? 1 : 0); side++)
+  PetscCall(PetscCalloc5(contact->n_pairs, &alternation->side_levels[0], contact->n_pairs, &alternation->side_levels[1],
+                         2 * contact->n_pairs, &alternation->trace, contact->n_pairs, &alternation->room, 2 * contact->n_pairs,
+                         &alternation->kinematic));
+  alternation->n_traces = 2 * contact->n_pairs;
+  for (PetscInt side = 0; side <= (alternation->swap ? 1 : 0); side++)
     for (PetscInt p = 0; p < contact->n_pairs; p++) {
-      PetscInt *levels = &schwarz->side_levels[side][p];
+      PetscInt *levels = &alternation->side_levels[side][p];
 
       PetscCall(CountLevels(contact, p, side, levels));
-      PetscCall(TraceCreate(contact->pairs[p].end - contact->pairs[p].begin, *levels, &schwarz->trace[2 * p + side]));
+      PetscCall(TraceCreate(contact->pairs[p].end - contact->pairs[p].begin, *levels, &alternation->trace[2 * p + side]));
       PetscCall(SetUpReactionTraction(contact, p, side));
-      schwarz->room[p] = PetscMax(schwarz->room[p], *levels);
+      alternation->room[p] = PetscMax(alternation->room[p], *levels);
     }
-  schwarz->levels = schwarz->side_levels[0];
-  for (PetscInt b = 0; b < contact->n_bodies && schwarz->swap; b++) PetscCall(CheckSwappable(contact, b));
-  PetscCall(PrescribesMass(contact, &schwarz->mass_prescribed));
-  if (schwarz->mass_prescribed) contact->energy.unlimited = "nodes with mass take velocity and acceleration from their partner";
+  alternation->levels = alternation->side_levels[0];
+  for (PetscInt b = 0; b < contact->n_bodies && alternation->swap; b++) PetscCall(CheckSwappable(contact, b));
+  PetscCall(PrescribesMass(contact, &alternation->mass_prescribed));
+  if (alternation->mass_prescribed) contact->energy.unlimited = "nodes with mass take velocity and acceleration from their partner";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* From now on the other body of each pair takes displacements. What came before its partner in a sweep comes after it. */
-PetscErrorCode SchwarzSwapSides(Contact contact)
+PetscErrorCode AlternationSwapSides(Contact contact)
 {
-  Schwarz *schwarz = (Schwarz *)contact->data;
+  Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  schwarz->side   = 1 - schwarz->side;
-  schwarz->levels = schwarz->side_levels[schwarz->side];
-  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].dirichlet = schwarz->side;
+  alternation->side   = 1 - alternation->side;
+  alternation->levels = alternation->side_levels[alternation->side];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].dirichlet = alternation->side;
   for (PetscInt b = 0; b < contact->n_bodies / 2; b++) {
     const PetscInt first = contact->order[b];
 
