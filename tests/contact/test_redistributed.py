@@ -1,6 +1,5 @@
 """Massless contact layers with lumped mass: any pairing of integrators and substeps, without chatter."""
 
-import numpy as np
 import pytest
 from cases import (
     FRAMES,

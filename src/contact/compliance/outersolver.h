@@ -1,4 +1,4 @@
-/* The SNES on the interface that Schwarz and penalty share. Private to src/contact. */
+/* The SNES on the interface that the alternation and other methods share. Private to src/contact. */
 #pragma once
 #include <contact/parts.h>
 #include <petscsnes.h>
