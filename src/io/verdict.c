@@ -151,7 +151,7 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   PetscCall(ContactGetUnlimitedReason(contact, &always, &reason));
   PetscCall(LookAtEnergy(controller, contact, always, gain, loss, results->energy_scale, verdict));
   if (reason && results->momentum_error_max > MOMENTUM_ERROR)
-    PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or -schwarz_transmission dirichlet_neumann",
+    PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or leave -schwarz_transmission out",
                   (double)(100 * results->momentum_error_max), reason));
   else if (always && results->momentum_scale > 0 && results->momentum_error_max > MOMENTUM_ERROR)
     PetscCall(

@@ -27,7 +27,7 @@ CASES = {
     "unknown-option": (f"{BASE} -frobnicate", ["-frobnicate", "nearest"]),
     "not-for-this-method": (f"{BASE} -contact_penalty 7.5e4", ["-contact_penalty", "without effect"]),
     "contact-type": (f"{BASE} -contact_type glue", ["-contact_type", "glue", "schwarz", "penalty", "lagrange", "augmented_lagrangian"]),
-    "snes-type": (f"{BASE} -schwarz_snes_type guess", ["-schwarz_snes_type", "guess", "newtonls", "anderson"]),
+    "snes-type": (f"{BASE} -schwarz_snes_type guess", ["-schwarz_snes_type", "guess", "nrichardson", "anderson"]),
     "missing-body": (f"{BASE} -bodies left,right,middle -contact_pairs left:right", ["middle", "-bodies", "-middle_dm_plex_"]),
     "body-twice": (f"{BASE} -bodies left,left", ["-bodies", "left", "twice"]),
     "indivisible": (f"{BASE} -left_ts_time_step 3e-8", ["-left_ts_time_step", "3e-08", "-time_step", "1e-07"]),

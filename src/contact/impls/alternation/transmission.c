@@ -131,7 +131,7 @@ static PetscErrorCode RefuseUnshared(Contact contact)
   PetscCall(
       ContactRefuseUnstable(contact, unshared,
                             "-schwarz_transmission robin and impedance keep neither momentum nor energy where two bodies make unequal "
-                            "substeps; give both the same -<body>_ts_time_step, or choose -schwarz_transmission dirichlet_neumann"));
+                            "substeps; give both the same -<body>_ts_time_step, or leave -schwarz_transmission out"));
   if (unshared) contact->energy.not_always = "Robin and impedance conditions over unequal substeps keep neither momentum nor energy";
   PetscFunctionReturn(PETSC_SUCCESS);
 }
