@@ -168,8 +168,7 @@ typedef enum { SCHWARZ_RELAXATION_FIXED, SCHWARZ_RELAXATION_AITKEN } SchwarzRela
    SchwarzConvergence - what change of position is compared with the tolerances of the outer iteration
 
    Values:
-+ `SCHWARZ_CONVERGENCE_AUTO`             - the first of those below for the plain alternation with fixed relaxation and sweeps of whole
-                                           bodies, the last otherwise
++ `SCHWARZ_CONVERGENCE_AUTO`             - the first of those below for the plain alternation with fixed relaxation, the last otherwise
 . `SCHWARZ_CONVERGENCE_POSITION`         - of all nodes of every body, from one sweep to the next (Hoy, Tezaur, Mota)
 . `SCHWARZ_CONVERGENCE_CONTACT_POSITION` - of the contact nodes of every body, from one sweep to the next
 - `SCHWARZ_CONVERGENCE_MISMATCH`         - of the contact nodes, that one more plain sweep would bring

@@ -1,4 +1,4 @@
-"""What users get who choose nothing: redistributed averaged mass, newtonls, both bars implicit; and other outer iterations."""
+"""What users get who choose nothing: redistributed averaged mass, the contact step, both bars implicit; and other outer iterations."""
 
 import pytest
 from cases import (
@@ -17,7 +17,7 @@ from cases import (
 def test_default(snes, frame, shared_run):
     run = shared_run(joined(DEFAULTS, snes, FRAMES[frame]))
     contact, errors, schwarz = (run.summary[key] for key in ("contact", "errors", "schwarz"))
-    assert schwarz["mean_contact_steps"] <= 2.2  # Newton with the exact compliance: one evaluation before, one after
+    assert schwarz["mean_contact_steps"] <= 2.2  # S is exact: a pass before the law of rows is solved, one after
     assert schwarz["unconverged_steps"] == 0
     assert force_scatter(run.summary) <= 1.8e-5  # no inertia in the contact layer, so no chatter; measured: 1.34e-5, half the factor on the masses left
     assert worst_energy_error(run.summary) <= 6e-6  # measured: 4.8e-6
