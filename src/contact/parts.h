@@ -53,15 +53,6 @@ static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pa
   return contact->n_bodies + o;
 }
 
-/* Springs of penalty forces in a step with friction */
-typedef struct {
-  PetscReal penalty, scale; /* as `getparameter` takes them */
-  /* stiffness of the springs of a pair for each unit of area [N/m^3] */
-  PetscErrorCode (*getparameter)(Contact, const ContactPair *, PetscReal, PetscReal, PetscReal *, PetscReal *);
-  PetscReal tolerance; /* forces are added up until springs are stretched by that at most [m]; 0: they are not added up */
-  PetscInt  max_it;    /* as often */
-} ContactFrictionSprings;
-
 PETSC_INTERN PetscErrorCode    ContactWarnOfStages(Contact, PetscBool);
 PETSC_INTERN PetscFunctionList ContactList, ContactLawList;
 
@@ -224,7 +215,6 @@ PETSC_INTERN PetscErrorCode ContactAcceptFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactNoteTilt(Contact);
 PETSC_INTERN PetscErrorCode ContactRefuseFriction(Contact, const char[]);
 PETSC_INTERN PetscErrorCode ContactDestroyFriction(Contact);
-PETSC_INTERN PetscErrorCode ContactStepByFriction(Contact, const ContactFrictionSprings *);
 PETSC_INTERN PetscErrorCode ContactLawRegisterAll(void);
 
 PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);

@@ -13,12 +13,6 @@
 static const char *const late_options[] = {"schwarz_snes_view",
                                            "schwarz_snes_view_pre",
                                            "schwarz_snes_view_solution",
-                                           "penalty_snes_view",
-                                           "penalty_snes_view_pre",
-                                           "penalty_snes_view_solution",
-                                           "lagrange_snes_view",
-                                           "lagrange_snes_view_pre",
-                                           "lagrange_snes_view_solution",
                                            "law_snes_view",
                                            "law_snes_view_pre",
                                            "law_snes_view_solution",
@@ -50,6 +44,8 @@ static const char *const late_options[] = {"schwarz_snes_view",
 static const struct {
   const char *name, *now;
 } gone_options[] = {
+    {"lagrange_snes_", "forces are found as with -contact_type schwarz, whose options are -schwarz_snes_..."},
+    {"penalty_snes_", "forces are found as with -contact_type schwarz, whose options are -schwarz_snes_..."},
     {"schwarz_condense", "sweeps advance the bodies themselves"},
     {"schwarz_dense_limit", "matrices are as the bodies need them"},
     {"schwarz_interface_", "there is no such solver"},

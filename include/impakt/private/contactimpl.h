@@ -331,7 +331,6 @@ typedef struct {
 typedef struct {
   ContactFrictionLaw law;
   char              *name;            /* NULL: none */
-  PetscBool          steps;           /* controller steps are made with it */
   PetscReal         *slip;            /* of rows across the normal: in the present step [m] */
   PetscReal         *drive;           /* the same: the part of it that the surface of an obstacle goes along itself [m] */
   PetscReal         *step_loss;       /* the same: energy that the present step loses by friction [J] */
@@ -478,6 +477,7 @@ struct _p_Contact {
   ContactScale    scale;
   /* What goes between contact and bodies */
   PetscBool prescribes; /* the method prescribes displacements on Dirichlet sides */
+  PetscBool impulses;   /* contact nodes with mass hit each other by impulses, and keep their mass in all of a set */
   PetscBool sideless;   /* bodies answer to forces on rows, and no more is seen of them: pairs may go round in circles, have different laws,
                            and be of rigid bodies alone */
   PetscInt         *order;      /* order of the bodies in a sweep: Dirichlet sides come before their Neumann sides */

@@ -16,7 +16,8 @@ struct _BodyCompliance {
   NodalMatrix    nodal_matrix;  /* that tells it, see nodalmatrix.c; NULL: controller steps do */
   PetscInt       nodal_kind;    /* which kind of it has told what is known, see nodalmatrix.c */
   Vec            diagonal;      /* see BodyGetNodalDiagonal(); or NULL */
-  PetscReal      diagonal_step; /* the substep that it is of [s] */
+  PetscReal      diagonal_step;  /* the substep that it is of [s], */
+  BodyForceShape diagonal_shape; /* and how forces run in it */
   PetscInt       n_kept;        /* known rows that stay when a step fails */
   PetscScalar   *mine;          /* work space: of the rows of this rank, for each substep */
   PetscInt      *unknown;       /* work space: rows that become known */

@@ -207,7 +207,7 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
 
   Note:
   Central differences with lumped mass in one step move nodes by the forces at its start alone: dt^2/2 over the mass, whatever the
-  material.
+  material; forces that grow from none do not move them.
 
 .seealso: `Body`, `BodyGetNodalCompliance()`
 @*/
@@ -219,15 +219,15 @@ PetscErrorCode BodyGetNodalDiagonal(Body body, BodyForceShape shape, Vec *diagon
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(diagonal, 3);
   *diagonal = NULL;
-  if (shape != BODY_FORCE_CONSTANT || !body->mass.inverse || body->integrator->staggered <= 0 || body->time.substeps > 1 ||
-      body->layer.exists)
+  if (!body->mass.inverse || body->integrator->staggered <= 0 || body->time.substeps > 1 || body->layer.exists)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (!compliance->diagonal || compliance->diagonal_step != body->time.step) {
+  if (!compliance->diagonal || compliance->diagonal_step != body->time.step || compliance->diagonal_shape != shape) {
     if (!compliance->diagonal) PetscCall(BodyCreateVec(body, &compliance->diagonal));
     PetscCall(VecCopy(body->mass.inverse, compliance->diagonal));
-    PetscCall(VecScale(compliance->diagonal, 0.5 * PetscSqr(body->time.step)));
+    PetscCall(VecScale(compliance->diagonal, shape == BODY_FORCE_CONSTANT ? 0.5 * PetscSqr(body->time.step) : 0));
     PetscCall(BodyZeroHeld(body, compliance->diagonal));
-    compliance->diagonal_step = body->time.step;
+    compliance->diagonal_step  = body->time.step;
+    compliance->diagonal_shape = shape;
   }
   *diagonal = compliance->diagonal;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -132,7 +132,7 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
   PetscTryTypeMethod(contact, destroy);
   PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
   contact->data       = NULL;
-  contact->prescribes = contact->sideless = PETSC_FALSE;
+  contact->prescribes = contact->sideless = contact->impulses = PETSC_FALSE;
   PetscCall((*create)(contact));
   PetscCall(PetscObjectChangeTypeName((PetscObject)contact, type));
   PetscFunctionReturn(PETSC_SUCCESS);

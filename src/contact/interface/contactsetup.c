@@ -107,9 +107,9 @@ static PetscErrorCode ChooseMass(Contact contact)
     }
     PetscCall(ContactNeedsImpulse(contact, b, &needs));
     if (chooses && kept == n) kept = b;
-    keeps[set[b]] = (PetscBool)(keeps[set[b]] || chooses || (contact->sideless && (needs || contact->options.keep_mass)));
+    keeps[set[b]] = (PetscBool)(keeps[set[b]] || chooses || (contact->impulses && (needs || contact->options.keep_mass)));
   }
-  for (PetscInt p = 0; p < contact->n_pairs && contact->sideless; p++)
+  for (PetscInt p = 0; p < contact->n_pairs && contact->impulses; p++)
     if (contact->pairs[p].keeps_mass) keeps[set[contact->pairs[p].body[0]]] = PETSC_TRUE;
   for (PetscInt b = 0; b < n; b++)
     if (keeps[set[b]]) PetscCall(BodyKeepMass(contact->bodies[b]));
@@ -178,7 +178,6 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   PetscCheck(contact->bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetBodies() first");
   if (!((PetscObject)contact)->type_name) PetscCall(ContactSetType(contact, CONTACT_SCHWARZ));
   PetscCall(ChooseMethod(contact));
-  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) contact->prescribes = PETSC_FALSE; /* forces are what it finds */
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) PetscCall(ImpaktCite(CITE_GAP_RATE));
   PetscCall(AllocateBodies(contact));
   PetscCall(ContactChooseAllPairs(contact));
@@ -248,10 +247,6 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscCheck(!moves, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-%s_velocity: bodies feel the velocity of an obstacle by friction alone; set -contact_law coulomb", name);
   }
-  PetscCheck(!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || contact->friction.steps || !contact->rows.n_all,
-             PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_law %s: -contact_type %s has no friction; choose schwarz, lagrange, penalty or augmented_lagrangian",
-             contact->friction.name, ((PetscObject)contact)->type_name);
   PetscCheck(!contact->energy.takes || !contact->energy.unlimited || !contact->energy.asked, PetscObjectComm((PetscObject)contact),
              PETSC_ERR_USER_INPUT, "%s has no effect: %s, and no step is made again for what it takes; leave it out", contact->energy.asked,
              contact->energy.unlimited);

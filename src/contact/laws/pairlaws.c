@@ -216,9 +216,12 @@ PetscErrorCode ContactCheckLaws(Contact contact)
         "Pair %s has the law %s, and pair %s the law %s: -contact_type %s has one law for all pairs; choose -contact_type schwarz, or "
         "leave -contact_law_<pair> out",
         contact->pairs[p].name, ContactNameLaw(contact, &contact->pairs[p]), contact->pairs[0].name, way, type);
-  PetscCheck(contact->sideless || !ContactAnyPairHas(contact, CONTACT_LAW_GLUE), comm, PETSC_ERR_SUP,
+  PetscCheck(contact->sideless || !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), comm, PETSC_ERR_SUP,
+             "-contact_law %s: -contact_type %s has no friction; choose schwarz, lagrange, penalty or augmented_lagrangian",
+             contact->friction.name, type);
+  PetscCheck(contact->impulses || !ContactAnyPairHas(contact, CONTACT_LAW_GLUE), comm, PETSC_ERR_SUP,
              "-contact_law %s works with -contact_type schwarz alone, not with %s; choose that, or -contact_law tied", way, type);
-  PetscCheck(contact->sideless || contact->prescribes || !ContactAnyPairHas(contact, CONTACT_LAW_BONDED), comm, PETSC_ERR_SUP,
+  PetscCheck(contact->impulses || contact->prescribes || !ContactAnyPairHas(contact, CONTACT_LAW_BONDED), comm, PETSC_ERR_SUP,
              "-contact_law bonded works with -contact_type schwarz or alternation alone, not with %s; choose one of these, or -contact_law "
              "frictionless or tied",
              type);
@@ -230,7 +233,7 @@ PetscErrorCode ContactCheckLaws(Contact contact)
   if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) way = contact->friction.name;
   PetscCall(PetscStrcmp(way, ContactLaws[CONTACT_LAW_FRICTIONLESS], &slides));
   PetscCheck(
-      (contact->sideless || contact->prescribes) && slides, comm, PETSC_ERR_SUP,
+      (contact->impulses || contact->prescribes) && slides, comm, PETSC_ERR_SUP,
       "-contact_separation false works with -contact_type schwarz or alternation and -contact_law frictionless alone, not with %s and %s",
       type, way);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -40,7 +40,7 @@ PetscErrorCode ContactTurnRigid(Contact contact, ContactPair *pair)
   PetscFunctionBegin;
   PetscCall(CountRigid(contact, pair, &n, &first));
   if (n == 2 || (n && pair->obstacle)) {
-    if (!contact->sideless) PetscCall(RefuseRigid(contact, pair));
+    if (!contact->impulses) PetscCall(RefuseRigid(contact, pair));
   } else if (first) {
     PetscCheck(
         pair->row_side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,

@@ -103,10 +103,10 @@ static PetscErrorCode LeaveOutSets(Contact contact)
 PetscErrorCode ContactChooseTiedMass(Contact contact)
 {
   PetscFunctionBegin;
-  if (!ContactAllPairsTie(contact) || !(contact->prescribes || contact->sideless)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactAllPairsTie(contact) || !(contact->prescribes || contact->impulses)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CanKeepMass(contact, &contact->pairs[p], &contact->pairs[p].keeps_mass));
   PetscCall(LeaveOutExplicit(contact));
-  PetscCall(contact->sideless ? LeaveOutSets(contact) : LeaveOutMixed(contact));
+  PetscCall(contact->impulses ? LeaveOutSets(contact) : LeaveOutMixed(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool all, any;
 

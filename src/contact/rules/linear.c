@@ -4,19 +4,22 @@
 */
 #include <contact/step/stepimpl.h>
 
-/* Rows that were in contact, or would be at the end if bodies went on as they do: others join as they are found to be inside */
+/* Rows that were in contact, or would be at the end if bodies went on as they do: others join as they are found to be inside. Rows that
+   keep a part of their gap join then alone: that part is one of a penetration. */
 static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
+  const PetscReal keeps = ContactStepperKeeps(contact, stepper, (PetscInt)(pair - contact->pairs));
+
   PetscFunctionBegin;
   for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
-    const PetscReal end     = contact->start.gap[first] + contact->step * stepper->rate[first];
+    const PetscReal end     = contact->start.gap[first] + (keeps > 0 ? 0 : contact->step * stepper->rate[first]);
     const PetscBool carried = (PetscBool)(contact->rows.tied[first] || contact->start.active[first]);
     const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && end <= -contact->options.tolerance));
 
     for (PetscInt i = first; i < first + pair->components; i++) {
       stepper->touches[i]   = touches;
       stepper->joins[i]     = (PetscBool)(touches && !carried);
-      stepper->lets[i]      = i == first ? -contact->start.gap[i] : 0;
+      stepper->lets[i]      = i == first ? -(1 - keeps) * contact->start.gap[i] : 0;
       contact->end.force[i] = touches ? contact->start.force[i] : 0;
     }
   }

@@ -406,10 +406,12 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   if (stepper->products) PetscCall(ContactStepperCreateProducts(contact, stepper, &S, &near));
   else if (!AnyBody(assembly, PETSC_FALSE) && n > FEW_ROWS) {
     S = assembly->product;
-    PetscCall(PetscObjectReference((PetscObject)S));
+    if (stepper->penalty.any) PetscCall(MatDuplicate(assembly->product, MAT_COPY_VALUES, &S));
+    else PetscCall(PetscObjectReference((PetscObject)S));
   } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, &S));
   else PetscCall(AssembleDense(stepper, &S));
   PetscCall(ContactStepperAddTurns(contact, stepper, S));
+  if (!near) PetscCall(ContactStepperAddSprings(stepper, S));
   PetscCall(LawProblemTakeS(&stepper->problem, &S, near ? &near : NULL));
   PetscCall(PetscArraycpy(stepper->of_assembled, stepper->rows, n));
   PetscCall(PetscInfo(contact, "S assembled: %s, %" PetscInt_FMT " rows of %" PetscInt_FMT " nodes\n",

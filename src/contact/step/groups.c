@@ -37,7 +37,8 @@ PetscErrorCode ContactStepperSetUpRules(Contact contact, ContactStepper *stepper
 
     stepper->rules[b] = stepper->asked ? stepper->asked : impulse[set[b]] ? &ContactRuleImpulse : &ContactRuleLinear;
     if (!contact->neighbours.come_and_go && !contact->body_rows[b].n_all) continue;
-    PetscCall(ContactRefuseUnstable(contact, (PetscBool)(mass[set[b]] && stepper->rules[b]->shape == BODY_FORCE_LINEAR),
+    PetscCall(ContactRefuseUnstable(contact,
+                                    (PetscBool)(mass[set[b]] && contact->impulses && stepper->rules[b]->shape == BODY_FORCE_LINEAR),
                                     "-contact_rule linear: contact nodes with mass whose gaps are closed at the ends of steps swing and "
                                     "gain energy; choose impulse, or set -<body>_mass_redistribute true"));
     PetscCall(BodyIsStatic(contact->bodies[b], &is_static));

@@ -6,6 +6,7 @@
 #include <contact/compliance/forces.h>
 #include <contact/compliance/outersolver.h>
 #include <sys/petsccompat.h>
+#include <sys/units.h>
 
 #define MOST_PASSES 50
 
@@ -97,7 +98,10 @@ static PetscErrorCode SolveLaw(Contact contact, ContactStepper *stepper)
     if (again) {
       stepper->forms             = PETSC_TRUE;
       stepper->assembly.of_state = -1;
-    } else PetscCall(ContactStepperImproveTurns(contact, stepper, &again));
+    } else {
+      PetscCall(ContactStepperImproveTurns(contact, stepper, &again));
+      if (!again) PetscCall(ContactStepperImproveSprings(stepper, &again));
+    }
     if (again) PetscCall(ContactStepperAssemble(contact, stepper));
     if (!problem->solved) PetscCall(PetscArraycpy(problem->force, problem->base, problem->n));
   }
@@ -129,6 +133,7 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   }
   for (PetscInt k = 0; k < n_acting; k++) stepper->mine[acting[k]] = stepper->touches[acting[k]] ? Reading(contact, stepper, acting[k]) : 0;
   PetscCall(ContactStepperGather(contact, stepper, stepper->mine, problem->read));
+  ContactStepperReadSprings(stepper);
   PetscCall(ContactStepperCorrectS(contact, stepper));
   PetscCall(SolveLaw(contact, stepper));
   if (first) PetscCall(LimitWays(contact, stepper));
@@ -240,6 +245,23 @@ static PetscErrorCode FindScales(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes as the failure of the step that the augmented Lagrangian has not closed gaps in the rounds that it may make */
+static PetscErrorCode CheckSprings(Contact contact, const ContactStepper *stepper)
+{
+  PetscReal time;
+
+  PetscFunctionBegin;
+  if (!(stepper->springs.give > stepper->penalty.tolerance)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ForcesGetTime(contact, &time));
+  PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                           "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
+                           " augmentations the gap is off by %g%s. Raise -contact_penalty or -contact_augmentation_max_it, or loosen "
+                           "-contact_augmentation_tolerance",
+                           (double)time, stepper->springs.rounds, (double)stepper->springs.give,
+                           UnitsOf((PetscObject)contact, UNIT_LENGTH)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The outer iteration over the touching rows */
 PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
 {
@@ -263,7 +285,11 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
   PetscCall(SNESSolve(stepper->outer, NULL, stepper->x));
   PetscCall(SNESGetConvergedReason(stepper->outer, &reason));
   PetscCall(ContactMonitorStep(contact, stepper, reason));
-  if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (reason > 0) {
+    PetscCall(CheckSprings(contact, stepper));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = stepper->touches[i]; /* whose pairs the message names */
   PetscCall(ForcesGetTime(contact, &time));
   if (!stepper->problem.solved) {

@@ -90,6 +90,9 @@ static PetscErrorCode Multiply(Mat S, Vec x, Vec y)
     if (stepper->assembly.of_body[b].n) PetscCall(AddBody(contact, &stepper->assembly.of_body[b], b, force, way));
   PetscCall(VecGetArrayWrite(y, &out));
   PetscCall(ContactStepperGather(contact, stepper, way, out));
+  PetscCall(VecGetArrayRead(x, &in));
+  for (PetscInt k = 0; k < stepper->problem.n && stepper->penalty.any; k++) out[k] += stepper->springs.softness[k] * in[k];
+  PetscCall(VecRestoreArrayRead(x, &in));
   PetscCall(VecRestoreArrayWrite(y, &out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -251,6 +254,7 @@ PetscErrorCode ContactStepperCreateProducts(Contact contact, ContactStepper *ste
   }
   PetscCall(MatAssemblyBegin(*near, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*near, MAT_FINAL_ASSEMBLY));
+  PetscCall(ContactStepperAddSprings(stepper, *near));
   PetscCall(MatchTrace(*S, *near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

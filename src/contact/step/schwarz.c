@@ -22,6 +22,14 @@ static ContactStepper *Stepper(Contact contact)
   return (ContactStepper *)contact->data;
 }
 
+/* ContactStepperSetFromOptions - options of all contact types that are made of the step */
+PetscErrorCode ContactStepperSetFromOptions(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(ContactMonitorSetFromOptions(contact, &Stepper(contact)->monitor));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode SetFromOptions(Contact contact)
 {
   const char *const rules[] = {"auto", "impulse", "linear"};
@@ -32,7 +40,7 @@ static PetscErrorCode SetFromOptions(Contact contact)
   PetscCall(PetscOptionsEList("-contact_rule", "How forces run within a step", "ContactSetType", rules, 3, rules[0], &rule, NULL));
   PetscOptionsEnd();
   PetscCall(ContactReadUnconverged(contact));
-  PetscCall(ContactMonitorSetFromOptions(contact, &Stepper(contact)->monitor));
+  PetscCall(ContactStepperSetFromOptions(contact));
   Stepper(contact)->asked    = rule == 1 ? &ContactRuleImpulse : rule == 2 ? &ContactRuleLinear : NULL;
   contact->options.keep_mass = (PetscBool)(rule == 1);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -76,7 +84,8 @@ static PetscErrorCode ChooseLaws(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetUp(Contact contact)
+/* ContactStepperSetUp - what a step needs of the rows there are; options have been read */
+PetscErrorCode ContactStepperSetUp(Contact contact)
 {
   ContactStepper *stepper    = Stepper(contact);
   const PetscInt  n          = PetscMax(contact->rows.n, 1);
@@ -111,8 +120,7 @@ static PetscErrorCode SetUp(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (contact->pairs[p].law != CONTACT_LAW_FRICTION && contact->pairs[p].law != CONTACT_LAW_FRICTIONLESS)
       contact->rows.lists = PETSC_FALSE;
-  contact->friction.steps     = PETSC_TRUE;
-  contact->ties.by_mean       = (PetscBool)(ContactAllPairsTie(contact) && contact->options.shared_times);
+  contact->ties.by_mean       = (PetscBool)(contact->impulses && ContactAllPairsTie(contact) && contact->options.shared_times);
   stepper->rtol               = floating ? RTOL_FLOATING : any_static || all_linear ? RTOL_EXACT : RTOL;
   stepper->atol               = (floating ? ATOL_FLOATING * CONTACT_POSITION_TOLERANCE : RESOLUTION) * contact->scale.length;
   stepper->assembled          = -1;
@@ -123,6 +131,7 @@ static PetscErrorCode SetUp(Contact contact)
   PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(ContactStepperSetUpTurns(contact, stepper));
+  PetscCall(ContactStepperSetUpSprings(contact, stepper));
   PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
   PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
                          n, &stepper->given));
@@ -144,7 +153,8 @@ static PetscErrorCode LayRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RowsChanged(Contact contact)
+/* ContactStepperRowsChanged - rows have other entries */
+PetscErrorCode ContactStepperRowsChanged(Contact contact)
 {
   PetscScalar **aligns = Stepper(contact)->aligns;
 
@@ -165,7 +175,8 @@ static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool go
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Accept(Contact contact)
+/* ContactStepperAccept - the step is made */
+PetscErrorCode ContactStepperAccept(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);
 
@@ -179,7 +190,8 @@ static PetscErrorCode Accept(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
+/* ContactStepperVisit - state for a checkpoint */
+PetscErrorCode ContactStepperVisit(Contact contact, Checkpoint checkpoint)
 {
   ContactStepper *stepper = Stepper(contact);
 
@@ -221,7 +233,8 @@ static PetscErrorCode ViewMass(Contact contact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode View(Contact contact, PetscViewer viewer)
+/* ContactStepperView - rules, tolerance, and what laws have to tell */
+PetscErrorCode ContactStepperView(Contact contact, PetscViewer viewer)
 {
   const ContactStepper *stepper = Stepper(contact);
   PetscBool             one     = PETSC_TRUE;
@@ -264,6 +277,7 @@ static PetscErrorCode Reset(Contact contact)
   PetscCall(PetscFree2(stepper->aligns[0], stepper->aligns[1]));
   PetscCall(ContactStepperDestroyGlue(stepper));
   PetscCall(ContactStepperDestroyTurns(&stepper->turns));
+  PetscCall(ContactStepperDestroySprings(&stepper->springs));
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));
@@ -272,7 +286,7 @@ static PetscErrorCode Reset(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Destroy(Contact contact)
+PetscErrorCode ContactStepperDestroy(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(Reset(contact));
@@ -312,23 +326,23 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&stepper));
-  contact->data                = stepper;
-  contact->sideless            = PETSC_TRUE;
-  contact->ops->setfromoptions = SetFromOptions;
-  contact->ops->setup          = SetUp;
-  contact->ops->layrows        = LayRows;
-  contact->ops->step           = ContactStepperStep;
-  contact->ops->rowschanged    = RowsChanged;
-  contact->ops->stored         = ContactStoresNothing;
-  contact->ops->steplevel      = SetStepLevel;
-  contact->ops->accept         = Accept;
-  contact->ops->visit          = Visit;
-  contact->ops->pack           = ContactStepperPack;
-  contact->ops->unpack         = ContactStepperUnpack;
-  contact->ops->maybalance     = ContactStepperMayTurn;
-  contact->ops->mayreplacerows = MayReplaceRows;
-  contact->ops->reset          = Reset;
-  contact->ops->view           = View;
-  contact->ops->destroy        = Destroy;
+  contact->data     = stepper;
+  contact->sideless = contact->impulses = PETSC_TRUE;
+  contact->ops->setfromoptions          = SetFromOptions;
+  contact->ops->setup                   = ContactStepperSetUp;
+  contact->ops->layrows                 = LayRows;
+  contact->ops->step                    = ContactStepperStep;
+  contact->ops->rowschanged             = ContactStepperRowsChanged;
+  contact->ops->stored                  = ContactStoresNothing;
+  contact->ops->steplevel               = SetStepLevel;
+  contact->ops->accept                  = ContactStepperAccept;
+  contact->ops->visit                   = ContactStepperVisit;
+  contact->ops->pack                    = ContactStepperPack;
+  contact->ops->unpack                  = ContactStepperUnpack;
+  contact->ops->maybalance              = ContactStepperMayTurn;
+  contact->ops->mayreplacerows          = MayReplaceRows;
+  contact->ops->reset                   = Reset;
+  contact->ops->view                    = ContactStepperView;
+  contact->ops->destroy                 = ContactStepperDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

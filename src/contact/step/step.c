@@ -128,6 +128,7 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
     }
     if (rule->end) PetscCall((*rule->end)(contact, stepper, pair));
   }
+  PetscCall(ContactStepperEndSprings(contact, stepper));
   PetscCall(MarkSliding(contact, stepper));
   PetscCall(CheckFriction(contact, stepper));
   if (stepper->glued) PetscCall(ContactSumStored(contact));
@@ -170,6 +171,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
       PetscCall(GetLimits(contact, stepper));
       PetscCall(ContactStepperBeginGlue(contact, stepper));
       PetscCall(ContactStepperListTurns(contact, stepper));
+      PetscCall(ContactStepperListSprings(contact, stepper));
       PetscCall(ContactStepperAssemble(contact, stepper));
       PetscCall(ContactStepperIterate(contact, stepper));
     } else PetscCall(ContactStepperAdvance(contact, stepper));

@@ -78,11 +78,31 @@ typedef struct {
   PetscInt     rounds; /* how often the law has been solved for t_0 */
 } StepperTurns;
 
+/* Springs and dampers that users have asked for: of the penalty method, and of the augmented Lagrangian */
+typedef struct {
+  PetscBool any;
+  PetscReal parameter; /* stiffness of springs on a unit of area [N/m^3; N/m in one dimension]; 0: from materials and elements */
+  PetscReal scale;     /* of the latter; 0: by the mass of the contact nodes */
+  PetscReal damping;   /* of dampers, on a unit of area [N s/m^3; N s/m in one dimension] */
+  PetscReal tolerance; /* that the augmented Lagrangian leaves [m] */
+  PetscInt  rounds;    /* of it in a step, at most; 0: the penalty method */
+} StepperPenalty;
+
+/* The same, for the rows that there are; see springs.c */
+typedef struct {
+  PetscReal   *stiffness;                      /* per pair [N/m^3] */
+  PetscScalar *softness, *multiplier, *change; /* per touching row of all ranks: 1/K [m/N], m, and its last change [N] */
+  PetscInt     rounds, known;                  /* of this step; changes of m that are known */
+  PetscReal    give;                           /* by how much springs of the augmented Lagrangian give after the last round [m] */
+} StepperSprings;
+
 struct _ContactStepper {
   /* options */
   ContactMonitor     monitor;
-  const ContactRule *asked;      /* the rule of all sets; NULL: as bodies have mass on contact nodes or not */
+  const ContactRule *asked; /* the rule of all sets; NULL: as bodies have mass on contact nodes or not */
+  StepperPenalty     penalty;
   PetscReal          rtol, atol; /* tolerances of the outer iteration on what rows read [parts of the largest way; m] */
+  void              *method;     /* what a contact type that is made of the step keeps beside it, or NULL */
   /* set-up; what follows is for the rows that there are, see Reset() */
   SNES                outer; /* its unknowns are the forces of all rows */
   LawProblem          problem;
@@ -123,6 +143,7 @@ struct _ContactStepper {
   PetscInt        n_assembled, *of_assembled;
   PetscBool       products; /* it is products, see products.c */
   StepperTurns    turns;    /* what it has of turns */
+  StepperSprings  springs;  /* what it has of springs between the surfaces */
   /* work space */
   Vec          x, f, field, of_all;
   PetscScalar *gathered; /* a number per touching row */
@@ -144,6 +165,13 @@ static inline PetscBool ContactStepperSlides(const LawProblem *problem, PetscInt
   return (PetscBool)(end > first + 1 && !problem->law[node]->pulls && PetscSqrtReal(across) >= bound * (1 - PETSC_SQRT_MACHINE_EPSILON));
 }
 
+PETSC_INTERN PetscErrorCode ContactStepperSetFromOptions(Contact);
+PETSC_INTERN PetscErrorCode ContactStepperSetUp(Contact);
+PETSC_INTERN PetscErrorCode ContactStepperView(Contact, PetscViewer);
+PETSC_INTERN PetscErrorCode ContactStepperRowsChanged(Contact);
+PETSC_INTERN PetscErrorCode ContactStepperAccept(Contact);
+PETSC_INTERN PetscErrorCode ContactStepperVisit(Contact, Checkpoint);
+PETSC_INTERN PetscErrorCode ContactStepperDestroy(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
 PETSC_INTERN PetscReal      ContactStepperStored(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscReal      ContactStepperTaken(Contact, const ContactStepper *, PetscInt);
@@ -186,6 +214,15 @@ PETSC_INTERN PetscErrorCode ContactStepperAddTurns(Contact, ContactStepper *, Ma
 PETSC_INTERN PetscErrorCode ContactStepperTurn(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperImproveTurns(Contact, ContactStepper *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactStepperJoinTurned(Contact, ContactStepper *, PetscBool *);
+PETSC_INTERN PetscReal      ContactStepperKeeps(Contact, const ContactStepper *, PetscInt);
+PETSC_INTERN void           ContactStepperGetSpring(Contact, const ContactStepper *, PetscInt, PetscReal *, PetscReal *);
+PETSC_INTERN PetscErrorCode ContactStepperSetUpSprings(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperListSprings(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperAddSprings(const ContactStepper *, Mat);
+PETSC_INTERN void           ContactStepperReadSprings(ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperImproveSprings(ContactStepper *, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactStepperEndSprings(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperDestroySprings(StepperSprings *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperScatter(Contact, ContactStepper *, const PetscReal[]);

@@ -1,120 +1,133 @@
 /*
-   Lagrange multipliers at the end of each controller step, for bodies whose gap answers to the force there. With gap(lambda) the
-   gaps after integrating all bodies under forces that go linearly from their last values to lambda,
+   Lagrange multipliers at the end of each controller step, for bodies whose gap answers to the force there: the contact step with the rule
+   `linear`, whatever mass contact nodes have. With gap(lambda) the gaps after integrating all bodies under forces that go linearly from
+   their last values to lambda,
 
-     gap(lambda) >= 0,   lambda >= 0,   lambda . gap(lambda) = 0,
+     gap(lambda) >= 0,   lambda >= 0,   lambda . gap(lambda) = 0.
 
-   an outer SNES for variational inequalities on F(lambda) = gap(lambda) with 0 as lower bound; its Jacobian is the interface
-   compliance of all bodies, which is constant.
+   Around the step there are impulses that end the rate of closed gaps (-contact_constraint both), and the contact-stabilised Newmark method
+   (Deuflhard, Krause, Ertel 2008).
 */
 #include "lagrangeimpl.h"
 #include <checkpoint/checkpoint.h>
-#include <sys/units.h>
 
-/* Whether impulses correct the velocities, beside the forces of the step */
-static PetscBool HasImpulses(const ImplicitLagrange *lagrange)
+/* What changes states beside the forces of the step */
+typedef struct {
+  Complementarity impulses;
+  PetscBool       close_rate, stabilized;
+} Corrections;
+
+/* Contact-stabilised, by the trapezoidal rule: with accelerations without contact forces at the start of a step and this many times the
+   force at its end, u_1 and v_1 have the whole contact force of the end of the step */
+#define TIMES 2
+
+static Corrections *CorrectionsOf(Contact contact)
 {
-  return (PetscBool)(lagrange->close_rate || lagrange->stabilized);
+  return (Corrections *)((ContactStepper *)contact->data)->method;
 }
 
-/* The solution. The semismooth iteration may leave forces that pull, within the tolerance: these are taken out. */
-static PetscErrorCode TakeForces(Contact contact)
+/* The rule of the contact-stabilised method: that of the step, with forces as the integrators take them */
+static PetscErrorCode BeginStabilized(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
-  ImplicitLagrange  *lagrange = (ImplicitLagrange *)contact->data;
-  const PetscScalar *force;
-  int                pulls = 0;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(lagrange->outer.x, &force));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    pulls |= force[i] < 0;
-    contact->end.force[i] = PetscMax(force[i], 0);
-  }
-  PetscCall(VecRestoreArrayRead(lagrange->outer.x, &force));
-  PetscCall(ContactOr(contact, &pulls));
-  if (pulls) PetscCall(ForcesIntegrate(contact, &lagrange->forces, contact->end.force, lagrange->scale));
+  PetscCall((*ContactRuleLinear.begin)(contact, stepper, pair));
+  for (PetscInt i = pair->begin; i < pair->end; i++) contact->end.force[i] *= TIMES;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactStep_ImplicitLagrange(Contact contact)
+static PetscErrorCode EndStabilized(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
-  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
-  PetscBool         in_contact, changed = PETSC_TRUE;
-  PetscScalar      *x;
+  PetscFunctionBegin;
+  (void)stepper;
+  for (PetscInt i = pair->begin; i < pair->end; i++) contact->end.force[i] /= TIMES;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode LoadStabilized(Contact contact, ContactStepper *stepper, PetscInt b)
+{
+  PetscFunctionBegin;
+  PetscCall((*ContactRuleLinear.load)(contact, stepper, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MoreStabilized(Contact contact, ContactStepper *stepper, const ContactPair *pair, PetscBool *more)
+{
+  PetscFunctionBegin;
+  PetscCall((*ContactRuleLinear.more)(contact, stepper, pair, more));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const ContactRule stabilized_rule = {.name  = "contact-stabilised",
+                                            .begin = BeginStabilized,
+                                            .load  = LoadStabilized,
+                                            .shape = BODY_FORCE_LINEAR,
+                                            .more  = MoreStabilized,
+                                            .end   = EndStabilized};
+
+static PetscErrorCode Step(Contact contact)
+{
+  Corrections *corrections = CorrectionsOf(contact);
 
   PetscFunctionBegin;
-  PetscCall(ForcesBeginStep(contact, &lagrange->forces, &in_contact));
-  if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  if (lagrange->stabilized) PetscCall(LagrangeProjectPrediction(contact, lagrange->step, &lagrange->impulses));
-  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayWrite(lagrange->outer.x, &x));
-  PetscCall(PetscArraycpy(x, contact->start.force, contact->rows.n));
-  PetscCall(VecRestoreArrayWrite(lagrange->outer.x, &x));
-  while (changed) {
-    PetscCall(SNESSolve(lagrange->outer.snes, NULL, lagrange->outer.x));
-    PetscCall(LagrangeCheckConverged(contact));
-    if (!ContactFailed(contact)) PetscCall(TakeForces(contact));
-    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-    changed = PETSC_FALSE;
-    if (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE)
-      PetscCall(ForcesTouch(contact, &lagrange->forces, contact->end.force, &changed));
-  }
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = (PetscBool)(contact->end.force[i] > 0);
+  if (corrections->stabilized) PetscCall(LagrangeProjectPrediction(contact, contact->step, &corrections->impulses));
+  if (!ContactFailed(contact)) PetscCall(ContactStepperStep(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Corrections of the states at the end of the step: velocities without gap rate; and accelerations without contact forces, from
    which the contact-stabilised method starts its next step */
-static PetscErrorCode ContactAccept_ImplicitLagrange(Contact contact)
+static PetscErrorCode Accept(Contact contact)
 {
-  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
-  PetscBool         in_contact;
+  Corrections *corrections = CorrectionsOf(contact);
+  PetscBool    in_contact;
 
   PetscFunctionBegin;
-  if (lagrange->close_rate) PetscCall(LagrangeCloseRate(contact, PETSC_FALSE, &lagrange->impulses));
-  if (!lagrange->stabilized) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactStepperAccept(contact));
+  if (corrections->close_rate) PetscCall(LagrangeCloseRate(contact, PETSC_FALSE, &corrections->impulses));
+  if (!corrections->stabilized) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->rows.n; i++) lagrange->impulses.forces[i] = -lagrange->scale * contact->end.force[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) corrections->impulses.forces[i] = -TIMES * contact->end.force[i];
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->impulses, lagrange->impulses.mine));
-    PetscCall(BodyAddAcceleration(contact->bodies[b], lagrange->impulses.mine));
+    PetscCall(ComplementarityGetBodyForces(contact, b, &corrections->impulses, corrections->impulses.mine));
+    PetscCall(BodyAddAcceleration(contact->bodies[b], corrections->impulses.mine));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactView_ImplicitLagrange(Contact contact, PetscViewer viewer)
+static PetscErrorCode RowsChanged(Contact contact)
 {
-  const ImplicitLagrange *lagrange = (const ImplicitLagrange *)contact->data;
-  SNESType                type;
-
   PetscFunctionBegin;
-  PetscCall(SNESGetType(lagrange->outer.snes, &type));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  outer iteration %s on the forces at the end of the step, tolerances %g%s and %g relative\n",
-                                   type, (double)lagrange->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)lagrange->rtol));
+  PetscCall(ContactStepperRowsChanged(contact));
+  PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &CorrectionsOf(contact)->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactDestroy_ImplicitLagrange(Contact contact)
+static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 {
-  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+  Corrections *corrections = CorrectionsOf(contact);
 
   PetscFunctionBegin;
-  PetscCall(OuterSolverDestroy(&lagrange->outer));
-  PetscCall(ForcesDestroy(&lagrange->forces));
-  if (HasImpulses(lagrange)) PetscCall(ComplementarityDestroy(&lagrange->impulses));
-  PetscCall(InterfaceOperatorDestroy(&lagrange->S));
-  PetscCall(PetscFree2(lagrange->compliance, lagrange->marks));
-  PetscCall(PetscFree(contact->data));
+  PetscCall(ContactStepperVisit(contact, checkpoint));
+  if (CheckpointLoads(checkpoint)) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &corrections->impulses));
+  PetscCall(ComplementarityVisit(contact, &corrections->impulses, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The contact-stabilised Newmark method (Deuflhard, Krause, Ertel 2008) by the trapezoidal rule: with accelerations without contact
-   forces at the start of a step and twice the force at its end, u_1 and v_1 have the whole contact force of the end of the step. */
-static PetscErrorCode SetUpStabilized(Contact contact)
+static PetscErrorCode Destroy(Contact contact)
 {
-  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
-  MPI_Comm          comm     = PetscObjectComm((PetscObject)contact);
+  Corrections *corrections = CorrectionsOf(contact);
+
+  PetscFunctionBegin;
+  PetscCall(ComplementarityDestroy(&corrections->impulses));
+  PetscCall(PetscFree(corrections));
+  PetscCall(ContactStepperDestroy(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CheckStabilized(Contact contact)
+{
+  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
   PetscCheck(
@@ -150,73 +163,41 @@ static PetscErrorCode SetUpStabilized(Contact contact)
                "gamma %g, beta %g; leave -%s_ts_alpha_... at their defaults",
                name, (double)alpha_m, (double)alpha_f, (double)gamma, (double)beta, name);
   }
-  lagrange->scale              = 2;
-  lagrange->stabilized         = PETSC_TRUE;
-  contact->attempt.moves_start = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ComputeCompliance(Contact contact)
+/* Impulses around the step, where options ask for them */
+static PetscErrorCode SetUpCorrections(Contact contact)
 {
-  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
+  const PetscBool rates = (PetscBool)(contact->options.constraint == CONTACT_CONSTRAINT_BOTH);
+  Corrections    *corrections;
 
   PetscFunctionBegin;
-  PetscCall(InterfaceOperatorSetRows(lagrange->S, lagrange->marks, 1));
-  PetscCall(InterfaceOperatorAssemble(lagrange->S, INTERFACE_GAP, lagrange->compliance));
-  for (PetscInt i = 0; i < contact->rows.n_all * contact->rows.n_all; i++) lagrange->compliance[i] *= lagrange->scale;
-  lagrange->have_jacobian = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ContactRowsChanged_ImplicitLagrange(Contact contact)
-{
-  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
-
-  PetscFunctionBegin;
-  PetscCall(ComputeCompliance(contact));
-  if (HasImpulses(lagrange)) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Another controller step, and so another compliance */
-static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
-{
-  PetscFunctionBegin;
-  (void)level;
-  (void)goes_on;
-  ((ImplicitLagrange *)contact->data)->step = contact->step;
-  PetscCall(ComputeCompliance(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ContactVisit_ImplicitLagrange(Contact contact, Checkpoint checkpoint)
-{
-  ImplicitLagrange *lagrange = (ImplicitLagrange *)contact->data;
-
-  PetscFunctionBegin;
-  if (CheckpointLoads(checkpoint)) {
-    lagrange->step          = contact->step;
-    lagrange->have_jacobian = PETSC_FALSE;
-    if (HasImpulses(lagrange)) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
-  }
-  PetscCall(CheckpointVisitReals(checkpoint, "compliance", contact->rows.n_all * contact->rows.n_all, lagrange->compliance));
-  PetscCall(InterfaceOperatorVisit(lagrange->S, checkpoint));
-  PetscCall(ForcesVisit(contact, &lagrange->forces, checkpoint));
-  PetscCall(CheckpointVisitVec(checkpoint, "outer", lagrange->outer.x));
-  if (HasImpulses(lagrange)) PetscCall(ComplementarityVisit(contact, &lagrange->impulses, checkpoint));
+  PetscCall(PetscNew(&corrections));
+  corrections->close_rate                   = rates;
+  corrections->stabilized                   = (PetscBool)!rates;
+  ((ContactStepper *)contact->data)->method = corrections;
+  contact->ops->step                        = Step;
+  contact->ops->accept                      = Accept;
+  contact->ops->rowschanged                 = RowsChanged;
+  contact->ops->visit                       = Visit;
+  contact->ops->pack                        = NULL;
+  contact->ops->unpack                      = NULL;
+  contact->ops->destroy                     = Destroy;
+  if (corrections->stabilized) contact->attempt.moves_start = PETSC_TRUE;
+  PetscCall(LagrangeSetUpImpulses(contact, rates ? "-contact_constraint both" : "-contact_stabilization contact_stabilized",
+                                  &corrections->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode LagrangeSetUpImplicit(Contact contact)
 {
-  /* SNESVI wants all of S as a matrix: dense whatever its size, which ForcesCheckDense() bounds; nothing is iterated for */
-  const InterfaceSettings settings = {.prefix = "lagrange_", .dense_limit = contact->rows.n_all, .few = contact->rows.n_all};
-  ImplicitLagrange       *lagrange;
-  PetscBool               has_mass;
+  const PetscBool is_stabilized = (PetscBool)(contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED);
+  PetscBool       has_mass;
 
   PetscFunctionBegin;
-  PetscCall(ForcesCheckBodies(contact, "lagrange"));
-  PetscCall(ForcesCheckDense(contact, "lagrange"));
+  PetscCall(StepperCheckFriction(contact));
+  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscCall(StepperCheckBodies(contact));
   PetscCall(ContactHasMass(contact, PETSC_TRUE, &has_mass));
   PetscCall(ContactRefuseUnstable(
       contact,
@@ -228,29 +209,9 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   PetscCheck(!ContactAllPairsTie(contact), PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and "
              "without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");
-  PetscCall(PetscNew(&lagrange));
-  contact->data             = lagrange;
-  contact->ops->step        = ContactStep_ImplicitLagrange;
-  contact->ops->stored      = ContactStoresNothing;
-  contact->ops->view        = ContactView_ImplicitLagrange;
-  contact->ops->rowschanged = ContactRowsChanged_ImplicitLagrange;
-  contact->ops->steplevel   = SetStepLevel;
-  contact->ops->visit       = ContactVisit_ImplicitLagrange;
-  contact->ops->destroy     = ContactDestroy_ImplicitLagrange;
-  lagrange->scale           = 1;
-  PetscCall(ForcesGetStep(contact, &lagrange->step));
-  PetscCall(ForcesCreate(contact, &lagrange->forces));
-  PetscCall(InterfaceOperatorCreate(contact, &settings, &lagrange->S));
-  PetscCall(PetscCalloc2(contact->rows.n_all * contact->rows.n_all, &lagrange->compliance, contact->rows.n, &lagrange->marks));
-  for (PetscInt i = 0; i < contact->rows.n; i++) lagrange->marks[i] = INTERFACE_SOLVED;
-  if (contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(SetUpStabilized(contact));
-  if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) {
-    PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));
-    lagrange->close_rate = PETSC_TRUE;
-  } else if (lagrange->stabilized)
-    PetscCall(LagrangeSetUpImpulses(contact, "-contact_stabilization contact_stabilized", &lagrange->impulses));
-  if (HasImpulses(lagrange)) contact->ops->accept = ContactAccept_ImplicitLagrange;
-  PetscCall(ComputeCompliance(contact));
-  PetscCall(LagrangeSetUpOuter(contact));
+  if (is_stabilized) PetscCall(CheckStabilized(contact));
+  if (is_stabilized) ((ContactStepper *)contact->data)->asked = &stabilized_rule;
+  PetscCall(ContactStepperSetUp(contact));
+  if (is_stabilized || contact->options.constraint == CONTACT_CONSTRAINT_BOTH) PetscCall(SetUpCorrections(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,10 +29,6 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
     PetscCall(ContactRefuseFriction(contact, "forward-increment Lagrange multipliers have no friction, since their forces are not those at "
                                              "the end of the step; leave -<body>_mass_redistribute at true, or choose -contact_law "
                                              "frictionless"));
-  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) {
-    PetscCall(ContactStepByFriction(contact, NULL));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   if (forward) {
     PetscCheck(contact->options.stabilization != CONTACT_STABILIZATION_CONTACT_STABILIZED, comm, PETSC_ERR_USER_INPUT,
                "-contact_stabilization contact_stabilized works with implicit bodies only, and all are explicit; give them -<body>_ts_type "
@@ -43,13 +39,16 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
                "it at none, or choose -contact_type schwarz or penalty");
   }
   if (forward) contact->energy.unlimited = "forward increments are known only after the step that they begin";
-  if (forward) PetscCall(LagrangeSetUpForward(contact));
-  else PetscCall(LagrangeSetUpImplicit(contact));
+  if (forward) { /* which has nothing of the step */
+    PetscCall(ContactStepperDestroy(contact));
+    PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
+    PetscCall(LagrangeSetUpForward(contact));
+  } else PetscCall(LagrangeSetUpImplicit(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Steps with friction may, which has what it needs for that. Without it forces of all rows there are make up one dense matrix, and how many
-   rows it may have is known at the start. */
+/* Forward increments, whose matrices are made once, may not; which bodies there are to be is not known yet, but none of those with friction
+   are theirs */
 static PetscBool MayReplaceRows(Contact contact)
 {
   return ContactAnyPairHas(contact, CONTACT_LAW_FRICTION);
@@ -60,9 +59,8 @@ static PetscBool MayReplaceRows(Contact contact)
 
    Options Database Keys:
 +  -contact_constraint (gap|gap_rate|both)                      - what they close: the gap, its rate, or both
-.  -lagrange_snes_type (vinewtonrsls|vinewtonssls)              - the outer iteration on the contact forces of implicit bodies
--  -lagrange_snes_atol, -lagrange_snes_rtol, -lagrange_snes_max_it - its tolerances on the gap (4e-12 of the size of the smallest body,
-                                                                     in m; 1e-15) and limit (50)
+-  -schwarz_snes_..., -law_snes_...                             - the outer iteration on the contact forces of implicit bodies, and
+                                                                  how the law of rows is solved, as with `CONTACT_SCHWARZ`
 
    Level: beginner
 
@@ -80,9 +78,7 @@ static PetscBool MayReplaceRows(Contact contact)
    With -contact_constraint both the velocities are corrected by impulses at the end of each step in contact. The forces that are
    told have them in forward increments; for implicit bodies they matter at impact only and are left out.
 
-   `SNESVINEWTONRSLS` allocates and frees its index sets and matrices in each iteration.
-
-   References:
+    References:
 +  * - N. J. Carpenter, R. L. Taylor, M. G. Katona, Lagrange constraints for transient finite element surface contact, IJNME 32
        (1991) 103-128
 .  * - T. A. Laursen, V. Chawla, Design of energy conserving algorithms for frictionless dynamic contact problems, IJNME 40 (1997)
@@ -96,6 +92,9 @@ M*/
 PetscErrorCode ContactCreate_Lagrange(Contact contact)
 {
   PetscFunctionBegin;
+  PetscCall(ContactCreate_Schwarz(contact));
+  StepperClosesEnds(contact);
+  contact->ops->setfromoptions = ContactStepperSetFromOptions;
   contact->ops->setup          = ContactSetUp_Lagrange;
   contact->ops->mayreplacerows = MayReplaceRows;
   PetscFunctionReturn(PETSC_SUCCESS);

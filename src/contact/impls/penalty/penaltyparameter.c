@@ -12,36 +12,37 @@
 /* -contact_penalty, or how stiff springs are to be beside the elements */
 PetscErrorCode PenaltyReadParameter(Contact contact)
 {
-  Penalty  *penalty = (Penalty *)contact->data;
-  MPI_Comm  comm    = PetscObjectComm((PetscObject)contact);
-  PetscBool set, scaled = PETSC_FALSE;
+  StepperPenalty *penalty = PenaltyOf(contact);
+  MPI_Comm        comm    = PetscObjectComm((PetscObject)contact);
+  PetscBool       set, scaled = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "ContactPenaltySetParameter",
-                             penalty->penalty, &penalty->penalty, &set));
+                             penalty->parameter, &penalty->parameter, &set));
   if (!set)
     PetscCall(PetscOptionsReal("-contact_penalty_scale", "Penalty parameter relative to the stiffness of the elements",
                                "ContactPenaltySetScale", penalty->scale, &penalty->scale, &scaled));
   PetscOptionsEnd();
-  PetscCheck(!set || penalty->penalty > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty %g must be positive", (double)penalty->penalty);
+  PetscCheck(!set || penalty->parameter > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty %g must be positive",
+             (double)penalty->parameter);
   PetscCheck(!scaled || penalty->scale > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty_scale %g must be positive",
              (double)penalty->scale);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The penalty parameter of a pair: as `given`, or, where that is 0, from an element on each side, one behind the other, and a scale,
-   `wanted` or, where that is 0, by the mass of the contact nodes */
-PetscErrorCode PenaltyGetPairParameter(Contact contact, const ContactPair *pair, PetscReal given, PetscReal wanted, PetscReal *parameter,
-                                       PetscReal *scale)
+/* The penalty parameter of a pair: as given, or, where that is 0, from an element on each side, one behind the other, and a scale, as given
+   or, where that is 0, by the mass of the contact nodes. Dampers in place of springs leave none. */
+static PetscErrorCode GetPairParameter(Contact contact, const ContactPair *pair, PetscReal *parameter, PetscReal *scale)
 {
-  PetscReal flexibility  = 0;
-  PetscBool all_massless = PETSC_TRUE;
+  const StepperPenalty *penalty      = PenaltyOf(contact);
+  PetscReal             flexibility  = 0;
+  PetscBool             all_massless = PETSC_TRUE;
 
   PetscFunctionBegin;
-  *parameter = given;
-  *scale     = wanted;
-  if (given > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  *parameter = contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE ? 0 : penalty->parameter;
+  *scale     = penalty->scale;
+  if (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE || penalty->parameter > 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal stiffness = 0;
     PetscBool massless, rigid;
@@ -57,26 +58,15 @@ PetscErrorCode PenaltyGetPairParameter(Contact contact, const ContactPair *pair,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GetPairPenalty(Contact contact, const ContactPair *pair, PetscReal *parameter, PetscReal *scale)
-{
-  const Penalty *penalty = (const Penalty *)contact->data;
-
-  PetscFunctionBegin;
-  *parameter = 0;
-  *scale     = penalty->scale;
-  if (penalty->springs) PetscCall(PenaltyGetPairParameter(contact, pair, penalty->penalty, penalty->scale, parameter, scale));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Displacement after a step for a force at its start, of the explicit nodes with mass, times the stiffness, the largest over all rows:
    of springs over a substep, of dampers over the controller step as if it were one */
 static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
 {
-  const Penalty *penalty      = (const Penalty *)contact->data;
-  PetscReal     *compliance[] = {penalty->work, penalty->work + contact->rows.n}, *bound = penalty->work + 2 * contact->rows.n;
+  const ContactStepper *stepper = (const ContactStepper *)contact->data;
+  PetscReal            *compliance[2], *bound;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(penalty->work, 2 * contact->rows.n));
+  PetscCall(PetscCalloc3(contact->rows.n, &compliance[0], contact->rows.n, &compliance[1], contact->rows.n, &bound));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool is_explicit, massless;
     PetscInt  substeps;
@@ -95,9 +85,13 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
   }
   worst[0] = worst[1] = 0;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    worst[0] = PetscMax(worst[0], compliance[0][i] * penalty->spring[i]);
-    worst[1] = PetscMax(worst[1], compliance[1][i] * penalty->damper[i]);
+    PetscReal spring, damper;
+
+    ContactStepperGetSpring(contact, stepper, i, &spring, &damper);
+    worst[0] = PetscMax(worst[0], compliance[0][i] * spring);
+    worst[1] = PetscMax(worst[1], compliance[1][i] * damper);
   }
+  PetscCall(PetscFree3(compliance[0], compliance[1], bound));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -105,16 +99,16 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
 /* Spring and damper alone, between the masses of explicit bodies, must be stable: k C + 2 c C / dt < 4, C = dt^2 B M^{-1} B^T */
 static PetscErrorCode CheckStability(Contact contact)
 {
-  const Penalty  *penalty = (const Penalty *)contact->data;
-  MPI_Comm        comm    = PetscObjectComm((PetscObject)contact);
-  const PetscBool given   = (PetscBool)(penalty->penalty > 0);
-  const PetscReal value   = given ? penalty->penalty : penalty->scale > 0 ? penalty->scale : MASS_SCALE;
-  PetscReal       worst[2], spring, damper;
+  const StepperPenalty *penalty = PenaltyOf(contact);
+  MPI_Comm              comm    = PetscObjectComm((PetscObject)contact);
+  const PetscBool       given   = (PetscBool)(penalty->parameter > 0);
+  const PetscReal       value   = given ? penalty->parameter : penalty->scale > 0 ? penalty->scale : MASS_SCALE;
+  PetscReal             worst[2], spring, damper;
 
   PetscFunctionBegin;
   PetscCall(GetForwardCompliance(contact, worst));
   spring = worst[0];
-  damper = 2 * worst[1] / penalty->step;
+  damper = 2 * worst[1] / contact->step;
   PetscCheck(spring < 4, comm, PETSC_ERR_USER_INPUT,
              "-contact_penalty%s %g is too stiff for the explicit steps: above %.4g the contact springs are unstable; choose a smaller "
              "one, or smaller time steps",
@@ -126,24 +120,16 @@ static PetscErrorCode CheckStability(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Springs and dampers of the rows as these are */
+/* Springs of all pairs, and whether explicit steps stand them on the rows as these are */
 PetscErrorCode PenaltySetUpSprings(Contact contact)
 {
-  Penalty *penalty = (Penalty *)contact->data;
+  ContactStepper *stepper = (ContactStepper *)contact->data;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscReal          parameter, scale;
+    PetscReal scale;
 
-    PetscCall(GetPairPenalty(contact, pair, &parameter, &scale));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscReal area = contact->dim == 1 ? 1 : contact->rows.area[i] * contact->resultants.cross_section[p];
-
-      penalty->spring[i]    = parameter * area;
-      penalty->damper[i]    = penalty->damping * area;
-      penalty->stiffness[i] = penalty->spring[i] + penalty->damper[i] / penalty->step;
-    }
+    PetscCall(GetPairParameter(contact, &contact->pairs[p], &stepper->springs.stiffness[p], &scale));
   }
   PetscCall(CheckStability(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -151,19 +137,19 @@ PetscErrorCode PenaltySetUpSprings(Contact contact)
 
 PetscErrorCode PenaltyViewParameter(Contact contact, PetscViewer viewer)
 {
-  const Penalty *penalty = (const Penalty *)contact->data;
-  const char    *unit;
+  const StepperPenalty *penalty = PenaltyOf(contact);
+  const char           *unit;
 
   PetscFunctionBegin;
   unit = UnitsOf((PetscObject)contact, contact->dim == 1 ? UNIT_STIFFNESS : UNIT_STIFFNESS_ON_AREA);
-  if (!penalty->springs || penalty->penalty > 0) {
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g%s\n", (double)penalty->penalty, unit));
+  if (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE || penalty->parameter > 0) {
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g%s\n", (double)penalty->parameter, unit));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscReal parameter, scale;
 
-    PetscCall(GetPairPenalty(contact, &contact->pairs[p], &parameter, &scale));
+    PetscCall(GetPairParameter(contact, &contact->pairs[p], &parameter, &scale));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g%s, %g times the stiffness of the elements\n",
                                      contact->pairs[p].name, (double)parameter, unit, (double)scale));
   }

@@ -21,14 +21,14 @@
 @*/
 PetscErrorCode ContactPenaltySetParameter(Contact contact, PetscReal parameter)
 {
-  Penalty *penalty = NULL;
+  ContactStepper *stepper = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&penalty);
+  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&stepper);
   PetscValidLogicalCollectiveReal(contact, parameter, 2);
   PetscCheck(parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A penalty parameter of %g must be positive",
              (double)parameter);
-  penalty->penalty = parameter;
+  stepper->penalty.parameter = parameter;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,14 +50,14 @@ PetscErrorCode ContactPenaltySetParameter(Contact contact, PetscReal parameter)
 @*/
 PetscErrorCode ContactPenaltySetScale(Contact contact, PetscReal scale)
 {
-  Penalty *penalty = NULL;
+  ContactStepper *stepper = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&penalty);
+  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&stepper);
   PetscValidLogicalCollectiveReal(contact, scale, 2);
   PetscCheck(scale > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A penalty scale of %g must be positive",
              (double)scale);
-  penalty->scale = scale;
+  stepper->penalty.scale = scale;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -79,14 +79,14 @@ PetscErrorCode ContactPenaltySetScale(Contact contact, PetscReal scale)
 @*/
 PetscErrorCode ContactPenaltySetDamping(Contact contact, PetscReal damping)
 {
-  Penalty *penalty = NULL;
+  ContactStepper *stepper = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&penalty);
+  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&stepper);
   PetscValidLogicalCollectiveReal(contact, damping, 2);
   PetscCheck(damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "A damping of %g must be positive",
              (double)damping);
-  penalty->damping = damping;
+  stepper->penalty.damping = damping;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,16 +110,16 @@ PetscErrorCode ContactPenaltySetDamping(Contact contact, PetscReal damping)
 @*/
 PetscErrorCode ContactPenaltySetAugmentation(Contact contact, PetscReal tolerance, PetscInt max_it)
 {
-  Penalty *penalty = NULL;
+  ContactStepper *stepper = NULL;
 
   PetscFunctionBegin;
-  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&penalty);
+  ContactGetMethod(contact, CONTACT_PENALTY, CONTACT_AUGMENTED_LAGRANGIAN, "CONTACT_PENALTY", (void **)&stepper);
   PetscValidLogicalCollectiveReal(contact, tolerance, 2);
   PetscValidLogicalCollectiveInt(contact, max_it, 3);
   PetscCheck(tolerance > 0 && max_it > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "A gap of %g%s that is left, and a limit of %" PetscInt_FMT " augmentations, must be positive", (double)tolerance,
              UnitsOf((PetscObject)contact, UNIT_LENGTH), max_it);
-  penalty->augmentation_tolerance = tolerance;
-  penalty->augmentation_max_it    = max_it;
+  stepper->penalty.tolerance = tolerance;
+  stepper->penalty.rounds    = max_it;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
