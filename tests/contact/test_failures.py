@@ -7,8 +7,8 @@ from messages import check_message
 BLOCKS = f"-options_file {ROOT}/options/blocks.opts"
 NEVER = {
     "schwarz": ("-schwarz_snes_max_it 0", "left:right"),
-    "penalty": ("-contact_type penalty -penalty_snes_max_it 1 -penalty_snes_rtol 1e-20", "left:right"),
-    "lagrange": ("-contact_type lagrange -lagrange_snes_max_it 1 -lagrange_snes_atol 1e-30", "left:right"),
+    "penalty": ("-contact_type penalty -schwarz_snes_max_it 0", "left:right"),
+    "lagrange": ("-contact_type lagrange -schwarz_snes_max_it 0", "left:right"),
     "augmented": ("-contact_type augmented_lagrangian -contact_augmentation_max_it 1", "left:right"),
     "newton": ("-left_material_type neo_hookean -left_snes_max_it 1 -left_snes_rtol 1e-14 -left_snes_atol 1e-30 -left_snes_stol 0", "'left'"),
 }
@@ -29,8 +29,8 @@ def test_pairs_in_contact_of_many(impakt):
     check_message(run, ["in controller step ", "in contact: "])
 
 
-@pytest.mark.parametrize(("method", "search"), [("-contact_type penalty -penalty_snes_linesearch_type", "bt"), ("-schwarz_snes_linesearch_type", "nleqerr")])
+@pytest.mark.parametrize(("method", "search"), [("-contact_type penalty", "bt"), ("", "nleqerr")])
 def test_line_searches_that_want_slopes(impakt, method, search):
     """They multiply with the Jacobian, which is there only to be divided by."""
-    run = impakt(f"-options_file {ROOT}/options/impact-high-speed.opts {method} {search}", expect_failure=True)
+    run = impakt(f"-options_file {ROOT}/options/impact-high-speed.opts {method} -schwarz_snes_linesearch_type {search}", expect_failure=True)
     check_message(run, [f"snes_linesearch_type {search}", "secant"])

@@ -16,6 +16,7 @@ typedef struct {
   PetscReal     *derivatives; /* per node: those of P that the Jacobian has, ROW_LAW_ROWS^2 */
   PetscReal      resolution;  /* what rows read is right to so much, by round-off of positions [m] */
   PetscReal      proximal;    /* weight of the proximal term, in parts of the diagonal of S */
+  PetscBool      regular;     /* S is, so that there need be no such term: springs are on its diagonal */
   PetscScalar   *base, *read; /* per row: a force [N], and what is read under it [m] */
   PetscScalar   *centre;      /* per row: the force that the proximal term pulls to [N] */
   PetscScalar   *force;       /* per row: the solution [N] */

@@ -128,7 +128,7 @@ static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
    method, or so large that the term does not vanish, which is where the stiffnesses of bodies are far apart, there are others. */
 PetscErrorCode LawProblemSolve(LawProblem *problem)
 {
-  const PetscReal proximal[] = {1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
+  const PetscReal proximal[] = {problem->regular ? 0 : 1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
   PetscBool       slow       = PETSC_TRUE;
 
   PetscFunctionBegin;

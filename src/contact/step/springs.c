@@ -76,6 +76,7 @@ PetscErrorCode ContactStepperSetUpSprings(Contact contact, ContactStepper *stepp
 
   PetscFunctionBegin;
   if (!stepper->penalty.any) PetscFunctionReturn(PETSC_SUCCESS);
+  stepper->problem.regular = PETSC_TRUE;
   if (!stepper->penalty.rounds) contact->ops->stored = StoredEnergy;
   PetscCall(PetscCalloc4(contact->n_pairs, &springs->stiffness, n, &springs->softness, n, &springs->multiplier, n, &springs->change));
   PetscFunctionReturn(PETSC_SUCCESS);

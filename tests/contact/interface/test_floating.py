@@ -81,7 +81,7 @@ METHODS = {
     "stiff springs": " ".join(f"-{name}_artificial_stiffness 0.1" for name in SINK),
     "anderson": "-schwarz_snes_type anderson",
     "lagrange": "-contact_type lagrange",
-    "augmented": "-contact_type augmented_lagrangian -contact_penalty 1e12",
+    "augmented": "-contact_type augmented_lagrangian -contact_penalty 1e12 -contact_augmentation_tolerance 1e-14",
     "neo-hookean": "-lower_material_type neo_hookean -middle_material_type neo_hookean -upper_material_type neo_hookean",
 }
 

@@ -1,23 +1,31 @@
-/* Linear complementarity on the contact rows by a primal-dual active set: the forces of the active rows close their gaps. */
+/* Complementarity of gaps and forces of rows at one instant: the equations of the laws of rows, with a sparse C in place of S. */
 #include "complementarity.h"
-#include <checkpoint/checkpoint.h>
 
-/* Above so many active rows forces come from conjugate gradients: on matching or not matching faces with lumped mass they take about 20
-   iterations, as long as a factor of 441 rows that is kept through the contact, and half as long as one of 1936 */
-#define MAX_DENSE_ROWS 400
-/* of the gaps, by conjugate gradients, relative: near what factors leave; and what may be left where round-off keeps them from it */
-#define GAP_TOLERANCE 1e-14
-#define WORST_GAP     1e-9
+PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
+{
+  const PetscInt n = contact->rows.n;
+
+  PetscFunctionBegin;
+  PetscCall(RowLawCreate("unilateral", &problem->open));
+  PetscCall(RowLawCreate("tie", &problem->held));
+  PetscCall(PetscCalloc4(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine));
+  PetscCall(PetscMalloc1(contact->rows.n_all, &problem->rows));
+  PetscCall(ContactCreateRowVec(contact, &problem->field));
+  PetscCall(VecScatterCreateToAll(problem->field, &problem->to_all, &problem->all));
+  PetscCall(LawProblemSetUp(&problem->problem));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 PetscErrorCode ComplementarityDestroy(Complementarity *problem)
 {
   PetscFunctionBegin;
-  PetscCall(InterfaceOperatorDestroy(&problem->S));
+  PetscCall(LawProblemDestroy(&problem->problem));
   PetscCall(MatDestroy(&problem->compliance));
-  PetscCall(PetscFree6(problem->gaps, problem->forces, problem->active, problem->mine, problem->closed, problem->marks));
-  PetscCall(RoundsDestroy(&problem->rounds));
-  PetscCall(VecDestroy(&problem->force_vec));
-  PetscCall(VecDestroy(&problem->gap_vec));
+  PetscCall(PetscFree4(problem->gaps, problem->forces, problem->active, problem->mine));
+  PetscCall(PetscFree(problem->rows));
+  PetscCall(VecDestroy(&problem->field));
+  PetscCall(VecDestroy(&problem->all));
+  PetscCall(VecScatterDestroy(&problem->to_all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,103 +44,118 @@ PetscErrorCode ComplementaritySetCompliance(Contact contact, PetscErrorCode (*co
   }
   PetscCall(MatAssemblyBegin(problem->compliance, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(problem->compliance, MAT_FINAL_ASSEMBLY));
-  PetscCall(InterfaceOperatorSetMatrix(problem->S, problem->compliance));
   problem->current = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The active rows, unless they are those of the last time */
-static PetscErrorCode TakeActive(Contact contact, Complementarity *problem)
+/* The numbers of the rows of all ranks, from those of this rank's rows in `mine`, until they are given back */
+static PetscErrorCode GetAll(Complementarity *problem, const PetscScalar *all[])
 {
-  int differs = !problem->current;
+  PetscScalar *values;
+  PetscInt     n;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const InterfaceMark mark = problem->active[i] ? INTERFACE_SOLVED : INTERFACE_LEFT_OUT;
+  PetscCall(VecGetLocalSize(problem->field, &n));
+  PetscCall(VecGetArrayWrite(problem->field, &values));
+  for (PetscInt i = 0; i < n; i++) values[i] = problem->mine[i];
+  PetscCall(VecRestoreArrayWrite(problem->field, &values));
+  PetscCall(VecScatterBegin(problem->to_all, problem->field, problem->all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(problem->to_all, problem->field, problem->all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecGetArrayRead(problem->all, all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    differs |= problem->marks[i] != mark;
-    problem->marks[i] = mark;
+/* The rows of the problem, all that `mine` has a number for, with C of these unless it is there: 1 for rows that push, 2 for rows that pull
+   as well */
+static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
+{
+  LawProblem        *law  = &problem->problem;
+  PetscBool          same = problem->current;
+  PetscInt           n    = 0;
+  const PetscScalar *kind;
+  IS                 rows;
+  Mat               *C, S;
+
+  PetscFunctionBegin;
+  PetscCall(GetAll(problem, &kind));
+  for (PetscInt i = 0; i < contact->rows.n_all; i++) {
+    if (kind[i] == 0) continue;
+    same               = (PetscBool)(same && n < problem->n && problem->rows[n] == i);
+    problem->rows[n++] = i;
   }
-  PetscCall(ContactOr(contact, &differs));
-  if (!differs) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(InterfaceOperatorSetRows(problem->S, problem->marks, 1));
+  same       = (PetscBool)(same && n == problem->n);
+  problem->n = n;
+  PetscCall(LawProblemResize(law, n));
+  law->n_nodes  = n;
+  law->begin[n] = n;
+  for (PetscInt k = 0; k < n; k++) {
+    law->begin[k] = k;
+    law->law[k]   = PetscRealPart(kind[problem->rows[k]]) > 1 ? &problem->held : &problem->open;
+  }
+  PetscCall(VecRestoreArrayRead(problem->all, &kind));
+  PetscCall(PetscArrayzero(law->limit, 2 * n));
+  if (same || !n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, problem->rows, PETSC_USE_POINTER, &rows));
+  PetscCall(MatCreateSubMatrices(problem->compliance, 1, &rows, &rows, MAT_INITIAL_MATRIX, &C));
+  S = C[0];
+  PetscCall(PetscObjectReference((PetscObject)S));
+  PetscCall(LawProblemTakeS(law, &S, NULL));
+  PetscCall(MatDestroySubMatrices(1, &C));
+  PetscCall(ISDestroy(&rows));
   problem->current = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
+/* Forces of the rows of the problem, zero for the others; ContactFailed() tells where there are none */
+static PetscErrorCode Solve(Contact contact, Complementarity *problem)
 {
-  const InterfaceSettings settings = {.prefix      = "lagrange_interface_",
-                                      .tolerance   = GAP_TOLERANCE,
-                                      .worst       = WORST_GAP,
-                                      .dense_limit = MAX_DENSE_ROWS,
-                                      .few         = MAX_DENSE_ROWS,
-                                      .warm        = PETSC_TRUE};
-  const PetscInt          n        = contact->rows.n;
+  LawProblem        *law = &problem->problem;
+  const PetscScalar *gaps;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc6(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine, n, &problem->closed, n,
-                         &problem->marks));
-  PetscCall(RoundsCreate(contact, problem->active, problem->forces, problem->closed, &problem->rounds));
-  PetscCall(ContactCreateRowVec(contact, &problem->force_vec));
-  PetscCall(VecDuplicate(problem->force_vec, &problem->gap_vec));
-  PetscCall(InterfaceOperatorCreate(contact, &settings, &problem->S));
+  PetscCall(PetscArrayzero(problem->forces, contact->rows.n));
+  if (!problem->n) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = problem->gaps[i];
+  PetscCall(GetAll(problem, &gaps));
+  for (PetscInt k = 0; k < problem->n; k++) {
+    law->read[k] = gaps[problem->rows[k]];
+    law->base[k] = law->force[k] = 0;
+  }
+  PetscCall(VecRestoreArrayRead(problem->all, &gaps));
+  PetscCall(LawProblemSolve(law));
+  contact->counts.inner_iterations += law->iterations;
+  if (!law->solved) {
+    PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_ACTIVE_SET, PETSC_ERR_NOT_CONVERGED,
+                             "The contact forces of %" PetscInt_FMT " rows that close gaps or their rates at once were not found in "
+                             "%" PetscInt_FMT " iterations; choose a smaller -time_step, or raise -law_snes_max_it",
+                             problem->n, law->iterations));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  for (PetscInt k = 0; k < problem->n; k++) {
+    const PetscInt i = problem->rows[k] - contact->rows.begin;
+
+    if (i >= 0 && i < contact->rows.n) problem->forces[i] = PetscRealPart(law->force[k]);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces that close the gaps of the active rows, zero for the others */
+/* Forces that close the gaps of the active rows, whatever their signs */
 PetscErrorCode ComplementaritySolveActive(Contact contact, Complementarity *problem)
 {
-  PetscInt n;
-
   PetscFunctionBegin;
-  PetscCall(TakeActive(contact, problem));
-  InterfaceOperatorGetRows(problem->S, &n, NULL, NULL);
-  if (n) {
-    for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = -problem->gaps[i];
-    PetscCall(InterfaceOperatorSolve(problem->S, problem->mine, problem->forces));
-  } else PetscCall(PetscArrayzero(problem->forces, contact->rows.n));
+  for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = problem->active[i] ? 2 : 0;
+  PetscCall(TakeRows(contact, problem));
+  PetscCall(Solve(contact, problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gaps of all rows under the forces, zero being those of active rows but for round-off */
-static PetscErrorCode ComputeClosed(Contact contact, Complementarity *problem)
+/* Forces of all rows, of which those that are tied pull as well */
+PetscErrorCode ComplementaritySolve(Contact contact, Complementarity *problem)
 {
-  const PetscScalar *moved;
-  PetscScalar       *force;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(problem->force_vec, &force));
-  PetscCall(PetscArraycpy(force, problem->forces, contact->rows.n));
-  PetscCall(VecRestoreArrayWrite(problem->force_vec, &force));
-  PetscCall(MatMult(problem->compliance, problem->force_vec, problem->gap_vec));
-  PetscCall(VecGetArrayRead(problem->gap_vec, &moved));
-  for (PetscInt i = 0; i < contact->rows.n; i++) problem->closed[i] = problem->gaps[i] + moved[i];
-  PetscCall(VecRestoreArrayRead(problem->gap_vec, &moved));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Starts from all negative gaps, and those that are tied; ContactFailed() tells where it does not settle */
-PetscErrorCode ComplementaritySolve(Contact contact, PetscReal tolerance, Complementarity *problem)
-{
-  PetscBool changed = PETSC_TRUE, flips;
-
-  PetscFunctionBegin;
-  problem->rounds.tolerance = tolerance;
-  PetscCall(RoundsBegin(&problem->rounds));
-  for (PetscInt i = 0; i < contact->rows.n; i++) problem->active[i] = (PetscBool)(contact->rows.tied[i] || problem->gaps[i] < 0);
-  while (changed) {
-    PetscCall(RoundsNext(&problem->rounds));
-    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(ComplementaritySolveActive(contact, problem));
-    if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(ComputeClosed(contact, problem));
-    PetscCall(RoundsChange(&problem->rounds));
-    PetscCall(RoundsHaveChanged(&problem->rounds, &changed));
-    if (!changed) break;
-    contact->counts.set_changes++;
-    PetscCall(RoundsBreakCycle(&problem->rounds, &flips));
-  }
+  for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = 1 + contact->rows.tied[i];
+  PetscCall(TakeRows(contact, problem));
+  PetscCall(Solve(contact, problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,22 +167,5 @@ PetscErrorCode ComplementarityGetBodyForces(Contact contact, PetscInt b, const C
   PetscFunctionBegin;
   for (PetscInt k = 0; k < of->n; k++)
     forces[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * problem->forces[of->rows[k]];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* State for a checkpoint. C is set again before, with the rows as they are. */
-PetscErrorCode ComplementarityVisit(Contact contact, Complementarity *problem, Checkpoint checkpoint)
-{
-  const PetscInt n = contact->rows.n;
-
-  PetscFunctionBegin;
-  PetscCall(CheckpointVisitReals(checkpoint, "gaps", n, problem->gaps));
-  PetscCall(CheckpointVisitReals(checkpoint, "forces", n, problem->forces));
-  PetscCall(CheckpointVisitReals(checkpoint, "closed", n, problem->closed));
-  PetscCall(CheckpointVisitBools(checkpoint, "active", n, problem->active));
-  PetscCall(CheckpointVisitBytes(checkpoint, "marks", (size_t)n * sizeof(*problem->marks), problem->marks));
-  PetscCall(CheckpointVisitBools(checkpoint, "current", 1, &problem->current));
-  PetscCall(InterfaceOperatorVisit(problem->S, checkpoint));
-  PetscCall(RoundsVisit(&problem->rounds, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,28 +1,25 @@
-/* A linear complementarity problem on all rows: 0 <= gaps + C forces, forces >= 0, one of them zero; C is sparse. Private to
-   src/contact/impls. */
+/* A complementarity problem on rows: 0 <= gaps + C forces, forces >= 0, one of them zero; C is sparse. Private to src/contact/impls. */
 #pragma once
 #include <contact/parts.h>
-#include <contact/activeset/rounds.h>
-#include <contact/compliance/interfaceoperator.h>
+#include <contact/solve/lawproblem.h>
 
 typedef struct {
-  InterfaceOperator S;          /* C, with the active rows as those that are solved for */
-  Mat               compliance; /* C */
-  /* of the rows of this rank */
-  PetscScalar   *gaps, *forces;
-  PetscBool     *active; /* rows with a force */
-  PetscScalar   *mine;   /* work space */
-  PetscScalar   *closed; /* gaps under the forces */
-  Rounds         rounds;
-  InterfaceMark *marks;
-  PetscBool      current; /* those of C with S as it is */
-  Vec            force_vec, gap_vec;
+  Mat         compliance; /* C, of all rows */
+  LawProblem  problem;    /* the same on every rank */
+  RowLaw      open, held; /* of rows that push, and of those that pull as well */
+  PetscInt    n, *rows;   /* of the problem, by their numbers among those of all ranks, ascending */
+  PetscBool   current;    /* the problem has the C that there is, of these rows */
+  PetscReal  *gaps;       /* per row of this rank: what comes in [m, or m/s] */
+  PetscReal  *forces;     /* per row of this rank: what goes out [N, or N s] */
+  PetscBool  *active;     /* per row of this rank: it has a force */
+  PetscReal  *mine;       /* work space, per row of this rank */
+  Vec         field, all; /* work space: a number per row of this rank; of all ranks */
+  VecScatter  to_all;
 } Complementarity;
 
 PETSC_INTERN PetscErrorCode ComplementarityCreate(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementaritySetCompliance(Contact, PetscErrorCode (*)(Body, Mat *), Complementarity *);
-PETSC_INTERN PetscErrorCode ComplementaritySolve(Contact, PetscReal, Complementarity *);
+PETSC_INTERN PetscErrorCode ComplementaritySolve(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementaritySolveActive(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementarityGetBodyForces(Contact, PetscInt, const Complementarity *, PetscScalar[]);
 PETSC_INTERN PetscErrorCode ComplementarityDestroy(Complementarity *);
-PETSC_INTERN PetscErrorCode ComplementarityVisit(Contact, Complementarity *, Checkpoint);

@@ -50,7 +50,7 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&begin));
-  PetscCall(ComplementaritySolve(contact, contact->options.tolerance, &lagrange->forces));
+  PetscCall(ComplementaritySolve(contact, &lagrange->forces));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->forces, lagrange->forces.mine));
@@ -91,14 +91,11 @@ static PetscErrorCode ContactRowsChanged_ForwardLagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Nothing is remembered from step to step but what contact itself has in a checkpoint */
 static PetscErrorCode ContactVisit_ForwardLagrange(Contact contact, Checkpoint checkpoint)
 {
-  ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
-
   PetscFunctionBegin;
   if (CheckpointLoads(checkpoint)) PetscCall(ContactRowsChanged_ForwardLagrange(contact));
-  PetscCall(ComplementarityVisit(contact, &lagrange->forces, checkpoint));
-  if (lagrange->close_rate) PetscCall(ComplementarityVisit(contact, &lagrange->impulses, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

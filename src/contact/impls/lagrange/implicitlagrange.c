@@ -105,12 +105,10 @@ static PetscErrorCode RowsChanged(Contact contact)
 
 static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 {
-  Corrections *corrections = CorrectionsOf(contact);
-
   PetscFunctionBegin;
   PetscCall(ContactStepperVisit(contact, checkpoint));
-  if (CheckpointLoads(checkpoint)) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &corrections->impulses));
-  PetscCall(ComplementarityVisit(contact, &corrections->impulses, checkpoint));
+  if (CheckpointLoads(checkpoint))
+    PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &CorrectionsOf(contact)->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

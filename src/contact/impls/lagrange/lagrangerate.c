@@ -57,7 +57,7 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
   }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComplementaritySolve(contact, contact->options.tolerance, impulses));
+  PetscCall(ComplementaritySolve(contact, impulses));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));

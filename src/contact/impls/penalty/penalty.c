@@ -103,8 +103,9 @@ static PetscErrorCode View(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  damping %g%s\n", (double)penalty->damping,
                                      UnitsOf((PetscObject)contact, contact->dim == 1 ? UNIT_DASHPOT : UNIT_DASHPOT_ON_AREA)));
   if (penalty->rounds)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until the gap is within %g%s\n", (double)penalty->tolerance,
-                                     UnitsOf((PetscObject)contact, UNIT_LENGTH)));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  augmented until %s within %g%s\n",
+                                     ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) ? "gaps and slips are" : "the gap is",
+                                     (double)penalty->tolerance, UnitsOf((PetscObject)contact, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

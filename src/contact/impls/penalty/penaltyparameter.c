@@ -138,20 +138,20 @@ PetscErrorCode PenaltySetUpSprings(Contact contact)
 PetscErrorCode PenaltyViewParameter(Contact contact, PetscViewer viewer)
 {
   const StepperPenalty *penalty = PenaltyOf(contact);
-  const char           *unit;
+  const char           *unit, *across = ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) ? ", along the normals and across them" : "";
 
   PetscFunctionBegin;
   unit = UnitsOf((PetscObject)contact, contact->dim == 1 ? UNIT_STIFFNESS : UNIT_STIFFNESS_ON_AREA);
   if (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE || penalty->parameter > 0) {
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g%s\n", (double)penalty->parameter, unit));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter %g%s%s\n", (double)penalty->parameter, unit, across));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscReal parameter, scale;
 
     PetscCall(GetPairParameter(contact, &contact->pairs[p], &parameter, &scale));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g%s, %g times the stiffness of the elements\n",
-                                     contact->pairs[p].name, (double)parameter, unit, (double)scale));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  penalty parameter of %s %g%s, %g times the stiffness of the elements%s\n",
+                                     contact->pairs[p].name, (double)parameter, unit, (double)scale, across));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

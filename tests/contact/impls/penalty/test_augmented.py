@@ -19,8 +19,7 @@ NAME = "contact/left:right/force"
 def test_stiff(integrators, shared_run):
     """tau W = 1e9 N/m times 2.5e-6 m/N: each round makes the gap 2500 times smaller."""
     run = shared_run(joined(AUGMENTED, "-contact_penalty 1e9", integrators))
-    assert run.summary["schwarz"]["max"] <= 6  # three rounds of two sweeps
-    assert run.summary["schwarz"]["mean_contact_steps"] <= 2.1
+    assert run.summary["schwarz"]["max"] == 2  # rounds solve the law of rows again, and advance no body
     assert run.summary["contact"]["onsets"] == 1
     assert run.summary["contact"]["max_penetration"] <= 1e-10  # -contact_augmentation_tolerance
     assert force_scatter(run.summary) <= 1.8e-5  # measured: 1.34e-5, half the factor on the masses left
@@ -30,13 +29,13 @@ def test_stiff(integrators, shared_run):
     assert never_tensile(run)
 
 
-@pytest.mark.parametrize(("penalty", "most"), [("7.5e4", 10), *long(("1e12", 3))])
-def test_any_penalty(penalty, most, shared_run):
-    """The same forces with the paper's parameter, whose rounds are extrapolated (they were 70 else, each of two sweeps), and with one that is far too stiff for
+@pytest.mark.parametrize("penalty", ["7.5e4", *long("1e12")])
+def test_any_penalty(penalty, shared_run):
+    """The same forces with the paper's parameter, whose rounds are extrapolated (they were 70 else), and with one that is far too stiff for
     the penalty method; within the tolerance of 1e-10 m over a compliance of 2.5e-6 m/N, times two for both runs."""
     run = shared_run(f"{AUGMENTED} -contact_penalty {penalty}")
     stiff = shared_run(f"{AUGMENTED} -contact_penalty 1e9")
-    assert most / 2 < run.summary["schwarz"]["max"] <= most
+    assert run.summary["schwarz"]["max"] == 2
     assert abs(run.history[NAME][()] - stiff.history[NAME][()]).max() <= 1e-4
     assert run.summary["contact"]["max_penetration"] <= 1e-10
 
@@ -46,7 +45,7 @@ def test_tolerance(shared_run):
     """With 1e-14 m it is the Lagrange multiplier, to 1e-9 of the force. A node out of contact may lie as deep as does not count as
     penetration, 3e-12 of the extent of 0.27 m."""
     run = shared_run(f"{AUGMENTED} -contact_penalty 1e9 -contact_augmentation_tolerance 1e-14")
-    lagrange = shared_run(f"{DEFAULTS} -contact_type lagrange -lagrange_snes_atol 1e-15")
+    lagrange = shared_run(f"{DEFAULTS} -contact_type lagrange")
     assert run.summary["contact"]["max_penetration"] <= 3e-12 * 0.27
     assert abs(run.history[NAME][()] - lagrange.history[NAME][()]).max() <= 3e-8  # measured: 8.6e-9
 
