@@ -71,7 +71,7 @@ WRONG = {
     "-time_end -1": "-time_end -1.{time} must be later than -time_start 0.{time}",
     "-time_step 1e-10 -time_end 1e20": "-time_step 1e-10{time} is too small for 1e+20{time} of",
     "-contact_law tied": "is apart by 1.{length}, which",
-    "-contact_type penalty -penalty_snes_max_it 1 -controller_step_cuts 0": "{force} (DIVERGED_MAX_IT)",
+    "-schwarz_snes_max_it 0 -controller_step_cuts 0": "{length} are allowed",
     "-contact_type augmented_lagrangian -contact_augmentation_max_it 1 -controller_step_cuts 0": "augmentations the gap is off by 0.000906771{length}. Raise",
 }
 LABELS = {

@@ -68,7 +68,7 @@ static void options_are_suggested_by_meaning(void **state)
       {"-floor_v 1 -obstacles floor", "nearest known one is -floor_velocity)"},
       {"-contact_friction 0.3", "-contact_friction 0.3 (needs -contact_law coulomb)"},
       {"-contact_friction_left:right 0.3", "-contact_friction_left:right 0.3 (needs -contact_law coulomb)"},
-      {"-lagrange_snes_max_it 3", "-lagrange_snes_max_it 3 (needs -contact_type lagrange)"},
+      {"-contact_augmentation_max_it 3", "-contact_augmentation_max_it 3 (needs -contact_type augmented_lagrangian)"},
   };
 
   (void)state;

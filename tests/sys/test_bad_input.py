@@ -58,7 +58,6 @@ CASES = {
     "penalty-scale": ("-options_file options/bars-high-speed.opts -contact_type penalty -contact_penalty_scale -1", ["-contact_penalty_scale -1", "positive"]),
     "penalty-negative": (f"{PENALTY} -contact_penalty -1", ["-contact_penalty", "positive"]),
     "lagrange-substeps": ("-options_file options/impact-lagrange.opts -left_ts_time_step 1e-8", ["lagrange", "'left' (10 substeps)", "-left_mass_redistribute true"]),
-    "lagrange-snes-type": (f"{BASE} -contact_type lagrange -lagrange_snes_type newtonls", ["-lagrange_snes_type", "vinewtonrsls", "vinewtonssls"]),
     "augmented-explicit": (
         "-options_file options/impact-lagrange.opts -contact_type augmented_lagrangian -contact_penalty 1e8",
         ["augmented_lagrangian", "left", "right", "-left_mass_redistribute true", "-left_ts_type alpha2"],

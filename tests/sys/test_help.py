@@ -13,7 +13,7 @@ ENTRY = re.compile(r"^  -(\S+) \S+\n      \S.*$", re.MULTILINE)
 OF_PETSC = {
     "options_file_yaml", "prefix_push", "prefix_pop", "pc_gamg_use_sa_esteig", "snes_type", "snes_anderson_m", "snes_anderson_beta",
     "snes_linesearch_damping", "snes_linesearch_type", "snes_vi_zero_tolerance", "snes_lag_jacobian_persists", "snes_lag_preconditioner_persists",
-    "lagrange_snes_vi_zero_tolerance", "ts_view", "dm_view", "dm_distribute", "dm_distribute_overlap", "dm_plex_box_bd", "dm_plex_cell",
+    "ts_view", "dm_view", "dm_distribute", "dm_distribute_overlap", "dm_plex_box_bd", "dm_plex_cell",
     "dm_plex_interpolate", "dm_plex_reorder", "dm_plex_separate_marker", "petscpartitioner_type", "help", "help_options", "version", "h", "log_exclude",
 }  # fmt: skip
 
@@ -85,8 +85,8 @@ SOME = {
     "obstacles": {"obstacles", "<obstacle>_normal"},
     "schwarz": {"schwarz_snes_type", "contact_rule", "law_snes_type", "law_snes_max_it", "law_nodes_snes_max_it"},
     "alternation": {"schwarz_transmission", "contact_swap_sides"},
-    "penalty": {"contact_penalty", "penalty_snes_rtol"},
-    "lagrange": {"lagrange_snes_type", "contact_augmentation_tolerance"},
+    "penalty": {"contact_penalty", "contact_penalty_damping"},
+    "lagrange": {"contact_augmentation_tolerance"},
     "files": {"options_file", "output_history"},
 }
 

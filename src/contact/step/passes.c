@@ -257,7 +257,7 @@ static PetscErrorCode CheckSprings(Contact contact, const ContactStepper *steppe
                            "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
                            " augmentations the gap is off by %g%s. Raise -contact_penalty or -contact_augmentation_max_it, or loosen "
                            "-contact_augmentation_tolerance",
-                           (double)time, stepper->springs.rounds, (double)stepper->springs.give,
+                           (double)time, stepper->springs.rounds + 1, (double)stepper->springs.give,
                            UnitsOf((PetscObject)contact, UNIT_LENGTH)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -265,6 +265,7 @@ static PetscErrorCode CheckSprings(Contact contact, const ContactStepper *steppe
 /* The outer iteration over the touching rows */
 PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
 {
+  const char         *length = UnitsOf((PetscObject)contact, UNIT_LENGTH);
   SNESConvergedReason reason;
   PetscScalar        *x;
   PetscInt            worst;
@@ -309,9 +310,10 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
   worst = WorstGroup(contact, stepper, atol, rtol);
   PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
                            "The contact forces of the step that ends at time %.9g s were not found in %" PetscInt_FMT
-                           " passes: rows are off by %g m, where %g m are allowed%s; choose a smaller -time_step, raise "
+                           " passes: rows are off by %g%s, where %g%s are allowed%s; choose a smaller -time_step, raise "
                            "-schwarz_snes_max_it, or look with -schwarz_snes_monitor and -info",
-                           (double)time, stepper->passes, (double)stepper->off[worst], (double)(rtol * stepper->scale[worst] + atol),
+                           (double)time, stepper->passes, (double)stepper->off[worst], length,
+                           (double)(rtol * stepper->scale[worst] + atol), length,
                            PetscIsInfOrNanReal(stepper->off[worst]) ? " (not a number)" : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -167,7 +167,7 @@ PetscErrorCode ContactStepperImproveSprings(ContactStepper *stepper, PetscBool *
   if (!stepper->penalty.rounds || !problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < problem->n; i++)
     springs->give = PetscMax(springs->give, PetscAbsScalar(springs->softness[i] * (problem->force[i] - springs->multiplier[i])));
-  if (springs->give <= stepper->penalty.tolerance || springs->rounds >= stepper->penalty.rounds) PetscFunctionReturn(PETSC_SUCCESS);
+  if (springs->give <= stepper->penalty.tolerance || springs->rounds >= stepper->penalty.rounds - 1) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < problem->n; i++) problem->read[i] += springs->softness[i] * springs->multiplier[i];
   TakeForces(problem, springs);
   for (PetscInt i = 0; i < problem->n; i++) problem->read[i] -= springs->softness[i] * springs->multiplier[i];

@@ -85,7 +85,7 @@ typedef struct {
   PetscReal scale;     /* of the latter; 0: by the mass of the contact nodes */
   PetscReal damping;   /* of dampers, on a unit of area [N s/m^3; N s/m in one dimension] */
   PetscReal tolerance; /* that the augmented Lagrangian leaves [m] */
-  PetscInt  rounds;    /* of it in a step, at most; 0: the penalty method */
+  PetscInt  rounds;    /* solutions of the law in a step, at most; 0: the penalty method */
 } StepperPenalty;
 
 /* The same, for the rows that there are; see springs.c */

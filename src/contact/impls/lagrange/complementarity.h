@@ -4,17 +4,17 @@
 #include <contact/solve/lawproblem.h>
 
 typedef struct {
-  Mat         compliance; /* C, of all rows */
-  LawProblem  problem;    /* the same on every rank */
-  RowLaw      open, held; /* of rows that push, and of those that pull as well */
-  PetscInt    n, *rows;   /* of the problem, by their numbers among those of all ranks, ascending */
-  PetscBool   current;    /* the problem has the C that there is, of these rows */
-  PetscReal  *gaps;       /* per row of this rank: what comes in [m, or m/s] */
-  PetscReal  *forces;     /* per row of this rank: what goes out [N, or N s] */
-  PetscBool  *active;     /* per row of this rank: it has a force */
-  PetscReal  *mine;       /* work space, per row of this rank */
-  Vec         field, all; /* work space: a number per row of this rank; of all ranks */
-  VecScatter  to_all;
+  Mat        compliance; /* C, of all rows */
+  LawProblem problem;    /* the same on every rank */
+  RowLaw     open, held; /* of rows that push, and of those that pull as well */
+  PetscInt   n, *rows;   /* of the problem, by their numbers among those of all ranks, ascending */
+  PetscBool  current;    /* the problem has the C that there is, of these rows */
+  PetscReal *gaps;       /* per row of this rank: what comes in [m, or m/s] */
+  PetscReal *forces;     /* per row of this rank: what goes out [N, or N s] */
+  PetscBool *active;     /* per row of this rank: it has a force */
+  PetscReal *mine;       /* work space, per row of this rank */
+  Vec        field, all; /* work space: a number per row of this rank; of all ranks */
+  VecScatter to_all;
 } Complementarity;
 
 PETSC_INTERN PetscErrorCode ComplementarityCreate(Contact, Complementarity *);
