@@ -327,7 +327,6 @@ PETSC_EXTERN PetscErrorCode ContactSetPairFrictionLaw(Contact, PetscInt, const c
 PETSC_EXTERN PetscErrorCode ContactSetFriction(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetPairFriction(Contact, PetscInt, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetKineticFriction(Contact, PetscReal, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactSetFrictionDenseLimit(Contact, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactGetFrictionLoss(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetObstacleWork(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetConstraint(Contact, ContactConstraint);

@@ -44,6 +44,7 @@ static const char *const late_options[] = {"schwarz_snes_view",
 static const struct {
   const char *name, *now;
 } gone_options[] = {
+    {"contact_friction_dense_limit", "matrices are as the bodies need them"},
     {"lagrange_snes_", "forces are found as with -contact_type schwarz, whose options are -schwarz_snes_..."},
     {"penalty_snes_", "forces are found as with -contact_type schwarz, whose options are -schwarz_snes_..."},
     {"schwarz_condense", "sweeps advance the bodies themselves"},

@@ -217,9 +217,6 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_friction_kinetic", "mu",
      "mu_k, what the coefficient mu_s falls to with the speed v of sliding: mu_k + (mu_s - mu_k) exp(-d v)"},
     {"contact", OPTION_OF_RUN, "contact_friction_decay", "d", "d in that [s/m]"},
-    {"contact", OPTION_OF_RUN, "contact_friction_dense_limit", "n",
-     "rows in contact up to which steps with friction have dense matrices, default 300, and 2000 where products take longer; beyond, "
-     "forces come from GMRES. Not with -contact_type schwarz"},
     {"contact", OPTION_OF_RUN, "contact_separation", "true|false",
      "whether surfaces that have met may come apart again, default true; false, of frictionless ones under schwarz or alternation: they "
      "slide on "

@@ -129,7 +129,6 @@ typedef struct {
   PetscReal            friction;         /* coefficient of friction of nodes that stick; less than 0: not set */
   PetscReal            friction_kinetic; /* of those that slide fast; less than 0: the same */
   PetscReal            friction_decay;   /* how fast it falls to that with the speed [s/m] */
-  PetscInt             friction_dense;   /* rows up to which the matrices of steps with friction are dense; less than 0: as costs say */
   PetscInt             glue;             /* law of glue of pairs that have none of their own, in contact->glues */
 } ContactOptions;
 

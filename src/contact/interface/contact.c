@@ -57,7 +57,6 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   (*contact)->options.tie_distance     = TIE_DISTANCE;
   (*contact)->options.friction         = -1;
   (*contact)->options.friction_kinetic = -1;
-  (*contact)->options.friction_dense   = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -201,7 +201,6 @@ static PetscErrorCode TakeAlternation(Contact contact, size_t size, char type[])
 . -contact_<law>_<parameter> x, -contact_<law>_<parameter>_<pair> x - parameters of a law of glue, as -contact_spring_stiffness [N/m^3]
 . -contact_friction mu, -contact_friction_<pair> mu             - coefficient of friction of all pairs; of one
 . -contact_friction_kinetic mu, -contact_friction_decay d       - what it falls to with the speed v of sliding, as exp(-d v)
-. -contact_friction_dense_limit n                               - rows up to which steps with friction have dense matrices
 . -contact_separation (true|false)                              - whether surfaces that have met may come apart again
 . -contact_tie_distance d                                      - gap or overlap up to which nodes are tied [parts of a face], default 0.01
 . -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the

@@ -230,45 +230,10 @@ PetscErrorCode ContactSetKineticFriction(Contact contact, PetscReal coefficient,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactSetFrictionDenseLimit - sets the number of contact rows up to which the matrices of controller steps with friction are dense
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- limit   - rows in contact at once: two for each node in the plane, three in space; 0: no matrix is dense. By default 300 rows, and 2000
-            where products with the factors of the bodies would take longer
-
-  Options Database Key:
-. -contact_friction_dense_limit n - the limit
-
-  Level: advanced
-
-  Note:
-  With more rows the forces come from GMRES, by products with the compliance of the bodies, in place of LU factors. They are the same to
-  the tolerance of both; time and memory go with the number of rows, not with its square and cube. Options of that solver have the prefix
-  friction_, as in -friction_ksp_monitor.
-
-.seealso: `Contact`, `ContactSetFrictionLaw()`, `ContactSchwarzSetDenseLimit()`
-@*/
-PetscErrorCode ContactSetFrictionDenseLimit(Contact contact, PetscInt limit)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveInt(contact, limit, 2);
-  ContactCheckNotSetUp(contact);
-  PetscCheck(limit >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "-contact_friction_dense_limit %" PetscInt_FMT " must not be negative", limit);
-  contact->options.friction_dense = limit;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Coefficients from the options, once the pairs are known */
 PetscErrorCode ContactReadFriction(Contact contact)
 {
   PetscReal mu = PetscMax(contact->options.friction, 0), kinetic = 0, decay = 0;
-  PetscInt  limit = contact->options.friction_dense;
   PetscBool set, set_decay;
 
   PetscFunctionBegin;
@@ -283,9 +248,6 @@ PetscErrorCode ContactReadFriction(Contact contact)
   PetscCheck(set == set_decay, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_friction_kinetic and -contact_friction_decay go together: the coefficient is mu_k + (mu_s - mu_k) exp(-d |v|)");
   if (set) PetscCall(ContactSetKineticFriction(contact, kinetic, decay));
-  PetscCall(PetscOptionsInt("-contact_friction_dense_limit", "Rows up to which matrices of steps with friction are dense",
-                            "ContactSetFrictionDenseLimit", limit, &limit, &set));
-  if (set) PetscCall(ContactSetFrictionDenseLimit(contact, limit));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     char option[PETSC_MAX_PATH_LEN];
 

@@ -5,8 +5,9 @@
    body holds it. So a polynomial of degree one in the stiffness K of the layer is near its inverse, and takes no solutions: with D the
    diagonal of K, it is the one whose product with D^{-1} K is nearest to one on an interval of eigenvalues, which is Chebyshev's.
 
-   Source: O. G. Johnson, C. A. Micchelli, G. Paul, Polynomial preconditioners for conjugate gradient calculations, SIAM Journal on Numerical
-   Analysis 20 (1983) 362-376.
+   Sources: O. G. Johnson, C. A. Micchelli, G. Paul, Polynomial preconditioners for conjugate gradient calculations, SIAM Journal on
+   Numerical Analysis 20 (1983) 362-376; M. F. Hutchinson, A stochastic estimator of the trace of the influence matrix for Laplacian
+   smoothing splines, Communications in Statistics - Simulation and Computation 19 (1990).
 */
 #include "stepimpl.h"
 

@@ -54,10 +54,6 @@ static PetscErrorCode Check(Contact contact)
   PetscFunctionBegin;
   PetscCheck(contact->dim > 1 || !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), comm, PETSC_ERR_SUP,
              "-contact_law %s: bars of one dimension cannot slide; choose frictionless", contact->friction.name);
-  if (contact->options.friction_dense >= 0)
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "impakt: warning: -contact_friction_dense_limit has no effect with -contact_type schwarz, which chooses its "
-                           "matrices by the bodies; leave it out\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

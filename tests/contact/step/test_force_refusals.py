@@ -38,6 +38,7 @@ REFUSED = {
     "law-of-another": ("-contact_type lagrange -law_snes_max_it 3", ["-law_snes_max_it 3", "needs -contact_type schwarz|force"]),
     "outer-of-another": ("-contact_type penalty -schwarz_snes_max_it 3", ["-schwarz_snes_max_it 3", "needs -contact_type schwarz|force|alternation"]),
     "friction-of-another": (f"-contact_type alternation {MASS} {FRICTION}", ["-contact_law coulomb", "-contact_type alternation has no friction", "-contact_type schwarz"]),
+    "mass-and-friction": (f"-contact_type lagrange {MASS} {FRICTION}", ["massless contact nodes", "-contact_type schwarz"]),
 }
 
 
@@ -53,7 +54,7 @@ LEFT = {
     f"{MASS} -contact_stabilization naive": "-contact_stabilization goes with -contact_type alternation, which is taken",
     "-left_ts_alpha_alpha_m 0.9": "generalized alpha (-<body>_ts_alpha_...) goes with -contact_type alternation, which is taken",
     "-contact_type schwarz -schwarz_traction reaction": "-schwarz_traction is an option of -contact_type alternation, which is taken",
-    f"{FRICTION} -contact_friction_dense_limit 10": "-contact_friction_dense_limit has no effect",
+    f"{FRICTION} -contact_friction_dense_limit 10": "-contact_friction_dense_limit 10 has no effect any more",
     "-schwarz_snes_type newtonls": "-schwarz_snes_type newtonls has no effect any more",
     "-schwarz_condense 1": "-schwarz_condense 1 has no effect any more",
     "-contact_type alternation -schwarz_snes_type newtonls": "-schwarz_snes_type newtonls has no effect any more: sweeps have no Jacobian, and anderson is taken",
