@@ -35,8 +35,7 @@ REFUSED = {
     "tolerance": (f"{MASS} -contact_energy_tolerance 1e-4", ["-contact_energy_tolerance has no effect", "gains none by its rule"]),
     # of other methods
     "rule-of-another": ("-contact_type alternation -contact_rule auto", ["-contact_rule auto", "needs -contact_type schwarz|force"]),
-    "law-of-another": ("-contact_type lagrange -law_snes_max_it 3", ["-law_snes_max_it 3", "needs -contact_type schwarz|force"]),
-    "outer-of-another": ("-contact_type penalty -schwarz_snes_max_it 3", ["-schwarz_snes_max_it 3", "needs -contact_type schwarz|force|alternation"]),
+    "law-of-another": ("-contact_type alternation -law_snes_max_it 3", ["-law_snes_max_it 3", "needs -contact_type schwarz|force"]),
     "friction-of-another": (f"-contact_type alternation {MASS} {FRICTION}", ["-contact_law coulomb", "-contact_type alternation has no friction", "-contact_type schwarz"]),
     "mass-and-friction": (f"-contact_type lagrange {MASS} {FRICTION}", ["massless contact nodes", "-contact_type schwarz"]),
 }
