@@ -56,6 +56,7 @@ static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pa
 PETSC_INTERN PetscErrorCode    ContactWarnOfStages(Contact, PetscBool);
 PETSC_INTERN PetscFunctionList ContactList, ContactLawList;
 
+PETSC_INTERN PetscErrorCode ContactGetTime(Contact, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckObstacleName(Contact, const char[]);
 PETSC_INTERN PetscErrorCode ContactRefuseInside(Contact, const ContactPair *, PetscReal);

@@ -1,10 +1,5 @@
 #include "compliance.h"
 
-/* A column that ranks have still to add up: the place of its row, at how many levels, on how many rows */
-typedef struct {
-  PetscInt place, levels, n;
-} Waiting;
-
 struct _n_Compliance {
   MPI_Comm     comm;
   PetscMPIInt  size;
@@ -15,14 +10,8 @@ struct _n_Compliance {
   PetscInt    *known;                        /* per place: levels that its column has */
   PetscInt    *from;                         /* work space, per place */
   PetscScalar *matrices;                     /* levels of them, room x room by columns [m/N] */
-  PetscScalar *ramp;                         /* room x room; made when asked for */
-  PetscBool    ramp_valid;
-  /* columns that have been set since ComplianceWait(), one after the other, level by level */
-  PetscBool    waits;
-  PetscInt     n_waiting, most_waiting; /* how many; how many there is room for */
-  Waiting     *waiting;
-  PetscInt     n_values, most_values;
-  PetscScalar *values;
+  PetscInt     most_values;                  /* room for the following */
+  PetscScalar *values;                       /* work space: a column */
 };
 
 /* For `local` rows of this rank from number `begin` on, of `global` rows in all */
@@ -52,8 +41,7 @@ PetscErrorCode ComplianceDestroy(Compliance *compliance)
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFree(c->place));
   PetscCall(PetscFree3(c->rows, c->known, c->from));
-  PetscCall(PetscFree2(c->matrices, c->ramp));
-  PetscCall(PetscFree(c->waiting));
+  PetscCall(PetscFree(c->matrices));
   PetscCall(PetscFree(c->values));
   PetscCall(PetscFree(*compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -63,8 +51,7 @@ PetscErrorCode ComplianceDestroy(Compliance *compliance)
 void ComplianceClear(Compliance c)
 {
   for (PetscInt i = 0; i < c->n; i++) c->place[c->rows[i]] = -1;
-  c->n = c->n_waiting = c->n_values = 0;
-  c->ramp_valid                     = PETSC_FALSE;
+  c->n = 0;
 }
 
 /* Room for `more` rows beside those that are known, so that these need not allocate one by one */
@@ -72,25 +59,23 @@ PetscErrorCode ComplianceReserve(Compliance c, PetscInt more)
 {
   const PetscInt old = c->room, room = PetscMin(c->global, PetscMax(c->n + more, 2 * old));
   PetscInt      *rows, *known, *from;
-  PetscScalar   *matrices, *ramp;
+  PetscScalar   *matrices;
 
   PetscFunctionBegin;
   if (c->n + more <= old) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc3(room, &rows, room, &known, room, &from));
-  PetscCall(PetscMalloc2(c->levels * room * room, &matrices, room * room, &ramp));
+  PetscCall(PetscMalloc1(c->levels * room * room, &matrices));
   PetscCall(PetscArraycpy(rows, c->rows, c->n));
   PetscCall(PetscArraycpy(known, c->known, c->n));
   for (PetscInt k = 0; k < c->levels; k++)
     for (PetscInt j = 0; j < c->n; j++) PetscCall(PetscArraycpy(matrices + (k * room + j) * room, c->matrices + (k * old + j) * old, c->n));
   PetscCall(PetscFree3(c->rows, c->known, c->from));
-  PetscCall(PetscFree2(c->matrices, c->ramp));
-  c->rows       = rows;
-  c->known      = known;
-  c->from       = from;
-  c->matrices   = matrices;
-  c->ramp       = ramp;
-  c->room       = room;
-  c->ramp_valid = PETSC_FALSE;
+  PetscCall(PetscFree(c->matrices));
+  c->rows     = rows;
+  c->known    = known;
+  c->from     = from;
+  c->matrices = matrices;
+  c->room     = room;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,102 +109,27 @@ static PetscErrorCode AddRow(Compliance c, PetscInt row)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for another column that waits */
-static PetscErrorCode MakeWaitingRoom(Compliance c, PetscInt size)
-{
-  PetscFunctionBegin;
-  if (c->n_waiting == c->most_waiting) {
-    c->most_waiting = PetscMax(c->room, 2 * c->most_waiting);
-    PetscCall(PetscRealloc(c->most_waiting * sizeof(*c->waiting), &c->waiting));
-  }
-  if (c->n_values + size > c->most_values) {
-    c->most_values = PetscMax(c->n_values + size, PetscMax(c->levels * c->room, 2 * c->most_values));
-    PetscCall(PetscRealloc(c->most_values * sizeof(*c->values), &c->values));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Columns that are set from now on wait until ranks have added them up, which callers do for many bodies at once: each with the values of
-   the rank's own rows until then */
-void ComplianceWait(Compliance c)
-{
-  c->waits = PETSC_TRUE;
-}
-
-/* What is to be added up over all ranks, in place */
-void ComplianceGetWaiting(Compliance c, PetscInt *n, PetscScalar *values[])
-{
-  *n      = c->size > 1 ? c->n_values : 0;
-  *values = c->values;
-}
-
-/* The columns that have waited, of all ranks */
-void ComplianceTakeWaiting(Compliance c)
-{
-  const PetscScalar *value = c->values;
-
-  for (PetscInt w = 0; w < c->n_waiting; w++) {
-    const Waiting *column = &c->waiting[w];
-    const PetscInt j      = column->place;
-
-    for (PetscInt k = 0; k < column->levels; k++) {
-      PetscScalar *matrix = c->matrices + k * c->room * c->room;
-
-      for (PetscInt i = 0; i < column->n; i++) matrix[j * c->room + i] = matrix[i * c->room + j] = *value++;
-    }
-  }
-  c->n_waiting = c->n_values = 0;
-  c->waits                   = PETSC_FALSE;
-}
-
-/* Room for a column of some levels, the last one that waits; `values`: where they belong, of the known rows of every rank */
-static PetscErrorCode BeginColumn(Compliance c, PetscInt row, PetscInt levels, PetscScalar *values[])
+/* Displacements of this rank's rows under a unit force on a row, at the first `levels` of the levels; collective */
+PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, const PetscScalar mine[])
 {
   PetscInt j;
 
   PetscFunctionBegin;
   if (c->place[row] < 0) PetscCall(AddRow(c, row));
   j = c->place[row];
-  PetscCall(MakeWaitingRoom(c, levels * c->n));
-  *values                    = c->values + c->n_values;
-  c->waiting[c->n_waiting++] = (Waiting){.place = j, .levels = levels, .n = c->n};
-  c->n_values += levels * c->n;
-  c->known[j]   = PetscMax(c->known[j], levels);
-  c->ramp_valid = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  if (levels * c->n > c->most_values) {
+    c->most_values = PetscMax(levels * c->n, PetscMax(c->levels * c->room, 2 * c->most_values));
+    PetscCall(PetscFree(c->values));
+    PetscCall(PetscMalloc1(c->most_values, &c->values));
+  }
+  ComplianceSpread(c, levels, mine, c->values);
+  if (c->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->values, (PetscMPIInt)(levels * c->n), MPIU_SCALAR, MPIU_SUM, c->comm));
+  for (PetscInt k = 0; k < levels; k++) {
+    PetscScalar *matrix = c->matrices + k * c->room * c->room;
 
-/* The values are there: unless they are to wait, ranks add them up */
-static PetscErrorCode EndColumn(Compliance c)
-{
-  PetscFunctionBegin;
-  if (c->waits) PetscFunctionReturn(PETSC_SUCCESS);
-  if (c->size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, c->values, (PetscMPIInt)c->n_values, MPIU_SCALAR, MPIU_SUM, c->comm));
-  ComplianceTakeWaiting(c);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Displacements of this rank's rows under a unit force on a row, at the first `levels` of the levels; collective */
-PetscErrorCode ComplianceSetColumn(Compliance c, PetscInt row, PetscInt levels, const PetscScalar mine[])
-{
-  PetscScalar *values;
-
-  PetscFunctionBegin;
-  PetscCall(BeginColumn(c, row, levels, &values));
-  ComplianceSpread(c, levels, mine, values);
-  PetscCall(EndColumn(c));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same, at the first level, of the rows of all ranks from one that has found them; NULL: this is another. Collective. */
-PetscErrorCode ComplianceSetWholeColumn(Compliance c, PetscInt row, const PetscScalar all[])
-{
-  PetscScalar *values;
-
-  PetscFunctionBegin;
-  PetscCall(BeginColumn(c, row, 1, &values));
-  for (PetscInt i = 0; i < c->n; i++) values[i] = all ? all[c->rows[i]] : 0;
-  PetscCall(EndColumn(c));
+    for (PetscInt i = 0; i < c->n; i++) matrix[j * c->room + i] = matrix[i * c->room + j] = c->values[k * c->n + i];
+  }
+  c->known[j] = PetscMax(c->known[j], levels);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,8 +154,7 @@ PetscErrorCode ComplianceForget(Compliance c, const PetscMPIInt changed[])
     c->known[j]          = c->known[from[j]];
     c->place[c->rows[j]] = j;
   }
-  c->n          = n;
-  c->ramp_valid = PETSC_FALSE;
+  c->n = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -255,8 +164,7 @@ PetscErrorCode ComplianceTruncate(Compliance c, PetscInt n)
   PetscFunctionBegin;
   if (c->n <= n) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = n; j < c->n; j++) c->place[c->rows[j]] = -1;
-  c->n          = n;
-  c->ramp_valid = PETSC_FALSE;
+  c->n = n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,28 +189,6 @@ void ComplianceGetMatrix(Compliance c, PetscInt level, PetscInt *leading, const 
   *matrix  = c->matrices + level * c->room * c->room;
 }
 
-/* The same at the end of the last level for forces that rise linearly over all of them: the sum of W_{L - l} l / L for l = 1 ... L */
-PetscErrorCode ComplianceGetRamp(Compliance c, PetscInt *leading, const PetscScalar *matrix[])
-{
-  PetscFunctionBegin;
-  if (c->levels == 1) {
-    ComplianceGetMatrix(c, 0, leading, matrix);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt j = 0; j < c->n && !c->ramp_valid; j++)
-    for (PetscInt i = 0; i < c->n; i++) {
-      PetscScalar sum = 0;
-
-      for (PetscInt l = 1; l <= c->levels; l++)
-        sum += (PetscReal)l / c->levels * c->matrices[((c->levels - l) * c->room + j) * c->room + i];
-      c->ramp[j * c->room + i] = sum;
-    }
-  c->ramp_valid = PETSC_TRUE;
-  *leading      = c->room;
-  *matrix       = c->ramp;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* State for a checkpoint: the known rows in their order, with their matrices */
 PetscErrorCode ComplianceVisit(Compliance c, Checkpoint checkpoint)
 {
@@ -315,8 +201,7 @@ PetscErrorCode ComplianceVisit(Compliance c, Checkpoint checkpoint)
     for (PetscInt j = 0; j < c->global; j++) c->place[j] = -1;
     c->n = 0;
     PetscCall(ComplianceReserve(c, sizes[1]));
-    c->n          = sizes[0];
-    c->ramp_valid = PETSC_FALSE;
+    c->n = sizes[0];
   }
   PetscCall(CheckpointVisitInts(checkpoint, "compliance rows", c->n, c->rows));
   PetscCall(CheckpointVisitInts(checkpoint, "compliance known", c->n, c->known));
@@ -362,8 +247,7 @@ PetscErrorCode ComplianceUnpack(Compliance c, const char name[], const PetscInt 
   for (PetscInt j = 0; j < c->global; j++) c->place[j] = -1;
   c->n = 0;
   PetscCall(ComplianceReserve(c, n));
-  c->n          = n;
-  c->ramp_valid = PETSC_FALSE;
+  c->n = n;
   for (PetscInt j = 0; j < n; j++) {
     const PetscReal row = *packed++;
 

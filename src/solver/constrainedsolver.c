@@ -203,12 +203,6 @@ PetscErrorCode ConstrainedSolverGetMatrices(ConstrainedSolver s, Mat *A, Mat *B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Operations of one solution */
-PetscLogDouble ConstrainedSolverGetFlops(ConstrainedSolver s)
-{
-  return s->solve_flops;
-}
-
 /* A solution that did not converge is not a number: the matrix of a nonlinear body may be indefinite where Newton's method has gone astray,
    and its step fails then. Where a column of a constant matrix is made PETSc has ended with an error. */
 PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver s, KSP ksp, Vec x)

@@ -30,11 +30,8 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFreeColumns(ConstrainedSol
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverBringRows(ConstrainedSolver, PetscInt, const PetscInt[]);
-PETSC_INTERN PetscErrorCode     ConstrainedSolverExtend(ConstrainedSolver, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscBool          ConstrainedSolverIsHome(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverBring(ConstrainedSolver, const PetscScalar[], const PetscScalar[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverCorrect(ConstrainedSolver, const PetscScalar[], Vec);
-PETSC_INTERN PetscLogDouble     ConstrainedSolverGetFlops(ConstrainedSolver);
-PETSC_INTERN PetscLogDouble     ConstrainedSolverGetExtendFlops(ConstrainedSolver, PetscInt);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverVisit(ConstrainedSolver, Checkpoint);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverRepeats(ConstrainedSolver, PetscBool *);

@@ -145,22 +145,6 @@ PetscErrorCode DenseFactorDestroy(DenseFactor *factor)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += scale A x, A being n by n with `leading` entries from one column to the next */
-PetscErrorCode DenseMultiplyAdd(PetscInt n, PetscInt leading, const PetscScalar A[], PetscReal scale, const PetscScalar x[],
-                                PetscScalar y[])
-{
-  PetscBLASInt order, lda, one = 1;
-  PetscScalar  alpha = scale, beta = 1;
-
-  PetscFunctionBegin;
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS); /* BLAS refuses matrices without rows */
-  PetscCall(PetscBLASIntCast(n, &order));
-  PetscCall(PetscBLASIntCast(leading, &lda));
-  PetscCallBLAS("BLASgemv", BLASgemv_("N", &order, &order, &alpha, A, &lda, x, &one, &beta, y, &one));
-  PetscCall(PetscLogFlops(2.0 * n * n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Operations that factoring a matrix of that order takes */
 PetscLogDouble DenseFactorFlops(PetscInt n)
 {

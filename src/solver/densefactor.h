@@ -23,5 +23,4 @@ PETSC_INTERN PetscErrorCode DenseFactorCompute(DenseFactor *, PetscBool *);
 PETSC_INTERN PetscErrorCode DenseFactorSolve(const DenseFactor *, PetscScalar[]);
 PETSC_INTERN PetscErrorCode DenseFactorVisit(DenseFactor *, PetscInt, Checkpoint);
 PETSC_INTERN PetscErrorCode DenseFactorDestroy(DenseFactor *);
-PETSC_INTERN PetscErrorCode DenseMultiplyAdd(PetscInt, PetscInt, const PetscScalar[], PetscReal, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscLogDouble DenseFactorFlops(PetscInt);

@@ -172,16 +172,8 @@ PETSC_EXTERN PetscErrorCode BodyGetNodalCompliance(Body, BodyForceShape, PetscIn
 
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);
-PETSC_EXTERN PetscErrorCode BodyGetComplianceMatrices(Body, Mat *, Mat *);
-PETSC_EXTERN PetscErrorCode BodyExtendCompliance(Body, PetscInt, const PetscInt[]);
-PETSC_EXTERN PetscErrorCode BodyPrepareCompliance(Body, PetscInt, const PetscInt[]);
-PETSC_EXTERN PetscErrorCode BodyProposeCompliance(Body, PetscInt, const PetscInt[], BodyWord *);
-PETSC_EXTERN PetscErrorCode BodyTakeCompliance(Body);
 PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
-PETSC_EXTERN PetscErrorCode BodyGetCompliance(Body, PetscInt, const PetscInt *[], PetscInt *, const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyCountUnknown(Body, PetscInt, const PetscInt[], PetscInt *);
-PETSC_EXTERN PetscErrorCode BodyGetComplianceFlops(Body, PetscInt, const PetscInt[], PetscLogDouble *, PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
 PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
 

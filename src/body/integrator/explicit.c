@@ -321,15 +321,6 @@ static PetscErrorCode Step(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In one substep the rows answer by the massless layer alone, or, where contact nodes have mass, not at all */
-static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
-{
-  PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceApplyUnit(GetLayer(body), body, row, column));
-  else PetscCall(PetscArrayzero(column, body->rows.local));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Central differences know where nodes with mass get in a step before the force at its end. So rows that are all on massless nodes ask for
    the balance of the layer, as often as sweeps want it, and the acceleration is computed once, when the step is complete. */
 static PetscErrorCode SetUp(Body body)
@@ -369,8 +360,6 @@ static PetscErrorCode SetUp(Body body)
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
   integrator->repeats_prescribed = (PetscBool)(body->model.linear || explicit->layer_alone);
   integrator->repeats_constant   = (PetscBool)(body->time.substeps == 1 && !layer);
-  if (body->time.substeps == 1) integrator->ops.compliancecolumn = ComputeComplianceColumn;
-  else integrator->ops.compliancecolumns = BodyProbeBySubsteps; /* only making the substeps tells */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

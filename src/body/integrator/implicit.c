@@ -191,101 +191,16 @@ static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal accel
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The displacement next is that at the end of a substep from u, v and a, which become those at its end */
-static PetscErrorCode MoveOn(Body body)
-{
-  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal     dt = body->time.step, beta = implicit->beta, gamma = implicit->gamma;
-  const PetscReal     c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
-  const PetscInt      n = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar  *u1;
-  PetscScalar        *u0, *v0, *a0;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(implicit->next, &u1));
-  PetscCall(VecGetArray(implicit->u, &u0));
-  PetscCall(VecGetArray(implicit->v, &v0));
-  PetscCall(VecGetArray(implicit->a, &a0));
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscScalar now = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a0[i];
-
-    v0[i] += dt * ((1 - gamma) * a0[i] + gamma * now);
-    a0[i] = now;
-  }
-  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
-    const PetscInt dof = body->layer.dofs[i];
-
-    v0[dof] = (u1[dof] - u0[dof]) / dt;
-    a0[dof] = 0;
-  }
-  PetscCall(PetscArraycpy(u0, u1, n));
-  PetscCall(VecRestoreArray(implicit->a, &a0));
-  PetscCall(VecRestoreArray(implicit->v, &v0));
-  PetscCall(VecRestoreArray(implicit->u, &u0));
-  PetscCall(VecRestoreArrayRead(implicit->next, &u1));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* At rest, for further substeps after the first */
-static PetscErrorCode StartFromRest(Body body)
-{
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  Vec          *vecs[]   = {&implicit->u, &implicit->v, &implicit->a};
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < 3; k++) {
-    if (!*vecs[k]) PetscCall(VecDuplicate(body->state.u, vecs[k]));
-    PetscCall(VecZeroEntries(*vecs[k]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Newmark's recursion from rest, with the effective matrix as it is factored; the hat is over after the first substep */
-static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
-{
-  BodyImplicit      *implicit = (BodyImplicit *)body->integrator->data;
-  const PetscReal    dt = body->time.step, beta = implicit->beta, gamma = implicit->gamma;
-  const PetscReal    c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
-  const PetscScalar *rows;
-
-  PetscFunctionBegin;
-  if (!implicit->next) PetscCall(VecDuplicate(body->state.u, &implicit->next));
-  PetscCall(ConstrainedSolverApplyUnit(body->solver, row, implicit->next, column));
-  if (body->time.substeps > 1) PetscCall(StartFromRest(body));
-  for (PetscInt k = 1; k < body->time.substeps; k++) {
-    PetscCall(MoveOn(body));
-    PetscCall(VecCopy(implicit->a, body->work.nodes[1]));
-    PetscCall(VecAXPBYPCZ(body->work.nodes[1], c2, c1, c0, implicit->u, implicit->v));
-    PetscCall(BodyMultiplyMass(body, body->work.nodes[1], body->work.nodes[0]));
-    if (BodyIsDamped(body)) {
-      /* what the velocity at the end has but for the displacement there, against the motion */
-      PetscCall(VecCopy(implicit->a, body->work.nodes[1]));
-      PetscCall(
-          VecAXPBYPCZ(body->work.nodes[1], gamma / (beta * dt), gamma / beta - 1, dt * (gamma / (2 * beta) - 1), implicit->u, implicit->v));
-      PetscCall(BodyMultiplyDamping(body, NULL, body->work.nodes[1], body->work.nodes[2]));
-      PetscCall(VecAXPY(body->work.nodes[0], 1, body->work.nodes[2]));
-    }
-    PetscCall(BodyZeroHeld(body, body->work.nodes[0]));
-    PetscCall(ConstrainedSolverSolveFree(body->solver, body->work.nodes[0], implicit->next));
-    PetscCall(MatMult(body->rows.matrix, implicit->next, body->work.rows[0]));
-    PetscCall(VecGetArrayRead(body->work.rows[0], &rows));
-    PetscCall(PetscArraycpy(column + k * body->rows.local, rows, body->rows.local));
-    PetscCall(VecRestoreArrayRead(body->work.rows[0], &rows));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode BodyIntegratorCreate_Implicit(BodyIntegrator integrator)
 {
   PetscFunctionBegin;
   PetscCall(BodyImplicitCreate(integrator));
-  integrator->has_inertia          = PETSC_TRUE;
-  integrator->ops.setdefaults      = SetDefaults;
-  integrator->ops.getparameters    = GetParameters;
-  integrator->ops.setup            = SetUp;
-  integrator->ops.finishsubstep    = FinishSubstep;
-  integrator->ops.repeat           = Repeat;
-  integrator->ops.compliancecolumn = ComputeComplianceColumn;
-  integrator->ops.rates            = GetRates;
+  integrator->has_inertia       = PETSC_TRUE;
+  integrator->ops.setdefaults   = SetDefaults;
+  integrator->ops.getparameters = GetParameters;
+  integrator->ops.setup         = SetUp;
+  integrator->ops.finishsubstep = FinishSubstep;
+  integrator->ops.repeat        = Repeat;
+  integrator->ops.rates         = GetRates;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

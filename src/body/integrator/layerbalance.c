@@ -273,14 +273,6 @@ PetscErrorCode LayerBalanceGetForce(LayerBalance layer, Body body, Vec u, Vec fo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement of this rank's rows under a unit force on one row of any rank [m/N] */
-PetscErrorCode LayerBalanceApplyUnit(LayerBalance layer, Body body, PetscInt row, PetscScalar displacement[])
-{
-  PetscFunctionBegin;
-  PetscCall(ConstrainedSolverApplyUnit(body->solver, row, layer->solution, displacement));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode LayerBalanceSetRows(LayerBalance layer, Body body, const PetscMPIInt changed[])
 {
   PetscFunctionBegin;

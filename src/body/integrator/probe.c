@@ -78,19 +78,6 @@ static PetscErrorCode BeginProbe(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A force of 1 N at the end of the first substep, on one row alone; zero at the start and from the second substep on */
-static PetscErrorCode SetUnitForce(Body body, PetscInt row)
-{
-  const PetscInt local = row - body->rows.begin;
-  PetscScalar   *values;
-
-  PetscFunctionBegin;
-  if (local < 0 || local >= body->rows.local) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TraceGetLevel(body->traces.force_in, 1, &values));
-  values[local] = 1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A force of 1 N along one displacement, at the end of the controller step or throughout it, so that the step starts from it too */
 static PetscErrorCode SetUnitNodalForce(Body body, PetscInt dof)
 {
@@ -142,29 +129,9 @@ static PetscErrorCode Integrate(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Column of a row at all levels, into the work space `column`, by making the substeps of a controller step */
-static PetscErrorCode IntegrateUnderUnitForce(Body body, PetscInt row)
-{
-  const Trace    traces[] = {body->traces.displacement_in, body->traces.velocity_in, body->traces.acceleration_in, body->traces.force_in};
-  const PetscInt local    = row - body->rows.begin;
-  PetscScalar   *values;
-
-  PetscFunctionBegin;
-  for (PetscInt t = 0; t < 4; t++) PetscCall(TraceZero(traces[t]));
-  PetscCall(SetUnitForce(body, row));
-  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FORCED;
-  PetscCall(Integrate(body));
-  if (local >= 0 && local < body->rows.local) body->rows.conditions[local] = BODY_FREE;
-  for (PetscInt k = 0; k < body->time.substeps; k++) {
-    PetscCall(TraceGetLevel(body->traces.displacement, k + 1, &values));
-    PetscCall(PetscArraycpy(body->probe->column + k * body->rows.local, values, body->rows.local));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Columns of a compliance by making substeps: of a body at rest, with all rows free but the one in hand. `nodal`: not rows are meant but
-   displacements, of all ranks, at the end of the controller step alone. */
-static PetscErrorCode Probe(Body body, PetscBool nodal, PetscInt n, const PetscInt rows[], Compliance matrices)
+/* BodyProbeNodes - columns of displacements, by their numbers on all ranks, at the end of a controller step: by making its substeps, of a
+   body at rest with all rows free */
+PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], Compliance matrices)
 {
   const PetscInt counts[3] = {body->rows.n_prescribed, body->rows.n_forced, body->rows.n_robin};
   BodyCondition *kept;
@@ -179,21 +146,17 @@ static PetscErrorCode Probe(Body body, PetscBool nodal, PetscInt n, const PetscI
   PetscCall(BodySetConstraints(body));
   PetscCall(BodyPrepareLinearized(body));
   body->model.linearized = (PetscBool)!body->model.linear;
-  if (nodal && !body->probe->force) PetscCall(VecDuplicate(body->state.u, &body->probe->force));
-  if (nodal) body->rows.nodal_force = body->probe->force;
+  if (!body->probe->force) PetscCall(VecDuplicate(body->state.u, &body->probe->force));
+  body->rows.nodal_force = body->probe->force;
+  body->rows.nodal_shape = shape;
   for (PetscInt i = 0; i < n; i++) {
     const PetscScalar *u;
 
-    if (ComplianceKnows(matrices, rows[i])) continue;
-    if (!nodal) {
-      PetscCall(IntegrateUnderUnitForce(body, rows[i]));
-      PetscCall(ComplianceSetColumn(matrices, rows[i], body->time.substeps, body->probe->column));
-      continue;
-    }
-    PetscCall(SetUnitNodalForce(body, rows[i]));
+    if (ComplianceKnows(matrices, dofs[i])) continue;
+    PetscCall(SetUnitNodalForce(body, dofs[i]));
     PetscCall(Integrate(body));
     PetscCall(VecGetArrayRead(body->state.u, &u));
-    PetscCall(ComplianceSetColumn(matrices, rows[i], 1, u));
+    PetscCall(ComplianceSetColumn(matrices, dofs[i], 1, u));
     PetscCall(VecRestoreArrayRead(body->state.u, &u));
   }
   body->rows.nodal_force = NULL;
@@ -205,22 +168,5 @@ static PetscErrorCode Probe(Body body, PetscBool nodal, PetscInt n, const PetscI
   body->rows.n_robin      = counts[2];
   PetscCall(BodySetConstraints(body));
   PetscCall(PetscFree(kept));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* BodyProbeBySubsteps - columns of the interface compliance, under hats of force on rows */
-PetscErrorCode BodyProbeBySubsteps(Body body, PetscInt n, const PetscInt rows[], Compliance matrices)
-{
-  PetscFunctionBegin;
-  PetscCall(Probe(body, PETSC_FALSE, n, rows, matrices));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* BodyProbeNodes - columns of displacements, by their numbers on all ranks, at the end of a controller step */
-PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], Compliance matrices)
-{
-  PetscFunctionBegin;
-  body->rows.nodal_shape = shape;
-  PetscCall(Probe(body, PETSC_TRUE, n, dofs, matrices));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -288,7 +288,6 @@ PetscErrorCode BodyIntegratorCreate_Rigid(BodyIntegrator integrator)
   integrator->ops.finishsubstep     = FinishSubstep;
   integrator->ops.visit             = BodyRigidVisit;
   integrator->ops.copypoint         = BodyRigidCopyPoint;
-  integrator->ops.compliancecolumn  = BodyRigidComputeColumn;
   integrator->ops.nodalcolumns      = BodyRigidSetNodalColumns;
   integrator->ops.applycompliance   = BodyRigidApplyCompliance;
   integrator->ops.solvemass         = BodyRigidSolveMass;

@@ -54,26 +54,6 @@ PetscErrorCode BodyRigidApplyCompliance(Body body, Vec force, Vec displacement)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The trapezoidal rule from rest, a force of 1 N at the end of the first substep alone: a way of dt^2/4 in it, then of dt^2 in each */
-PetscErrorCode BodyRigidComputeColumn(Body body, PetscInt row, PetscScalar column[])
-{
-  const PetscReal    square = PetscSqr(body->time.step);
-  const PetscInt     n = body->rows.local, local = row - body->rows.begin;
-  const PetscScalar *moved;
-  PetscScalar       *unit;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &unit));
-  for (PetscInt i = 0; i < n; i++) unit[i] = i == local ? 1 : 0;
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &unit));
-  PetscCall(MultiplyMobility(body, body->work.rows[0], body->work.rows[1]));
-  PetscCall(VecGetArrayRead(body->work.rows[1], &moved));
-  for (PetscInt k = 0; k < body->time.substeps; k++)
-    for (PetscInt i = 0; i < n; i++) column[k * n + i] = (k ? k : 0.25) * square * moved[i];
-  PetscCall(VecRestoreArrayRead(body->work.rows[1], &moved));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Where the body will be in the middle of the controller step, if it goes on as it does: forces turn it by their moments there */
 static PetscErrorCode FindMiddle(Body body, PetscReal half, RigidMotion *middle)
 {

@@ -33,7 +33,6 @@ PETSC_INTERN PetscErrorCode BodyRigidMeasure(Body, BodyMeasures *);
 PETSC_INTERN PetscErrorCode BodyRigidView(Body, PetscViewer);
 PETSC_INTERN PetscErrorCode BodyRigidSolveMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyRigidApplyCompliance(Body, Vec, Vec);
-PETSC_INTERN PetscErrorCode BodyRigidComputeColumn(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyRigidSetNodalColumns(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode BodyRigidSetRows(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode BodyRigidRenew(Body);

@@ -131,29 +131,16 @@ static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal accel
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* When the hat is over, the body is back where it was */
-static PetscErrorCode ComputeComplianceColumn(Body body, PetscInt row, PetscScalar column[])
-{
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-
-  PetscFunctionBegin;
-  if (!implicit->next) PetscCall(VecDuplicate(body->state.u, &implicit->next));
-  PetscCall(ConstrainedSolverApplyUnit(body->solver, row, implicit->next, column));
-  PetscCall(PetscArrayzero(column + body->rows.local, (body->time.substeps - 1) * body->rows.local));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator integrator)
 {
   PetscFunctionBegin;
   PetscCall(BodyImplicitCreate(integrator));
-  integrator->affine               = PETSC_TRUE;
-  integrator->ops.getparameters    = GetParameters;
-  integrator->ops.setup            = SetUp;
-  integrator->ops.finishsubstep    = FinishSubstep;
-  integrator->ops.repeat           = Repeat;
-  integrator->ops.save             = Save;
-  integrator->ops.compliancecolumn = ComputeComplianceColumn;
-  integrator->ops.rates            = GetRates;
+  integrator->affine            = PETSC_TRUE;
+  integrator->ops.getparameters = GetParameters;
+  integrator->ops.setup         = SetUp;
+  integrator->ops.finishsubstep = FinishSubstep;
+  integrator->ops.repeat        = Repeat;
+  integrator->ops.save          = Save;
+  integrator->ops.rates         = GetRates;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

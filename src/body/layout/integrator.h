@@ -51,12 +51,6 @@ typedef struct {
   /* (NULL) of a nonlinear body: where its factors for whole controller steps have been made, and two numbers of them, to a vector of the
      body; or (true) back, with factors that are made there */
   PetscErrorCode (*copypoint)(Body, PetscBool, Vec, PetscReal[2]);
-  /* (NULL) the columns of some rows of any rank, into a compliance, where there is no simpler way to one of them; may be set in setup() */
-  PetscErrorCode (*compliancecolumns)(Body, PetscInt, const PetscInt[], Compliance);
-  PetscErrorCode (*compliancecolumn)(Body, PetscInt, PetscScalar[]); /* (NULL) displacement of this rank's rows at the end of each substep,
-                                                                        substeps x rows, after a hat of force on one row of any rank: 1 N at
-                                                                        the end of the first substep, 0 at its start and at the end of the
-                                                                        second [m]; may be set in setup() */
   /* (NULL) the columns of some displacements of any rank, into a compliance, for the controller step that begins in the saved state, where
      no step need be made for them; other states have others */
   PetscErrorCode (*nodalcolumns)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);

@@ -15,7 +15,6 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree2(c->mine, c->unknown));
   PetscCall(ComplianceDestroy(&c->matrices));
   PetscCall(ComplianceDestroy(&c->nodal));
   PetscCall(NodalMatrixDestroy(&c->nodal_matrix));
@@ -37,7 +36,6 @@ PetscErrorCode BodyCreateCompliance(Body body)
   c->nodal_kind = NODAL_BY_STEPS;
   PetscCall(
       ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->time.substeps, &c->matrices));
-  PetscCall(PetscMalloc2(body->time.substeps * rows->local, &c->mine, rows->global, &c->unknown));
   PetscCall(PetscCalloc1(rows->local, &c->change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -47,166 +45,6 @@ PetscErrorCode BodyCreateCompliance(Body body)
 Compliance BodyGetSharedCompliance(Body body)
 {
   return body->model.linear ? body->compliance->matrices : NULL;
-}
-
-/* Whether the body's solver has the columns: with one substep, where its compliance is this one */
-static PetscBool SolverHasColumns(Body body)
-{
-  return (PetscBool)(body->time.substeps == 1 && body->solver && !body->integrator->ops.compliancecolumns && BodyGetSharedCompliance(body));
-}
-
-/* Those of some rows that are not known yet */
-static PetscInt ListUnknown(struct _BodyCompliance *c, PetscInt n, const PetscInt rows[])
-{
-  PetscInt count = 0;
-
-  for (PetscInt i = 0; i < n; i++)
-    if (!ComplianceKnows(c->matrices, rows[i])) c->unknown[count++] = rows[i];
-  return count;
-}
-
-/* Columns of the rows that are not known yet */
-static PetscErrorCode ProbeCompliance(Body body, PetscInt n, const PetscInt rows[])
-{
-  struct _BodyCompliance *c = body->compliance;
-  PetscInt                count;
-
-  PetscFunctionBegin;
-  if (body->integrator->ops.compliancecolumns) {
-    PetscCall((*body->integrator->ops.compliancecolumns)(body, n, rows, c->matrices));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  count = ListUnknown(c, n, rows);
-  if (SolverHasColumns(body)) {
-    PetscCall(ConstrainedSolverExtend(body->solver, count, c->unknown));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt i = 0; i < count; i++) {
-    PetscCall((*body->integrator->ops.compliancecolumn)(body, c->unknown[i], c->mine));
-    PetscCall(ComplianceSetColumn(c->matrices, c->unknown[i], body->time.substeps, c->mine));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyExtendCompliance - makes rows known to the interface compliance
-
-  Collective
-
-  Input Parameters:
-+ body - the `Body`, set up
-. n    - number of rows
-- rows - rows of any rank, the same on every rank; those that are known already cost nothing
-
-  Level: developer
-
-  Notes:
-  Each new row costs one solution with factored matrices: of the whole body, if it is implicit, of its massless layer, if it is explicit;
-  for each substep, and of explicit bodies with substeps these themselves.
-
-.seealso: `Body`, `BodyGetCompliance()`
-@*/
-PetscErrorCode BodyExtendCompliance(Body body, PetscInt n, const PetscInt rows[])
-{
-  BodyWord word;
-
-  PetscFunctionBegin;
-  PetscCall(BodyProposeCompliance(body, n, rows, &word));
-  if (word.n)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, word.values, (PetscMPIInt)word.n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(BodyTakeCompliance(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyPrepareCompliance - brings what `BodyExtendCompliance()` or `BodyProposeCompliance()` needs of other ranks
-
-  Collective
-
-  Input Parameters:
-+ body - the `Body`, set up
-. n    - number of rows
-- rows - rows of any rank, the same on every rank, and those of the call that follows
-
-  Level: developer
-
-  Note:
-  Called for all bodies before the first of these calls, it lets ranks that have a body each find its columns at the same time. It may be
-  left out.
-
-.seealso: `Body`, `BodyExtendCompliance()`, `BodyProposeCompliance()`
-@*/
-PetscErrorCode BodyPrepareCompliance(Body body, PetscInt n, const PetscInt rows[])
-{
-  PetscInt count;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->compliance, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
-  if (!SolverHasColumns(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  count = ListUnknown(body->compliance, n, rows);
-  PetscCall(ConstrainedSolverBringRows(body->solver, count, body->compliance->unknown));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyProposeCompliance - the part of `BodyExtendCompliance()` before ranks tell each other, which callers do for many bodies at once
-
-  Collective
-
-  Input Parameters:
-+ body - the `Body`, set up
-. n    - number of rows
-- rows - rows of any rank, the same on every rank; those that are known already cost nothing
-
-  Output Parameter:
-. word - what ranks have to add up before `BodyTakeCompliance()`, columns of the compliance [m/N]; it stays with the body
-
-  Level: developer
-
-.seealso: `Body`, `BodyExtendCompliance()`, `BodyTakeCompliance()`
-@*/
-PetscErrorCode BodyProposeCompliance(Body body, PetscInt n, const PetscInt rows[], BodyWord *word)
-{
-  PetscInt  count = 0;
-  PetscBool logged;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(word, 4);
-  PetscCheck(body->compliance, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
-  word->n = 0;
-  for (PetscInt i = 0; i < n; i++) count += !ComplianceKnows(body->compliance->matrices, rows[i]);
-  if (!count) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(StageBegin(STAGE_INTERFACE, &logged));
-  PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
-  PetscCall(ComplianceReserve(body->compliance->matrices, count));
-  ComplianceWait(body->compliance->matrices);
-  PetscCall(ProbeCompliance(body, n, rows));
-  ComplianceGetWaiting(body->compliance->matrices, &word->n, &word->values);
-  PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
-  PetscCall(StageEnd(logged));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyTakeCompliance - the rest of `BodyExtendCompliance()`, after `BodyProposeCompliance()`, the word of which has been added up
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-.seealso: `Body`, `BodyExtendCompliance()`, `BodyProposeCompliance()`
-@*/
-PetscErrorCode BodyTakeCompliance(Body body)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->compliance) ComplianceTakeWaiting(body->compliance->matrices);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
@@ -220,50 +58,13 @@ PetscErrorCode BodyTakeCompliance(Body body)
 
   Level: developer
 
-.seealso: `Body`, `BodyExtendCompliance()`
+.seealso: `Body`, `BodyApplyCompliance()`
 @*/
 PetscErrorCode BodyForgetCompliance(Body body, const PetscMPIInt changed[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->compliance) PetscCall(ComplianceForget(body->compliance->matrices, changed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyGetCompliance - displacements of known rows under unit forces on them
-
-  Not Collective
-
-  Input Parameters:
-+ body  - the `Body`, after `BodyExtendCompliance()`
-- level - k: at the end of a substep for a force at the end of the k-th substep before it, a hat; -1: at the end of the controller step, for
-          forces that rise linearly over it
-
-  Output Parameters:
-+ place   - for each row of all ranks its place among the known ones, or -1
-. leading - distance between columns
-- matrix  - known rows by known rows, by columns [m/N], owned by the body
-
-  Level: developer
-
-.seealso: `Body`, `BodyExtendCompliance()`
-@*/
-PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *place[], PetscInt *leading, const PetscScalar *matrix[])
-{
-  struct _BodyCompliance *c = body->compliance;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(place, 3);
-  PetscAssertPointer(leading, 4);
-  PetscAssertPointer(matrix, 5);
-  PetscCheck(c, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodyExtendCompliance() first");
-  PetscCheck(level >= -1 && level < body->time.substeps, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
-             "Level %" PetscInt_FMT " of a body with %" PetscInt_FMT " substeps", level, body->time.substeps);
-  ComplianceGetRows(c->matrices, NULL, NULL, place);
-  if (level < 0) PetscCall(ComplianceGetRamp(c->matrices, leading, matrix));
-  else ComplianceGetMatrix(c->matrices, level, leading, matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -280,7 +81,7 @@ PetscErrorCode BodyGetCompliance(Body body, PetscInt level, const PetscInt *plac
 
   Level: developer
 
-.seealso: `Body`, `BodyGetCompliance()`
+.seealso: `Body`, `BodyApplyCompliance()`
 @*/
 PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
 {
@@ -288,6 +89,36 @@ PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(exact, 2);
   *exact = (PetscBool)(body->model.linear && body->integrator->affine);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyGetLayerMatrices - what makes up the compliance of rows that answer by a massless contact layer alone
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameters:
++ stiffness - K of the layer, held by the rest of the body [N/m]; `NULL` where rows answer otherwise
+- rows      - B, the rows on the dofs of the layer, without held ones; or `NULL`
+
+  Level: developer
+
+  Note:
+  The compliance is B K^{-1} B^T. Both matrices are owned by the body, which gives them new values where layer or rows change, or puts
+  others in their place.
+
+.seealso: `Body`, `BodyApplyCompliance()`
+@*/
+PetscErrorCode BodyGetLayerMatrices(Body body, Mat *stiffness, Mat *rows)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (stiffness) *stiffness = NULL;
+  if (rows) *rows = NULL;
+  if (body->integrator->answers_by_layer) PetscCall(ConstrainedSolverGetMatrices(body->solver, stiffness, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -308,7 +139,7 @@ PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
   Note:
   One solution with factored matrices, for interfaces with too many rows to know each of them.
 
-.seealso: `Body`, `BodyExtendCompliance()`
+.seealso: `Body`, `BodyApplyCompliance()`
 @*/
 PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
 {

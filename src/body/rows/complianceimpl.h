@@ -9,19 +9,17 @@ typedef struct _NodalMatrix *NodalMatrix;
 struct _BodyCompliance {
   Compliance
       matrices; /* a level for each substep: displacement k substeps after a hat of force, of 1 N at the end of the first one [m/N] */
-  Compliance     nodal;         /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
-  BodyForceShape nodal_shape;   /* the forces that it is for */
-  PetscReal      nodal_step;    /* the substep that it is of [s] */
-  PetscReal      nodal_time;    /* where it is that of a state: when the step begins [s] */
-  NodalMatrix    nodal_matrix;  /* that tells it, see nodalmatrix.c; NULL: controller steps do */
-  PetscInt       nodal_kind;    /* which kind of it has told what is known, see nodalmatrix.c */
-  Vec            diagonal;      /* see BodyGetNodalDiagonal(); or NULL */
+  Compliance     nodal;          /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
+  BodyForceShape nodal_shape;    /* the forces that it is for */
+  PetscReal      nodal_step;     /* the substep that it is of [s] */
+  PetscReal      nodal_time;     /* where it is that of a state: when the step begins [s] */
+  NodalMatrix    nodal_matrix;   /* that tells it, see nodalmatrix.c; NULL: controller steps do */
+  PetscInt       nodal_kind;     /* which kind of it has told what is known, see nodalmatrix.c */
+  Vec            diagonal;       /* see BodyGetNodalDiagonal(); or NULL */
   PetscReal      diagonal_step;  /* the substep that it is of [s], */
   BodyForceShape diagonal_shape; /* and how forces run in it */
-  PetscInt       n_kept;        /* known rows that stay when a step fails */
-  PetscScalar   *mine;          /* work space: of the rows of this rank, for each substep */
-  PetscInt      *unknown;       /* work space: rows that become known */
-  PetscReal     *change;        /* of this rank's rows: how much more constant forces are than those at the end of the last step [N] */
+  PetscInt       n_kept;         /* known rows that stay when a step fails */
+  PetscReal     *change;         /* of this rank's rows: how much more constant forces are than those at the end of the last step [N] */
 };
 
 PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], PetscInt *, NodalMatrix *,

@@ -33,30 +33,6 @@ PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newton's step by a function of the contact's own, in place of a matrix and its factors; `update` is called where these would be made
-   again */
-PetscErrorCode OuterSolverSetNewton(Contact contact, OuterSolver *solver, PetscErrorCode (*update)(SNES, Vec, Mat, Mat, void *),
-                                    PetscErrorCode (*apply)(PC, Vec, Vec))
-{
-  PetscInt local;
-  Mat      shell;
-  KSP      ksp;
-  PC       pc;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(solver->x, &local));
-  PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), local, local, PETSC_DETERMINE, PETSC_DETERMINE, contact, &shell));
-  PetscCall(SNESSetJacobian(solver->snes, shell, shell, update, contact));
-  PetscCall(SNESGetKSP(solver->snes, &ksp));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, PCSHELL));
-  PetscCall(PCShellSetContext(pc, contact));
-  PetscCall(PCShellSetApply(pc, apply));
-  PetscCall(PCShellSetName(pc, "interface compliance of the bodies"));
-  PetscCall(MatDestroy(&shell));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A value for an option that PETSc has no setter for: put in before the options are read, taken out again afterwards. One that is given
    stays, unless it is to be replaced. */
 typedef struct {

@@ -5,6 +5,17 @@ enum { MOST_PAIRS = 3 }; /* that a message names */
 
 static const char *const Unconvergeds[] = {"error", "accept", "SchwarzUnconverged", "SCHWARZ_UNCONVERGED_", NULL};
 
+/* Where the bodies are, for messages [s] */
+PetscErrorCode ContactGetTime(Contact contact, PetscReal *time)
+{
+  TS ts;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetTS(contact->bodies[0], &ts));
+  PetscCall(TSGetTime(ts, time));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactSchwarzSetUnconverged - sets what becomes of a controller step whose outer iteration does not converge
 

@@ -110,16 +110,12 @@ void LawProblemGetTrial(const LawProblem *problem, PetscInt node, const PetscSca
     p[i - problem->begin[node]] = PetscRealPart(force[i] - y[i] / problem->weight[i] - problem->proximal * (force[i] - problem->centre[i]));
 }
 
-static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
+/* f = lambda - P(lambda - r y) */
+static PetscErrorCode Miss(LawProblem *problem, const PetscScalar x[], PetscScalar f[])
 {
-  LawProblem        *problem = (LawProblem *)ctx;
-  const PetscScalar *x;
-  PetscScalar       *f, *y = problem->work;
+  PetscScalar *y = problem->work;
 
   PetscFunctionBegin;
-  (void)snes;
-  PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArrayWrite(F, &f));
   PetscCall(LawProblemRead(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
@@ -129,6 +125,19 @@ static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
     (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, force, derivative);
     for (PetscInt k = 0; k < rows; k++) f[first + k] = x[first + k] - force[k];
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ComputeResidual(SNES snes, Vec X, Vec F, void *ctx)
+{
+  const PetscScalar *x;
+  PetscScalar       *f;
+
+  PetscFunctionBegin;
+  (void)snes;
+  PetscCall(VecGetArrayRead(X, &x));
+  PetscCall(VecGetArrayWrite(F, &f));
+  PetscCall(Miss((LawProblem *)ctx, x, f));
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -148,31 +157,52 @@ PetscReal LawProblemForceScale(const LawProblem *problem, const PetscScalar forc
   return scale;
 }
 
+/* Whether f is within the tolerances of Newton's method, and what is read to what it is right to */
+static PetscErrorCode IsSmall(const LawProblem *problem, const PetscScalar x[], const PetscScalar f[], PetscBool *is_small)
+{
+  PetscReal allowed, atol, rtol;
+
+  PetscFunctionBegin;
+  PetscCall(SNESGetTolerances(problem->newton, &atol, &rtol, NULL, NULL, NULL));
+  allowed   = rtol * LawProblemForceScale(problem, x) + atol;
+  *is_small = PETSC_TRUE;
+  for (PetscInt i = 0; i < problem->n && *is_small; i++)
+    *is_small = (PetscBool)(PetscAbsScalar(f[i]) <= allowed + problem->resolution / problem->weight[i]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, PetscReal gnorm, PetscReal fnorm,
                                       SNESConvergedReason *reason, void *ctx)
 {
-  const LawProblem  *problem = (const LawProblem *)ctx;
   const PetscScalar *x, *f;
-  PetscReal          allowed, atol, rtol;
+  PetscBool          is_small;
   Vec                X, F;
 
   PetscFunctionBegin;
   (void)it;
   (void)xnorm;
   (void)gnorm;
-  *reason = SNES_CONVERGED_ITERATING;
   PetscCall(SNESGetSolution(snes, &X));
   PetscCall(SNESGetFunction(snes, &F, NULL, NULL));
   PetscCall(VecGetArrayRead(X, &x));
   PetscCall(VecGetArrayRead(F, &f));
-  PetscCall(SNESGetTolerances(snes, &atol, &rtol, NULL, NULL, NULL));
-  allowed = rtol * LawProblemForceScale(problem, x) + atol;
-  *reason = SNES_CONVERGED_FNORM_RELATIVE;
-  for (PetscInt i = 0; i < problem->n; i++)
-    if (PetscAbsScalar(f[i]) > allowed + problem->resolution / problem->weight[i]) *reason = SNES_CONVERGED_ITERATING;
+  PetscCall(IsSmall((const LawProblem *)ctx, x, f, &is_small));
+  *reason = is_small ? SNES_CONVERGED_FNORM_RELATIVE : SNES_CONVERGED_ITERATING;
   if (PetscIsInfOrNanReal(fnorm)) *reason = SNES_DIVERGED_NAN;
   PetscCall(VecRestoreArrayRead(F, &f));
   PetscCall(VecRestoreArrayRead(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LawProblemHolds - whether the law holds under `force` already, as it does in the last pass of a step. Solvers would find that out too,
+   but PETSc's look their options up each time. */
+PetscErrorCode LawProblemHolds(LawProblem *problem, PetscBool *holds)
+{
+  PetscScalar *f = problem->work + problem->n;
+
+  PetscFunctionBegin;
+  PetscCall(Miss(problem, problem->force, f));
+  PetscCall(IsSmall(problem, problem->force, f, holds));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -62,6 +62,7 @@ static inline PetscBool LawProblemHasProducts(const LawProblem *problem)
 #define LAW_TOLERANCE      1e-13 /* of the largest force, and of the largest force that would close what is read */
 #define LAW_LAG_AFTER_NEXT (-2)  /* for PETSc: the preconditioner is made anew once, and then stays */
 PETSC_INTERN PetscErrorCode LawProblemRead(LawProblem *, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode LawProblemHolds(LawProblem *, PetscBool *);
 PETSC_INTERN void           LawProblemFindWeights(LawProblem *);
 PETSC_INTERN void           LawProblemGetTrial(const LawProblem *, PetscInt, const PetscScalar[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscBool      LawProblemIsLagged(const LawProblem *);

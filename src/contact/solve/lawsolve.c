@@ -61,6 +61,8 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   KSP                 ksp;
 
   PetscFunctionBegin;
+  PetscCall(LawProblemHolds(problem, &problem->solved));
+  if (problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(SNESGetTolerances(problem->newton, NULL, &rtol, NULL, NULL, NULL));
   enough = ENOUGH * rtol * LawProblemForceScale(problem, problem->force);

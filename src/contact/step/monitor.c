@@ -1,6 +1,5 @@
 /* -contact_monitor: a line for each pass of a step, and one at its end. It looks at what is there, and changes no number. */
 #include "stepimpl.h"
-#include <contact/compliance/forces.h>
 #include <sys/statusline.h>
 #include <sys/units.h>
 
@@ -49,7 +48,7 @@ PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper
   PetscFunctionBegin;
   if (!viewer) PetscFunctionReturn(PETSC_SUCCESS);
   m = UnitsOf((PetscObject)contact, UNIT_LENGTH);
-  PetscCall(ForcesGetTime(contact, &time));
+  PetscCall(ContactGetTime(contact, &time));
   StatusLineBreak();
   for (PetscInt g = 0; g < contact->n_bodies; g++) {
     NodeCounts counts;
@@ -86,7 +85,7 @@ PetscErrorCode ContactMonitorStep(Contact contact, const ContactStepper *stepper
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscCall(ForcesGetTime(contact, &time));
+  PetscCall(ContactGetTime(contact, &time));
   StatusLineBreak();
   PetscCall(PetscViewerASCIIPrintf(viewer, "step that ends at %.9g%s: %s in %" PetscInt_FMT " passes; %d rows joined, %d left\n",
                                    (double)time, UnitsOf((PetscObject)contact, UNIT_TIME), SNESConvergedReasons[reason], stepper->passes,

@@ -3,7 +3,6 @@
    That is one evaluation of the outer SNES, F = lambda - law(lambda).
 */
 #include "stepimpl.h"
-#include <contact/compliance/forces.h>
 #include <contact/compliance/outersolver.h>
 #include <sys/petsccompat.h>
 #include <sys/units.h>
@@ -252,7 +251,7 @@ static PetscErrorCode CheckSprings(Contact contact, const ContactStepper *steppe
 
   PetscFunctionBegin;
   if (!(stepper->springs.give > stepper->penalty.tolerance)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ForcesGetTime(contact, &time));
+  PetscCall(ContactGetTime(contact, &time));
   PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
                            "The augmented Lagrangian did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
                            " augmentations the gap is off by %g%s. Raise -contact_penalty or -contact_augmentation_max_it, or loosen "
@@ -292,7 +291,7 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->end.active[i] = stepper->touches[i]; /* whose pairs the message names */
-  PetscCall(ForcesGetTime(contact, &time));
+  PetscCall(ContactGetTime(contact, &time));
   if (!stepper->problem.solved) {
     PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
                              "The law of the %" PetscInt_FMT

@@ -7,12 +7,10 @@
 */
 #include "lagrangeimpl.h"
 #include <checkpoint/checkpoint.h>
-#include <contact/compliance/forces.h>
 #include <sys/citations.h>
 
 typedef struct {
   Complementarity forces; /* C: [m/N] */
-  PetscReal       step;   /* [s] */
   /* for the rate beside the gap */
   Complementarity impulses;
   PetscBool       close_rate;
@@ -77,7 +75,7 @@ static PetscErrorCode ContactAccept_ForwardLagrange(Contact contact)
   PetscFunctionBegin;
   PetscCall(LagrangeCloseRate(contact, PETSC_TRUE, &lagrange->impulses));
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (contact->end.active[i]) contact->end.force[i] += lagrange->impulses.forces[i] / lagrange->step;
+    if (contact->end.active[i]) contact->end.force[i] += lagrange->impulses.forces[i] / contact->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,7 +123,6 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
   contact->ops->visit          = ContactVisit_ForwardLagrange;
   contact->ops->destroy        = ContactDestroy_ForwardLagrange;
   PetscCall(ComplementarityCreate(contact, &lagrange->forces));
-  PetscCall(ForcesGetStep(contact, &lagrange->step));
   if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) {
     contact->ops->accept = ContactAccept_ForwardLagrange;
     lagrange->close_rate = PETSC_TRUE;
