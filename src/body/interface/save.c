@@ -16,6 +16,7 @@
 PetscErrorCode BodySave(Body body)
 {
   const PetscBool stepped = (PetscBool)(body->state.step != body->saved.step), here = (PetscBool)!BodyIsElsewhere(body);
+  const RowList  *read = body->rows.read;
   PetscScalar    *start, *end;
 
   PetscFunctionBegin;
@@ -26,9 +27,9 @@ PetscErrorCode BodySave(Body body)
     for (PetscInt i = 0; i < 4; i++) { /* those of other rows are old */
       PetscCall(TraceGetLevel(traces[i], 0, &start));
       PetscCall(TraceGetLevel(traces[i], body->time.substeps, &end));
-      if (body->rows.n_near == body->rows.local) PetscCall(PetscArraycpy(start, end, body->rows.local));
+      if (read->n == body->rows.local) PetscCall(PetscArraycpy(start, end, body->rows.local));
       else
-        for (PetscInt k = 0; k < body->rows.n_near; k++) start[body->rows.near[k]] = end[body->rows.near[k]];
+        for (PetscInt k = 0; k < read->n; k++) start[read->numbers[k]] = end[read->numbers[k]];
     }
   }
   /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */

@@ -168,6 +168,13 @@ typedef struct {
   PetscInt n_elsewhere, *elsewhere;
 } RowPattern;
 
+/* Some rows of this rank */
+typedef struct {
+  PetscInt n, *numbers; /* ascending */
+  Mat      matrix;      /* these of the matrix; that itself where they are all */
+  Vec      values;      /* work space: a number for each */
+} RowList;
+
 /* The rows of the interface: of this rank, and how to have all of them on every rank */
 typedef struct {
   Mat              matrix;      /* B: rows of all ranks x displacements */
@@ -203,10 +210,9 @@ typedef struct {
   BodyHandover handover;
   BodyExchange exchange;
   /* rows that anything happens to, see BodySetNearRows() */
-  PetscInt       n_near, *near; /* of this rank, ascending */
-  PetscBool      some_near;     /* on some rank there may be others */
-  Mat            near_matrix;   /* these of the matrix; that itself where they are all */
-  Vec            near_row;      /* work space: a number for each */
+  RowList        near, leading; /* all of them; those that are read while nothing happens to any, none of its own where these are all */
+  const RowList *read;          /* which of both is read in the present step */
+  PetscBool      some_near;     /* on some rank there may be others than near ones */
   PetscBool      constant;      /* forces act that are the same throughout the controller step, see BodySetConstantForces() */
   PetscBool      idle;          /* these are zero; where all rows are on this rank */
   Vec            nodal_force;   /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */

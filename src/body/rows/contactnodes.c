@@ -21,18 +21,18 @@ PetscErrorCode BodyDestroyContactNodes(Body body)
 /* Marks displacements that near rows have entries in */
 static PetscErrorCode MarkNear(Body body, Vec marks)
 {
-  const BodyRows *rows = &body->rows;
-  PetscInt        begin;
+  const RowList *near = &body->rows.near;
+  PetscInt       begin;
 
   PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRange(rows->near_matrix, &begin, NULL));
-  for (PetscInt k = 0; k < rows->n_near; k++) {
+  PetscCall(MatGetOwnershipRange(near->matrix, &begin, NULL));
+  for (PetscInt k = 0; k < near->n; k++) {
     const PetscInt *columns;
     PetscInt        n;
 
-    PetscCall(MatGetRow(rows->near_matrix, begin + k, &n, &columns, NULL));
+    PetscCall(MatGetRow(near->matrix, begin + k, &n, &columns, NULL));
     for (PetscInt j = 0; j < n; j++) PetscCall(VecSetValue(marks, columns[j], 1, ADD_VALUES));
-    PetscCall(MatRestoreRow(rows->near_matrix, begin + k, &n, &columns, NULL));
+    PetscCall(MatRestoreRow(near->matrix, begin + k, &n, &columns, NULL));
   }
   PetscCall(VecAssemblyBegin(marks));
   PetscCall(VecAssemblyEnd(marks));

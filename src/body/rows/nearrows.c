@@ -1,21 +1,34 @@
 /*
    Rows near contact. Callers who know which rows may have a force say so, and a step costs what these cost, not what all contact nodes do:
-   of a sheet that falls these are all of its nodes, though a corner touches. Output traces of other rows are old.
+   of a sheet that falls these are all of its nodes, though a corner touches. Output traces of other rows are old. Of a node that nothing
+   happens to the leading row alone is read, which tells whether it touches.
 */
 #include <body/layout/bodyimpl.h>
 
-PetscErrorCode BodyDestroyNearRows(Body body)
+static PetscErrorCode DestroyList(RowList *list)
 {
   PetscFunctionBegin;
-  PetscCall(MatDestroy(&body->rows.near_matrix));
-  PetscCall(VecDestroy(&body->rows.near_row));
-  PetscCall(PetscFree(body->rows.near));
-  body->rows.n_near = -1;
+  PetscCall(MatDestroy(&list->matrix));
+  PetscCall(VecDestroy(&list->values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of this rank in `near`, of the matrix */
-static PetscErrorCode CreateMatrix(Body body)
+PetscErrorCode BodyDestroyNearRows(Body body)
+{
+  BodyRows *rows = &body->rows;
+
+  PetscFunctionBegin;
+  PetscCall(DestroyList(&rows->near));
+  PetscCall(DestroyList(&rows->leading));
+  PetscCall(PetscFree(rows->near.numbers));
+  PetscCall(PetscFree(rows->leading.numbers));
+  rows->near.n = -1;
+  rows->read   = NULL;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rows of the matrix that are in a list of this rank; those of all ranks that have such a list */
+static PetscErrorCode CreateMatrix(Body body, RowList *list)
 {
   BodyRows *rows = &body->rows;
   MPI_Comm  comm = PetscObjectComm((PetscObject)rows->matrix);
@@ -23,13 +36,13 @@ static PetscErrorCode CreateMatrix(Body body)
   IS        some, all;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(rows->n_near, &numbers));
-  for (PetscInt k = 0; k < rows->n_near; k++) numbers[k] = rows->begin + rows->near[k];
-  PetscCall(ISCreateGeneral(comm, rows->n_near, numbers, PETSC_OWN_POINTER, &some));
+  PetscCall(PetscMalloc1(list->n, &numbers));
+  for (PetscInt k = 0; k < list->n; k++) numbers[k] = rows->begin + list->numbers[k];
+  PetscCall(ISCreateGeneral(comm, list->n, numbers, PETSC_OWN_POINTER, &some));
   PetscCall(MatGetOwnershipRangeColumn(rows->matrix, &begin, &end));
   PetscCall(ISCreateStride(comm, end - begin, begin, 1, &all));
-  PetscCall(MatCreateSubMatrix(rows->matrix, some, all, MAT_INITIAL_MATRIX, &rows->near_matrix));
-  PetscCall(MatCreateVecs(rows->near_matrix, NULL, &rows->near_row));
+  PetscCall(MatCreateSubMatrix(rows->matrix, some, all, MAT_INITIAL_MATRIX, &list->matrix));
+  PetscCall(MatCreateVecs(list->matrix, NULL, &list->values));
   PetscCall(ISDestroy(&all));
   PetscCall(ISDestroy(&some));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -41,78 +54,90 @@ static PetscErrorCode CreateMatrix(Body body)
   Collective
 
   Input Parameters:
-+ body - the `Body`, set up, with the state of its start of a controller step; none of its rows is prescribed or a Robin row
-. n    - number of these rows on this rank; negative, on all ranks: all rows are
-- near - their numbers, ascending
++ body      - the `Body`, set up, with the state of its start of a controller step; none of its rows is prescribed or a Robin row
+. n         - number of these rows on this rank; negative, on all ranks: all rows are
+. near      - their numbers, ascending
+. n_leading - number of those among them that are read in steps in which `BodySetConstantForces()` is given no row, as long as there is
+              one rank
+- leading   - their numbers, ascending; `NULL`: all are read in all steps
 
   Level: developer
 
   Note:
-  Other rows have no force. Their output traces stay as they are, until `BodyWriteStartTraces()` makes those at the start of the step anew.
+  Other rows have no force. Their output traces, and those of near rows that have not been read, stay as they are, until
+  `BodyWriteStartTraces()` makes those at the start of the step anew.
 
-.seealso: `Body`, `BodyWriteStartTraces()`, `BodyUpdateInterface()`
+.seealso: `Body`, `BodyWriteStartTraces()`, `BodyUpdateInterface()`, `BodySetConstantForces()`
 @*/
-PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[])
+PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[], PetscInt n_leading, const PetscInt leading[])
 {
   BodyRows       *rows = &body->rows;
-  const PetscBool all = (PetscBool)(n < 0), other = (PetscBool)(!all || rows->some_near || rows->n_near != rows->local);
+  const PetscBool all = (PetscBool)(n < 0), other = (PetscBool)(!all || rows->some_near || rows->near.n != rows->local);
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(MatDestroy(&rows->near_matrix));
-  PetscCall(VecDestroy(&rows->near_row));
-  rows->n_near    = all ? rows->local : n;
+  PetscCall(DestroyList(&rows->near));
+  PetscCall(DestroyList(&rows->leading));
+  rows->read      = &rows->near;
+  rows->near.n    = all ? rows->local : n;
   rows->some_near = (PetscBool)!all;
-  if (!rows->near) PetscCall(PetscMalloc1(rows->local, &rows->near));
-  for (PetscInt k = 0; k < rows->n_near && other; k++) rows->near[k] = all ? k : near[k];
+  if (!rows->near.numbers) PetscCall(PetscMalloc1(rows->local, &rows->near.numbers));
+  for (PetscInt k = 0; k < rows->near.n && other; k++) rows->near.numbers[k] = all ? k : near[k];
   if (!all) {
-    PetscCall(CreateMatrix(body));
+    PetscCall(CreateMatrix(body, &rows->near));
     PetscCall(BodyClearRepeat(body));
   } else {
     PetscCall(PetscObjectReference((PetscObject)rows->matrix));
     PetscCall(PetscObjectReference((PetscObject)body->work.rows[0]));
-    rows->near_matrix = rows->matrix;
-    rows->near_row    = body->work.rows[0];
+    rows->near.matrix = rows->matrix;
+    rows->near.values = body->work.rows[0];
+  }
+  if (leading) {
+    if (!rows->leading.numbers) PetscCall(PetscMalloc1(rows->local, &rows->leading.numbers));
+    PetscCall(PetscArraycpy(rows->leading.numbers, leading, n_leading));
+    rows->leading.n = n_leading;
+    PetscCall(CreateMatrix(body, &rows->leading));
   }
   if (other) PetscCall(BodyListContactDofs(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* values = B vec, of near rows */
+/* values = B vec, of the rows that are read */
 PetscErrorCode BodyMultiplyNearRows(Body body, Vec vec, PetscScalar values[])
 {
-  const BodyRows    *rows = &body->rows;
+  const RowList     *list = body->rows.read;
   const PetscScalar *row;
 
   PetscFunctionBegin;
-  PetscCall(MatMult(rows->near_matrix, vec, rows->near_row));
-  PetscCall(VecGetArrayRead(rows->near_row, &row));
-  for (PetscInt k = 0; k < rows->n_near; k++) values[rows->near[k]] = row[k];
-  PetscCall(VecRestoreArrayRead(rows->near_row, &row));
+  PetscCall(MatMult(list->matrix, vec, list->values));
+  PetscCall(VecGetArrayRead(list->values, &row));
+  for (PetscInt k = 0; k < list->n; k++) values[list->numbers[k]] = row[k];
+  PetscCall(VecRestoreArrayRead(list->values, &row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether near rows of all ranks have numbers that are all zero, as far as one rank knows */
+/* Whether near rows of all ranks have forces that are all zero, as far as one rank knows */
 PetscBool BodyNearRowsAreZero(Body body, const PetscScalar values[])
 {
   const BodyRows *rows = &body->rows;
   PetscBool       zero = (PetscBool)(rows->size == 1);
 
-  for (PetscInt k = 0; k < rows->n_near && zero; k++) zero = (PetscBool)(values[rows->near[k]] == 0);
+  if (rows->read == &rows->leading) return PETSC_TRUE;
+  for (PetscInt k = 0; k < rows->near.n && zero; k++) zero = (PetscBool)(values[rows->near.numbers[k]] == 0);
   return zero;
 }
 
 /* f += B^T values, of near rows */
 PetscErrorCode BodyAddNearRows(Body body, const PetscScalar values[], Vec f)
 {
-  const BodyRows *rows = &body->rows;
-  PetscScalar    *row;
+  const RowList *near = &body->rows.near;
+  PetscScalar   *row;
 
   PetscFunctionBegin;
   if (BodyNearRowsAreZero(body, values)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayWrite(rows->near_row, &row));
-  for (PetscInt k = 0; k < rows->n_near; k++) row[k] = values[rows->near[k]];
-  PetscCall(VecRestoreArrayWrite(rows->near_row, &row));
-  PetscCall(MatMultTransposeAdd(rows->near_matrix, rows->near_row, f, f));
+  PetscCall(VecGetArrayWrite(near->values, &row));
+  for (PetscInt k = 0; k < near->n; k++) row[k] = values[near->numbers[k]];
+  PetscCall(VecRestoreArrayWrite(near->values, &row));
+  PetscCall(MatMultTransposeAdd(near->matrix, near->values, f, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

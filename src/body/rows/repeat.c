@@ -73,6 +73,7 @@ static PetscErrorCode CompareInputs(Body body, PetscBool news[2])
 {
   const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
   struct _BodyRepeat *repeat   = body->repeat;
+  const RowList      *read     = body->rows.read;
 
   PetscFunctionBegin;
   news[0] = PETSC_FALSE;
@@ -81,8 +82,8 @@ static PetscErrorCode CompareInputs(Body body, PetscBool news[2])
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
-    for (PetscInt j = 0; j < body->rows.n_near; j++) {
-      const PetscInt i = body->rows.near[j];
+    for (PetscInt j = 0; j < read->n; j++) {
+      const PetscInt i = read->numbers[j];
 
       repeat->changes[k][i] = Compare(body, k, i, values[i], news);
     }
@@ -90,17 +91,18 @@ static PetscErrorCode CompareInputs(Body body, PetscBool news[2])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What comes in is the present state's from now on */
+/* What comes in is the present state's from now on: forces, and displacements where any are prescribed */
 static PetscErrorCode TakeInputs(Body body)
 {
-  const Trace traces[] = {body->traces.force_in, body->traces.displacement_in};
+  const Trace    traces[] = {body->traces.force_in, body->traces.displacement_in};
+  const RowList *read     = body->rows.read;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) {
+  for (PetscInt k = 0; k < (body->rows.n_prescribed ? 2 : 1); k++) {
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
-    for (PetscInt j = 0; j < body->rows.n_near; j++) body->repeat->inputs[k][body->rows.near[j]] = values[body->rows.near[j]];
+    for (PetscInt j = 0; j < read->n; j++) body->repeat->inputs[k][read->numbers[j]] = values[read->numbers[j]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

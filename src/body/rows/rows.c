@@ -338,8 +338,8 @@ PetscErrorCode BodyAddContactForce(Body body, PetscReal position, PetscScalar sc
       if (body->rows.conditions[i] == BODY_ROBIN) row[i] -= body->rows.robin[i] * at[i];
     PetscCall(VecRestoreArrayRead(body->work.rows[1], &at));
   }
-  for (PetscInt k = 0; k < body->rows.n_near; k++) {
-    const PetscInt i = body->rows.near[k];
+  for (PetscInt k = 0; k < body->rows.near.n; k++) {
+    const PetscInt i = body->rows.near.numbers[k];
 
     row[i] = body->rows.conditions[i] == BODY_FORCED || body->rows.conditions[i] == BODY_ROBIN ? scale * row[i] : 0;
   }

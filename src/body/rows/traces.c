@@ -30,7 +30,7 @@ static PetscErrorCode ExtendFromStage(Body body, PetscInt level, PetscScalar rea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What near rows make of a vector, at a level of a trace */
+/* What the rows that are read make of a vector, at a level of a trace */
 static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
 {
   PetscScalar *values;
@@ -46,13 +46,14 @@ static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
 static PetscErrorCode WriteRates(Body body, PetscInt level)
 {
   const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
+  const RowList  *read     = body->rows.read;
   PetscScalar    *reaction, *displacement, *acceleration, *force_in;
 
   PetscFunctionBegin;
   PetscCall(WriteNear(body, body->state.v, body->traces.velocity, level));
   if (body->state.incomplete && !body->held.any) {
     PetscCall(TraceGetLevel(body->traces.acceleration, level, &acceleration));
-    for (PetscInt k = 0; k < body->rows.n_near; k++) acceleration[body->rows.near[k]] = 0;
+    for (PetscInt k = 0; k < read->n; k++) acceleration[read->numbers[k]] = 0;
   } else if (!body->rows.constant || body->rows.tied_mass) PetscCall(WriteNear(body, body->state.a, body->traces.acceleration, level));
   if (body->rows.n_prescribed) {
     Vec             force   = body->state.internal_force;
@@ -77,8 +78,8 @@ static PetscErrorCode WriteRates(Body body, PetscInt level)
   if (body->rows.n_prescribed && at_stage) PetscCall(ExtendFromStage(body, level, reaction));
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
   PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
-  for (PetscInt k = 0; k < body->rows.n_near; k++) {
-    const PetscInt i = body->rows.near[k];
+  for (PetscInt k = 0; k < read->n; k++) {
+    const PetscInt i = read->numbers[k];
 
     if (body->rows.conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->rows.robin[i] * displacement[i];
     else if (body->rows.conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
@@ -86,8 +87,8 @@ static PetscErrorCode WriteRates(Body body, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement, velocity and acceleration of near rows, and the force along prescribed and Robin ones, as they are now. Massless nodes,
-   which all rows are on where the state may be incomplete, have no acceleration unless they are held. */
+/* Displacement, velocity and acceleration of the rows that are read, and the force along prescribed and Robin ones, as they are now.
+   Massless nodes, which all rows are on where the state may be incomplete, have no acceleration unless they are held. */
 PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 {
   PetscFunctionBegin;
@@ -163,8 +164,8 @@ PetscErrorCode BodyGetRowForces(Body body, PetscInt substep, PetscReal force[])
   if (body->rows.local) PetscAssertPointer(force, 3);
   PetscCall(TraceGetLevel(body->traces.reaction, substep, &reaction));
   PetscCall(TraceGetLevel(body->traces.force_in, substep, &force_in));
-  for (PetscInt k = 0; k < body->rows.n_near; k++) {
-    const PetscInt      i         = body->rows.near[k];
+  for (PetscInt k = 0; k < body->rows.near.n; k++) {
+    const PetscInt      i         = body->rows.near.numbers[k];
     const BodyCondition condition = body->rows.conditions[i];
 
     force[i] = condition == BODY_FREE ? 0 : PetscRealPart(condition == BODY_FORCED ? force_in[i] : reaction[i]);

@@ -263,7 +263,12 @@ PetscErrorCode ContactAccept(Contact contact)
   PetscCall(ContactAcceptFriction(contact));
   PetscCall(ContactAddImpulses(contact));
   PetscCall(ContactAcceptTurns(contact));
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) contact->start.gap[contact->rows.near[k]] = contact->end.gap[contact->rows.near[k]];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair))
+      contact->start.gap[contact->rows.near[k]] = contact->end.gap[contact->rows.near[k]];
+  }
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
     const PetscInt i = contact->rows.acting[k];
 

@@ -231,9 +231,9 @@ PetscErrorCode ContactDriveFriction(Contact contact)
 }
 
 /* Whether the law takes the speed at which nodes have slid before they touch: then slips count on all near rows, else where forces act */
-static PetscBool SpeedCounts(Contact contact)
+PetscBool ContactSpeedCounts(Contact contact)
 {
-  return (PetscBool)!contact->friction.law.ignores_speed;
+  return (PetscBool)(contact->friction.slip && !contact->friction.law.ignores_speed);
 }
 
 /* Slips over the controller step, from the bodies' traces */
@@ -242,7 +242,7 @@ PetscErrorCode ContactComputeSlips(Contact contact)
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    const PetscBool    all  = SpeedCounts(contact);
+    const PetscBool    all  = ContactSpeedCounts(contact);
     const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, last = all ? pair->near_end : pair->acts_end;
     PetscScalar       *start[2], *end[2];
 
@@ -350,7 +350,7 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    const PetscBool    all  = SpeedCounts(contact);
+    const PetscBool    all  = ContactSpeedCounts(contact);
     const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, end = all ? pair->near_end : pair->acts_end;
 
     friction->pair_loss[p] += friction->pair_step[p];

@@ -3,4 +3,5 @@
 #include <contact/parts.h>
 
 PETSC_INTERN PetscErrorCode ContactLawCreate_Coulomb(Contact, ContactFrictionLaw *);
+PETSC_INTERN PetscBool      ContactSpeedCounts(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeSlips(Contact);

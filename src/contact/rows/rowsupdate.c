@@ -146,16 +146,20 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
 /* Takes shifts of gaps back as far as rows are open, where this does no work. In contact it would do work, out of nothing. */
 static void DropShifts(Contact contact)
 {
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i = contact->rows.near[k];
-    PetscReal      part;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
 
-    if (contact->rows.gap_shift[i] == 0 || contact->start.active[i]) continue;
-    part = PetscMin(contact->rows.gap_shift[i], PetscMax(contact->end.gap[i], 0));
-    contact->rows.gap_shift[i] -= part;
-    contact->rows.initial_gap[i] -= part;
-    contact->end.gap[i] -= part;
-    contact->start.gap[i] -= part;
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair)) {
+      const PetscInt i = contact->rows.near[k];
+      PetscReal      part;
+
+      if (contact->rows.gap_shift[i] == 0 || contact->start.active[i]) continue;
+      part = PetscMin(contact->rows.gap_shift[i], PetscMax(contact->end.gap[i], 0));
+      contact->rows.gap_shift[i] -= part;
+      contact->rows.initial_gap[i] -= part;
+      contact->end.gap[i] -= part;
+      contact->start.gap[i] -= part;
+    }
   }
 }
 

@@ -76,19 +76,23 @@ static PetscErrorCode Copy(Contact contact, PetscBool back)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of near rows what changes while rows stay as they are, of those that have acted in the last step forces, too; all else has been put aside
-   since rows changed last */
+/* Of near rows that are read what changes while rows stay as they are, of those that have acted in the last step forces, too; all else has
+   been put aside since rows changed last */
 static void SaveNear(Contact contact)
 {
   ContactSavedRows *saved = &contact->saved;
 
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
 
-    saved->initial_gap[i] = contact->rows.initial_gap[i];
-    saved->gap_shift[i]   = contact->rows.gap_shift[i];
-    saved->start.gap[i]   = contact->start.gap[i];
-    saved->end.gap[i]     = contact->end.gap[i];
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair)) {
+      const PetscInt i = contact->rows.near[k];
+
+      saved->initial_gap[i] = contact->rows.initial_gap[i];
+      saved->gap_shift[i]   = contact->rows.gap_shift[i];
+      saved->start.gap[i]   = contact->start.gap[i];
+      saved->end.gap[i]     = contact->end.gap[i];
+    }
   }
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
     const PetscInt i = contact->rows.acting[k];
@@ -122,6 +126,7 @@ PetscErrorCode ContactRestoreRows(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(Copy(contact, PETSC_TRUE));
+  ContactForgetReadRows(contact);
   contact->counts.rebuilds = contact->saved.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (contact->body_rows[b].pattern != contact->body_rows[b].saved) contact->body_rows[b].pattern++;

@@ -35,7 +35,24 @@ static void Bond(Contact contact, PetscInt i, PetscReal way)
   contact->start.gap[i] = -way;
 }
 
-/* Rows whose gap is round-off touch: of bodies that lie on each other and are pressed, else none has a force in the first step */
+/* Whether an open row would be closed in the middle of the step. Rows whose gap is round-off touch: of bodies that lie on each other and
+   are pressed, else none has a force in the first step. */
+static PetscBool Closes(Contact contact, const ContactStepper *stepper, PetscInt first)
+{
+  return (PetscBool)(contact->rows.opposite[first] &&
+                     contact->start.gap[first] + 0.5 * contact->step * stepper->rate[first] <= stepper->problem.resolution);
+}
+
+/* Rows of an idle pair are read where one of them is to act, with their rates */
+static PetscErrorCode ReadRows(Contact contact, ContactStepper *stepper, const ContactPair *pair)
+{
+  PetscFunctionBegin;
+  if (!pair->idle) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactReadAllRows(contact, pair));
+  PetscCall(ContactStepperComputeRates(contact, stepper->rate));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
   const PetscReal half = 0.5 * contact->step;
@@ -45,10 +62,10 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
     const PetscInt  first   = contact->rows.near[k];
     const PetscBool tied    = contact->rows.tied[first];
     const PetscBool carried = (PetscBool)(tied || (contact->start.active[first] && contact->start.force[first] > 0));
-    const PetscReal middle  = contact->start.gap[first] + half * stepper->rate[first];
-    const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && middle <= stepper->problem.resolution));
+    const PetscBool touches = (PetscBool)(carried || Closes(contact, stepper, first));
 
     if (!touches && !stepper->touches[first]) continue; /* as it was in the last step */
+    PetscCall(ReadRows(contact, stepper, pair));
     for (PetscInt i = first; i < first + pair->components; i++) {
       const PetscReal way = half * (i == first ? PetscMin(stepper->rate[i], 0) : stepper->rate[i]);
 
@@ -107,6 +124,7 @@ static PetscErrorCode More(Contact contact, ContactStepper *stepper, const Conta
     const PetscReal most  = PetscMin(PetscAbsReal(way), DEEP * size) + GRAZES * size;
 
     if (contact->end.gap[first] >= -most || stepper->touches[first] || !contact->rows.opposite[first]) continue;
+    PetscCall(ReadRows(contact, stepper, pair));
     for (PetscInt i = first; i < first + pair->components; i++) {
       stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
       stepper->lets[i]                        = 0.5 * contact->step * stepper->rate[i];

@@ -21,7 +21,7 @@ PetscErrorCode ContactStepperComputeRates(Contact contact, PetscReal rate[])
     PetscScalar       *v[2];
 
     for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].velocity, 0, &v[side]));
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair)) {
       const PetscInt i = contact->rows.near[k];
 
       rate[i] = PetscRealPart(v[1][i - pair->shift[1]] - v[0][i - pair->shift[0]]);
@@ -156,6 +156,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
   if (stepper->has_rigid || stepper->forms) stepper->state++;
   stepper->forms = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
+  for (PetscInt p = 0; p < contact->n_pairs && contact->attempt.again; p++) PetscCall(ContactReadAllRows(contact, &contact->pairs[p]));
   PetscCall(ContactStepperComputeRates(contact, stepper->rate));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
