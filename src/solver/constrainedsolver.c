@@ -246,8 +246,11 @@ PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscM
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&s->B));
   s->B = B;
-  for (PetscInt j = 0; j < s->global; j++)
-    if (changed[j]) s->fresh[j] = PETSC_FALSE;
+  for (PetscInt j = 0; j < s->global; j++) {
+    if (!changed[j]) continue;
+    s->fresh[j] = PETSC_FALSE;
+    s->missed   = 0; /* columns of rows that change again and again are not worth it */
+  }
   if (!s->shares) PetscCall(ComplianceForget(s->compliance, changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -36,7 +36,8 @@ struct _n_ConstrainedSolver {
   Mat      taken[2], part[2]; /* rows that are to become known, and all rows, on the rank that has A: with columns of all ranks, its own */
   PetscInt n_taken;           /* number of the former */
   /* corrections by stored columns: their changes, all rows on every rank */
-  PetscBool    keeps; /* columns are kept of all rows that become known */
+  PetscBool    keeps;  /* columns are kept of all rows that become known */
+  PetscInt     missed; /* corrections for lack of columns by solutions, since rows changed or columns were made */
   PetscScalar *changes, *coefficients;
   PetscBool    by_columns; /* what a correction starts from is in `changes`, and else in `rhs` */
   PetscScalar *column;     /* work space: of this rank's rows */

@@ -302,8 +302,27 @@ static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Changes of forces and targets, of all rows on every rank that may ask. `columns`: the columns of all rows whose force changes are there;
-   where the interface has few rows they are made, unless one rank may be doing this without the others. */
+/* Whether the columns of all rows whose force changes are there. Those that are not are made at once where the interface has few rows, else
+   when they have been missed in as many corrections, each by a solution, as making them takes; unless one rank may be doing this without
+   the others. */
+static PetscErrorCode FindColumns(ConstrainedSolver s, PetscBool *columns)
+{
+  PetscInt missing = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < s->global; j++) missing += s->changes[j] != 0 && !s->fresh[j];
+  *columns = (PetscBool)!missing;
+  if (!missing || s->alone) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->global > FEW_ROWS && ++s->missed <= missing) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < s->global; j++)
+    if (s->changes[j] != 0) PetscCall(ConstrainedSolverMakeColumn(s, j));
+  s->missed = 0;
+  *columns  = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Changes of forces and targets, of all rows on every rank that may ask. `columns`: the columns of all rows whose force changes are there
+ */
 static PetscErrorCode GatherChanges(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[], PetscBool *columns)
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
@@ -317,12 +336,7 @@ static PetscErrorCode GatherChanges(ConstrainedSolver s, const PetscScalar force
     PetscCall(PetscArraycpy(s->changes, force, s->local));
     PetscCall(PetscArraycpy(s->changes + s->global, target, s->local));
   }
-  *columns = PETSC_TRUE;
-  for (PetscInt j = 0; j < s->global; j++) {
-    if (s->changes[j] == 0) continue;
-    if (s->global <= FEW_ROWS && !s->alone) PetscCall(ConstrainedSolverMakeColumn(s, j));
-    *columns = (PetscBool)(*columns && s->fresh[j]);
-  }
+  PetscCall(FindColumns(s, columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -360,14 +374,15 @@ PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar t
 /* The constraints and their forces, for a checkpoint. The columns are loaded before. */
 PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver s, Checkpoint checkpoint)
 {
-  PetscInt numbers[2] = {s->n, s->dense};
+  PetscInt numbers[3] = {s->n, s->dense, s->missed};
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitReals(checkpoint, "flexibility", s->local, s->mine));
   PetscCall(CheckpointVisitReals(checkpoint, "flexibility of all", s->global, s->constrained));
-  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 2, numbers));
-  s->n     = numbers[0];
-  s->dense = (PetscBool)numbers[1];
+  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 3, numbers));
+  s->n      = numbers[0];
+  s->dense  = (PetscBool)numbers[1];
+  s->missed = numbers[2];
   PetscCall(CheckpointVisitInts(checkpoint, "constrained rows", s->n, s->rows));
   PetscCall(CheckpointVisitReals(checkpoint, "spent", 1, &s->spent));
   PetscCall(DenseFactorVisit(&s->factor, s->global, checkpoint));
