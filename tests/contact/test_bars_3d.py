@@ -36,6 +36,18 @@ def test_ranks(shared_run):
     same(*runs, 1e-10, ("left", "right"), ["left:right"])  # measured: 4e-14
 
 
+def test_implicit_bodies_take_one_solution_a_step(impakt, tmp_path):
+    """What a change of the forces of rows brings about is added up from columns that are kept, once as many solutions have been spent on it: two passes take one solution of each body."""
+    solutions = []
+    for end in (2e-4, 3e-4):
+        log = tmp_path / f"{end}.csv"
+        impakt(f"{BARS} -right_ts_type alpha2 -time_end {end} -log_view :{log}:ascii_csv")
+        with log.open(encoding="utf-8") as file:
+            sign = {"MatSolve": 1, "KSPSolve": -1}  # the law is solved by a KSP, bodies by their factors
+            solutions.append(sum(int(row["Count"]) * sign.get(row["Event Name"], 0) for row in csv.DictReader(file)))
+    assert solutions[1] - solutions[0] == 2 * 100
+
+
 def test_elements_are_asked_once_a_step(impakt, tmp_path):
     """The forces of the elements of explicit bodies are computed once in a step, linear or not, whatever contact takes. Slow bars, which are as good as linear."""
     steps, forces = 20, []

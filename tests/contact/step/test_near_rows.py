@@ -51,6 +51,18 @@ def test_restart(meshes, impakt):
         np.testing.assert_array_equal(rest.history[name][()], whole.history[name][()][-n:], err_msg=name)
 
 
+def test_first_rows_tell_who_touches(meshes, impakt):
+    """It flies, then slides over the plane with friction. The first row of each node alone is read while nothing touches, all rows are where the coefficient might depend on the speed, here
+    not by its value: all that comes out is the same to the last bit."""
+    case = drop(meshes[2e-3], fall="edge", speed=20, gap=2e-4, step=1e-6, end=4e-5).replace("_velocity 0,0", "_velocity 15,0")
+    first, every = impakt(joined(case, "-output_fields none")), impakt(joined(case, "-output_fields none -contact_friction_kinetic 0.3 -contact_friction_decay 1"))
+    force = np.abs(first.history["contact/bracket:t/force"][()].ravel())
+    assert force[:9].max() == 0 < force.max()
+    assert first.history["contact/bracket:t/friction_loss"][-1] > 0
+    for name in ("contact/bracket:t/force_vector", "contact/bracket:t/gap", "contact/bracket:t/friction_loss", "body/bracket/momentum", "body/bracket/kinetic"):
+        np.testing.assert_array_equal(every.history[name][()], first.history[name][()], err_msg=name)
+
+
 def seconds(options):
     """Of the processor."""
     before = os.times()
