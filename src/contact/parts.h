@@ -243,6 +243,7 @@ PETSC_INTERN PetscErrorCode ContactUnpackImpulses(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);
+PETSC_INTERN PetscErrorCode ContactRefuseSlopes(Contact, const char[], SNESLineSearch);
 PETSC_INTERN PetscErrorCode ContactRefuseUnstable(Contact, PetscBool, const char[]);
 PETSC_INTERN PetscErrorCode ContactBodyHasMass(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactNeedsImpulse(Contact, PetscInt, PetscBool *);

@@ -1,6 +1,21 @@
 /* What keeps the energy of a run: steps made again, contact at all shared times, refusals of what is known to be unstable. */
 #include <contact/parts.h>
 
+/* Line searches that want the slope of the residual's norm multiply with the Jacobian, of which there is only what divides by it */
+PetscErrorCode ContactRefuseSlopes(Contact contact, const char prefix[], SNESLineSearch line_search)
+{
+  SNESLineSearchType type;
+  PetscBool          slope;
+
+  PetscFunctionBegin;
+  PetscCall(SNESLineSearchGetType(line_search, &type));
+  PetscCall(PetscStrcmpAny(type, &slope, SNESLINESEARCHBT, SNESLINESEARCHNLEQERR, ""));
+  PetscCheck(!slope, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-%ssnes_linesearch_type %s needs products with the Jacobian, which this iteration does not have; choose none, secant or cp",
+             prefix, type);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ContactSetAllowUnstable - whether choices that are known to gain energy run all the same
 

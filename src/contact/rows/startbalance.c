@@ -13,7 +13,7 @@
    are then like ties. Those whose forces are beyond what the law allows slide under forces that are given: see frictionstart.c.
 */
 #include <contact/activeset/rounds.h>
-#include <contact/compliance/inversemass.h>
+#include <contact/rows/inversemass.h>
 
 /* Of the gaps, relative: near round-off, since a gap that is left does work in the first step */
 #define TOLERANCE 1e-15

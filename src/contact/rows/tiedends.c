@@ -7,7 +7,7 @@
    Where a force has been the same throughout the step that takes more than round-off: central differences go on with the force that the
    uncut body has at the end of the step, and velocities have the mean of both in them. With it both sides move as the uncut body does.
 */
-#include <contact/compliance/inversemass.h>
+#include <contact/rows/inversemass.h>
 
 /* At the end of a controller step, before the next one starts from it. `change`: per row, impulses [N s], then forces [N]; zero on rows
    that take no part */

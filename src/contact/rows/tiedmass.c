@@ -7,7 +7,7 @@
    in all steps if they do in the first state: what bodies start with is projected there, by impulses and forces of the ties. Between bodies
    with other integrators or steps tied nodes are massless.
 */
-#include <contact/compliance/inversemass.h>
+#include <contact/rows/inversemass.h>
 
 /* Whether both bodies of a pair would have one rule for all their tied nodes, and nobody has asked for massless ones */
 static PetscErrorCode CanKeepMass(Contact contact, const ContactPair *pair, PetscBool *can)

@@ -3,7 +3,6 @@
    That is one evaluation of the outer SNES, F = lambda - law(lambda).
 */
 #include "stepimpl.h"
-#include <contact/compliance/outersolver.h>
 #include <sys/petsccompat.h>
 #include <sys/units.h>
 
@@ -223,7 +222,7 @@ PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *steppe
              "it; choose nrichardson, which is the default, anderson, ngmres or qn",
              type);
   PetscCall(SNESGetLineSearch(stepper->outer, &line_search));
-  PetscCall(OuterSolverRefuseSlopes(contact, "schwarz_", line_search));
+  PetscCall(ContactRefuseSlopes(contact, "schwarz_", line_search));
   PetscCall(SNESSetConvergenceTest(stepper->outer, TestConvergence, contact, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,7 +5,7 @@
    go on as the uncut body does, and pairs are told its forces.
 */
 #include "stepimpl.h"
-#include <contact/compliance/inversemass.h>
+#include <contact/rows/inversemass.h>
 
 /* What a force that runs in a step of the trapezoidal rule has more at the end than in the mean */
 static PetscErrorCode ExtrapolateForces(Contact contact, const ContactStepper *stepper, PetscReal more[])

@@ -1,6 +1,6 @@
 #pragma once
 #include <contact/activeset/rounds.h>
-#include <contact/compliance/outersolver.h>
+#include "outersolver.h"
 
 typedef struct {
   /* options */

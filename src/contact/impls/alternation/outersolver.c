@@ -68,21 +68,6 @@ static PetscErrorCode RemoveValue(const Insertion *insertion)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Line searches that want the slope of the residual's norm multiply with the Jacobian, of which there is only what divides by it */
-PetscErrorCode OuterSolverRefuseSlopes(Contact contact, const char prefix[], SNESLineSearch line_search)
-{
-  SNESLineSearchType type;
-  PetscBool          slope;
-
-  PetscFunctionBegin;
-  PetscCall(SNESLineSearchGetType(line_search, &type));
-  PetscCall(PetscStrcmpAny(type, &slope, SNESLINESEARCHBT, SNESLINESEARCHNLEQERR, ""));
-  PetscCheck(!slope, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-%ssnes_linesearch_type %s needs products with the Jacobian, which this iteration does not have; choose none, secant or cp",
-             prefix, type);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether options name the SNES with anything but what says how it solves */
 static PetscErrorCode FindWatched(const char prefix[], PetscBool *watched)
 {
@@ -158,7 +143,7 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
   }
   PetscCall(SNESSetFromOptions(solver->snes));
   PetscCall(FindWatched(prefix, &solver->watched));
-  PetscCall(OuterSolverRefuseSlopes(contact, prefix, line_search));
+  PetscCall(ContactRefuseSlopes(contact, prefix, line_search));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(inserted); i++) PetscCall(RemoveValue(&inserted[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

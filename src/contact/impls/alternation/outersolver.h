@@ -20,7 +20,6 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode OuterSolverCreate(Contact, const char[], PetscInt, PetscErrorCode (*)(SNES, Vec, Vec, void *),
                                               PetscErrorCode (*)(SNES, Vec, Mat, Mat, void *), OuterSolver *);
-PETSC_INTERN PetscErrorCode OuterSolverRefuseSlopes(Contact, const char[], SNESLineSearch);
 PETSC_INTERN PetscErrorCode OuterSolverSetFromOptions(Contact, OuterSolver *, PetscReal, PetscReal, PetscInt);
 PETSC_INTERN PetscErrorCode OuterSolverSolve(Contact, OuterSolver *, PetscErrorCode (*)(SNES, Vec, Vec, void *), const PetscBool *);
 PETSC_INTERN PetscErrorCode OuterSolverDestroy(OuterSolver *);
