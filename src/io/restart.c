@@ -94,7 +94,7 @@ static PetscErrorCode TellSolvers(Output output)
 {
   const Body *bodies;
   Contact     contact;
-  PetscBool   factors, sums;
+  PetscBool   sums;
   PetscInt    n;
 
   PetscFunctionBegin;
@@ -111,11 +111,7 @@ static PetscErrorCode TellSolvers(Output output)
                              name));
   }
   PetscCall(ControllerGetContact(output->controller, &contact));
-  PetscCall(ContactRepeatsBits(contact, &factors, &sums));
-  if (!factors)
-    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)output), stderr,
-                           "impakt: the factors of contact that ranks make together need not repeat to the last bit: the run goes on to "
-                           "round-off\n"));
+  PetscCall(ContactRepeatsBits(contact, &sums));
   if (!sums)
     PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)output), stderr,
                            "impakt: sums of contact over three ranks or more need not repeat to the last bit: the run goes on to "

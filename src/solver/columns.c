@@ -1,16 +1,9 @@
-/*
-   Columns of W, of rows that become known. One solution reads all factors of A, which are larger than any cache: as many right-hand sides
-   as there are rows to be known are solved for together, and each costs a fraction.
-*/
+/* Many right-hand sides at once. A solution reads all factors of A, which are larger than any cache: together each costs a fraction. */
 #include "constrainedsolverimpl.h"
 
 /* Right-hand sides that are solved for together, and numbers that they may have in all: 200 MB */
 #define MAX_BLOCK         256
 #define MAX_BLOCK_NUMBERS 25000000
-/* Time of an operation in a solution for one right-hand side, by that of one in a solution for a block of them. Measured on one rank: 8 in
-   a cube of 7000 unknowns, 20 in one of 27000 and in one of 9e4; right-hand sides of several ranks are dense, and gain two thirds of that.
- */
-#define BLOCK_GAIN 12
 
 /* How many right-hand sides are solved for together: those of MUMPS; PETSc's own factors solve for one after the other, whatever they are
    asked for */
@@ -56,13 +49,5 @@ PetscErrorCode ConstrainedSolverSolveFreeColumns(ConstrainedSolver s, Mat b, Mat
     PetscCall(MatDenseRestoreColumnVecRead(b, k, &of_b));
   }
   PetscCall(KSPSetErrorIfNotConverged(s->ksp, s->shares));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ConstrainedSolverDropTaken(ConstrainedSolver s)
-{
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) PetscCall(MatDestroy(&s->taken[k]));
-  s->n_taken = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -83,7 +83,6 @@ static PetscErrorCode DestroyRows(ConstrainedSolver s)
 {
   PetscFunctionBegin;
   if (!s->shares) PetscCall(ComplianceDestroy(&s->compliance));
-  PetscCall(ConstrainedSolverDropTaken(s));
   for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
   PetscCall(PetscFree5(s->mine, s->constrained, s->rows, s->columns, s->fresh));
   PetscCall(PetscFree3(s->changes, s->coefficients, s->column));

@@ -33,8 +33,6 @@ struct _n_ConstrainedSolver {
   Vec            force_vec, gap_vec, product;
   PetscLogDouble solve_flops, spent; /* of one solution with A; of all iterations so far */
   PetscInt       block;              /* rows that become known together, by one solution for so many right-hand sides */
-  Mat      taken[2], part[2]; /* rows that are to become known, and all rows, on the rank that has A: with columns of all ranks, its own */
-  PetscInt n_taken;           /* number of the former */
   /* corrections by stored columns: their changes, all rows on every rank */
   PetscBool    keeps;  /* columns are kept of all rows that become known */
   PetscInt     missed; /* corrections for lack of columns by solutions, since rows changed or columns were made */
@@ -47,7 +45,6 @@ struct _n_ConstrainedSolver {
 #define FEW_ROWS 16
 
 PETSC_INTERN PetscErrorCode ConstrainedSolverChooseBlock(ConstrainedSolver);
-PETSC_INTERN PetscErrorCode ConstrainedSolverDropTaken(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver, KSP, Vec);

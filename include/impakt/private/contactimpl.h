@@ -308,9 +308,6 @@ typedef struct {
   PetscReal     *half_force, *half_rest;   /* per row: the same in the last attempt by halves that is within the room */
   PetscReal     *gain_force, *gain_rest;   /* per row: the same in the one before, which has gained too much */
   PetscReal     *last, *now;               /* work space, per row */
-  PetscReal     *tried_force, *tried_rest; /* per row: start_force and rest of the last attempt */
-  PetscBool     *stays;                    /* per body: the attempt under way starts it as the last one did */
-  PetscBool      reuses;                   /* the method makes use of that */
   PetscBool     *leaves;                   /* per row: it has left in this step, or in an attempt at it */
   ContactSearch *search;                   /* per group, by its first body */
   PetscReal     *of_group;                 /* work space: three numbers per group, by its first body */
@@ -511,7 +508,6 @@ struct _p_Contact {
   ContactNeighbours neighbours;
   ContactReach      reach;
   ContactOverlaps   overlaps;
-  PetscBool parallel_factors; /* the interface has factors that several ranks make together, perhaps not twice the same to the last bit */
   PetscBool surfaces_known;   /* ContactSetUpSurfaces() has been called */
   PetscBool setup;            /* ContactSetUp() has been called */
   void     *data;             /* what the method keeps */

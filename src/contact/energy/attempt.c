@@ -1,17 +1,6 @@
 /* An attempt at a step with other contact forces at its start, for limit.c. */
 #include "energyimpl.h"
 
-/* The start that the next attempt is compared with */
-static PetscErrorCode NoteStart(Contact contact)
-{
-  ContactEnergy *energy = &contact->energy;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(energy->tried_force, energy->start_force, contact->rows.n));
-  PetscCall(PetscArraycpy(energy->tried_rest, energy->rest, contact->rows.n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What attempts start from: the step as it has been made */
 PetscErrorCode ContactBeginAttempts(Contact contact)
 {
@@ -22,31 +11,6 @@ PetscErrorCode ContactBeginAttempts(Contact contact)
   PetscCall(PetscArraycpy(energy->first_work, energy->group_work, contact->n_bodies));
   PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) energy->rest[i] = 1;
-  PetscCall(NoteStart(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Bodies that start the attempt as they did the last one. Collective */
-static PetscErrorCode FindStaying(Contact contact)
-{
-  ContactEnergy *energy = &contact->energy;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const ContactBodyRows *of      = &contact->body_rows[b];
-    PetscBool              differs = (PetscBool)!energy->reuses;
-
-    for (PetscInt k = 0; k < of->n; k++) {
-      const PetscInt i = of->rows[k];
-
-      if (energy->start_force[i] != energy->tried_force[i] || energy->rest[i] != energy->tried_rest[i]) differs = PETSC_TRUE;
-    }
-    energy->stays[b] = (PetscBool)!differs;
-  }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy->stays, (PetscMPIInt)contact->n_bodies, MPI_C_BOOL, MPI_LAND,
-                               PetscObjectComm((PetscObject)contact)));
-  PetscCall(NoteStart(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -56,11 +20,9 @@ static PetscErrorCode MakeStep(Contact contact)
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
-  PetscCall(FindStaying(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const ContactBodyRows *of = &contact->body_rows[b];
 
-    if (energy->stays[b]) continue;
     for (PetscInt k = 0; k < of->n; k++) {
       const PetscInt i = of->rows[k];
 
@@ -74,7 +36,6 @@ static PetscErrorCode MakeStep(Contact contact)
   PetscUseTypeMethod(contact, step);
   PetscCall(ContactCompleteBodies(contact));
   energy->again = PETSC_FALSE;
-  PetscCall(PetscArrayzero(energy->stays, contact->n_bodies));
   if (!ContactFailed(contact)) PetscCall(ContactComputeFrictionLoss(contact, energy->start_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

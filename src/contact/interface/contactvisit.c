@@ -166,17 +166,15 @@ PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactRepeatsBits - what of the interface need not be the same to the last bit in another run: factors that ranks make together, and
-   sums over rows that lie on three ranks or more, of which runs of an explicit rod on a plane have been seen to have two. Bodies tell of
-   themselves. Collective. */
-PetscErrorCode ContactRepeatsBits(Contact contact, PetscBool *factors, PetscBool *sums)
+/* ContactRepeatsBits - whether sums over rows are the same to the last bit in another run: those over rows that lie on three ranks or more
+   need not be, of which runs of an explicit rod on a plane have been seen to have two. Bodies tell of themselves. Collective. */
+PetscErrorCode ContactRepeatsBits(Contact contact, PetscBool *sums)
 {
   int with_rows = contact->rows.n > 0;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &with_rows, 1, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-  *factors = (PetscBool)!contact->parallel_factors;
-  *sums    = (PetscBool)(with_rows < 3);
+  *sums = (PetscBool)(with_rows < 3);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

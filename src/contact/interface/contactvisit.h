@@ -5,7 +5,7 @@
 #include <impakt/contact.h>
 
 PETSC_INTERN PetscErrorCode ContactHasVisit(Contact, PetscBool *);
-PETSC_INTERN PetscErrorCode ContactRepeatsBits(Contact, PetscBool *, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactRepeatsBits(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactVisit(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactVisitShared(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactPack(Contact, Tables);
