@@ -23,8 +23,7 @@ CASES = {
 METHODS = ("schwarz",) * 5 + ("penalty", "lagrange")
 STEPS = 400  # controller steps at most, from when bodies meet
 # Explicit bodies make 107 substeps to a controller step of this many transits. In longer ones the compliance of the many rows of the stack over all substeps
-# takes minutes, and in such runs its bodies are implicit; and SNESVI, which Lagrange multipliers
-# need, did not converge in any of three such runs.
+# takes minutes, and in such runs its bodies are implicit.
 LONGEST = {"stack": 50}
 EXPLICIT_EXCESS = 2e-3  # more where a body is explicit: its staggered energy depends on the step, which cuts change; one of 16 runs of the stack gains 2.5e-3 in all
 

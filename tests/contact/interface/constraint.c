@@ -27,7 +27,7 @@ static void CheckDampers(Simulation *simulation, PetscReal penalty)
 
     assert_true(wanted > 0);
     assert_int_equal(pair.active, 1);
-    near(pair.force, wanted, 1e-9 * pair.force); /* -penalty_snes_rtol */
+    near(pair.force, wanted, 1e-9 * pair.force);
     ok(ContactGetPenaltyEnergy(simulation->contact, &energy));
     near(energy, 0.5 * penalty * PetscSqr(PetscMin(pair.gap, 0)), 1e-12);
     last = pair.gap;
@@ -61,7 +61,7 @@ static void gap_is_kept(void **state)
       const ContactPairState pair = Step(simulation);
 
       assert_int_equal(pair.active, 1);
-      near(pair.gap, COLLISION_GAP, (step + 1) * 1e-12); /* -lagrange_snes_atol in each step */
+      near(pair.gap, COLLISION_GAP, (step + 1) * 1e-12);
     }
   }
 }

@@ -101,7 +101,7 @@ static void gap_is_closed(void **state)
 
       assert_int_equal(pair.active, 1);
       assert_true(pair.force > 0);
-      near(pair.gap, 0, 1e-12); /* -lagrange_snes_atol */
+      near(pair.gap, 0, 1e-12);
       near(Momentum(simulation, 1) - before[1], 0.5 * COLLISION_STEP * (last + pair.force), 1e-14);
       near(Momentum(simulation, 0) - before[0], -0.5 * COLLISION_STEP * (last + pair.force), 1e-14);
       last = pair.force;

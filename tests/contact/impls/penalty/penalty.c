@@ -22,7 +22,7 @@ static void CheckSprings(Simulation *simulation)
 
     assert_int_equal(pair.active, 1);
     assert_true(pair.force > 0);
-    near(pair.force, -PENALTY * pair.gap, 1e-9 * pair.force); /* -penalty_snes_rtol */
+    near(pair.force, -PENALTY * pair.gap, 1e-9 * pair.force);
     ok(ContactGetPenaltyEnergy(simulation->contact, &energy));
     near(energy, 0.5 * PENALTY * pair.gap * pair.gap, 3e-9 * energy); /* twice the relative error of the force */
     /* both integrators change the momentum by dt/2 (F_0 + F_1) */
@@ -68,7 +68,7 @@ static void springs_from_elements(void **state)
   SimulationRepeat(simulation, integrators[0]);
   pair = Step(simulation);
   assert_true(pair.gap < 0);
-  near(pair.force, -stiffness * pair.gap, 1e-9 * pair.force); /* -penalty_snes_rtol */
+  near(pair.force, -stiffness * pair.gap, 1e-9 * pair.force);
 }
 
 /* The springs hold nothing before and after contact */
@@ -133,7 +133,7 @@ static void agrees_with_lagrange(void **state)
   Simulation              *simulation  = (Simulation *)*state;
   PetscReal                forces[5];
 
-  AddAugmented("-lagrange_snes_atol 1e-15");
+  AddAugmented("");
   for (PetscInt i = 0; i < 2; i++) {
     AddOptions("-contact_type lagrange");
     SimulationRepeat(simulation, bodies[i]);
