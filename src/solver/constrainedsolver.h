@@ -31,6 +31,7 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, V
 PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverBringRows(ConstrainedSolver, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscBool          ConstrainedSolverIsDirect(ConstrainedSolver);
+PETSC_INTERN void               ConstrainedSolverSetExact(ConstrainedSolver);
 PETSC_INTERN PetscBool          ConstrainedSolverIsHome(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverBring(ConstrainedSolver, const PetscScalar[], const PetscScalar[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverCorrect(ConstrainedSolver, const PetscScalar[], Vec);

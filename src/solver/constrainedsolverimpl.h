@@ -35,6 +35,7 @@ struct _n_ConstrainedSolver {
   PetscInt       block;              /* rows that become known together, by one solution for so many right-hand sides */
   /* corrections by stored columns: their changes, all rows on every rank */
   PetscBool    keeps;  /* columns are kept of all rows that become known */
+  PetscBool    exact;  /* corrections for which columns are missing are solutions, see ConstrainedSolverSetExact() */
   PetscInt     missed; /* corrections for lack of columns by solutions, since rows changed or columns were made */
   PetscScalar *changes, *coefficients;
   PetscBool    by_columns; /* what a correction starts from is in `changes`, and else in `rhs` */

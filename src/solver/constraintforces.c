@@ -313,7 +313,7 @@ static PetscErrorCode FindColumns(ConstrainedSolver s, PetscBool *columns)
   for (PetscInt j = 0; j < s->global; j++) missing += s->changes[j] != 0 && !s->fresh[j];
   *columns = (PetscBool)!missing;
   if (!missing || s->alone) PetscFunctionReturn(PETSC_SUCCESS);
-  if (s->global > FEW_ROWS && ++s->missed <= missing) PetscFunctionReturn(PETSC_SUCCESS);
+  if (s->global > FEW_ROWS && (s->exact || ++s->missed <= missing)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = 0; j < s->global; j++)
     if (s->changes[j] != 0) PetscCall(ConstrainedSolverMakeColumn(s, j));
   s->missed = 0;

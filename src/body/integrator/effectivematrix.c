@@ -152,6 +152,7 @@ PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
                                    BodyGetSharedCompliance(body), &body->solver));
   body->solver_begun = PETSC_TRUE;
   if (body->setup) PetscCall(BodyEndSolver(body));
+  if (!body->integrator->has_inertia) ConstrainedSolverSetExact(body->solver);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -217,7 +217,7 @@ PetscErrorCode ContactCheckLaws(Contact contact)
         "leave -contact_law_<pair> out",
         contact->pairs[p].name, ContactNameLaw(contact, &contact->pairs[p]), contact->pairs[0].name, way, type);
   PetscCheck(contact->sideless || !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), comm, PETSC_ERR_SUP,
-             "-contact_law %s: -contact_type %s has no friction; choose schwarz, lagrange, penalty or augmented_lagrangian",
+             "-contact_law %s: -contact_type %s has no friction; choose -contact_type schwarz, lagrange, penalty or augmented_lagrangian",
              contact->friction.name, type);
   PetscCheck(contact->impulses || !ContactAnyPairHas(contact, CONTACT_LAW_GLUE), comm, PETSC_ERR_SUP,
              "-contact_law %s works with -contact_type schwarz alone, not with %s; choose that, or -contact_law tied", way, type);

@@ -263,10 +263,10 @@ static PetscErrorCode CheckSprings(Contact contact, const ContactStepper *steppe
 /* The outer iteration over the touching rows */
 PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
 {
-  const char         *length = UnitsOf((PetscObject)contact, UNIT_LENGTH);
   SNESConvergedReason reason;
   PetscScalar        *x;
   PetscInt            worst;
+  const char         *length;
   PetscReal           time, atol, rtol;
 
   PetscFunctionBegin;
@@ -304,6 +304,7 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
     contact->counts.unconverged_steps++;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  length = UnitsOf((PetscObject)contact, UNIT_LENGTH);
   PetscCall(SNESGetTolerances(stepper->outer, &atol, &rtol, NULL, NULL, NULL));
   worst = WorstGroup(contact, stepper, atol, rtol);
   PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,

@@ -248,8 +248,7 @@ def test_equal_blocks_in_contact(impakt, tmp_path, contact):
     lines = (ROOT / "options/layered-plate.opts").read_text().splitlines()
     plain = tmp_path / "plain.opts"
     plain.write_text("\n".join(line for line in lines if not line.strip().startswith("-skin_")))
-    nearer = f" {TIGHT}" if contact == "schwarz" else ""
-    base = f"-options_file {plain} -time_end 4e-5 -contact_type {contact}{nearer}"
+    base = f"-options_file {plain} -time_end 4e-5 -contact_type {contact} {TIGHT}"
     runs = [impakt(f"{base}{more}") for more in ("", " -plate_skin_density 200")]
     for body in ("block", "plate"):
         for name in ("kinetic", "potential"):

@@ -16,8 +16,3 @@ def test_both_sides(mu, ranks, impakt):
     assert both.history["energy/change"][()].max() <= 1e-12 * both.history["energy/scale"][0]
     assert both.summary["contact"]["contact_loss"] == pytest.approx(one.summary["contact"]["contact_loss"], rel=0.1)
     assert both.summary["schwarz"]["max"] <= 3
-
-
-def test_other_methods_have_sides(impakt):
-    run = impakt(f"{sheet_and_block(pair='block:sheet,sheet:block')} -contact_type penalty -sheet_mass_redistribute true -block_mass_redistribute true", expect_failure=True)
-    assert "the pairs form a circle" in run.stderr
