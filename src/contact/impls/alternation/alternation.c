@@ -93,7 +93,7 @@ static PetscErrorCode SetUpOuterSolver(Contact contact, PetscInt unknowns)
   SNESLineSearch line_search;
 
   PetscFunctionBegin;
-  PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, AlternationSweep, NULL, &alternation->outer));
+  PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, AlternationSweep, &alternation->outer));
   PetscCall(OuterSolverSetFromOptions(contact, &alternation->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, OUTER_POSITION_RTOL,
                                       OUTER_MAX_ITERATIONS));
   PetscCall(SNESGetTolerances(alternation->outer.snes, &alternation->atol, &alternation->rtol, NULL, NULL, NULL));

@@ -3,14 +3,11 @@
 #include <sys/petsccompat.h>
 #include <strings.h>
 
-/* A SNES of `local` unknowns on this rank, with a dense Jacobian held as a sparse matrix: its size is that of the interface. Without a
-   function for the Jacobian (NULL) the iteration is a fixed-point iteration, accelerated or not. */
+/* A SNES of `local` unknowns on this rank: a fixed-point iteration, accelerated or not */
 PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt local, PetscErrorCode (*function)(SNES, Vec, Vec, void *),
-                                 PetscErrorCode (*jacobian)(SNES, Vec, Mat, Mat, void *), OuterSolver *solver)
+                                 OuterSolver *solver)
 {
   MPI_Comm comm = PetscObjectComm((PetscObject)contact);
-  KSP      ksp;
-  PC       pc;
 
   PetscFunctionBegin;
   PetscCall(VecCreate(comm, &solver->x));
@@ -20,16 +17,6 @@ PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt 
   PetscCall(SNESCreate(comm, &solver->snes));
   PetscCall(SNESSetOptionsPrefix(solver->snes, prefix));
   PetscCall(SNESSetFunction(solver->snes, solver->residual, function, contact));
-  if (!jacobian) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatCreate(comm, &solver->jacobian));
-  PetscCall(MatSetSizes(solver->jacobian, local, local, PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(solver->jacobian, MATAIJ));
-  PetscCall(MatSetUp(solver->jacobian));
-  PetscCall(SNESSetJacobian(solver->snes, solver->jacobian, solver->jacobian, jacobian, contact));
-  PetscCall(SNESGetKSP(solver->snes, &ksp));
-  PetscCall(KSPSetType(ksp, KSPPREONLY));
-  PetscCall(KSPGetPC(ksp, &pc));
-  PetscCall(PCSetType(pc, contact->ranks.size == 1 ? PCLU : PCREDUNDANT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,16 +81,16 @@ static PetscErrorCode FindWatched(const char prefix[], PetscBool *watched)
 /* The type of the iteration, as the options have it: Newton's method needs a Jacobian, and Anderson's acceleration serves where there is
  * none
  */
-static PetscErrorCode ReadType(Contact contact, const OuterSolver *solver, const char prefix[], char type[], size_t size)
+static PetscErrorCode ReadType(Contact contact, const char prefix[], char type[], size_t size)
 {
   const char *known[] = {SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
   PetscBool   newton, same = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscCall(PetscStrncpy(type, solver->jacobian ? SNESNEWTONLS : SNESANDERSON, size));
+  PetscCall(PetscStrncpy(type, SNESANDERSON, size));
   PetscCall(PetscOptionsGetString(NULL, prefix, "-snes_type", type, size, NULL));
   PetscCall(PetscStrcmp(type, SNESNEWTONLS, &newton));
-  if (newton && !solver->jacobian) { /* the default of older versions */
+  if (newton) { /* the default of older versions */
     PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,
                            "impakt: warning: -%ssnes_type newtonls has no effect any more: sweeps have no Jacobian, and anderson is taken; "
                            "leave it out\n",
@@ -112,7 +99,7 @@ static PetscErrorCode ReadType(Contact contact, const OuterSolver *solver, const
   }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(known) && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
   PetscCheck(same || newton, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
-             "Unknown -%ssnes_type '%s'; known: %sanderson, nrichardson, ngmres, qn", prefix, type, solver->jacobian ? "newtonls, " : "");
+             "Unknown -%ssnes_type '%s'; known: anderson, nrichardson, ngmres, qn", prefix, type);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,7 +116,7 @@ PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, P
   PetscFunctionBegin;
   PetscCall(SNESGetOptionsPrefix(solver->snes, &prefix));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(inserted); i++) inserted[i].prefix = prefix;
-  PetscCall(ReadType(contact, solver, prefix, type, sizeof(type)));
+  PetscCall(ReadType(contact, prefix, type, sizeof(type)));
   PetscCall(PetscStrcmp(type, SNESANDERSON, &anderson));
   PetscCall(SNESSetType(solver->snes, type));
   /* after the type, which brings a line search of its own */
@@ -179,6 +166,5 @@ PetscErrorCode OuterSolverDestroy(OuterSolver *solver)
   PetscCall(SNESDestroy(&solver->snes));
   PetscCall(VecDestroy(&solver->x));
   PetscCall(VecDestroy(&solver->residual));
-  PetscCall(MatDestroy(&solver->jacobian));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,12 +14,10 @@
 typedef struct {
   SNES      snes;
   Vec       x, residual;
-  Mat       jacobian;
   PetscBool watched; /* options may want to see each solve of it: monitors, views, reasons */
 } OuterSolver;
 
-PETSC_INTERN PetscErrorCode OuterSolverCreate(Contact, const char[], PetscInt, PetscErrorCode (*)(SNES, Vec, Vec, void *),
-                                              PetscErrorCode (*)(SNES, Vec, Mat, Mat, void *), OuterSolver *);
+PETSC_INTERN PetscErrorCode OuterSolverCreate(Contact, const char[], PetscInt, PetscErrorCode (*)(SNES, Vec, Vec, void *), OuterSolver *);
 PETSC_INTERN PetscErrorCode OuterSolverSetFromOptions(Contact, OuterSolver *, PetscReal, PetscReal, PetscInt);
 PETSC_INTERN PetscErrorCode OuterSolverSolve(Contact, OuterSolver *, PetscErrorCode (*)(SNES, Vec, Vec, void *), const PetscBool *);
 PETSC_INTERN PetscErrorCode OuterSolverDestroy(OuterSolver *);
