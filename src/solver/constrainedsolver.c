@@ -209,6 +209,12 @@ void ConstrainedSolverSetExact(ConstrainedSolver s)
   s->exact = PETSC_TRUE;
 }
 
+/* Whether A has factors, by which a solution costs little beside these */
+PetscBool ConstrainedSolverIsDirect(ConstrainedSolver s)
+{
+  return (PetscBool)(s && s->direct);
+}
+
 /* A solution that did not converge is not a number: the matrix of a nonlinear body may be indefinite where Newton's method has gone astray,
    and its step fails then. Where a column of a constant matrix is made PETSc has ended with an error. */
 PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver s, KSP ksp, Vec x)

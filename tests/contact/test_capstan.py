@@ -63,7 +63,7 @@ def test_band_that_stretches(impakt):
     assert run.summary["contact"]["friction_residual"] <= 1e-9
 
 
-@pytest.mark.parametrize("drum", ["", "-band_mass_redistribute true -schwarz_snes_rtol 1e-9"])
+@pytest.mark.parametrize("drum", ["", "-band_mass_redistribute true -schwarz_snes_rtol 1e-10"])
 def test_band_stays_on_the_drum(drum, impakt):
     """Nodes that slide by up to 0.025 of the radius end where the drum is, by their deformed positions, whether rows are laid ahead or again: 2e-9 measured. Those that
     kept their planes were 3e-4 off it, and the ratio of tangential to normal force was 0.274 for 0.3."""

@@ -340,7 +340,7 @@ RANKS_NONLINEAR = {
     "implicit": (BLOCKS + NONLINEAR, 2, 3, 0.75),
     "explicit": (BLOCKS + NONLINEAR + EXPLICIT + "-schwarz_snes_rtol 1e-12 ", 3, 1, 0.55),
     "multipliers, cut steps": (BLOCKS + NONLINEAR + "-contact_type lagrange -time_step 4e-5", 1, 2, 0.55),
-    "step, linear": (STEPS["step, linear, nonlinear bodies, substeps, cut steps"], 1, 2, 0.55),
+    "step, linear": (STEPS["step, linear, nonlinear bodies, substeps, cut steps"] + " -schwarz_snes_rtol 1e-12 ", 1, 2, 0.55),
     "step, impulse": (STEPS["step, impulse, explicit, nonlinear bodies"], 3, 1, 0.55),
     # 7 of 10 steps, in the last of which nodes have touched first; where that was forgotten forces differed by 1e-8
     "step, impulse, as rows join": (BLOCKS + NONLINEAR + SUBSTEPS + KEPT + "-time_step 4e-5 -time_end 4e-4 ", 1, 2, 0.7),

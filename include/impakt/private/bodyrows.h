@@ -169,6 +169,7 @@ PETSC_EXTERN PetscErrorCode BodyGetNodalDiagonal(Body, BodyForceShape, Vec *);
 PETSC_EXTERN PetscErrorCode BodyCreateSlabFunctions(Mat, Vec, PetscInt, IS, PetscInt, Mat *);
 PETSC_EXTERN PetscErrorCode BodyGetNodalCompliance(Body, BodyForceShape, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *,
                                                    const PetscScalar *[]);
+PETSC_EXTERN PetscErrorCode BodyNodalComplianceFollows(Body, PetscInt, PetscBool *);
 
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);

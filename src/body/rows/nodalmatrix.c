@@ -4,9 +4,9 @@
 
    - the stiffness of the massless layer, of an explicit body whose forces grow from none: exact for linear bodies. Nodes with mass do not
      feel what acts at the end of a step alone;
-   - the effective matrix A of an implicit body: exact for linear ones;
-   - that of a slab at the surface and what the body may do beyond it on a coarse grid, P^T A P: approximate. Whoever uses it corrects it by
-     what the body does;
+   - the effective matrix A of an implicit body: exact for linear ones; of nonlinear ones that of the last iteration of Newton's method;
+   - that of a slab at the surface and what the body may do beyond it on a coarse grid, P^T A P, undeformed: approximate. Whoever uses it
+   corrects it by what the body does;
    - the stiffness of an explicit body with many substeps, for these where forces are felt: exact for linear bodies.
 
    Under a force f that grows from none an implicit body goes by A^{-1} f. One that is constant acts at the start as well, and the body goes
@@ -48,10 +48,41 @@ PetscErrorCode NodalMatrixDestroy(NodalMatrix *nodal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/*@
+  BodyNodalComplianceFollows - whether `BodyGetNodalCompliance()` has displacements of a body as it has answered last
+
+  Not Collective
+
+  Input Parameters:
++ body - the `Body`, set up
+- n    - number of displacements
+
+  Output Parameter:
+. follows - true for nonlinear implicit bodies with one substep and factors of their matrix, but for more than 100 displacements of a body
+            of more than 5000: they are those of the last iteration of Newton's method, so that each call gives others
+
+  Level: developer
+
+.seealso: `Body`, `BodyGetNodalCompliance()`
+@*/
+PetscErrorCode BodyNodalComplianceFollows(Body body, PetscInt n, PetscBool *follows)
+{
+  PetscInt all;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(follows, 3);
+  PetscCall(VecGetSize(body->state.u, &all));
+  *follows = (PetscBool)(body->integrator->uses_newton && body->time.substeps == 1 && (n <= MANY || all <= SMALL_BODY) &&
+                         ConstrainedSolverIsDirect(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What tells how n displacements answer; whether anything does but controller steps */
 static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *kind, PetscBool *any)
 {
   const PetscBool is_explicit = (PetscBool)(body->integrator->staggered > 0), inertia = body->integrator->has_inertia;
+  PetscBool       follows = PETSC_FALSE;
   PetscMPIInt     size;
   PetscInt        all;
 
@@ -62,9 +93,10 @@ static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *
   if (!body->integrator->deforms) *any = PETSC_FALSE;
   if (!body->integrator->deforms || body->time.substeps > 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetSize(body->state.u, &all));
-  *kind = is_explicit ? BY_LAYER : body->model.linear && (n <= MANY || all <= SMALL_BODY || !inertia) ? BY_BODY : BY_SLAB;
+  PetscCall(BodyNodalComplianceFollows(body, n, &follows));
+  *kind = is_explicit ? BY_LAYER : follows || (body->model.linear && (n <= MANY || all <= SMALL_BODY || !inertia)) ? BY_BODY : BY_SLAB;
   *any  = (PetscBool)(is_explicit ? shape == BODY_FORCE_LINEAR && body->layer.exists && body->solver
-                                  : body->solver && (body->model.linear || (inertia && n > MANY)));
+                                  : body->solver && (follows || body->model.linear || (inertia && n > MANY)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

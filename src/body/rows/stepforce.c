@@ -136,12 +136,13 @@ PetscErrorCode BodyCreateNodalCompliance(Body body, Compliance *nodal)
 
   Note:
   Each new one costs a solution with a matrix where one tells, see nodalmatrix.c, else a controller step of the body, linearized about its
-  undeformed state. Of more than 100 displacements of a body with one substep they are approximate, but for small linear bodies and
-  explicit ones with massless contact nodes. More than 100 of an explicit body of one rank, with substeps, lumped mass on all nodes and no
-  dashpots, are found 8 together by these substeps where forces are felt. Those of a rigid body are found where it will be in the middle of
-the controller step, anew for each, and cost next to nothing.
+  undeformed state. Where they follow the body, see `BodyNodalComplianceFollows()`, all are found anew in each call, with the matrix of
+  the last iteration of Newton's method. Of more than 100 displacements of a body with one substep they are approximate, but for small
+linear bodies and explicit ones with massless contact nodes. More than 100 of an explicit body of one rank, with substeps, lumped mass on
+all nodes and no dashpots, are found 8 together by these substeps where forces are felt. Those of a rigid body are found where it will be in
+the middle of the controller step, anew for each, and cost next to nothing.
 
-.seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`
+.seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`, `BodyNodalComplianceFollows()`
 @*/
 PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], const PetscInt *place[],
                                       PetscInt *leading, const PetscScalar *matrix[])
@@ -150,14 +151,15 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   Compliance             *nodal                                                         = &compliance->nodal;
   PetscErrorCode (*probe)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance) = body->integrator->ops.nodalcolumns;
   PetscInt  unknown = n, known = 0;
-  PetscBool renewed;
+  PetscBool renewed, follows;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(place, 5);
   PetscAssertPointer(leading, 6);
   PetscAssertPointer(matrix, 7);
-  if (*nodal && (compliance->nodal_step != body->time.step || compliance->nodal_shape != shape ||
+  PetscCall(BodyNodalComplianceFollows(body, n, &follows));
+  if (*nodal && (follows || compliance->nodal_step != body->time.step || compliance->nodal_shape != shape ||
                  (probe && compliance->nodal_time != body->saved.time))) {
     ComplianceClear(*nodal);
     PetscCall(NodalMatrixDestroy(&compliance->nodal_matrix));

@@ -115,14 +115,11 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* B_b W_b B_b^T of a body whose nodes answer to each other: for each row, how the displacements go under a unit force along it */
-static PetscErrorCode MakeBlock(Contact contact, ContactStepper *stepper, PetscInt b)
+/* Room for the block of a body whose nodes answer to each other, and the displacements that it is of */
+static PetscErrorCode BeginBlock(Contact contact, ContactStepper *stepper, PetscInt b)
 {
-  StepperEntries    *entries = &stepper->assembly.of_body[b];
-  const PetscInt     n       = entries->n, *place;
-  PetscInt          *dofs = entries->dofs, *columns = entries->columns, leading, count;
-  PetscScalar       *moved = entries->answers;
-  const PetscScalar *W;
+  StepperEntries *entries = &stepper->assembly.of_body[b];
+  const PetscInt  n       = entries->n;
 
   PetscFunctionBegin;
   if (n * n > entries->block_room) {
@@ -132,20 +129,39 @@ static PetscErrorCode MakeBlock(Contact contact, ContactStepper *stepper, PetscI
     PetscCall(PetscMalloc1(entries->block_room, &entries->block));
     PetscCall(PetscMalloc1(entries->block_room, &entries->own));
   }
-  count = entries->begin[n];
-  PetscCall(PetscArraycpy(dofs, columns, count));
-  PetscCall(PetscSortRemoveDupsInt(&count, dofs));
-  PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rules[b]->shape, count, dofs, &place, &leading, &W));
-  for (PetscInt e = 0; e < entries->begin[n]; e++) PetscCall(PetscFindInt(columns[e], count, dofs, &columns[e]));
-  for (PetscInt d = 0; d < count; d++) dofs[d] = place[dofs[d]];
+  entries->n_dofs = entries->begin[n];
+  PetscCall(PetscArraycpy(entries->dofs, entries->columns, entries->n_dofs));
+  PetscCall(PetscSortRemoveDupsInt(&entries->n_dofs, entries->dofs));
+  for (PetscInt e = 0; e < entries->begin[n]; e++)
+    PetscCall(PetscFindInt(entries->columns[e], entries->n_dofs, entries->dofs, &entries->columns[e]));
   entries->corrected = PETSC_FALSE;
+  PetscCall(PetscArrayzero(entries->own, n * n));
+  PetscCall(BodyNodalComplianceFollows(contact->bodies[b], entries->n_dofs, &entries->follows));
+  if (!entries->follows) PetscCall(ContactStepperMakeBlock(contact, stepper, b));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* B_b W_b B_b^T of a body whose nodes answer to each other: for each row, how the displacements go under a unit force along it */
+PetscErrorCode ContactStepperMakeBlock(Contact contact, ContactStepper *stepper, PetscInt b)
+{
+  StepperEntries    *entries = &stepper->assembly.of_body[b];
+  const PetscInt     n = entries->n, count = entries->n_dofs, *dofs = entries->dofs, *columns = entries->columns, *place;
+  PetscInt           leading;
+  PetscScalar       *moved = entries->answers;
+  const PetscScalar *W;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetNodalCompliance(contact->bodies[b], stepper->rules[b]->shape, count, dofs, &place, &leading, &W));
   PetscCall(PetscArrayzero(entries->own, n * n));
   for (PetscInt l = 0; l < n; l++) {
     PetscScalar *column = entries->own + l * n;
 
     PetscCall(PetscArrayzero(moved, count));
-    for (PetscInt f = entries->begin[l]; f < entries->begin[l + 1]; f++)
-      for (PetscInt d = 0; d < count; d++) moved[d] += entries->values[f] * W[dofs[columns[f]] * leading + dofs[d]];
+    for (PetscInt f = entries->begin[l]; f < entries->begin[l + 1]; f++) {
+      const PetscScalar *answers = W + place[dofs[columns[f]]] * leading;
+
+      for (PetscInt d = 0; d < count; d++) moved[d] += entries->values[f] * answers[place[dofs[d]]];
+    }
     for (PetscInt k = 0; k < n; k++)
       for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) column[k] += entries->values[e] * moved[columns[e]];
   }
@@ -379,7 +395,7 @@ static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
     PetscCall(GetEntries(contact, stepper, b, (PetscBool)(is_explicit && !linear && !diagonal)));
     assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
     if (diagonal) PetscCall(ScaleEntries(contact, stepper, b, diagonal));
-    else PetscCall(MakeBlock(contact, stepper, b));
+    else PetscCall(BeginBlock(contact, stepper, b));
   }
   if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MultiplyRows(stepper, assembly));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,7 +2,9 @@
    What passes show of S. The displacements of a body depend on the forces on its own rows alone, so that each has secants of its own, for
    its block of S. Those of a linear body hold all at once by symmetric corrections of rank one, since its compliance is the same in all
    passes, and more than its block, which lacks motions: so what is wrong falls from step to step, until two passes are enough. Others
-   correct it by the formula of Broyden, Fletcher, Goldfarb and Shanno, after which the last one holds.
+   correct it by the formula of Broyden, Fletcher, Goldfarb and Shanno, after which the last one holds. The block of an implicit nonlinear
+   body has its tangent after the first pass of each step, and again after a pass that it has told wrong: a body that flows answers ten
+   times as far as one that does not, of which secants tell little.
 
    They are kept from step to step, as long as the body has the same touching rows: a body that is deformed answers in the next step nearly
    as in this one. A step begins with those of accepted steps of its own size, or with none; its own join them when it is accepted. So a
@@ -18,6 +20,7 @@
 #define EXACT     1e-9  /* S has told right what differs by less than this part of it, and by the round-off of positions */
 #define SURE      1e3   /* a secant is kept where S has told wrong by more than this many times that round-off */
 #define SURE_WORK 10    /* one of a linear body counts as such where S has told the work of its forces wrong by so many times round-off */
+#define RENEW     1e-3  /* of a body that follows: S has told wrong by more than this part of it, and is as the body has answered now */
 #define MOST_KEPT 80    /* secants of a body; one more, and the older half of them goes */
 
 PetscErrorCode StepperSecantsDestroy(StepperSecants *secants)
@@ -89,8 +92,10 @@ PetscErrorCode ContactStepperAcceptSecants(ContactStepper *stepper)
     const PetscInt  n       = entries->secants.n_pairs;
     const PetscBool many    = (PetscBool)(n > MOST_KEPT);
 
-    PetscCall(Copy(&entries->secants, many ? n - MOST_KEPT / 2 : 0, &entries->kept));
-    if (many) entries->corrected = PETSC_FALSE;
+    PetscCall(Copy(&entries->secants, entries->follows ? n : many ? n - MOST_KEPT / 2 : 0, &entries->kept));
+    if (!many) continue;
+    entries->corrected = PETSC_FALSE;
+    stepper->assembled = -1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -237,9 +242,31 @@ static PetscReal Off(PetscInt n, const PetscScalar gone[], const PetscScalar pro
   return off;
 }
 
+static PetscReal Largest(PetscInt n, const PetscScalar product[])
+{
+  PetscReal largest = 0;
+
+  for (PetscInt k = 0; k < n; k++) largest = PetscMax(largest, PetscAbsScalar(product[k]));
+  return largest;
+}
+
+/* The block of a body is as the body has answered in the last pass */
+static PetscErrorCode Renew(Contact contact, ContactStepper *stepper, PetscInt b)
+{
+  StepperEntries *entries = &stepper->assembly.of_body[b];
+
+  PetscFunctionBegin;
+  PetscCall(ContactStepperMakeBlock(contact, stepper, b));
+  PetscCall(PetscArraycpy(entries->block, entries->own, entries->n * entries->n));
+  PetscCall(StepperSecantsResize(&entries->secants, entries->n, 0));
+  entries->corrected = PETSC_TRUE;
+  stepper->assembled = -1;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The block of a body is corrected by what the last two passes have shown of it, unless it has told right. Where secants of earlier steps
    have made it worse than the body's own one they are forgotten. */
-static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool *forgets)
+static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool *renewed)
 {
   LawProblem     *problem = &stepper->problem;
   StepperEntries *entries = &stepper->assembly.of_body[b];
@@ -247,7 +274,7 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
   const PetscInt  n = entries->n, all = problem->n;
   PetscBool       one;
   PetscInt        at   = secants->n_pairs;
-  PetscReal       work = 0, told_work, off, largest = 0;
+  PetscReal       work = 0, told_work, off;
   PetscScalar    *force, *gone, *product = entries->product;
 
   PetscFunctionBegin;
@@ -265,6 +292,11 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
   }
   told_work = Multiply(n, entries->block, force, product);
   off       = Off(n, gone, product);
+  if (entries->follows && off > RENEW * Largest(n, product) + SURE * problem->resolution) {
+    PetscCall(Renew(contact, stepper, b));
+    *renewed = stepper->corrected = PETSC_TRUE;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (stepper->passes == 1 && at && Multiply(n, entries->own, force, product + n) > 0 && Off(n, gone, product + n) < off) {
     PetscCall(PetscArraymove(secants->values, force, 2 * n));
     PetscCall(StepperSecantsResize(secants, n, 1));
@@ -274,11 +306,10 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     gone      = force + n;
     told_work = Multiply(n, entries->block, force, product);
     off       = Off(n, gone, product);
-    *forgets = stepper->corrected = PETSC_TRUE;
+    *renewed = stepper->corrected = PETSC_TRUE;
     stepper->assembled            = -1;
   }
-  for (PetscInt k = 0; k < n; k++) largest = PetscMax(largest, PetscAbsScalar(product[k]));
-  if (off <= EXACT * largest + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0)) {
+  if (off <= EXACT * Largest(n, product) + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0)) {
     secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -299,7 +330,7 @@ PetscErrorCode ContactStepperCorrectS(Contact contact, ContactStepper *stepper)
 {
   LawProblem    *problem = &stepper->problem;
   const PetscInt n       = problem->n;
-  PetscBool      any = PETSC_FALSE, forgets = PETSC_FALSE;
+  PetscBool      any = PETSC_FALSE, renewed = PETSC_FALSE;
 
   PetscFunctionBegin;
   stepper->corrected = PETSC_FALSE;
@@ -307,13 +338,21 @@ PetscErrorCode ContactStepperCorrectS(Contact contact, ContactStepper *stepper)
     any = (PetscBool)(any || (stepper->assembly.of_body[b].n && !stepper->assembly.of_body[b].alone));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GatherEnds(contact, stepper));
-  for (PetscInt b = 0; b < contact->n_bodies && stepper->has_told; b++)
-    if (stepper->assembly.of_body[b].n && !stepper->assembly.of_body[b].alone) PetscCall(CorrectBody(contact, stepper, b, &forgets));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const StepperEntries *entries = &stepper->assembly.of_body[b];
+
+    if (!entries->n || entries->alone) continue;
+    if (stepper->has_told) PetscCall(CorrectBody(contact, stepper, b, &renewed));
+    else if (entries->follows) {
+      PetscCall(Renew(contact, stepper, b));
+      renewed = PETSC_TRUE;
+    }
+  }
   if (stepper->corrected) {
     PetscCall(MatAssemblyBegin(problem->S, MAT_FINAL_ASSEMBLY));
     PetscCall(MatAssemblyEnd(problem->S, MAT_FINAL_ASSEMBLY));
   }
-  if (forgets) PetscCall(ContactStepperAssemble(contact, stepper));
+  if (renewed) PetscCall(ContactStepperAssemble(contact, stepper));
   PetscCall(PetscArraycpy(stepper->told, problem->base, n));
   PetscCall(PetscArraycpy(stepper->told + n, stepper->ends, 2 * n));
   stepper->has_told = PETSC_TRUE;

@@ -40,11 +40,13 @@ typedef struct {
   PetscInt      *rows, *places;     /* per row: its number among those of the body, and its place among the touching ones */
   PetscInt      *begin;             /* per row: its first entry; n + 1 */
   PetscScalar   *product;           /* work space: two per row */
-  PetscInt      *columns, *dofs;    /* per entry: the displacement; work space */
+  PetscInt       n_dofs, *dofs;     /* displacements in which rows have entries, ascending */
+  PetscInt      *columns;           /* per entry: the displacement; of a body with a block, its place in `dofs` */
   PetscScalar   *values, *answers;  /* per entry, with the sign by which the row's gap goes with the body; work space */
   PetscInt       block_room;        /* room for the block */
   PetscScalar   *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
   PetscScalar   *own;               /* the same, as the body has it, without secants */
+  PetscBool      follows;           /* `own` is as the body has answered in some pass of the step */
   PetscBool      corrected;         /* `block` is `own` corrected by `secants`, and by no others */
   StepperSecants secants, kept;     /* of this step and those before it; those of accepted steps */
   Vec            force, way;        /* work space of products: of all rows of the body, or NULL */
@@ -189,6 +191,7 @@ PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperPack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperMakeBlock(Contact, ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperChooseProducts(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperTellProducts(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateProducts(Contact, ContactStepper *, Mat *, Mat *);
