@@ -79,6 +79,7 @@ PETSC_EXTERN PetscErrorCode BodyGetContactPart(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
 PETSC_EXTERN PetscErrorCode BodyIsForcedAlone(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodySetNearRows(Body, PetscInt, const PetscInt[], PetscInt, const PetscInt[]);
+PETSC_EXTERN PetscErrorCode BodyWriteStartRates(Body);
 PETSC_EXTERN PetscErrorCode BodyWriteStartTraces(Body);
 PETSC_EXTERN PetscErrorCode BodyUpdateInterface(Body, Mat, const PetscInt[], const int[]);
 PETSC_EXTERN PetscErrorCode BodyExpectRows(Body);

@@ -41,8 +41,28 @@ static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All but the displacement of BodyWriteTraces(). Nobody looks at accelerations where forces are constant in a controller step, but at those
-   of tied nodes with mass. */
+/*@
+  BodyWriteStartRates - velocities of rows in the output traces, at the start of the controller step, from the state there
+
+  Collective
+
+  Input Parameter:
+. body - the `Body`, set up, saved, which has read its leading rows alone in the last step, without their velocities
+
+  Level: developer
+
+.seealso: `Body`, `BodySetNearRows()`, `BodyWriteStartTraces()`
+@*/
+PetscErrorCode BodyWriteStartRates(Body body)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscCall(WriteNear(body, body->saved.v, body->traces.velocity, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All but the displacement of BodyWriteTraces(). Velocities of leading rows are read when somebody looks at them. Nobody looks at
+   accelerations where forces are constant in a controller step, but at those of tied nodes with mass. */
 static PetscErrorCode WriteRates(Body body, PetscInt level)
 {
   const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
@@ -50,7 +70,7 @@ static PetscErrorCode WriteRates(Body body, PetscInt level)
   PetscScalar    *reaction, *displacement, *acceleration, *force_in;
 
   PetscFunctionBegin;
-  PetscCall(WriteNear(body, body->state.v, body->traces.velocity, level));
+  if (read != &body->rows.leading) PetscCall(WriteNear(body, body->state.v, body->traces.velocity, level));
   if (body->state.incomplete && !body->held.any) {
     PetscCall(TraceGetLevel(body->traces.acceleration, level, &acceleration));
     for (PetscInt k = 0; k < read->n; k++) acceleration[read->numbers[k]] = 0;

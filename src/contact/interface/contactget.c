@@ -189,7 +189,7 @@ static PetscErrorCode SumBodyTrace(Contact contact, PetscInt body, PetscReal sum
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
   PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
   PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));
-  for (PetscInt k = 0; k < 6; k++) sums[k] = 0;
+  PetscCall(PetscArrayzero(sums, 6));
   if (!contact->nodes.n[body]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayRead(positions, &x));
   PetscCall(VecGetArrayRead(displacements, &u));

@@ -14,15 +14,31 @@
 #define DEEP   0.25
 #define GRAZES 1e-3
 
-/* Where a body will be in the middle of the step, if its nodes keep their velocities */
+/* Where the boundary of a body will be in the middle of the step, if its nodes keep their velocities */
 static PetscErrorCode Place(Contact contact, PetscInt b)
 {
-  Vec u, v;
+  const PetscReal    half = 0.5 * contact->step;
+  Surface            boundary;
+  const SurfaceData *data;
+  const PetscScalar *u, *v;
+  PetscScalar       *end;
+  PetscInt           start;
+  Vec                displacement, velocity;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
-  if (!contact->ends[b]) PetscCall(VecDuplicate(u, &contact->ends[b]));
-  PetscCall(VecWAXPY(contact->ends[b], 0.5 * contact->step, v, u));
+  PetscCall(BodyGetSolution(contact->bodies[b], &displacement, &velocity, NULL));
+  if (!contact->ends[b]) PetscCall(VecDuplicate(displacement, &contact->ends[b]));
+  PetscCall(ContactGetBoundary(contact, b, &boundary));
+  PetscCall(SurfaceGetData(boundary, &data));
+  PetscCall(VecGetOwnershipRange(displacement, &start, NULL));
+  PetscCall(VecGetArrayRead(displacement, &u));
+  PetscCall(VecGetArrayRead(velocity, &v));
+  PetscCall(VecGetArray(contact->ends[b], &end));
+  for (PetscInt i = 0; i < data->n_owned; i++)
+    for (PetscInt dof = data->dofs[i] - start, d = 0; d < contact->dim; d++, dof++) end[dof] = u[dof] + half * v[dof];
+  PetscCall(VecRestoreArray(contact->ends[b], &end));
+  PetscCall(VecRestoreArrayRead(velocity, &v));
+  PetscCall(VecRestoreArrayRead(displacement, &u));
   contact->at_end[b] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -119,11 +135,12 @@ static PetscErrorCode More(Contact contact, ContactStepper *stepper, const Conta
   PetscFunctionBegin;
   PetscCall(ContactGetLeastElement(contact, pair, &size));
   for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
-    const PetscInt  first = contact->rows.near[k];
-    const PetscReal way   = contact->step * stepper->rate[first];
-    const PetscReal most  = PetscMin(PetscAbsReal(way), DEEP * size) + GRAZES * size;
+    const PetscInt first = contact->rows.near[k];
+    PetscReal      most;
 
-    if (contact->end.gap[first] >= -most || stepper->touches[first] || !contact->rows.opposite[first]) continue;
+    if (contact->end.gap[first] >= 0 || stepper->touches[first] || !contact->rows.opposite[first]) continue;
+    most = PetscMin(PetscAbsReal(contact->step * stepper->rate[first]), DEEP * size) + GRAZES * size;
+    if (contact->end.gap[first] >= -most) continue;
     PetscCall(ReadRows(contact, stepper, pair));
     for (PetscInt i = first; i < first + pair->components; i++) {
       stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;

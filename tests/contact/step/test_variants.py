@@ -91,10 +91,14 @@ TOLERANCE = 1e-7  # of the outer iteration, to which the gaps of nonlinear bodie
 ELEMENT = 2.5e-3  # m, of the contact faces of block and bars, but for 5e-3 of the bars' first mesh
 
 
+def free_flight(v, impakt):
+    """The same bodies, from the same start, that do not touch."""
+    return impakt(" ".join(re.sub(r"-contact_(type|pairs|law|friction|balanced_start) \S+", "", v.options).split()) + " -contact_pairs none", timeout=60)
+
+
 def free_flight_error(v, impakt):
-    """Of the same bodies, from the same start, that do not touch."""
-    run = impakt(" ".join(re.sub(r"-contact_(type|pairs|law|friction|balanced_start) \S+", "", v.options).split()) + " -contact_pairs none", timeout=60)
-    return abs(run.history["energy/change"][()]).max() / run.history["energy/scale"][()].max()
+    history = free_flight(v, impakt).history
+    return abs(history["energy/change"][()]).max() / history["energy/scale"][()].max()
 
 
 def check_energy(v, run, impakt):
@@ -109,15 +113,18 @@ def check_energy(v, run, impakt):
         assert v.of != "linear_elastic" and change.max() <= 2 * free_flight_error(v, impakt)
 
 
-def check_momenta(v, run):
-    """Implicit bodies have the round-off of their equations, whose largest number is (omega step)^2; massless nonlinear ones the tolerance of Newton's method."""
+def check_momenta(v, run, impakt):
+    """Implicit bodies have the round-off of their equations, whose largest number is (omega step)^2, and that of forces in many small steps on bodies that move far, which free flight has too
+    (seed 179: 1.07e-12 in flight, 1.31e-12 with contact); massless nonlinear ones the tolerance of Newton's method."""
     roundoff = 30 * np.finfo(float).eps * (WAVE * v.step / v.edge) ** 2 if "I" in v.kinds else 0
     newton = v.newton if v.rule == "linear" and v.of != "linear_elastic" else 0
-    if len(run.history["contact"]) == 1:
-        assert momentum_error(run, v.free[0], v.load) <= max(1e-12, roundoff, newton)
+    missed = [momentum_error(run, v.free[0], v.load)] if len(run.history["contact"]) == 1 else []
+    if len(v.free) > 1:
+        missed.append(kept_error(run, "momentum", v.free, np.abs(v.load).max() * run.history["time"][-1]))
+    if missed and max(missed) > max(1e-12, roundoff, newton):
+        assert "I" in v.kinds and max(missed) <= 2 * kept_error(free_flight(v, impakt), "momentum", v.free)
     if len(v.free) == 1:
         return
-    assert kept_error(run, "momentum", v.free, np.abs(v.load).max() * run.history["time"][-1]) <= max(1e-12, roundoff, newton)
     if v.of != "linear_elastic" and v.rule == "impulse" and not v.mu and not np.any(v.load):
         # Friction acts across the gap, and linear bodies that bend do not keep it themselves; nor does the trapezoidal rule in steps without contact, measured 1.1e-5, of thin bodies, which bend, 5.1e-4; a quarter of the step: a fifth of it. Thin explicit ones of 46 and 107 substeps 2.9e-5.
         # Rows lie where bodies would be in the middle of a step with their velocities at its start: a hit that changes these across its normal by up to half of its speed leaves its impulse a lever of an eighth of the way in a step. Sheet between blocks, 38 times the step that resolves the hit: 1.1e-2, with steps of 1/2, 1/4, 1/8, 1/16 of it 7.1e-3, 1.8e-3, 2.6e-4, 9e-5
@@ -174,7 +181,7 @@ def test_variant(seed, impakt):
     frames = Frames(run, v.rows, v.other, v.normal) if v.normal is not None else None
     check_energy(v, run, impakt)
     if v.free:
-        check_momenta(v, run)
+        check_momenta(v, run, impakt)
     if v.rule == "impulse":
         check_loss(v, run, frames)
     if frames is not None:
@@ -190,7 +197,7 @@ def test_thin_variant(seed, impakt, tmp_path):
     assert ("contact_loss" in run.history) == (v.rule == "impulse")
     frames = Frames(run, v.rows, v.other, v.normal) if v.normal is not None else None
     check_energy(v, run, impakt)
-    check_momenta(v, run)
+    check_momenta(v, run, impakt)
     if v.rule == "impulse":
         check_loss(v, run, frames)
     if frames is not None:
