@@ -48,6 +48,6 @@ PetscErrorCode ConstrainedSolverSolveFreeColumns(ConstrainedSolver s, Mat b, Mat
     PetscCall(MatDenseRestoreColumnVecWrite(x, k, &of_x));
     PetscCall(MatDenseRestoreColumnVecRead(b, k, &of_b));
   }
-  PetscCall(KSPSetErrorIfNotConverged(s->ksp, s->shares));
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, s->constant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,9 +6,8 @@
 
    A row on a spring, rather than prescribed, gives (A + B_m^T k B_m) x = b: the same with t = 0 and the flexibility 1 / k added to its
    entry on the diagonal of W (Woodbury's formula). So a change of the constrained rows never makes A be factored again. The columns C =
-   A^{-1} B^T are made once each, when their row is constrained for the first time; W is kept in a Compliance, which may be one that others
-   read too. With more constrained rows than would fit, and until iterations have cost as much as columns and factors would, the constraint
-   forces are found by conjugate gradients, which need W only as a product.
+   A^{-1} B^T are made once each, when their row is constrained for the first time, and W_mm comes from them. With many constrained rows the
+   constraint forces are found by conjugate gradients, which need W only as a product.
 */
 #include "constrainedsolverimpl.h"
 #include <math.h>
@@ -39,7 +38,7 @@ static PetscErrorCode FindWhetherAlone(ConstrainedSolver s)
 }
 
 /* All that goes with the rows: none of them is constrained, and no column is there */
-static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B, Compliance compliance)
+static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)s->ksp);
   PetscMPIInt local, total = 0;
@@ -58,13 +57,10 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B, Compliance complian
   PetscCall(FindWhetherAlone(s));
   PetscCall(
       PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
-  PetscCall(PetscCalloc3(2 * s->global, &s->changes, s->global, &s->coefficients, s->local, &s->column));
+  PetscCall(PetscCalloc1(s->global, &s->changes));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
-  s->n          = 0;
-  s->dense      = PETSC_FALSE;
-  s->shares     = (PetscBool)(compliance != NULL);
-  s->compliance = compliance;
-  if (!compliance) PetscCall(ComplianceCreate(comm, s->local, s->begin, s->global, 1, &s->compliance));
+  s->n     = 0;
+  s->dense = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,10 +78,9 @@ static PetscErrorCode ChooseForRows(ConstrainedSolver s)
 static PetscErrorCode DestroyRows(ConstrainedSolver s)
 {
   PetscFunctionBegin;
-  if (!s->shares) PetscCall(ComplianceDestroy(&s->compliance));
   for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
   PetscCall(PetscFree5(s->mine, s->constrained, s->rows, s->columns, s->fresh));
-  PetscCall(PetscFree3(s->changes, s->coefficients, s->column));
+  PetscCall(PetscFree(s->changes));
   PetscCall(PetscFree3(s->gathered, s->force, s->used));
   PetscCall(PetscFree2(s->counts, s->offsets));
   PetscCall(DenseFactorDestroy(&s->factor));
@@ -97,20 +92,19 @@ static PetscErrorCode DestroyRows(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Other rows, of another number: the factors of A stay, and what is known of the rows goes. A compliance that is shared belongs to these.
- */
-PetscErrorCode ConstrainedSolverReplaceRows(ConstrainedSolver s, Mat B, Compliance compliance)
+/* Other rows, of another number: the factors of A stay, and what is known of the rows goes */
+PetscErrorCode ConstrainedSolverReplaceRows(ConstrainedSolver s, Mat B)
 {
   PetscFunctionBegin;
   PetscCall(DestroyRows(s));
-  PetscCall(CreateRows(s, B, compliance));
+  PetscCall(CreateRows(s, B));
   PetscCall(ChooseForRows(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A is the matrix of a body in `dim` dimensions; `compliance`: where W is kept, or NULL for one of the solver's own. There are no factors
-   yet. */
-PetscErrorCode ConstrainedSolverBegin(Mat A, Mat B, PetscInt dim, const char prefix[], Compliance compliance, ConstrainedSolver *solver)
+/* A is the matrix of a body in `dim` dimensions; `constant`: it never changes, so that a solution that fails is an error. There are no
+   factors yet. */
+PetscErrorCode ConstrainedSolverBegin(Mat A, Mat B, PetscInt dim, const char prefix[], PetscBool constant, ConstrainedSolver *solver)
 {
   ConstrainedSolver s;
   MPI_Comm          comm = PetscObjectComm((PetscObject)A);
@@ -122,7 +116,8 @@ PetscErrorCode ConstrainedSolverBegin(Mat A, Mat B, PetscInt dim, const char pre
   PetscCall(KSPSetOptionsPrefix(s->ksp, prefix));
   PetscCall(KSPSetOperators(s->ksp, A, A));
   PetscCallMPI(MPI_Comm_size(comm, &s->size));
-  PetscCall(KSPSetErrorIfNotConverged(s->ksp, (PetscBool)(compliance != NULL)));
+  s->constant = constant;
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, constant));
   PetscCall(ConstrainedSolverChoose(s->ksp, A, dim));
   PetscCall(KSPSetFromOptions(s->ksp));
   PetscCall(ConstrainedSolverAdjust(s->ksp));
@@ -132,7 +127,7 @@ PetscErrorCode ConstrainedSolverBegin(Mat A, Mat B, PetscInt dim, const char pre
   PetscCall(ConstrainedSolverFindFactors(s, A));
   PetscCall(MatCreateVecs(A, NULL, &s->rhs));
   PetscCall(VecDuplicate(s->rhs, &s->product));
-  PetscCall(CreateRows(s, B, compliance));
+  PetscCall(CreateRows(s, B));
   *solver = s;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -164,10 +159,10 @@ PetscErrorCode ConstrainedSolverEnd(ConstrainedSolver s)
 }
 
 /* ConstrainedSolverBegin() and what has to follow */
-PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], Compliance compliance, ConstrainedSolver *solver)
+PetscErrorCode ConstrainedSolverCreate(Mat A, Mat B, PetscInt dim, const char prefix[], PetscBool constant, ConstrainedSolver *solver)
 {
   PetscFunctionBegin;
-  PetscCall(ConstrainedSolverBegin(A, B, dim, prefix, compliance, solver));
+  PetscCall(ConstrainedSolverBegin(A, B, dim, prefix, constant, solver));
   PetscCall(ConstrainedSolverEnd(*solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -250,8 +245,7 @@ KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver s)
   return failed;
 }
 
-/* The rows have new entries, as many as before; `changed`: for each row of all ranks, whether it is one of them. A compliance of the
-   solver's own forgets these; of a shared one its owner does. */
+/* The rows have new entries, as many as before; `changed`: for each row of all ranks, whether it is one of them */
 PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscMPIInt changed[])
 {
   PetscFunctionBegin;
@@ -263,39 +257,6 @@ PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscM
     s->fresh[j] = PETSC_FALSE;
     s->missed   = 0; /* columns of rows that change again and again are not worth it */
   }
-  if (!s->shares) PetscCall(ComplianceForget(s->compliance, changed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The owner of a shared compliance has made rows unknown: their columns are not used either, until they are made again */
-PetscErrorCode ConstrainedSolverForgetUnknown(ConstrainedSolver s)
-{
-  const PetscInt *place;
-
-  PetscFunctionBegin;
-  ComplianceGetRows(s->compliance, NULL, NULL, &place);
-  for (PetscInt j = 0; j < s->global; j++)
-    if (place[j] < 0) s->fresh[j] = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* w = W e_j, the displacement of the rows of this rank under a unit force on row j. Leaves A^{-1} B^T e_j in x. */
-PetscErrorCode ConstrainedSolverApplyUnit(ConstrainedSolver s, PetscInt j, Vec x, PetscScalar w[])
-{
-  const PetscScalar *row;
-  PetscScalar       *unit;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(s->row, &unit));
-  PetscCall(PetscArrayzero(unit, s->local));
-  if (j >= s->begin && j < s->begin + s->local) unit[j - s->begin] = 1;
-  PetscCall(VecRestoreArrayWrite(s->row, &unit));
-  PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
-  PetscCall(ConstrainedSolverSolveFree(s, s->rhs, x));
-  PetscCall(MatMult(s->B, x, s->row));
-  PetscCall(VecGetArrayRead(s->row, &row));
-  PetscCall(PetscArraycpy(w, row, s->local));
-  PetscCall(VecRestoreArrayRead(s->row, &row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -315,22 +276,28 @@ Vec ConstrainedSolverGetProduct(ConstrainedSolver s)
   return s->product;
 }
 
-/* C_j = A^{-1} B^T e_j, and this rank's part of column j of W in the work space */
+/* C_j = A^{-1} B^T e_j */
 static PetscErrorCode SolveForColumn(ConstrainedSolver s, PetscInt j)
 {
+  PetscScalar *unit;
+
   PetscFunctionBegin;
   if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
-  PetscCall(ConstrainedSolverApplyUnit(s, j, s->columns[j], s->column));
+  PetscCall(VecGetArrayWrite(s->row, &unit));
+  PetscCall(PetscArrayzero(unit, s->local));
+  if (j >= s->begin && j < s->begin + s->local) unit[j - s->begin] = 1;
+  PetscCall(VecRestoreArrayWrite(s->row, &unit));
+  PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
+  PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->columns[j]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* C_j = A^{-1} B^T e_j and column j of W */
+/* The same, unless it is there */
 PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver s, PetscInt j)
 {
   PetscFunctionBegin;
   if (s->fresh[j]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SolveForColumn(s, j));
-  PetscCall(ComplianceSetColumn(s->compliance, j, 1, s->column));
   s->fresh[j] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -359,12 +326,11 @@ static PetscErrorCode VisitColumns(ConstrainedSolver s, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* State for a checkpoint. A and B, and a compliance that is shared, are loaded before. Collective. */
+/* State for a checkpoint. A and B are loaded before. Collective. */
 PetscErrorCode ConstrainedSolverVisit(ConstrainedSolver s, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   PetscCall(CheckpointCheckInts(checkpoint, "rows", 1, &s->global));
-  if (!s->shares) PetscCall(ComplianceVisit(s->compliance, checkpoint));
   PetscCall(VisitColumns(s, checkpoint));
   PetscCall(ConstrainedSolverVisitConstraints(s, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -12,17 +12,17 @@ struct _n_ConstrainedSolver {
   Mat                B;
   PetscInt           local, global, begin; /* rows of B */
   PetscMPIInt        size, *counts, *offsets;
-  Compliance         compliance; /* W at its first level */
-  PetscBool          shares;     /* that is another's, who destroys it; then A is constant */
+  PetscBool          constant; /* A is */
   KSPConvergedReason failed;     /* why a solution with a matrix that is not constant did not converge; 0: none failed */
   PetscReal         *mine,
       *constrained;   /* flexibility of a row, 0 where it is prescribed, less than 0 where it is free: this rank's rows, all rows */
   PetscInt   n;       /* how many rows are constrained */
   PetscInt  *rows;    /* which */
   Vec       *columns; /* per row: A^{-1} B^T e, or NULL until needed */
-  PetscBool *fresh;   /* per row: its column is there, and that of W, both with A and B as they are */
+  PetscBool *fresh;   /* per row: its column is there, with A and B as they are */
   /* a dense matrix for the constraint forces */
-  PetscBool    dense; /* its factors are there */
+  PetscBool    dense;       /* its factors are there */
+  PetscBool    must_factor; /* conjugate gradients have not converged, see Iterate() */
   DenseFactor  factor;
   PetscInt     room;             /* of the following */
   PetscScalar *gathered, *force; /* of constrained rows, on every rank */
@@ -31,15 +31,14 @@ struct _n_ConstrainedSolver {
   /* conjugate gradients */
   KSP            iterative;
   Vec            force_vec, gap_vec, product;
-  PetscLogDouble solve_flops, spent; /* of one solution with A; of all iterations so far */
+  PetscLogDouble solve_flops;        /* of one solution with A */
   PetscInt       block;              /* rows that become known together, by one solution for so many right-hand sides */
   /* corrections by stored columns: their changes, all rows on every rank */
-  PetscBool    keeps;  /* columns are kept of all rows that become known */
+  PetscBool    keeps;  /* columns are kept of all rows whose forces change */
   PetscBool    exact;  /* corrections for which columns are missing are solutions, see ConstrainedSolverSetExact() */
   PetscInt     missed; /* corrections for lack of columns by solutions, since rows changed or columns were made */
-  PetscScalar *changes, *coefficients;
+  PetscScalar *changes;
   PetscBool    by_columns; /* what a correction starts from is in `changes`, and else in `rhs` */
-  PetscScalar *column;     /* work space: of this rank's rows */
 };
 
 /* Interfaces of so few rows in all make the column of each row that is asked for: a correction adds them up in place of a solution */

@@ -7,7 +7,7 @@
 
 /* Columns for the dense matrix of constraint forces up to so many numbers in all, 800 MB */
 #define MAX_COLUMN_NUMBERS 1e8
-/* Up to so many constraints the dense matrix is made at once: factoring it costs less than a few solutions of a body with such a surface */
+/* Up to so many constraints their matrix is dense: factoring it costs less than a few solutions of a body with such a surface */
 #define FEW_CONSTRAINTS 256
 /* of the constraint forces by conjugate gradients: contact gaps are closed to about 1e-12 of the displacements */
 #define FORCE_TOLERANCE 1e-13
@@ -46,7 +46,7 @@ static PetscErrorCode CreateIterative(ConstrainedSolver s)
   PetscCall(KSPGetPC(s->iterative, &pc));
   PetscCall(PCSetType(pc, PCNONE));
   PetscCall(KSPSetTolerances(s->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 500));
-  PetscCall(KSPSetErrorIfNotConverged(s->iterative, s->shares));
+  PetscCall(KSPSetErrorIfNotConverged(s->iterative, s->constant));
   PetscCall(VecDuplicate(s->row, &s->force_vec));
   PetscCall(VecDuplicate(s->row, &s->gap_vec));
   PetscCall(MatDestroy(&shell));
@@ -64,18 +64,6 @@ static PetscErrorCode MayBeDense(ConstrainedSolver s, PetscBool *may)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the constraint forces are worth a dense matrix: few of them, or iterations have cost as much as it would */
-static PetscErrorCode ChooseDense(ConstrainedSolver s, PetscBool *dense)
-{
-  PetscInt missing = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < s->n; k++) missing += !s->fresh[s->rows[k]];
-  PetscCall(MayBeDense(s, dense));
-  if (s->n > FEW_CONSTRAINTS && s->spent < missing * s->solve_flops + DenseFactorFlops(s->n)) *dense = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Room for as many constraint forces as the dense matrix has */
 static PetscErrorCode MakeRoom(ConstrainedSolver s)
 {
@@ -87,13 +75,44 @@ static PetscErrorCode MakeRoom(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* B x on the constrained rows, less targets of this rank's (NULL: 0), on every rank */
+static PetscErrorCode Gather(ConstrainedSolver s, Vec x, const PetscScalar target[], PetscScalar gathered[])
+{
+  const PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscCall(MatMult(s->B, x, s->row));
+  PetscCall(VecGetArrayRead(s->row, &row));
+  for (PetscInt k = 0; k < s->n; k++) {
+    const PetscInt local = s->rows[k] - s->begin;
+
+    gathered[k] = local >= 0 && local < s->local ? row[local] - (target ? target[local] : 0) : 0;
+  }
+  PetscCall(VecRestoreArrayRead(s->row, &row));
+  if (s->size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, gathered, (PetscMPIInt)s->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* W_mm, symmetric to the last bit, with flexibilities on its diagonal */
+static PetscErrorCode FillMatrix(ConstrainedSolver s)
+{
+  PetscScalar *W = s->factor.values;
+
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < s->n; k++) {
+    PetscCall(ConstrainedSolverMakeColumn(s, s->rows[k]));
+    PetscCall(Gather(s, s->columns[s->rows[k]], NULL, s->gathered));
+    for (PetscInt l = 0; l <= k; l++) W[k * s->n + l] = W[l * s->n + k] = s->gathered[l];
+    W[k * s->n + k] += s->constrained[s->rows[k]];
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The constraint forces' matrix, for the rows that are constrained now */
 static PetscErrorCode FactorConstraints(ConstrainedSolver s)
 {
-  const PetscScalar *W;
-  const PetscInt    *place;
-  PetscInt           leading;
-  PetscBool          singular;
+  PetscBool singular;
 
   PetscFunctionBegin;
   s->n = 0;
@@ -101,19 +120,15 @@ static PetscErrorCode FactorConstraints(ConstrainedSolver s)
     if (s->constrained[j] >= 0) s->rows[s->n++] = j;
   s->dense = PETSC_TRUE;
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ChooseDense(s, &s->dense));
+  PetscCall(MayBeDense(s, &s->dense));
+  if (s->n > FEW_CONSTRAINTS && !s->must_factor) s->dense = PETSC_FALSE;
   if (!s->dense) {
     if (!s->iterative) PetscCall(CreateIterative(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(DenseFactorResize(&s->factor, s->n, s->global));
   PetscCall(MakeRoom(s));
-  for (PetscInt k = 0; k < s->n; k++) PetscCall(ConstrainedSolverMakeColumn(s, s->rows[k]));
-  ComplianceGetRows(s->compliance, NULL, NULL, &place);
-  ComplianceGetMatrix(s->compliance, 0, &leading, &W);
-  for (PetscInt k = 0; k < s->n; k++)
-    for (PetscInt l = 0; l < s->n; l++)
-      s->factor.values[k * s->n + l] = W[place[s->rows[k]] * leading + place[s->rows[l]]] + (k == l ? s->constrained[s->rows[k]] : 0);
+  PetscCall(FillMatrix(s));
   PetscCall(DenseFactorCompute(&s->factor, &singular));
   if (s->failed) { /* columns are not numbers: the step has failed, and is not constrained any more */
     s->n = 0;
@@ -159,7 +174,6 @@ PetscErrorCode ConstrainedSolverForgetColumns(ConstrainedSolver s)
 PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver s)
 {
   PetscFunctionBegin;
-  PetscCheck(!s->shares, PetscObjectComm((PetscObject)s->ksp), PETSC_ERR_PLIB, "A compliance that others read belongs to one matrix");
   PetscCall(KSPSetUp(s->ksp));
   PetscCall(PetscArrayzero(s->fresh, s->global));
   PetscCall(FactorConstraints(s));
@@ -171,7 +185,6 @@ PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver s)
 static PetscErrorCode Iterate(ConstrainedSolver s)
 {
   KSPConvergedReason reason;
-  PetscInt           iterations;
   PetscBool          may = PETSC_FALSE, raises;
 
   PetscFunctionBegin;
@@ -181,10 +194,8 @@ static PetscErrorCode Iterate(ConstrainedSolver s)
   PetscCall(KSPSolve(s->iterative, s->gap_vec, s->force_vec));
   PetscCall(KSPSetErrorIfNotConverged(s->iterative, raises));
   PetscCall(KSPGetConvergedReason(s->iterative, &reason));
-  PetscCall(KSPGetIterationNumber(s->iterative, &iterations));
-  s->spent += (iterations + 1) * s->solve_flops; /* one more for x */
   if (may && (reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_BREAKDOWN)) {
-    s->spent = PETSC_MAX_REAL;
+    s->must_factor = PETSC_TRUE;
     PetscCall(FactorConstraints(s));
   } else PetscCall(ConstrainedSolverCheckSolution(s, s->iterative, s->force_vec));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -211,25 +222,6 @@ static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, const PetscScala
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* gathered = B x - target on the constrained rows, on every rank */
-static PetscErrorCode GatherGaps(ConstrainedSolver s, Vec x, const PetscScalar target[])
-{
-  const PetscScalar *row;
-
-  PetscFunctionBegin;
-  PetscCall(MatMult(s->B, x, s->row));
-  PetscCall(VecGetArrayRead(s->row, &row));
-  for (PetscInt k = 0; k < s->n; k++) {
-    const PetscInt local = s->rows[k] - s->begin;
-
-    s->gathered[k] = local >= 0 && local < s->local ? row[local] - (target ? target[local] : 0) : 0;
-  }
-  PetscCall(VecRestoreArrayRead(s->row, &row));
-  if (s->size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, s->gathered, (PetscMPIInt)s->n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* x, a solution without constraints, becomes that with B_m x = target (this rank's rows; NULL: 0) */
 static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[], Vec x)
 {
@@ -237,7 +229,7 @@ static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[],
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
   if (!s->dense) PetscCall(ConstrainIteratively(s, target, x));
   if (!s->dense) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GatherGaps(s, x, target));
+  PetscCall(Gather(s, x, target, s->gathered));
   for (PetscInt k = 0; k < s->n; k++) {
     s->force[k] = -s->gathered[k];
     s->used[k]  = s->columns[s->rows[k]];
@@ -263,42 +255,27 @@ PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
   const PetscBool iterates = (PetscBool)(!s->direct || (s->n && !s->dense));
 
   PetscFunctionBegin;
-  if (iterates && s->shares) PetscCall(SetRaises(s, PETSC_FALSE));
+  if (iterates && s->constant) PetscCall(SetRaises(s, PETSC_FALSE));
   PetscCall(ConstrainedSolverSolveFree(s, b, x));
   PetscCall(Constrain(s, NULL, x));
-  if (iterates && s->shares) PetscCall(SetRaises(s, PETSC_TRUE));
+  if (iterates && s->constant) PetscCall(SetRaises(s, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x = sum of C_j (f_j - s_j), with columns that are all there */
+/* x = sum of C_j f_j, with columns that are all there */
 static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
 {
-  const PetscScalar *f = s->changes, *t = s->changes + s->global, *W;
-  PetscScalar       *c = s->coefficients;
-  const PetscInt    *place;
-  PetscInt           leading, used = 0;
+  PetscInt used = 0;
 
   PetscFunctionBegin;
-  ComplianceGetRows(s->compliance, NULL, NULL, &place);
-  ComplianceGetMatrix(s->compliance, 0, &leading, &W);
-  PetscCall(PetscArraycpy(c, f, s->global));
-  for (PetscInt k = 0; k < s->n; k++) {
-    const PetscInt i = s->rows[k];
-
-    s->force[k] = -t[i];
-    for (PetscInt j = 0; j < s->global; j++)
-      if (f[j] != 0) s->force[k] += W[place[j] * leading + place[i]] * f[j];
-  }
-  PetscCall(DenseFactorSolve(&s->factor, s->force));
-  for (PetscInt k = 0; k < s->n; k++) c[s->rows[k]] -= s->force[k];
   for (PetscInt j = 0; j < s->global; j++) {
-    if (c[j] == 0) continue;
-    c[used]         = c[j];
+    if (s->changes[j] == 0) continue;
+    s->force[used]  = s->changes[j];
     s->used[used++] = s->columns[j];
   }
-  if (used) PetscCall(VecAXPBY(x, c[0], 0, s->used[0]));
+  if (used) PetscCall(VecAXPBY(x, s->force[0], 0, s->used[0]));
   else PetscCall(VecZeroEntries(x));
-  if (used > 1) PetscCall(VecMAXPY(x, used - 1, c + 1, s->used + 1));
+  if (used > 1) PetscCall(VecMAXPY(x, used - 1, s->force + 1, s->used + 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -321,33 +298,26 @@ static PetscErrorCode FindColumns(ConstrainedSolver s, PetscBool *columns)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Changes of forces and targets, of all rows on every rank that may ask. `columns`: the columns of all rows whose force changes are there
- */
-static PetscErrorCode GatherChanges(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[], PetscBool *columns)
+/* Changes of forces, of all rows on every rank that may ask. `columns`: the columns of all rows whose force changes are there */
+static PetscErrorCode GatherChanges(ConstrainedSolver s, const PetscScalar force[], PetscBool *columns)
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
-
   PetscFunctionBegin;
-  if (s->size > 1 && !s->alone) {
-    PetscCallMPI(MPI_Allgatherv(force, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes, s->counts, s->offsets, MPIU_SCALAR, comm));
-    PetscCallMPI(
-        MPI_Allgatherv(target, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes + s->global, s->counts, s->offsets, MPIU_SCALAR, comm));
-  } else {
-    PetscCall(PetscArraycpy(s->changes, force, s->local));
-    PetscCall(PetscArraycpy(s->changes + s->global, target, s->local));
-  }
+  if (s->size > 1 && !s->alone)
+    PetscCallMPI(MPI_Allgatherv(force, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes, s->counts, s->offsets, MPIU_SCALAR,
+                                PetscObjectComm((PetscObject)s->ksp)));
+  else PetscCall(PetscArraycpy(s->changes, force, s->local));
   PetscCall(FindColumns(s, columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Brings changes of forces and targets of this rank's rows to the ranks that have A, for ConstrainedSolverCorrect(); collective */
-PetscErrorCode ConstrainedSolverBring(ConstrainedSolver s, const PetscScalar force[], const PetscScalar target[])
+/* Brings changes of the forces on this rank's rows to the ranks that have A, for ConstrainedSolverCorrect(); collective */
+PetscErrorCode ConstrainedSolverBring(ConstrainedSolver s, const PetscScalar force[])
 {
   PetscScalar *row;
 
   PetscFunctionBegin;
   s->by_columns = PETSC_FALSE;
-  if (s->keeps && s->dense) PetscCall(GatherChanges(s, force, target, &s->by_columns));
+  if (s->keeps && !s->n) PetscCall(GatherChanges(s, force, &s->by_columns));
   if (s->by_columns) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(s->row, &row));
   PetscCall(PetscArraycpy(row, force, s->local));
@@ -356,8 +326,8 @@ PetscErrorCode ConstrainedSolverBring(ConstrainedSolver s, const PetscScalar for
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* x with A x = B^T (force - s) and B_m x = target, for the forces and targets that ConstrainedSolverBring() has brought, without another
-   use of the solver in between: what a change of both changes. By the columns where they are kept, else by a solution. Where nothing is
+/* x with A x = B^T (force - s) and B_m x = target, for the forces that ConstrainedSolverBring() has brought, without another use of the
+   solver in between: what a change of both changes. By the columns where they are kept and no row is constrained, else by a solution. Where nothing is
    constrained, a rank that has all of A makes this alone. */
 PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar target[], Vec x)
 {
@@ -374,17 +344,17 @@ PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar t
 /* The constraints and their forces, for a checkpoint. The columns are loaded before. */
 PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver s, Checkpoint checkpoint)
 {
-  PetscInt numbers[3] = {s->n, s->dense, s->missed};
+  PetscInt numbers[4] = {s->n, s->dense, s->missed, s->must_factor};
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitReals(checkpoint, "flexibility", s->local, s->mine));
   PetscCall(CheckpointVisitReals(checkpoint, "flexibility of all", s->global, s->constrained));
-  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 3, numbers));
-  s->n      = numbers[0];
-  s->dense  = (PetscBool)numbers[1];
-  s->missed = numbers[2];
+  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 4, numbers));
+  s->n           = numbers[0];
+  s->dense       = (PetscBool)numbers[1];
+  s->missed      = numbers[2];
+  s->must_factor = (PetscBool)numbers[3];
   PetscCall(CheckpointVisitInts(checkpoint, "constrained rows", s->n, s->rows));
-  PetscCall(CheckpointVisitReals(checkpoint, "spent", 1, &s->spent));
   PetscCall(DenseFactorVisit(&s->factor, s->global, checkpoint));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MakeRoom(s));

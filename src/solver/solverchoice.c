@@ -175,7 +175,7 @@ PetscBool ConstrainedSolverIsHome(ConstrainedSolver s)
   return s->home;
 }
 
-/* What one solution costs, to compare iterations with columns; counted, so that a run repeats */
+/* What one solution costs, to compare it with columns; counted, so that a run repeats */
 PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver s, Mat A)
 {
   PetscInt       n, mine;

@@ -105,7 +105,7 @@ static void create_system(System *s, PetscMPIInt owner)
   ok(MatAssemblyBegin(B, MAT_FINAL_ASSEMBLY));
   ok(MatAssemblyEnd(B, MAT_FINAL_ASSEMBLY));
   ok(MatCreateVecs(A, &s->x, &s->b));
-  ok(ConstrainedSolverCreate(A, B, 1, "test_", NULL, &s->solver));
+  ok(ConstrainedSolverCreate(A, B, 1, "test_", PETSC_FALSE, &s->solver));
   ok(MatDestroy(&A));
   ok(MatDestroy(&B));
 }

@@ -97,7 +97,6 @@ PETSC_EXTERN PetscErrorCode BodySave(Body);
 PETSC_EXTERN PetscErrorCode BodyRestore(Body);
 PETSC_EXTERN PetscErrorCode BodyStepBack(Body);
 PETSC_EXTERN PetscErrorCode BodySetStepLevel(Body, PetscInt);
-PETSC_EXTERN PetscErrorCode BodyNoteKnownRows(Body);
 PETSC_EXTERN PetscErrorCode BodyKeep(Body);
 PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
@@ -174,7 +173,6 @@ PETSC_EXTERN PetscErrorCode BodyNodalComplianceFollows(Body, PetscInt, PetscBool
 
 /* Displacements of rows under contact forces: the interface compliance */
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);
-PETSC_EXTERN PetscErrorCode BodyForgetCompliance(Body, const PetscMPIInt[]);
 PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
 PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);

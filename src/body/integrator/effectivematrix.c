@@ -34,10 +34,10 @@ static PetscErrorCode Agree(Body body)
 }
 
 /* Brings what BodyImplicitCorrect() needs from ranks with rows */
-static PetscErrorCode BringChanges(Body body, const PetscScalar force[], const PetscScalar displacement[])
+static PetscErrorCode BringChanges(Body body, const PetscScalar force[])
 {
   PetscFunctionBegin;
-  PetscCall(ConstrainedSolverBring(body->solver, force, displacement));
+  PetscCall(ConstrainedSolverBring(body->solver, force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -149,7 +149,7 @@ PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
   PetscCall(AssembleMatrix(body, u));
   PetscCall(SetNearNullSpace(body, implicit->matrix));
   PetscCall(ConstrainedSolverBegin(implicit->matrix, body->rows.free_matrix, body->mesh.dim, ((PetscObject)body)->prefix,
-                                   BodyGetSharedCompliance(body), &body->solver));
+                                   body->model.linear, &body->solver));
   body->solver_begun = PETSC_TRUE;
   if (body->setup) PetscCall(BodyEndSolver(body));
   if (!body->integrator->has_inertia) ConstrainedSolverSetExact(body->solver);

@@ -307,7 +307,7 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
   /* a layer is a surface, and its factors fill in as those of a mesh with one dimension less */
   PetscCall(ConstrainedSolverCreate(K, LayerRowsGetMatrix(layer->rows), PetscMax(body->mesh.dim - 1, 1), prefix,
-                                    BodyGetSharedCompliance(body), &body->solver));
+                                    body->model.linear, &body->solver));
   PetscCall(VecNorm(body->mesh.positions, NORM_2, &layer->reach));
   PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
   PetscCall(BodyUseScatter(layer->scatter, body->state.u, layer->rhs));

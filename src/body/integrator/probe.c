@@ -156,7 +156,7 @@ PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const
     PetscCall(SetUnitNodalForce(body, dofs[i]));
     PetscCall(Integrate(body));
     PetscCall(VecGetArrayRead(body->state.u, &u));
-    PetscCall(ComplianceSetColumn(matrices, dofs[i], 1, u));
+    PetscCall(ComplianceSetColumn(matrices, dofs[i], u));
     PetscCall(VecRestoreArrayRead(body->state.u, &u));
   }
   body->rows.nodal_force = NULL;

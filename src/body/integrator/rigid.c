@@ -207,7 +207,6 @@ static PetscErrorCode Start(Body body)
   PetscCall(CheckStart(body, "velocity", body->state.v, v, largest));
   if (BodyIsLed(body)) PetscCall(BodyLead(body, body->state.time, &motion));
   PetscCall(BodyRigidWriteMotion(body, &motion, body->state.u, body->state.v, NULL));
-  BodyGetRigid(body)->point = motion;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -283,13 +282,8 @@ PetscErrorCode BodyIntegratorCreate_Rigid(BodyIntegrator integrator)
   integrator->affine                = PETSC_TRUE;
   integrator->ops.getparameters     = GetParameters;
   integrator->ops.setup             = SetUp;
-  integrator->ops.setrows           = BodyRigidSetRows;
-  integrator->ops.renew             = BodyRigidRenew;
   integrator->ops.finishsubstep     = FinishSubstep;
-  integrator->ops.visit             = BodyRigidVisit;
-  integrator->ops.copypoint         = BodyRigidCopyPoint;
   integrator->ops.nodalcolumns      = BodyRigidSetNodalColumns;
-  integrator->ops.applycompliance   = BodyRigidApplyCompliance;
   integrator->ops.solvemass         = BodyRigidSolveMass;
   integrator->ops.start             = Start;
   integrator->ops.startacceleration = CompleteStartAcceleration;

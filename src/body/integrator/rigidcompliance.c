@@ -1,10 +1,5 @@
-/* How a rigid body answers to forces on its nodes and on its rows: M^{-1} within rigid motions. */
+/* How a rigid body answers to forces on its nodes: M^{-1} within rigid motions. */
 #include "rigidimpl.h"
-#include <checkpoint/checkpoint.h>
-#include <impakt/private/bodyrows.h>
-
-/* The compliance of the rows is found anew with new rows once the body has turned by that angle [rad] */
-#define TURNED 0.05
 
 /* Accelerations of the nodes that forces on them bring, where the body is at a place: M^{-1} f within rigid motions that are not led */
 static PetscErrorCode Respond(Body body, const RigidMotion *place, Vec f, Vec a)
@@ -33,24 +28,6 @@ PetscErrorCode BodyRigidSolveMass(Body body, Vec f, Vec a)
   PetscFunctionBegin;
   PetscCall(BodyRigidFindPlace(body, body->state.u, &place));
   PetscCall(Respond(body, &place, f, a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* B M^{-1} B^T force on the rows, at the point of the compliance */
-static PetscErrorCode MultiplyMobility(Body body, Vec force, Vec result)
-{
-  PetscFunctionBegin;
-  PetscCall(MatMultTranspose(body->rows.free_matrix, force, body->work.nodes[0]));
-  PetscCall(Respond(body, &BodyGetRigid(body)->point, body->work.nodes[0], body->work.nodes[1]));
-  PetscCall(MatMult(body->rows.free_matrix, body->work.nodes[1], result));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyRigidApplyCompliance(Body body, Vec force, Vec displacement)
-{
-  PetscFunctionBegin;
-  PetscCall(MultiplyMobility(body, force, displacement));
-  PetscCall(VecScale(displacement, 0.25 * PetscSqr(body->time.step)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -96,55 +73,8 @@ PetscErrorCode BodyRigidSetNodalColumns(Body body, BodyForceShape shape, PetscIn
     PetscCall(Respond(body, &middle, force, moved));
     PetscCall(VecScale(moved, factor));
     PetscCall(VecGetArrayRead(moved, &way));
-    PetscCall(ComplianceSetColumn(nodal, dofs[i], 1, way));
+    PetscCall(ComplianceSetColumn(nodal, dofs[i], way));
     PetscCall(VecRestoreArrayRead(moved, &way));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All rows are found anew where the body is, once it has turned by much; those with new entries are forgotten in any case */
-PetscErrorCode BodyRigidSetRows(Body body, const PetscMPIInt changed[])
-{
-  BodyRigid   *rigid = BodyGetRigid(body);
-  PetscMPIInt *all   = body->rows.changed;
-  RigidMotion  place;
-
-  PetscFunctionBegin;
-  PetscCall(BodyRigidFindPlace(body, body->saved.u, &place));
-  if (RigidAngle(place.rotation, rigid->point.rotation) < TURNED) PetscFunctionReturn(PETSC_SUCCESS);
-  rigid->point = place;
-  (void)changed;
-  for (PetscInt i = 0; i < body->rows.global; i++) all[i] = 1; /* which is where the caller looks as well */
-  PetscCall(BodyForgetCompliance(body, all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* For steps of another length the compliance is found where the body is */
-PetscErrorCode BodyRigidRenew(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyRigidFindPlace(body, body->saved.u, &BodyGetRigid(body)->point));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyRigidVisit(Body body, PetscInt level, Checkpoint checkpoint)
-{
-  RigidMotion *point = &BodyGetRigid(body)->point;
-
-  PetscFunctionBegin;
-  if (level) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CheckpointVisitReals(checkpoint, "compliance at centre", 3, point->centre));
-  PetscCall(CheckpointVisitReals(checkpoint, "compliance at rotation", 9, point->rotation));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyRigidCopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
-{
-  RigidMotion *place = &BodyGetRigid(body)->point;
-
-  PetscFunctionBegin;
-  numbers[0] = numbers[1] = 0;
-  if (back) PetscCall(BodyRigidFindPlace(body, point, place));
-  else PetscCall(BodyRigidWriteMotion(body, place, point, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,7 +7,6 @@ typedef struct {
   PetscBool   turns;                  /* it can: not bars and rings */
   PetscReal   inertia[9], inverse[9]; /* about the centre of mass, undeformed; in two dimensions about the third axis alone [kg m^2] */
   PetscReal   spread[9], inverse_spread[9]; /* sum m Y Y^T by the masses of the nodes, Y being positions from the centre [kg m^2] */
-  RigidMotion point;                        /* where the compliance of the rows is found: centre and rotation */
 } BodyRigid;
 
 /* Momentum and moment of momentum about the centre, of velocities or of forces over mass */
@@ -32,9 +31,4 @@ PETSC_INTERN PetscErrorCode BodyRigidFindInertia(Body);
 PETSC_INTERN PetscErrorCode BodyRigidMeasure(Body, BodyMeasures *);
 PETSC_INTERN PetscErrorCode BodyRigidView(Body, PetscViewer);
 PETSC_INTERN PetscErrorCode BodyRigidSolveMass(Body, Vec, Vec);
-PETSC_INTERN PetscErrorCode BodyRigidApplyCompliance(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyRigidSetNodalColumns(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
-PETSC_INTERN PetscErrorCode BodyRigidSetRows(Body, const PetscMPIInt[]);
-PETSC_INTERN PetscErrorCode BodyRigidRenew(Body);
-PETSC_INTERN PetscErrorCode BodyRigidVisit(Body, PetscInt, Checkpoint);
-PETSC_INTERN PetscErrorCode BodyRigidCopyPoint(Body, PetscBool, Vec, PetscReal[2]);

@@ -148,15 +148,6 @@ void RigidFindVector(const PetscReal R[9], PetscReal v[3])
   for (PetscInt i = 0; i < 3; i++) v[i] = scale * q[1 + i];
 }
 
-/* The angle by which R is turned against Q [rad] */
-PetscReal RigidAngle(const PetscReal R[9], const PetscReal Q[9])
-{
-  PetscReal square = 0;
-
-  for (PetscInt k = 0; k < 9; k++) square += PetscSqr(R[k] - Q[k]);
-  return 2 * PetscAsinReal(PetscMin(1, PetscSqrtReal(square / 8)));
-}
-
 /* sum_i (G Y_i) x f_i, from D = sum_i f_i Y_i^T */
 void RigidTorque(const PetscReal G[9], const PetscReal D[9], PetscReal torque[3])
 {

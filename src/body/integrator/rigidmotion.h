@@ -21,7 +21,6 @@ PETSC_INTERN void      RigidCayley(const PetscReal[3], PetscReal[9]);
 PETSC_INTERN void      RigidExponential(const PetscReal[3], PetscReal[9]);
 PETSC_INTERN void      RigidSpin(const PetscReal[3], const PetscReal[3], PetscReal[3]);
 PETSC_INTERN void      RigidFindVector(const PetscReal[9], PetscReal[3]);
-PETSC_INTERN PetscReal RigidAngle(const PetscReal[9], const PetscReal[9]);
 PETSC_INTERN void      RigidTorque(const PetscReal[9], const PetscReal[9], PetscReal[3]);
 
 PETSC_INTERN PetscErrorCode BodyLead(Body, PetscReal, RigidMotion *);

@@ -1,6 +1,5 @@
-/* The state of a body as tables, by which a run is continued on another number of ranks. What solvers and compliance of a linear body know
-   is found anew, to round-off. Those of a nonlinear body depend on displacements of earlier steps: factors are made again where they were
-   made, and the compliance is kept. */
+/* The state of a body as tables, by which a run is continued on another number of ranks. What the solvers of a body know is
+   found anew, to round-off. Factors of a nonlinear body, which depend on displacements of earlier steps, are made again where they were made. */
 #include <body/rows/complianceimpl.h>
 #include "bodyvisit.h"
 
@@ -117,7 +116,6 @@ PetscErrorCode BodyPack(Body body, Tables tables)
   const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + N_VECS * dim;
   PetscReal     *packed;
   Vec            vecs[N_VECS];
-  char           name[256];
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(n * width, &packed));
@@ -136,9 +134,6 @@ PetscErrorCode BodyPack(Body body, Tables tables)
   PetscCall(PetscFree(packed));
   PetscCall(BodyPackHistory(body, tables));
   PetscCall(PackPoint(body, tables));
-  if (body->model.linear || !body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Name(body, "compliance", name, sizeof(name)));
-  PetscCall(CompliancePack((body->time.level ? body->levels[0].compliance : body->compliance)->matrices, name, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,21 +188,13 @@ PetscErrorCode BodyUnpack(Body body, Tables tables)
   Collective
 
   Input Parameters:
-+ body   - the `Body`
-. now    - for each row of the run that has written the tables, its number in this run
-- tables - the tables
+. body   - the `Body`
 */
-PetscErrorCode BodyTakeRows(Body body, const PetscInt now[], Tables tables)
+PetscErrorCode BodyTakeRows(Body body)
 {
-  char name[256];
-
   PetscFunctionBegin;
   PetscCall(BodyHandoverEnd(body));
   body->start.changed = body->iterate.known = body->repeats = PETSC_FALSE;
-  if (!GoesOn(body) || !body->compliance) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Name(body, "compliance", name, sizeof(name)));
-  PetscCall(ComplianceUnpack(body->compliance->matrices, name, now, tables));
-  PetscCall(BodyNoteKnownRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

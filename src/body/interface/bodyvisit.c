@@ -86,15 +86,6 @@ static PetscErrorCode VisitNodal(Body body, struct _BodyCompliance *compliance, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode VisitCompliance(Body body, struct _BodyCompliance *compliance, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  PetscCall(VisitNodal(body, compliance, checkpoint));
-  PetscCall(ComplianceVisit(compliance->matrices, checkpoint));
-  PetscCall(CheckpointVisitInts(checkpoint, "kept rows", 1, &compliance->n_kept));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Compliance and solver of a level of cut steps: the body itself has those of the present one */
 static BodyLevel GetLevel(Body body, PetscInt k)
 {
@@ -112,7 +103,7 @@ static PetscErrorCode VisitLevel(Body body, PetscInt k, Checkpoint checkpoint)
   level = GetLevel(body, k);
   first = GetLevel(body, 0);
   if (body->integrator->ops.visit) PetscCall((*body->integrator->ops.visit)(body, k, checkpoint));
-  if (k == 0 || level.compliance != first.compliance) PetscCall(VisitCompliance(body, level.compliance, checkpoint));
+  if (k == 0 || level.compliance != first.compliance) PetscCall(VisitNodal(body, level.compliance, checkpoint));
   if (level.solver && (k == 0 || level.solver != first.solver)) PetscCall(ConstrainedSolverVisit(level.solver, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

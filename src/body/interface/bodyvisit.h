@@ -13,5 +13,5 @@ PETSC_INTERN PetscErrorCode BodyPackHistory(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyUnpackHistory(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyTakeHistory(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyNotePlasticBefore(Body);
-PETSC_INTERN PetscErrorCode BodyTakeRows(Body, const PetscInt[], Tables);
+PETSC_INTERN PetscErrorCode BodyTakeRows(Body);
 PETSC_INTERN PetscErrorCode BodyRepeatsBits(Body, PetscBool *);

@@ -48,7 +48,6 @@ PetscErrorCode BodySave(Body body)
   body->iterate.known = PETSC_FALSE;
   body->repeats       = PETSC_FALSE;
   if (stepped) body->time.accepted_level = body->time.level;
-  PetscCall(BodyNoteKnownRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -51,10 +51,8 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscInt numbers[], c
   body->rows.matrix = B;
   PetscCall(BodySetNearRows(body, -1, NULL, 0, NULL));
   PetscCall(BodySetUpFreeRows(body));
-  PetscCall(BodyForgetCompliance(body, all));
-  PetscCall((*body->integrator->ops.setrows)(body, all));
+  if (body->integrator->ops.setrows) PetscCall((*body->integrator->ops.setrows)(body, all));
   PetscCall(BodySetRowsOfLevels(body, all));
-  PetscCall(BodyNoteKnownRows(body));
   if (body->mass.solver) PetscCall(ConstrainedSolverSetRows(body->mass.solver, body->rows.free_matrix, all));
   body->repeats = PETSC_FALSE;
   PetscCall(BodySetConstraints(body));

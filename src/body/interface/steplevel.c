@@ -1,12 +1,11 @@
 /*
    Controller steps that are cut in halves. At level k the controller step is that of the set-up over 2^k, and so is each substep, whose
-   number stays. What depends on the step, the effective matrix with its factors and the interface compliance, a body keeps for each level
+   number stays. What depends on the step, the effective matrix with its factors and the compliance of nodes, a body keeps for each level
    apart, from the first step at that level on.
 
    A step that has failed must leave no trace in later ones: a run that is cut is to end with the bits of one that makes the same steps and
-   none that fail. Rows that become known to the compliance in a failed step are forgotten again. What a nonlinear body remembers of earlier
-   steps at a level, its factors and a compliance that is but an approximation, goes on if the last accepted step was of the same level, and
-   is made anew at the saved state if not: a level at which a step has failed comes up again after steps of another level only.
+   none that fail. The factors that a nonlinear body remembers of earlier steps at a level go on if the last accepted step was of the same
+   level, and are made anew at the saved state if not: a level at which a step has failed comes up again after steps of another level only.
 */
 #include <body/rows/complianceimpl.h>
 
@@ -18,17 +17,6 @@ static PetscErrorCode FreeRows(Body body)
   body->rows.n_prescribed = body->rows.n_forced = body->rows.n_robin = 0;
   body->repeats                                                      = PETSC_FALSE;
   PetscCall(BodySetConstraints(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Forgets all rows of the present compliance */
-static PetscErrorCode ForgetAll(Body body)
-{
-  PetscMPIInt *all = body->rows.changed;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < body->rows.global; i++) all[i] = 1;
-  PetscCall(ComplianceForget(body->compliance->matrices, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -92,11 +80,8 @@ PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
   }
   PetscCall(BodyTakeLevel(body, level, &made));
   PetscCall(FreeRows(body));
-  if (!body->model.linear && !made && body->time.accepted_level != level) {
-    if (body->integrator->ops.renew) PetscCall((*body->integrator->ops.renew)(body));
-    PetscCall(ForgetAll(body));
-  }
-  PetscCall(BodyNoteKnownRows(body));
+  if (!body->model.linear && !made && body->time.accepted_level != level && body->integrator->ops.renew)
+    PetscCall((*body->integrator->ops.renew)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -144,29 +129,6 @@ PetscErrorCode BodyGetLevelEnergy(Body body, PetscInt level, PetscReal *energy)
 }
 
 /*@
-  BodyNoteKnownRows - the rows that the compliance knows now stay known when a step fails
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Level: developer
-
-  Note:
-  `BodySave()` does it too.
-
-.seealso: `Body`, `BodyStepBack()`, `BodyExtendCompliance()`
-@*/
-PetscErrorCode BodyNoteKnownRows(Body body)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  ComplianceGetRows(body->compliance->matrices, &body->compliance->n_kept, NULL, NULL);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   BodyStepBack - goes back to the saved state after a step that is not accepted
 
   Collective
@@ -177,8 +139,7 @@ PetscErrorCode BodyNoteKnownRows(Body body)
   Level: developer
 
   Note:
-  As if the step had not been tried. `BodyRestore()` alone goes back for another integration in the same step, and what has been found out
-  in this step about the body's compliance stays.
+  As if the step had not been tried. `BodyRestore()` alone goes back for another integration in the same step.
 
 .seealso: `Body`, `BodyRestore()`, `BodySetStepLevel()`, `ContactStepBack()`
 @*/
@@ -188,8 +149,6 @@ PetscErrorCode BodyStepBack(Body body)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyRestore(body));
   body->iterate.known = PETSC_FALSE;
-  PetscCall(ComplianceTruncate(body->compliance->matrices, body->compliance->n_kept));
-  if (body->solver) PetscCall(ConstrainedSolverForgetUnknown(body->solver));
   PetscCall(FreeRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -202,7 +161,6 @@ PetscErrorCode BodySetRowsOfLevels(Body body, const PetscMPIInt changed[])
     const BodyLevel *level = &body->levels[k];
 
     if (k == body->time.level || !level->compliance) continue;
-    PetscCall(ComplianceForget(level->compliance->matrices, changed));
     if (level->solver && level->solver != body->solver) PetscCall(ConstrainedSolverSetRows(level->solver, body->rows.free_matrix, changed));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -509,7 +509,6 @@ PETSC_INTERN PetscErrorCode BodyMakeSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodyFinishLayer(Body);
 PETSC_INTERN PetscErrorCode BodyCheckSubstep(Body);
 PETSC_INTERN PetscErrorCode BodyCreateCompliance(Body);
-PETSC_INTERN Compliance     BodyGetSharedCompliance(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
 PETSC_INTERN PetscErrorCode BodySetRowsOfLevels(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode BodyTakeLevel(Body, PetscInt, PetscBool *);

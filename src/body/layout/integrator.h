@@ -17,7 +17,7 @@ typedef struct {
   PetscErrorCode (*setdefaults)(Body);   /* (NULL) gives a TS that has just been made the parameters that are Impakt's default */
   PetscErrorCode (*getparameters)(Body); /* (NULL) reads and checks the parameters of the TS, after program and options have set them */
   PetscErrorCode (*setup)(Body);         /* callbacks of the TS, matrices and factors; mass, rows, loads and substeps are known */
-  PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* the rows that are marked, of all ranks, have new entries */
+  PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* (NULL) the rows that are marked, of all ranks, have new entries */
   PetscErrorCode (*setlevel)(Body); /* (NULL) the controller step is cut in halves another number of times, body->time.level: matrix and
                                        solver are those of this level, made where there are none yet */
   PetscErrorCode (*renew)(Body);    /* (NULL) of a nonlinear body: matrix and factors anew, at the saved displacement */
@@ -31,7 +31,7 @@ typedef struct {
      forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
   PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
   /* (NULL) before repeat(), which needs changes and not forces: brings what it needs of these from the ranks that have rows */
-  PetscErrorCode (*bringchanges)(Body, const PetscScalar[], const PetscScalar[]);
+  PetscErrorCode (*bringchanges)(Body, const PetscScalar[]);
   /* (NULL) notes how far the massless layer goes under a change of forces that is to come [m], and does so when it has come; may be set in
      setup() */
   PetscErrorCode (*expect)(Body, const PetscScalar[]);
@@ -54,9 +54,6 @@ typedef struct {
   /* (NULL) the columns of some displacements of any rank, into a compliance, for the controller step that begins in the saved state, where
      no step need be made for them; other states have others */
   PetscErrorCode (*nodalcolumns)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
-  /* (NULL) where body->solver does not have them: displacement of the rows at the end of a substep for forces on them at its end [m], to a
-     vector from one [N] */
-  PetscErrorCode (*applycompliance)(Body, Vec, Vec);
   PetscErrorCode (*solvemass)(Body, Vec, Vec);     /* (NULL) the acceleration [m/s^2] that forces on the nodes bring [N] */
   PetscErrorCode (*start)(Body);                   /* (NULL) checks, and corrects, displacement and velocity of the first state */
   PetscErrorCode (*startacceleration)(Body);       /* (NULL) makes that of the first state, which solvemass() has found, complete */

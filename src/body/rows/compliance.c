@@ -1,11 +1,4 @@
-/*
-   The interface compliance of a body: what its rows' displacements do in the course of one controller step under contact forces on the
-   rows. A force enters as a hat in the first substep, of 1 N at its end; since the body does not change with time, what comes out k
-   substeps later is the same wherever the hat stands. The matrix of each level is symmetric (Maxwell, Betti), so that a row which becomes
-   known later brings its own column only.
-
-   It is exact for linear bodies. For nonlinear ones it is that of the last effective matrix, or of the undeformed body.
-*/
+/* How the rows of a body answer to forces on them, and what is kept of that. */
 #include "complianceimpl.h"
 #include <sys/stages.h>
 
@@ -15,7 +8,6 @@ PetscErrorCode BodyDestroyCompliance(Body body)
 
   PetscFunctionBegin;
   if (!c) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComplianceDestroy(&c->matrices));
   PetscCall(ComplianceDestroy(&c->nodal));
   PetscCall(NodalMatrixDestroy(&c->nodal_matrix));
   PetscCall(VecDestroy(&c->diagonal));
@@ -24,47 +16,12 @@ PetscErrorCode BodyDestroyCompliance(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Before the solvers of the body are made, since that of a linear body keeps the compliance of prescribed rows in the same place */
 PetscErrorCode BodyCreateCompliance(Body body)
 {
-  const BodyRows         *rows = &body->rows;
-  struct _BodyCompliance *c;
-
   PetscFunctionBegin;
   PetscCall(PetscNew(&body->compliance));
-  c             = body->compliance;
-  c->nodal_kind = NODAL_BY_STEPS;
-  PetscCall(
-      ComplianceCreate(PetscObjectComm((PetscObject)body), rows->local, rows->begin, rows->global, body->time.substeps, &c->matrices));
-  PetscCall(PetscCalloc1(rows->local, &c->change));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where a solver of the body keeps the compliance of rows that it constrains: with the others while its matrix is constant, else apart,
-   since the outer iteration wants one that stays as it is from sweep to sweep */
-Compliance BodyGetSharedCompliance(Body body)
-{
-  return body->model.linear ? body->compliance->matrices : NULL;
-}
-
-/*@
-  BodyForgetCompliance - makes rows unknown again
-
-  Collective
-
-  Input Parameters:
-+ body    - the `Body`, set up
-- changed - for each row of all ranks, whether it is no more what it was
-
-  Level: developer
-
-.seealso: `Body`, `BodyApplyCompliance()`
-@*/
-PetscErrorCode BodyForgetCompliance(Body body, const PetscMPIInt changed[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->compliance) PetscCall(ComplianceForget(body->compliance->matrices, changed));
+  body->compliance->nodal_kind = NODAL_BY_STEPS;
+  PetscCall(PetscCalloc1(body->rows.local, &body->compliance->change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -149,9 +106,7 @@ PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(StageBegin(STAGE_INTERFACE, &logged));
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
-  if (body->integrator->ops.applycompliance) PetscCall((*body->integrator->ops.applycompliance)(body, force, displacement));
-  else if (body->solver) PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
-  else PetscCall(VecZeroEntries(displacement));
+  PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   PetscCall(StageEnd(logged));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -7,8 +7,6 @@
 typedef struct _NodalMatrix *NodalMatrix;
 
 struct _BodyCompliance {
-  Compliance
-      matrices; /* a level for each substep: displacement k substeps after a hat of force, of 1 N at the end of the first one [m/N] */
   Compliance     nodal;          /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
   BodyForceShape nodal_shape;    /* the forces that it is for */
   PetscReal      nodal_step;     /* the substep that it is of [s] */
@@ -18,7 +16,6 @@ struct _BodyCompliance {
   Vec            diagonal;       /* see BodyGetNodalDiagonal(); or NULL */
   PetscReal      diagonal_step;  /* the substep that it is of [s], */
   BodyForceShape diagonal_shape; /* and how forces run in it */
-  PetscInt       n_kept;         /* known rows that stay when a step fails */
   PetscReal     *change;         /* of this rank's rows: how much more constant forces are than those at the end of the last step [N] */
 };
 

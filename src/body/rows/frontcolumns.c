@@ -192,7 +192,7 @@ PetscErrorCode FrontProbe(Body body, Mat stiffness, BodyForceShape shape, PetscI
       ComplianceGetRows(compliance, &n_known, &known, NULL);
       for (PetscInt k = 0; k < n_known; k++) values[known[k]] = front.u[known[k] * TOGETHER + c];
       values[some[c]] = front.u[some[c] * TOGETHER + c];
-      PetscCall(ComplianceSetColumn(compliance, some[c], 1, values));
+      PetscCall(ComplianceSetColumn(compliance, some[c], values));
     }
     PetscCall(VecRestoreArrayWrite(column, &values));
     count = 0;

@@ -349,7 +349,7 @@ static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, PetscInt 
     PetscCall(VecRestoreArray(column, &values));
     PetscCall(BodyZeroHeld(body, column)); /* the matrix has some stiffness there */
     PetscCall(VecGetArray(column, &values));
-    PetscCall(ComplianceSetColumn(compliance, dofs[k], 1, values));
+    PetscCall(ComplianceSetColumn(compliance, dofs[k], values));
     PetscCall(VecRestoreArray(column, &values));
   }
   for (PetscInt p = 0; p < n_parts; p++) PetscCall(MatDestroy(&answers[p]));

@@ -153,7 +153,7 @@ PetscErrorCode BodyBringChanges(Body body)
 
   PetscFunctionBegin;
   PetscCall(CompareInputs(body, news));
-  PetscCall((*body->integrator->ops.bringchanges)(body, body->repeat->changes[0], body->repeat->changes[1]));
+  PetscCall((*body->integrator->ops.bringchanges)(body, body->repeat->changes[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -255,7 +255,7 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   if (any && !news[1]) PetscCall((*body->integrator->ops.follow)(body));
   else if (any || (body->rows.have_mass && body->mass.matrix)) {
     if (body->integrator->ops.bringchanges && !body->rows.exchange.open)
-      PetscCall((*body->integrator->ops.bringchanges)(body, repeat->changes[0], repeat->changes[1]));
+      PetscCall((*body->integrator->ops.bringchanges)(body, repeat->changes[0]));
     PetscCall((*body->integrator->ops.repeat)(body, repeat->changes[0], repeat->changes[1]));
   } else if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));

@@ -124,7 +124,7 @@ static PetscErrorCode RenewLevels(Body body)
   PetscCall(BodyCreateCompliance(body));
   renewed  = body->compliance;
   of_first = body->solver;
-  if (of_first) PetscCall(ConstrainedSolverReplaceRows(of_first, body->rows.free_matrix, BodyGetSharedCompliance(body)));
+  if (of_first) PetscCall(ConstrainedSolverReplaceRows(of_first, body->rows.free_matrix));
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) { /* the present one may be in the list too */
     BodyLevel *level = &body->levels[k];
 
@@ -138,7 +138,7 @@ static PetscErrorCode RenewLevels(Body body)
     }
     body->compliance = level->compliance;
     if (level->solver && level->solver != of_first)
-      PetscCall(ConstrainedSolverReplaceRows(level->solver, body->rows.free_matrix, BodyGetSharedCompliance(body)));
+      PetscCall(ConstrainedSolverReplaceRows(level->solver, body->rows.free_matrix));
   }
   body->compliance = first;
   PetscCall(BodyDestroyCompliance(body));
@@ -206,12 +206,11 @@ PetscErrorCode BodyReplaceInterface(Body body, Mat B, const PetscInt from[])
   PetscCall(MoveTraces(body, from));
   PetscCall(RenewLevels(body));
   for (PetscInt i = 0; i < rows->global; i++) rows->changed[i] = 1;
-  PetscCall((*body->integrator->ops.setrows)(body, rows->changed));
+  if (body->integrator->ops.setrows) PetscCall((*body->integrator->ops.setrows)(body, rows->changed));
   PetscCall(BodySetRowsOfLevels(body, rows->changed));
   PetscCall(ConstrainedSolverDestroy(&body->mass.solver));
   if (had_mass_solver) PetscCall(BodySetUpMassSolver(body));
   PetscCall(BodySetUpRepeat(body));
-  PetscCall(BodyNoteKnownRows(body));
   PetscCall(BodySetConstraints(body));
   PetscCall(BodyHandoverEnd(body));
   body->repeats = PETSC_FALSE;

@@ -112,7 +112,7 @@ PetscErrorCode BodyCreateNodalCompliance(Body body, Compliance *nodal)
   PetscCall(VecGetLocalSize(body->state.u, &local));
   PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
   PetscCall(VecGetSize(body->state.u, &all));
-  PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, 1, nodal));
+  PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -189,7 +189,7 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
     PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   }
   ComplianceGetRows(*nodal, NULL, NULL, place);
-  ComplianceGetMatrix(*nodal, 0, leading, matrix);
+  ComplianceGetMatrix(*nodal, leading, matrix);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

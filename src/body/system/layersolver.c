@@ -38,7 +38,7 @@ static PetscErrorCode CreateFactors(Body body, LayerSolver layer)
   PetscCall(MatAssemblyBegin(empty, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(empty, MAT_FINAL_ASSEMBLY));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(layer->K, empty, body->mesh.dim, prefix, NULL, &layer->own));
+  PetscCall(ConstrainedSolverCreate(layer->K, empty, body->mesh.dim, prefix, PETSC_FALSE, &layer->own));
   PetscCall(MatDestroy(&empty));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -199,7 +199,7 @@ PetscErrorCode BodySetUpMassSolver(Body body)
   PetscCall(MatAssemblyEnd(solvable, MAT_FINAL_ASSEMBLY));
   PetscCall(BodyEliminateHeld(body, solvable));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%smass_", ((PetscObject)body)->prefix));
-  PetscCall(ConstrainedSolverCreate(solvable, body->rows.free_matrix, body->mesh.dim, prefix, NULL, &body->mass.solver));
+  PetscCall(ConstrainedSolverCreate(solvable, body->rows.free_matrix, body->mesh.dim, prefix, PETSC_FALSE, &body->mass.solver));
   PetscCall(MatDestroy(&solvable));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,14 +1,11 @@
 /*
    The state of contact and of its bodies as tables of nodes, by which a run is continued on another number of ranks: to round-off. Rows
-   have other numbers there. So each row brings the number that it had, and what is known by numbers of rows is put in the new order.
+   have other numbers there, and are found by their nodes.
 */
 #include <contact/parts.h>
 #include <body/interface/bodyvisit.h>
 #include <interface/transfervisit.h>
 #include "contactvisit.h"
-
-/* Numbers of a row; the last of them is its own among those of all ranks */
-enum { N_ROW = CONTACT_ROW_NUMBERS, ROW_NUMBER = N_ROW - 1 };
 
 /* What is kept of a row, to `packed` or back */
 void ContactCopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *packed)
@@ -43,11 +40,10 @@ void ContactCopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *pack
   TablesCopyBool(back, &contact->friction.slides[i], &packed);
 }
 
-/* All rows of a pair to a table, a line for each node, or back; then `was` gets the number that each row of this rank had (NULL: is not
-   wanted) */
-static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, PetscInt was[], Tables tables)
+/* All rows of a pair to a table, a line for each node, or back */
+static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, Tables tables)
 {
-  const PetscInt     components = pair->components, width = TABLES_KEY + components * N_ROW;
+  const PetscInt     components = pair->components, width = TABLES_KEY + components * CONTACT_ROW_NUMBERS;
   const PetscReal   *values = NULL;
   const SurfaceData *data;
   PetscReal         *packed;
@@ -69,14 +65,8 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
       PetscCall(TablesFind(tables, name, line, &row));
       PetscCall(PetscArraycpy(line, values + row * width, width));
     }
-    for (PetscInt k = 0; k < components; k++) {
-      const PetscInt at     = pair->begin + i * components + k;
-      PetscReal     *number = line + TABLES_KEY + k * N_ROW + ROW_NUMBER;
-
-      ContactCopyRow(contact, at, back, line + TABLES_KEY + k * N_ROW);
-      if (back && was) was[at] = (PetscInt)*number;
-      if (!back) *number = (PetscReal)(contact->rows.begin + at);
-    }
+    for (PetscInt k = 0; k < components; k++)
+      ContactCopyRow(contact, pair->begin + i * components + k, back, line + TABLES_KEY + k * CONTACT_ROW_NUMBERS);
   }
   if (!back) PetscCall(TablesAdd(tables, name, n, width, packed));
   PetscCall(PetscFree(packed));
@@ -98,7 +88,7 @@ PetscErrorCode ContactPack(Contact contact, Tables tables)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyPack(contact->bodies[b], tables));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(TransferPack(contact->pairs[p].transfer, contact->pairs[p].name, tables));
-    PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, NULL, tables));
+    PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, tables));
   }
   if (contact->rows.n_all) PetscTryTypeMethod(contact, pack, tables);
   PetscCall(ContactPackImpulses(contact, tables));
@@ -106,68 +96,23 @@ PetscErrorCode ContactPack(Contact contact, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* From the number that each row of this rank had, `was`, to the number that each row of all ranks has now */
-static PetscErrorCode NumberRows(Contact contact, const PetscInt was[], PetscInt now[])
-{
-  const PetscInt n_all = contact->rows.n_all;
-  PetscInt      *all;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(n_all, &all));
-  PetscCallMPI(MPI_Allgatherv(was, (PetscMPIInt)contact->rows.n, MPIU_INT, all, contact->ranks.counts, contact->ranks.offsets, MPIU_INT,
-                              PetscObjectComm((PetscObject)contact)));
-  for (PetscInt i = 0; i < n_all; i++) now[i] = -1;
-  for (PetscInt i = 0; i < n_all; i++)
-    if (all[i] >= 0 && all[i] < n_all) now[all[i]] = i;
-  for (PetscInt i = 0; i < n_all; i++)
-    PetscCheck(now[i] >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
-               "The checkpoint has no contact row number %" PetscInt_FMT ": it is of another problem", i);
-  PetscCall(PetscFree(all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same from the number that each row of a body had among those of the body to the one that it has now. In both runs the rows of a body
-   are in the order of those of contact. */
-static PetscErrorCode TakeBodyRows(Contact contact, PetscInt b, const PetscInt now[], Tables tables)
-{
-  const ContactBodyRows *of = &contact->body_rows[b];
-  PetscInt              *of_body, n = 0;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(of->n_all, &of_body));
-  for (PetscInt row = 0; row < contact->rows.n_all; row++) {
-    PetscInt place;
-
-    PetscCall(PetscFindInt(now[row], of->n_all, of->all, &place));
-    if (place >= 0) of_body[n++] = place;
-  }
-  PetscCall(BodyTakeRows(contact->bodies[b], of_body, tables));
-  PetscCall(PetscFree(of_body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The rows, and the matrices that bodies have of them */
 static PetscErrorCode UnpackRows(Contact contact, Tables tables)
 {
-  PetscInt *was, *now;
-
   PetscFunctionBegin;
-  PetscCall(PetscMalloc2(contact->rows.n, &was, contact->rows.n_all, &now));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscCall(TransferUnpack(contact->pairs[p].transfer, contact->pairs[p].name, tables));
-    PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, was, tables));
+    PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
   }
-  PetscCall(NumberRows(contact, was, now));
   PetscCall(ContactMergeDroppedRows(contact));
   PetscCall(ContactLeaveOutObstacles(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, NULL, tables));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
   ContactForgetMatrices(contact);
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
   PetscCall(ContactUpdateBodies(contact, contact->work.moved));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(TakeBodyRows(contact, b, now, tables));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeRows(contact->bodies[b]));
   ContactForgetMatrices(contact);
-  PetscCall(PetscFree2(was, now));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,7 +136,7 @@ PetscErrorCode ContactUnpack(Contact contact, Tables tables)
     for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.changed[i] = PETSC_TRUE; /* to the method all are new */
     PetscTryTypeMethod(contact, rowschanged);
     PetscTryTypeMethod(contact, unpack, tables);
-    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, NULL, tables));
+    for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
   }
   PetscCall(ContactUnpackImpulses(contact, tables));
   PetscCall(ContactPackTold(contact, PETSC_TRUE, tables));

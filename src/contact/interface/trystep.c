@@ -207,7 +207,6 @@ PetscErrorCode ContactSetStepLevel(Contact contact, PetscInt level)
   contact->step  = attempt->whole_step / PetscPowRealInt(2, level);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetStepLevel(contact->bodies[b], level));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, steplevel, level, (PetscBool)(attempt->accepted_level == level));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyNoteKnownRows(contact->bodies[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

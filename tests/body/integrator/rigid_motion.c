@@ -4,8 +4,6 @@
 #include <body/integrator/rigidmotion.h>
 #include <impakt/private/bodyrows.h>
 
-static const PetscReal identity[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1};
-
 static void is_a_rotation(const PetscReal R[9])
 {
   for (PetscInt i = 0; i < 3; i++)
@@ -30,7 +28,6 @@ static void vectors_and_matrices_agree(void **state)
       for (PetscInt d = 0; d < 3; d++) near(rotated[d], axes[k][d], 1e-15);
       RigidFindVector(R, back);
       for (PetscInt d = 0; d < 3; d++) near(back[d], v[d], 1e-14);
-      near(RigidAngle(R, identity), angles[i], 1e-8); /* the arc sine is steep near a half turn */
     }
 }
 
