@@ -158,7 +158,6 @@ PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactNumberBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderVisits(Contact);
-PETSC_INTERN PetscErrorCode ContactTellWords(Contact, const BodyWord[]);
 PETSC_INTERN PetscErrorCode ContactIsAtHome(Contact, PetscInt, PetscMPIInt *, PetscBool *);
 PETSC_INTERN void           ContactAffectAll(Contact);
 PETSC_INTERN void           ContactForgetMatrices(Contact);

@@ -260,7 +260,7 @@ PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscM
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* w = W f for forces f on all rows; neither may be a vector of the solver. Leaves A^{-1} B^T f for the next call. */
+/* w = W f for forces f on all rows; neither may be a vector of the solver */
 PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver s, Vec f, Vec w)
 {
   PetscFunctionBegin;
@@ -268,12 +268,6 @@ PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver s, Vec f, Vec 
   PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->product));
   PetscCall(MatMult(s->B, s->product, w));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A^{-1} B^T f of the last ConstrainedSolverApplyCompliance(), owned by the solver */
-Vec ConstrainedSolverGetProduct(ConstrainedSolver s)
-{
-  return s->product;
 }
 
 /* C_j = A^{-1} B^T e_j */

@@ -22,7 +22,6 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverSetConstraints(ConstrainedSolve
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetRows(ConstrainedSolver, Mat, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverReplaceRows(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyCompliance(ConstrainedSolver, Vec, Vec);
-PETSC_INTERN Vec                ConstrainedSolverGetProduct(ConstrainedSolver);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFree(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFreeColumns(ConstrainedSolver, Mat, Mat);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);

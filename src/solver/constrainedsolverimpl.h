@@ -13,7 +13,7 @@ struct _n_ConstrainedSolver {
   PetscInt           local, global, begin; /* rows of B */
   PetscMPIInt        size, *counts, *offsets;
   PetscBool          constant; /* A is */
-  KSPConvergedReason failed;     /* why a solution with a matrix that is not constant did not converge; 0: none failed */
+  KSPConvergedReason failed;   /* why a solution with a matrix that is not constant did not converge; 0: none failed */
   PetscReal         *mine,
       *constrained;   /* flexibility of a row, 0 where it is prescribed, less than 0 where it is free: this rank's rows, all rows */
   PetscInt   n;       /* how many rows are constrained */
@@ -31,8 +31,8 @@ struct _n_ConstrainedSolver {
   /* conjugate gradients */
   KSP            iterative;
   Vec            force_vec, gap_vec, product;
-  PetscLogDouble solve_flops;        /* of one solution with A */
-  PetscInt       block;              /* rows that become known together, by one solution for so many right-hand sides */
+  PetscLogDouble solve_flops; /* of one solution with A */
+  PetscInt       block;       /* rows that become known together, by one solution for so many right-hand sides */
   /* corrections by stored columns: their changes, all rows on every rank */
   PetscBool    keeps;  /* columns are kept of all rows whose forces change */
   PetscBool    exact;  /* corrections for which columns are missing are solutions, see ConstrainedSolverSetExact() */

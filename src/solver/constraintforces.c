@@ -327,8 +327,8 @@ PetscErrorCode ConstrainedSolverBring(ConstrainedSolver s, const PetscScalar for
 }
 
 /* x with A x = B^T (force - s) and B_m x = target, for the forces that ConstrainedSolverBring() has brought, without another use of the
-   solver in between: what a change of both changes. By the columns where they are kept and no row is constrained, else by a solution. Where nothing is
-   constrained, a rank that has all of A makes this alone. */
+   solver in between: what a change of both changes. By the columns where they are kept and no row is constrained, else by a solution. Where
+   nothing is constrained, a rank that has all of A makes this alone. */
 PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar target[], Vec x)
 {
   PetscFunctionBegin;

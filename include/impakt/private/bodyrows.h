@@ -100,15 +100,6 @@ PETSC_EXTERN PetscErrorCode BodySetStepLevel(Body, PetscInt);
 PETSC_EXTERN PetscErrorCode BodyKeep(Body);
 PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
-/* Numbers of a body that ranks add up, in place, before it goes on: for many bodies at once */
-typedef struct {
-  PetscInt     n; /* the same on every rank; 0: there is nothing to tell */
-  PetscScalar *values;
-} BodyWord;
-/* What the ranks add up of the conditions of a body: how many rows are prescribed, forced and Robin ones, and whether any is another one */
-#define BODY_CONDITION_COUNTS 4
-PETSC_EXTERN PetscErrorCode BodyProposeConditions(Body, const BodyCondition[], PetscInt[BODY_CONDITION_COUNTS]);
-PETSC_EXTERN PetscErrorCode BodyTakeConditions(Body, const PetscInt[BODY_CONDITION_COUNTS]);
 PETSC_EXTERN PetscErrorCode BodyGetTraces(Body, BodyTraces *);
 PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
 PETSC_EXTERN PetscErrorCode BodyGetRowForces(Body, PetscInt, PetscReal[]);
@@ -121,14 +112,10 @@ PETSC_EXTERN PetscErrorCode BodyComputeEnergies(PetscInt, const Body[], PetscRea
 PETSC_EXTERN PetscErrorCode BodyGetOwnKinetic(PetscInt, const Body[], const BodyMeasures[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetAllBoxes(PetscInt, const Body[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
-PETSC_EXTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrateRows(Body, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode BodyCompleteStep(Body, StepConvergedReason *);
-PETSC_EXTERN PetscErrorCode BodyProposeRepeat(Body, BodyWord *);
 PETSC_EXTERN PetscErrorCode BodyBeginExchange(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyEndExchange(Body);
-PETSC_EXTERN PetscErrorCode BodyExpectRepeat(Body, const PetscScalar[], const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyExpectApplied(Body, Vec);
 PETSC_EXTERN PetscErrorCode BodyGetFailure(Body, const StepFailure **);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
@@ -166,7 +153,6 @@ PETSC_EXTERN PetscErrorCode BodySetConstantForces(Body, PetscInt, const PetscInt
                                                   const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyEndConstantForces(Body, const PetscScalar[], const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyGetNodalDiagonal(Body, BodyForceShape, Vec *);
-PETSC_EXTERN PetscErrorCode BodyCreateSlabFunctions(Mat, Vec, PetscInt, IS, PetscInt, Mat *);
 PETSC_EXTERN PetscErrorCode BodyGetNodalCompliance(Body, BodyForceShape, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *,
                                                    const PetscScalar *[]);
 PETSC_EXTERN PetscErrorCode BodyNodalComplianceFollows(Body, PetscInt, PetscBool *);
@@ -175,7 +161,6 @@ PETSC_EXTERN PetscErrorCode BodyNodalComplianceFollows(Body, PetscInt, PetscBool
 PETSC_EXTERN PetscErrorCode BodyGetLayerMatrices(Body, Mat *, Mat *);
 PETSC_EXTERN PetscErrorCode BodyComplianceIsExact(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyApplyCompliance(Body, Vec, Vec);
-PETSC_EXTERN PetscErrorCode BodyPrepareLinearized(Body);
 
 /* The balance of the massless layer in the first state */
 PETSC_EXTERN PetscErrorCode BodyIsOutOfBalance(Body, PetscBool *);
@@ -185,6 +170,9 @@ PETSC_EXTERN PetscErrorCode BodyMultiplyLayerCompliance(Body, const PetscScalar[
 PETSC_EXTERN PetscErrorCode BodyMoveLayer(Body, const PetscScalar[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyStartUnderForces(Body, const PetscScalar[]);
 
+/* Where in a controller step a state is changed */
+typedef enum { BODY_AT_START, BODY_AT_END } BodyStepSide;
+
 /* Forces and impulses on rows that act at one end of a step, and corrections of the state there */
 PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[], const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyDropStartForce(Body);
@@ -192,16 +180,8 @@ PETSC_EXTERN PetscErrorCode BodyGetLevelEnergy(Body, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetMeanForces(Body, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode BodyGetMeanForces(Body, const PetscBool *[]);
 PETSC_EXTERN PetscErrorCode BodyFeelsEndForce(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyAddImpulse(Body, const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyComputeForwardCompliance(Body, Mat *);
-PETSC_EXTERN PetscErrorCode BodyBoundForwardCompliance(Body, PetscReal[]);
-PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, Mat *);
-PETSC_EXTERN PetscErrorCode BodyAddVelocity(Body, const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyComputeInverseLumpedMass(Body, Mat *);
-PETSC_EXTERN PetscErrorCode BodyAddLumpedVelocity(Body, const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyAddLumpedAcceleration(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyAddImpulses(Body, BodyStepSide, PetscBool, const PetscReal[3], const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, PetscBool, Mat *);
+PETSC_EXTERN PetscErrorCode BodyBoundInverseMass(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyMultiplyInverseMass(Body, const PetscScalar[], PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyChangeStart(Body, const PetscScalar[], const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyAddAcceleration(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyClearAcceleration(Body, const PetscBool[]);
-PETSC_EXTERN PetscErrorCode BodyShiftStart(Body, const PetscScalar[]);

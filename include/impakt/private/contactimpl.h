@@ -436,11 +436,7 @@ typedef struct {
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
   PetscReal     *traces;        /* six numbers per body, see ContactGetBodyTraces() */
-  PetscInt      *counts;        /* BODY_CONDITION_COUNTS per body, see BodyProposeConditions() */
-  BodyWord      *words;         /* per body: see ContactTellWords() */
   PetscBool     *left_out;      /* per body: it is not integrated with others */
-  PetscScalar   *told;          /* all words at once */
-  PetscInt       most_told;     /* numbers that there is room for in these */
   PetscReal     *boxes;         /* per surface: lower corner, and the upper one with its sign changed [m] */
   int           *hands_over;    /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;         /* to a body */

@@ -4,10 +4,7 @@
 typedef struct {
   LayerBalance layer;       /* NULL: no node is massless, on any rank */
   PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
-  /* NULL where the layer does not answer linearly and alone: how far it goes under forces that are to come, and what it lacks for balance
-     where it has been left */
-  Vec       expected;
-  FrontStep front; /* NULL until a substep of several is made that may be made again in a part of the nodes */
+  FrontStep    front;       /* NULL until a substep of several is made that may be made again in a part of the nodes */
 } BodyExplicit;
 
 static LayerBalance GetLayer(Body body)
@@ -260,45 +257,17 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the layer alone answers: it is moved by what is known, or else (NULL) put in place anew from where it is, and all else is as it was
-   at mid-step */
-static PetscErrorCode MoveLayer(Body body, Vec known)
-{
-  PetscFunctionBegin;
-  body->time.substep = 0;
-  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
-  if (known) PetscCall(LayerBalanceMove(GetLayer(body), known, body->state.u));
-  else PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
-  PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
-  PetscCall(FinishSubstep(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
+/* Where the layer alone answers: it is put in place anew from where it is, and all else is as it was at mid-step */
 static PetscErrorCode RepeatLayer(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   PetscFunctionBegin;
   (void)force;
   (void)displacement;
-  PetscCall(MoveLayer(body, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Expect(Body body, const PetscScalar answer[])
-{
-  Vec          expected = ((BodyExplicit *)body->integrator->data)->expected;
-  PetscScalar *moved;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(expected, &moved));
-  PetscCall(PetscArraycpy(moved, answer, body->layer.n_dofs));
-  PetscCall(VecRestoreArrayWrite(expected, &moved));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Follow(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(MoveLayer(body, ((BodyExplicit *)body->integrator->data)->expected));
+  body->time.substep = 0;
+  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
+  PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
+  PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
+  PetscCall(FinishSubstep(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -349,14 +318,8 @@ static PetscErrorCode SetUp(Body body)
   integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
   if (body->time.substeps == 1) integrator->ops.complete = Complete;
   else integrator->ops.step = Step;
-  if (explicit->layer_alone) {
-    integrator->ops.repeat = RepeatLayer;
-    if (body->model.linear) {
-      integrator->ops.expect = Expect;
-      integrator->ops.follow = Follow;
-      PetscCall(LayerBalanceCreateVec(explicit->layer, &explicit->expected));
-    }
-  } else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
+  if (explicit->layer_alone) integrator->ops.repeat = RepeatLayer;
+  else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
   integrator->repeats_prescribed = (PetscBool)(body->model.linear || explicit->layer_alone);
   integrator->repeats_constant   = (PetscBool)(body->time.substeps == 1 && !layer);
@@ -366,7 +329,6 @@ static PetscErrorCode SetUp(Body body)
 static PetscErrorCode Destroy(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(VecDestroy(&((BodyExplicit *)body->integrator->data)->expected));
   PetscCall(FrontStepDestroy(&((BodyExplicit *)body->integrator->data)->front));
   PetscCall(LayerBalanceDestroy(&((BodyExplicit *)body->integrator->data)->layer));
   PetscCall(PetscFree(body->integrator->data));

@@ -15,8 +15,6 @@ PETSC_INTERN PetscErrorCode LayerBalanceCreate(Body, LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceDestroy(LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceSetRows(LayerBalance, Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode LayerBalanceSolve(LayerBalance, Body, PetscReal, PetscReal, Vec, Vec);
-PETSC_INTERN PetscErrorCode LayerBalanceMove(LayerBalance, Vec, Vec);
-PETSC_INTERN PetscErrorCode LayerBalanceCreateVec(LayerBalance, Vec *);
 PETSC_INTERN PetscErrorCode LayerBalanceGetForce(LayerBalance, Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode LayerBalanceSave(LayerBalance, Body, BodySlot);
 PETSC_INTERN PetscErrorCode LayerBalanceRestore(LayerBalance, Body, BodySlot);

@@ -170,19 +170,11 @@ static PetscErrorCode ComputeMissing(LayerBalance layer, Body body, const LoadCa
 }
 
 /* Moves the layer in u, a vector of the body */
-PetscErrorCode LayerBalanceMove(LayerBalance layer, Vec moved, Vec u)
+static PetscErrorCode Move(LayerBalance layer, Vec moved, Vec u)
 {
   PetscFunctionBegin;
   PetscCall(VecScatterBegin(layer->scatter, moved, u, ADD_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(layer->scatter, moved, u, ADD_VALUES, SCATTER_REVERSE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A vector of the layer */
-PetscErrorCode LayerBalanceCreateVec(LayerBalance layer, Vec *vec)
-{
-  PetscFunctionBegin;
-  PetscCall(VecDuplicate(layer->rhs, vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -203,7 +195,7 @@ static PetscErrorCode TakeBack(LayerBalance layer, Body body, const LoadCase *lo
     const PetscReal next = low + (high - low) * PetscMin(PetscMax(root, LEAST_PART), 1 - LEAST_PART);
 
     PetscCall(VecScale(layer->solution, next - at));
-    PetscCall(LayerBalanceMove(layer, layer->solution, u));
+    PetscCall(Move(layer, layer->solution, u));
     PetscCall(VecScale(layer->solution, 1 / (next - at)));
     PetscCall(ComputeMissing(layer, body, load, follows, u));
     PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &left));
@@ -243,7 +235,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     if (body->history && round > 1) PetscCall(TakeBack(layer, body, &load, robin, work, u)); /* the first puts held rows in their places */
     PetscCall(ConstrainedSolverSolve(body->solver, layer->rhs, layer->solution));
     if (body->history) PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &work));
-    PetscCall(LayerBalanceMove(layer, layer->solution, u));
+    PetscCall(Move(layer, layer->solution, u));
     if (linear) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(BodyGetNorm(body, layer->solution, &change));
     first = PetscMax(first, change);
@@ -306,8 +298,8 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscCall(LayerRowsCreate(body, layer->dofs, &layer->rows));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
   /* a layer is a surface, and its factors fill in as those of a mesh with one dimension less */
-  PetscCall(ConstrainedSolverCreate(K, LayerRowsGetMatrix(layer->rows), PetscMax(body->mesh.dim - 1, 1), prefix,
-                                    body->model.linear, &body->solver));
+  PetscCall(ConstrainedSolverCreate(K, LayerRowsGetMatrix(layer->rows), PetscMax(body->mesh.dim - 1, 1), prefix, body->model.linear,
+                                    &body->solver));
   PetscCall(VecNorm(body->mesh.positions, NORM_2, &layer->reach));
   PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
   PetscCall(BodyUseScatter(layer->scatter, body->state.u, layer->rhs));

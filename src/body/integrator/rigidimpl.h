@@ -4,9 +4,9 @@
 #include "rigidmotion.h"
 
 typedef struct {
-  PetscBool   turns;                  /* it can: not bars and rings */
-  PetscReal   inertia[9], inverse[9]; /* about the centre of mass, undeformed; in two dimensions about the third axis alone [kg m^2] */
-  PetscReal   spread[9], inverse_spread[9]; /* sum m Y Y^T by the masses of the nodes, Y being positions from the centre [kg m^2] */
+  PetscBool turns;                        /* it can: not bars and rings */
+  PetscReal inertia[9], inverse[9];       /* about the centre of mass, undeformed; in two dimensions about the third axis alone [kg m^2] */
+  PetscReal spread[9], inverse_spread[9]; /* sum m Y Y^T by the masses of the nodes, Y being positions from the centre [kg m^2] */
 } BodyRigid;
 
 /* Momentum and moment of momentum about the centre, of velocities or of forces over mass */

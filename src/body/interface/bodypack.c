@@ -1,5 +1,6 @@
 /* The state of a body as tables, by which a run is continued on another number of ranks. What the solvers of a body know is
-   found anew, to round-off. Factors of a nonlinear body, which depend on displacements of earlier steps, are made again where they were made. */
+   found anew, to round-off. Factors of a nonlinear body, which depend on displacements of earlier steps, are made again where they were
+   made. */
 #include <body/rows/complianceimpl.h>
 #include "bodyvisit.h"
 

@@ -32,7 +32,7 @@ PetscErrorCode BodySave(Body body)
         for (PetscInt k = 0; k < read->n; k++) start[read->numbers[k]] = end[read->numbers[k]];
     }
   }
-  /* the end of a single substep may be corrected until it is accepted, by BodyAddEndForce() for one: its work is counted now */
+  /* the end of a single substep may be corrected until it is accepted, by BodyAddImpulses() for one: its work is counted now */
   if (here && body->loads && body->time.substeps == 1 && stepped) PetscCall(BodyAddWork(body, body->substep_start.u));
   if (here && body->time.substeps == 1 && stepped) PetscCall(BodyAddDampingWork(body));
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */

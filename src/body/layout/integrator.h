@@ -32,10 +32,6 @@ typedef struct {
   PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
   /* (NULL) before repeat(), which needs changes and not forces: brings what it needs of these from the ranks that have rows */
   PetscErrorCode (*bringchanges)(Body, const PetscScalar[]);
-  /* (NULL) notes how far the massless layer goes under a change of forces that is to come [m], and does so when it has come; may be set in
-     setup() */
-  PetscErrorCode (*expect)(Body, const PetscScalar[]);
-  PetscErrorCode (*follow)(Body);
   /* (NULL) finds what TSStep() and repeat() have left out of the state, since rows do not depend on it, where they have marked it as
      incomplete; may be set in setup() */
   PetscErrorCode (*complete)(Body);

@@ -5,179 +5,63 @@
 #define LEFT_OVER      1e-14
 #define MAX_ITERATIONS 1000
 
-/* The rows of a corrected vector, at the end of the controller step */
-static PetscErrorCode WriteEnd(Body body, Vec vec, Trace trace)
+/* change = M_L^{-1} B^T impulse with the lumped mass M_L, zero on massless nodes */
+static PetscErrorCode SolveLumpedMassOfRows(Body body, const PetscScalar impulse[], Vec change)
 {
-  PetscFunctionBegin;
-  PetscCall(BodyWriteTrace(body, body->rows.matrix, vec, trace, body->time.substeps));
-  body->repeats = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyAddVelocity - changes the velocity at the end of the controller step by impulses on the rows
-
-  Collective
-
-  Input Parameters:
-+ body    - the `Body`, integrated
-- impulse - one for each row of this rank [N s]
-
-  Level: developer
-
-  Note:
-  v += M^{-1} B^T impulse; massless nodes keep their velocity. To be called before `BodySave()`.
-
-.seealso: `Body`, `BodyComputeInverseMass()`, `BodyAddAcceleration()`
-@*/
-PetscErrorCode BodyAddVelocity(Body body, const PetscScalar impulse[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, impulse, body->work.nodes[2]));
-  PetscCall(VecAXPY(body->state.v, 1, body->work.nodes[2]));
-  PetscCall(WriteEnd(body, body->state.v, body->traces.velocity));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyAddAcceleration - changes the acceleration at the end of the controller step by that of forces on the rows
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, integrated
-- force - one for each row of this rank [N]
-
-  Level: developer
-
-  Note:
-  a += M^{-1} B^T force; massless nodes keep none. To be called before `BodySave()`.
-
-.seealso: `Body`, `BodyAddVelocity()`, `BodyClearAcceleration()`
-@*/
-PetscErrorCode BodyAddAcceleration(Body body, const PetscScalar force[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
-  PetscCall(VecAXPY(body->state.a, 1, body->work.nodes[2]));
-  PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyChangeStart - changes velocity and acceleration at the start of the simulation by impulses and forces on the rows
-
-  Collective
-
-  Input Parameters:
-+ body    - the `Body`, before its first step
-. impulse - one for each row of this rank [N s]
-- force   - one for each row of this rank [N]
-
-  Level: developer
-
-  Note:
-  v += M^{-1} B^T impulse and a += M^{-1} B^T force. The saved state and the traces at the start change with it; the forces are the
-  reactions there.
-
-.seealso: `Body`, `BodySetInitialState()`, `BodyMultiplyInverseMass()`
-@*/
-PetscErrorCode BodyChangeStart(Body body, const PetscScalar impulse[], const PetscScalar force[])
-{
-  PetscScalar *reaction;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCheck(body->setup && !body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
-             "Call after BodySetUp(), before the first step");
-  PetscCall(BodySolveMassOfRows(body, impulse, body->work.nodes[2]));
-  PetscCall(VecAXPY(body->state.v, 1, body->work.nodes[2]));
-  PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
-  PetscCall(VecAXPY(body->state.a, 1, body->work.nodes[2]));
-  PetscCall(BodyWriteTraces(body, 0));
-  if (body->rows.global) {
-    PetscCall(TraceGetLevel(body->traces.reaction, 0, &reaction));
-    PetscCall(PetscArraycpy(reaction, force, body->rows.local));
-  }
-  PetscCall(BodySave(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* vec += M_L^{-1} B^T force with the lumped mass M_L, zero on massless nodes */
-static PetscErrorCode AddLumped(Body body, const PetscScalar force[], Vec vec)
-{
-  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar *mass, *applied;
-  PetscScalar       *row, *values;
+  PetscScalar *row;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, force, body->rows.local));
+  PetscCall(PetscArraycpy(row, impulse, body->rows.local));
   PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(VecCopy(body->mass.row_sum, change));
+  PetscCall(VecReciprocal(change)); /* leaves zeros */
   PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], body->work.nodes[0]));
-  PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
-  PetscCall(VecGetArrayRead(body->work.nodes[0], &applied));
-  PetscCall(VecGetArray(vec, &values));
-  for (PetscInt i = 0; i < n; i++)
-    if (PetscRealPart(mass[i]) > 0) values[i] += applied[i] / mass[i];
-  PetscCall(VecRestoreArray(vec, &values));
-  PetscCall(VecRestoreArrayRead(body->work.nodes[0], &applied));
-  PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
+  PetscCall(VecPointwiseMult(change, change, body->work.nodes[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  BodyAddLumpedVelocity - changes the velocity at the end of the controller step by impulses on the rows, as if the mass were lumped
+  BodyAddImpulses - changes the state at one end of the controller step by impulses or forces on the rows
 
   Collective
 
   Input Parameters:
-+ body    - the `Body`, integrated
-- impulse - one for each row of this rank [N s]
++ body    - the `Body`, with inertia: integrated, where its end changes, else saved
+. side    - which end; the start of a step changes in the saved state too, and the body goes back to it
+. lumped  - whether the mass is taken as lumped: the momentum changes as much, and no mass matrix is solved with
+. parts   - by how much of M^{-1} B^T impulse displacement, velocity and acceleration change
+- impulse - one for each row of this rank
 
   Level: developer
 
-  Note:
-  v += M_L^{-1} B^T impulse; the momentum changes by the sum of the impulses, as under `BodyAddVelocity()`, and no mass matrix is solved
-  with. To be called before `BodySave()`.
+  Notes:
+  Massless nodes stay as they are. The end is to be changed before `BodySave()`. Traces at the end of the step follow, those at its start do
+  not, see `BodyWriteStartTraces()`.
 
-.seealso: `Body`, `BodyComputeInverseLumpedMass()`, `BodyAddLumpedAcceleration()`
+  Forward-increment Lagrange multipliers (Carpenter, Taylor, Katona 1991) act on the start: they are known only after the step that they
+  begin, and a force from half a step before to half a step after changes the velocity by dt / 2 of what it changes the acceleration by.
+
+.seealso: `Body`, `BodyComputeInverseMass()`, `BodyClearAcceleration()`, `BodySave()`
 @*/
-PetscErrorCode BodyAddLumpedVelocity(Body body, const PetscScalar impulse[])
+PetscErrorCode BodyAddImpulses(Body body, BodyStepSide side, PetscBool lumped, const PetscReal parts[3], const PetscScalar impulse[])
 {
+  const Vec   change = body->work.nodes[2], vecs[] = {body->state.u, body->state.v, body->state.a};
+  const Vec   saved[]  = {body->saved.u, body->saved.v, body->saved.a};
+  const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AddLumped(body, impulse, body->state.v));
-  PetscCall(WriteEnd(body, body->state.v, body->traces.velocity));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyAddLumpedAcceleration - changes the acceleration at the end of the controller step by forces on the rows, as if the mass were lumped
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, integrated
-- force - one for each row of this rank [N]
-
-  Level: developer
-
-  Note:
-  a += M_L^{-1} B^T force. To be called before `BodySave()`.
-
-.seealso: `Body`, `BodyComputeInverseLumpedMass()`, `BodyAddLumpedVelocity()`
-@*/
-PetscErrorCode BodyAddLumpedAcceleration(Body body, const PetscScalar force[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AddLumped(body, force, body->state.a));
-  PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
+  if (side == BODY_AT_START) PetscCall(BodyRestore(body));
+  PetscCall(lumped ? SolveLumpedMassOfRows(body, impulse, change) : BodySolveMassOfRows(body, impulse, change));
+  for (PetscInt k = 0; k < 3; k++) {
+    if (parts[k] == 0) continue;
+    PetscCall(VecAXPY(vecs[k], parts[k], change));
+    if (side == BODY_AT_START) PetscCall(VecCopy(vecs[k], saved[k]));
+    else PetscCall(BodyWriteTrace(body, body->rows.matrix, vecs[k], traces[k], body->time.substeps));
+  }
+  body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -210,7 +94,7 @@ static PetscErrorCode MultiplyMarked(Body body, const PetscBool marked[], Vec x,
   a -= B^T (B B^T)^{-1} B a on these rows, the nearest that has none of them: by conjugate gradients, in one iteration if they are
 orthonormal. To be called before `BodySave()`.
 
-.seealso: `Body`, `BodyAddAcceleration()`
+.seealso: `Body`, `BodyAddImpulses()`
 @*/
 PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
 {
@@ -233,35 +117,7 @@ PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
     PetscCall(VecDot(residual, residual, &square));
     PetscCall(VecAYPX(direction, square / last, residual));
   }
-  PetscCall(WriteEnd(body, body->state.a, body->traces.acceleration));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyShiftStart - moves the state at the start of the controller step, at unchanged velocity
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, saved
-- shift - one for each row of this rank [kg m]
-
-  Level: developer
-
-  Note:
-  u += M^{-1} B^T shift, a projection in the norm of the mass if the shift comes from `BodyComputeInverseMass()`. The saved state
-  is changed too.
-
-.seealso: `Body`, `BodyComputeInverseMass()`
-@*/
-PetscErrorCode BodyShiftStart(Body body, const PetscScalar shift[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyRestore(body));
-  PetscCall(BodySolveMassOfRows(body, shift, body->work.nodes[2]));
-  PetscCall(VecAXPY(body->state.u, 1, body->work.nodes[2]));
-  PetscCall(VecCopy(body->state.u, body->saved.u));
+  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.a, body->traces.acceleration, body->time.substeps));
   body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -80,7 +80,6 @@ PetscErrorCode BodyEndExchange(Body body)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  BodyDropWord(body);
   if (!exchange->open) PetscFunctionReturn(PETSC_SUCCESS);
   exchange->open = PETSC_FALSE;
   if (exchange->writes) PetscCall(BodyWriteTraces(body, 1));

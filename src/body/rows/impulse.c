@@ -1,4 +1,4 @@
-/* Forces that act at the start of a step of an explicit body, as forward-increment Lagrange multipliers do. */
+/* How rows answer to impulses on them, and forces on nodes with mass. */
 #include <body/layout/bodyimpl.h>
 
 /* With more rows no column is made for each of them */
@@ -62,50 +62,6 @@ static PetscErrorCode ProbeRows(Body body, Mat matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyComputeInverseMass - velocity of the rows after unit impulses on them
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up, without prescribed rows
-
-  Output Parameter:
-. matrix - B M^{-1} B^T [1/kg], all rows by all rows; zero for massless nodes; destroy it with `MatDestroy()`
-
-  Level: developer
-
-  Note:
-  Sparse with lumped mass: rows are coupled that share a node. Other masses couple all rows, of which there may be 2000 then.
-
-.seealso: `Body`, `BodyAddVelocity()`, `BodyComputeForwardCompliance()`
-@*/
-PetscErrorCode BodyComputeInverseMass(Body body, Mat *matrix)
-{
-  const BodyRows *rows = &body->rows;
-  MPI_Comm        comm = PetscObjectComm((PetscObject)body);
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(matrix, 2);
-  if (body->mass.inverse && body->integrator->has_inertia) {
-    PetscCall(MultiplyRows(body, body->mass.inverse, matrix));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCheck(!body->integrator->has_inertia || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
-             "Body '%s': a mass that is not lumped couples all contact nodes, of which there are %" PetscInt_FMT
-             ", more than %d; set -%smass_type lumped, or choose -contact_type schwarz",
-             body->hdr.name, rows->global, MAX_PROBED_ROWS, ((PetscObject)body)->prefix);
-  PetscCall(MatCreate(comm, matrix));
-  PetscCall(MatSetSizes(*matrix, rows->local, rows->local, rows->global, rows->global));
-  PetscCall(MatSetType(*matrix, MATAIJ));
-  PetscCall(MatSetUp(*matrix));
-  if (body->integrator->has_inertia) PetscCall(ProbeRows(body, *matrix));
-  PetscCall(MatAssemblyBegin(*matrix, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*matrix, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The inverse of the lumped mass, zero on massless nodes */
 static PetscErrorCode CreateInverseRowSum(Body body, Vec *inverse)
 {
@@ -117,32 +73,53 @@ static PetscErrorCode CreateInverseRowSum(Body body, Vec *inverse)
 }
 
 /*@
-  BodyComputeInverseLumpedMass - velocity of the rows after unit impulses on them, if the mass were lumped
+  BodyComputeInverseMass - velocity of the rows after unit impulses on them
 
   Collective
 
-  Input Parameter:
-. body - the `Body`, set up
+  Input Parameters:
++ body   - the `Body`, set up, without prescribed rows
+- lumped - as if the mass were lumped
 
   Output Parameter:
-. matrix - B M_L^{-1} B^T [1/kg], all rows by all rows, sparse; zero for massless nodes and for static bodies; destroy it with
-           `MatDestroy()`
+. matrix - B M^{-1} B^T [1/kg], all rows by all rows; zero for massless nodes and for static bodies; destroy it with `MatDestroy()`
 
   Level: developer
 
-.seealso: `Body`, `BodyComputeInverseMass()`, `BodyAddLumpedVelocity()`
+  Note:
+  Sparse with lumped mass: rows are coupled that share a node. Other masses couple all rows, of which there may be 2000 then. Times dt^2 it
+  is the matrix of the forward-increment Lagrange multipliers (Carpenter, Taylor, Katona 1991).
+
+.seealso: `Body`, `BodyAddImpulses()`, `BodyBoundInverseMass()`
 @*/
-PetscErrorCode BodyComputeInverseLumpedMass(Body body, Mat *matrix)
+PetscErrorCode BodyComputeInverseMass(Body body, PetscBool lumped, Mat *matrix)
 {
-  Vec inverse;
+  const BodyRows *rows    = &body->rows;
+  const PetscBool inertia = body->integrator->has_inertia;
+  MPI_Comm        comm    = PetscObjectComm((PetscObject)body);
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(matrix, 2);
-  PetscCall(CreateInverseRowSum(body, &inverse));
-  if (!body->integrator->has_inertia) PetscCall(VecZeroEntries(inverse));
-  PetscCall(MultiplyRows(body, inverse, matrix));
-  PetscCall(VecDestroy(&inverse));
+  PetscAssertPointer(matrix, 3);
+  if (inertia && (lumped || body->mass.inverse)) {
+    Vec inverse;
+
+    if (lumped) PetscCall(CreateInverseRowSum(body, &inverse));
+    PetscCall(MultiplyRows(body, lumped ? inverse : body->mass.inverse, matrix));
+    if (lumped) PetscCall(VecDestroy(&inverse));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCheck(!inertia || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
+             "Body '%s': a mass that is not lumped couples all contact nodes, of which there are %" PetscInt_FMT
+             ", more than %d; set -%smass_type lumped, or choose -contact_type schwarz",
+             body->hdr.name, rows->global, MAX_PROBED_ROWS, ((PetscObject)body)->prefix);
+  PetscCall(MatCreate(comm, matrix));
+  PetscCall(MatSetSizes(*matrix, rows->local, rows->local, rows->global, rows->global));
+  PetscCall(MatSetType(*matrix, MATAIJ));
+  PetscCall(MatSetUp(*matrix));
+  if (inertia) PetscCall(ProbeRows(body, *matrix));
+  PetscCall(MatAssemblyBegin(*matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*matrix, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -176,32 +153,6 @@ PetscErrorCode BodyMultiplyInverseMass(Body body, const PetscScalar impulse[], P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyComputeForwardCompliance - displacement of the rows after one substep for unit forces at its start
-
-  Collective
-
-  Input Parameter:
-. body - an explicit `Body` without massless nodes
-
-  Output Parameter:
-. matrix - dt^2 B M^{-1} B^T [m/N], all rows by all rows; destroy it with `MatDestroy()`
-
-  Level: developer
-
-  Note:
-  Carpenter, Taylor, Katona 1991, the matrix of the forward-increment Lagrange multipliers.
-
-.seealso: `Body`, `BodyAddImpulse()`, `BodyBoundForwardCompliance()`
-@*/
-PetscErrorCode BodyComputeForwardCompliance(Body body, Mat *matrix)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyComputeInverseMass(body, matrix));
-  PetscCall(MatScale(*matrix, PetscSqr(body->time.step)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What the mass matrix is at least, relative to the lumped one: the smallest eigenvalue of any element's pair of them, for linear
    shape functions on lines, simplices, and products of lines */
 static PetscReal LeastMass(const struct _p_Body *body)
@@ -216,7 +167,7 @@ static PetscReal LeastMass(const struct _p_Body *body)
 }
 
 /*@
-  BodyBoundForwardCompliance - bound of each row's displacement after one substep for a unit force on it at the start
+  BodyBoundInverseMass - bound of each row's velocity after a unit impulse on it
 
   Collective
 
@@ -224,32 +175,24 @@ static PetscReal LeastMass(const struct _p_Body *body)
 . body - an explicit `Body` without massless nodes
 
   Output Parameter:
-. bound - one for each row of this rank [m/N]; the diagonal of `BodyComputeForwardCompliance()` itself, but for interfaces with many rows
-          and a mass that is not lumped, which have one from the eigenvalues of the elements' masses
+. bound - one for each row of this rank [1/kg]; the diagonal of `BodyComputeInverseMass()` itself, but for interfaces with many rows and a
+          mass that is not lumped, which have one from the eigenvalues of the elements' masses
 
   Level: developer
 
-.seealso: `Body`, `BodyComputeForwardCompliance()`
+.seealso: `Body`, `BodyComputeInverseMass()`
 @*/
-PetscErrorCode BodyBoundForwardCompliance(Body body, PetscReal bound[])
+PetscErrorCode BodyBoundInverseMass(Body body, PetscReal bound[])
 {
+  const PetscBool    lumped = (PetscBool)(!body->mass.inverse && body->rows.global > MAX_PROBED_ROWS);
   const PetscScalar *values;
   Mat                matrix;
   Vec                diagonal;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->mass.inverse || body->rows.global <= MAX_PROBED_ROWS) PetscCall(BodyComputeForwardCompliance(body, &matrix));
-  else {
-    Vec inverse;
-
-    PetscCall(VecDuplicate(body->mass.row_sum, &inverse));
-    PetscCall(VecCopy(body->mass.row_sum, inverse));
-    PetscCall(VecReciprocal(inverse));
-    PetscCall(MultiplyRows(body, inverse, &matrix));
-    PetscCall(MatScale(matrix, PetscSqr(body->time.step) / LeastMass(body)));
-    PetscCall(VecDestroy(&inverse));
-  }
+  PetscCall(BodyComputeInverseMass(body, lumped, &matrix));
+  if (lumped) PetscCall(MatScale(matrix, 1 / LeastMass(body)));
   PetscCall(MatCreateVecs(matrix, NULL, &diagonal));
   PetscCall(MatGetDiagonal(matrix, diagonal));
   PetscCall(VecGetArrayRead(diagonal, &values));
@@ -257,37 +200,6 @@ PetscErrorCode BodyBoundForwardCompliance(Body body, PetscReal bound[])
   PetscCall(VecRestoreArrayRead(diagonal, &values));
   PetscCall(VecDestroy(&diagonal));
   PetscCall(MatDestroy(&matrix));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyAddImpulse - changes velocity and acceleration at the start of the controller step by those of a force that acts on the
-  rows from half a step before to half a step after it
-
-  Collective
-
-  Input Parameters:
-+ body  - an explicit `Body` at its saved state, with one substep to a controller step
-- force - one for each row of this rank [N]
-
-  Level: developer
-
-  Note:
-  The saved state is changed too: the forces of the forward-increment Lagrange multiplier are known only after the step that
-  they begin (Carpenter, Taylor, Katona 1991).
-
-.seealso: `Body`, `BodyComputeForwardCompliance()`
-@*/
-PetscErrorCode BodyAddImpulse(Body body, const PetscScalar force[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(BodyRestore(body));
-  PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
-  PetscCall(VecAXPY(body->state.a, 1, body->work.nodes[2]));
-  PetscCall(VecAXPY(body->state.v, 0.5 * body->time.step, body->work.nodes[2]));
-  PetscCall(VecCopy(body->state.v, body->saved.v));
-  PetscCall(VecCopy(body->state.a, body->saved.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -137,8 +137,7 @@ static PetscErrorCode RenewLevels(Body body)
       level->compliance = body->compliance;
     }
     body->compliance = level->compliance;
-    if (level->solver && level->solver != of_first)
-      PetscCall(ConstrainedSolverReplaceRows(level->solver, body->rows.free_matrix));
+    if (level->solver && level->solver != of_first) PetscCall(ConstrainedSolverReplaceRows(level->solver, body->rows.free_matrix));
   }
   body->compliance = first;
   PetscCall(BodyDestroyCompliance(body));

@@ -170,37 +170,10 @@ PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[])
 @*/
 PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 {
-  PetscInt counts[BODY_CONDITION_COUNTS];
+  PetscInt counts[] = {0, 0, 0, 0}; /* prescribed rows, forced and Robin rows, Robin rows; ranks on which any is another one */
 
-  PetscFunctionBegin;
-  PetscCall(BodyProposeConditions(body, conditions, counts));
-  if (body->rows.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, BODY_CONDITION_COUNTS, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(BodyTakeConditions(body, counts));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyProposeConditions - the part of `BodySetConditions()` before the ranks add up their counts, which callers do for many bodies at once
-
-  Not Collective
-
-  Input Parameters:
-+ body       - the `Body`, set up
-- conditions - one for each row of this rank
-
-  Output Parameter:
-. counts - of this rank, to be added up over all ranks and given to `BodyTakeConditions()`
-
-  Level: developer
-
-.seealso: `Body`, `BodySetConditions()`, `BodyTakeConditions()`
-@*/
-PetscErrorCode BodyProposeConditions(Body body, const BodyCondition conditions[], PetscInt counts[BODY_CONDITION_COUNTS])
-{
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  for (PetscInt k = 0; k < BODY_CONDITION_COUNTS; k++) counts[k] = 0;
   for (PetscInt i = 0; i < body->rows.local; i++) {
     if (conditions[i] != body->rows.conditions[i]) counts[3] = 1;
     body->rows.conditions[i] = conditions[i];
@@ -208,26 +181,7 @@ PetscErrorCode BodyProposeConditions(Body body, const BodyCondition conditions[]
     counts[1] += conditions[i] == BODY_FORCED || conditions[i] == BODY_ROBIN;
     counts[2] += conditions[i] == BODY_ROBIN;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyTakeConditions - the rest of `BodySetConditions()`, after `BodyProposeConditions()`
-
-  Collective
-
-  Input Parameters:
-+ body   - the `Body`
-- counts - of all ranks
-
-  Level: developer
-
-.seealso: `Body`, `BodySetConditions()`, `BodyProposeConditions()`
-@*/
-PetscErrorCode BodyTakeConditions(Body body, const PetscInt counts[BODY_CONDITION_COUNTS])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)body)));
   if (!counts[3]) PetscFunctionReturn(PETSC_SUCCESS);
   body->rows.n_prescribed = counts[0];
   body->rows.n_forced     = counts[1];

@@ -69,9 +69,9 @@ PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[
 
   Note:
   For what holds dofs against them, and for the next step, which goes on from the forces at the end. The acceleration that these bring there
-  is to be changed with `BodyAddAcceleration()`. To be called before `BodySave()`.
+  is to be changed with `BodyAddImpulses()`. To be called before `BodySave()`.
 
-.seealso: `Body`, `BodySetConstantForces()`, `BodyAddAcceleration()`
+.seealso: `Body`, `BodySetConstantForces()`, `BodyAddImpulses()`
 @*/
 PetscErrorCode BodyEndConstantForces(Body body, const PetscScalar start[], const PetscScalar more[])
 {

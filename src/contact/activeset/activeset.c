@@ -20,26 +20,18 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
   }
 }
 
-/* Tells the bodies what their rows mean, but those that are left out; NULL: none is, or the same of them on every rank. The ranks add up
-   their counts for all bodies at once. */
+/* Tells the bodies what their rows mean, but those that are left out; NULL: none is, or the same of them on every rank */
 PetscErrorCode ContactSetSomeConditions(Contact contact, ContactConditions conditions, const PetscBool left_out[])
 {
-  PetscInt *counts = contact->work.counts;
-  PetscBool same   = (PetscBool)(conditions == CONDITIONS_FORCES);
+  PetscBool same = (PetscBool)(conditions == CONDITIONS_FORCES);
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies && same; b++) PetscCall(BodyIsForcedAlone(contact->bodies[b], &same));
-  if (same) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+  for (PetscInt b = 0; b < contact->n_bodies && !same; b++) {
     if (left_out && left_out[b]) continue;
     ContactGetConditions(contact, conditions, b, contact->work.conditions);
-    PetscCall(BodyProposeConditions(contact->bodies[b], contact->work.conditions, counts + BODY_CONDITION_COUNTS * b));
+    PetscCall(BodySetConditions(contact->bodies[b], contact->work.conditions));
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, (PetscMPIInt)(BODY_CONDITION_COUNTS * contact->n_bodies), MPIU_INT, MPI_SUM,
-                               PetscObjectComm((PetscObject)contact)));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (!left_out || !left_out[b]) PetscCall(BodyTakeConditions(contact->bodies[b], counts + BODY_CONDITION_COUNTS * b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,11 +178,6 @@ static PetscErrorCode EndExchange(Contact contact, const PetscBool left_out[])
 PetscErrorCode ContactIntegrateSome(Contact contact, const PetscBool left_out[])
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    contact->work.words[b].n = 0;
-    if (!left_out || !left_out[b]) PetscCall(BodyProposeRepeat(contact->bodies[b], &contact->work.words[b]));
-  }
-  PetscCall(ContactTellWords(contact, contact->work.words));
   PetscCall(BeginExchange(contact, left_out, PETSC_FALSE));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     const PetscInt b = contact->ranks.visits[k];

@@ -448,9 +448,8 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree2(c->reach.mean, c->reach.spread));
   PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
-  PetscCall(PetscFree6(c->spares, c->work.hands_over, c->work.traces, c->work.counts, c->work.words, c->work.left_out));
+  PetscCall(PetscFree4(c->spares, c->work.hands_over, c->work.traces, c->work.left_out));
   PetscCall(PetscFree2(c->ends, c->at_end));
-  PetscCall(PetscFree(c->work.told));
   PetscCall(PetscFree(c->work.boxes));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyOverlaps(c));

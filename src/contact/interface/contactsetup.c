@@ -14,8 +14,7 @@ static PetscErrorCode AllocateBodies(Contact contact)
   PetscCall(PetscCalloc2(4 * n, &contact->reach.mean, 2 * n, &contact->reach.spread));
   contact->reach.acceleration = contact->reach.spread + n;
   PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));
-  PetscCall(PetscCalloc6(n, &contact->spares, n, &contact->work.hands_over, 6 * n, &contact->work.traces, BODY_CONDITION_COUNTS * n,
-                         &contact->work.counts, n, &contact->work.words, n, &contact->work.left_out));
+  PetscCall(PetscCalloc4(n, &contact->spares, n, &contact->work.hands_over, 6 * n, &contact->work.traces, n, &contact->work.left_out));
   PetscCall(PetscCalloc6(n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n, &contact->nodes.dofs, n,
                          &contact->nodes.n, n, &contact->nodes.n_all));
   PetscFunctionReturn(PETSC_SUCCESS);

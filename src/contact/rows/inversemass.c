@@ -85,14 +85,14 @@ static PetscErrorCode CreateShell(Contact contact, InverseMass *inverse, Mat *sh
 }
 
 /* C entry by entry */
-static PetscErrorCode Assemble(Contact contact, PetscErrorCode (*compute)(Body, Mat *), Mat *C)
+static PetscErrorCode Assemble(Contact contact, PetscBool lumped, Mat *C)
 {
   PetscFunctionBegin;
   PetscCall(ContactCreateRowMatrix(contact, C));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Mat part;
 
-    PetscCall((*compute)(contact->bodies[b], &part));
+    PetscCall(BodyComputeInverseMass(contact->bodies[b], lumped, &part));
     PetscCall(ContactAddBodyMatrix(contact, b, part, *C));
     PetscCall(MatDestroy(&part));
   }
@@ -142,12 +142,12 @@ PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseM
   PetscCall(PetscMalloc3(n, &inverse->takes_part, n, &inverse->work[0], n, &inverse->work[1]));
   PetscCall(ContactCreateRowVec(contact, &inverse->rhs));
   PetscCall(VecDuplicate(inverse->rhs, &inverse->solution));
-  PetscCall(Assemble(contact, BodyComputeInverseLumpedMass, &lumped));
+  PetscCall(Assemble(contact, PETSC_TRUE, &lumped));
   PetscCall(FindRows(contact, lumped, inverse));
   PetscCall(LeaveOutOthers(contact, inverse, lumped));
   if (type == INVERSE_MASS_ONCE) PetscCall(CreateShell(contact, inverse, &C));
   else if (type == INVERSE_MASS_ASSEMBLED) {
-    PetscCall(Assemble(contact, BodyComputeInverseMass, &C));
+    PetscCall(Assemble(contact, PETSC_FALSE, &C));
     PetscCall(LeaveOutOthers(contact, inverse, C));
   } else {
     C = lumped;

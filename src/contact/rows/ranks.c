@@ -42,24 +42,3 @@ PetscErrorCode ContactOrderVisits(Contact contact)
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* Adds up over all ranks what these have to tell of each body, `words` in the order of the bodies, in place and at once */
-PetscErrorCode ContactTellWords(Contact contact, const BodyWord words[])
-{
-  ContactWork *work = &contact->work;
-  PetscInt     n    = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) n += words[b].n;
-  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (n > work->most_told) {
-    work->most_told = PetscMax(n, 2 * work->most_told);
-    PetscCall(PetscRealloc(work->most_told * sizeof(*work->told), &work->told));
-  }
-  n = 0;
-  for (PetscInt b = 0; b < contact->n_bodies; n += words[b++].n) PetscCall(PetscArraycpy(work->told + n, words[b].values, words[b].n));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, work->told, (PetscMPIInt)n, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  n = 0;
-  for (PetscInt b = 0; b < contact->n_bodies; n += words[b++].n) PetscCall(PetscArraycpy(words[b].values, work->told + n, words[b].n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

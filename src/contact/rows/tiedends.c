@@ -17,16 +17,14 @@ PetscErrorCode ContactAlignTies(Contact contact, PetscScalar *const change[2])
 
   PetscFunctionBegin;
   for (PetscInt order = 1; order <= 2; order++) {
+    const PetscReal    parts[] = {0, order == 1, order == 2};
     PetscScalar *const rates = change[order - 1], *const on_body = ties->inverse->work[0];
 
     PetscCall(ContactComputeRates(contact, order, PETSC_TRUE, rates));
     PetscCall(InverseMassSolve(contact, ties->inverse, rates, rates));
     for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      const Body body = contact->bodies[b];
-
       InverseMassGetBodyForces(contact, b, rates, on_body);
-      if (ties->all_explicit) PetscCall(order == 1 ? BodyAddVelocity(body, on_body) : BodyAddAcceleration(body, on_body));
-      else PetscCall(order == 1 ? BodyAddLumpedVelocity(body, on_body) : BodyAddLumpedAcceleration(body, on_body));
+      PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, (PetscBool)!ties->all_explicit, parts, on_body));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -143,24 +143,30 @@ PetscErrorCode ContactSetMeanForces(Contact contact)
    takes */
 PetscErrorCode ContactStartTies(Contact contact)
 {
-  PetscScalar *rates, *impulse, *force, *on_body[2];
-  InverseMass  inverse;
-  PetscBool    any = PETSC_FALSE;
+  const PetscReal velocity[] = {0, 1, 0}, acceleration[] = {0, 0, 1};
+  PetscScalar    *rates, *impulse, *force, *on_body, *reaction;
+  InverseMass     inverse;
+  PetscBool       any = PETSC_FALSE;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || contact->pairs[p].keeps_mass);
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc5(contact->rows.n, &rates, contact->rows.n, &impulse, contact->rows.n, &force, contact->rows.n, &on_body[0],
-                         contact->rows.n, &on_body[1]));
+  PetscCall(PetscMalloc4(contact->rows.n, &rates, contact->rows.n, &impulse, contact->rows.n, &force, contact->rows.n, &on_body));
   PetscCall(InverseMassCreate(contact, INVERSE_MASS_ONCE, &inverse));
   PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, rates));
   PetscCall(InverseMassSolve(contact, &inverse, rates, impulse));
   PetscCall(ContactComputeRates(contact, 2, PETSC_FALSE, rates));
   PetscCall(InverseMassSolve(contact, &inverse, rates, force));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    InverseMassGetBodyForces(contact, b, impulse, on_body[0]);
-    InverseMassGetBodyForces(contact, b, force, on_body[1]);
-    PetscCall(BodyChangeStart(contact->bodies[b], on_body[0], on_body[1]));
+    const Body body = contact->bodies[b];
+
+    InverseMassGetBodyForces(contact, b, impulse, on_body);
+    PetscCall(BodyAddImpulses(body, BODY_AT_START, PETSC_FALSE, velocity, on_body));
+    InverseMassGetBodyForces(contact, b, force, on_body);
+    PetscCall(BodyAddImpulses(body, BODY_AT_START, PETSC_FALSE, acceleration, on_body));
+    PetscCall(BodyWriteStartTraces(body));
+    PetscCall(TraceGetLevel(contact->traces[b].reaction, 0, &reaction));
+    PetscCall(PetscArraycpy(reaction, on_body, contact->body_rows[b].n));
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (!inverse.takes_part[i]) continue;
@@ -169,6 +175,6 @@ PetscErrorCode ContactStartTies(Contact contact)
   }
   PetscCall(ContactStartImpulses(contact));
   PetscCall(InverseMassDestroy(&inverse));
-  PetscCall(PetscFree5(rates, impulse, force, on_body[0], on_body[1]));
+  PetscCall(PetscFree4(rates, impulse, force, on_body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -77,7 +77,6 @@ static PetscErrorCode MeasureGroups(Contact contact, ContactStepper *stepper)
   for (PetscInt g = 0; g < contact->n_bodies; g++) stepper->done[g] = (PetscBool)(stepper->off[g] <= rtol * stepper->scale[g] + atol);
   for (PetscInt i = 0; i < n; i++)
     if (stepper->done[ContactStepperGroup(contact, stepper, i)]) problem->force[i] = problem->base[i];
-  PetscCall(ContactStepperTellProducts(contact, stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -98,16 +98,6 @@ static PetscErrorCode Multiply(Mat S, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The last product is of the changes of forces that come next: bodies need not find again how they answer */
-PetscErrorCode ContactStepperTellProducts(Contact contact, const ContactStepper *stepper)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies && stepper->products; b++)
-    if (stepper->assembly.of_body[b].n && !stepper->done[stepper->group[b]])
-      PetscCall(BodyExpectApplied(contact->bodies[b], stepper->assembly.of_body[b].force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The largest eigenvalue of D^{-1} K, D the diagonal of K, by the power method: as many digits as a bound needs */
 static PetscErrorCode FindLargest(Mat K, Vec inverse, PetscReal *largest)
 {

@@ -193,7 +193,6 @@ PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperMakeBlock(Contact, ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperChooseProducts(Contact, ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperTellProducts(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateProducts(Contact, ContactStepper *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *);
 PETSC_INTERN PetscErrorCode ContactStepperGetFlatHit(Contact, PetscInt, PetscReal *);

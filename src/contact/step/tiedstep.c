@@ -41,6 +41,7 @@ static PetscErrorCode TellForces(Contact contact, const PetscScalar start[], con
 /* Before the step is accepted */
 PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
 {
+  const PetscReal    parts[] = {0, 0, 1};
   const InverseMass *inverse = contact->ties.inverse;
   PetscScalar      **aligns  = stepper->aligns;
   PetscReal         *more    = stepper->mine;
@@ -51,7 +52,7 @@ PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
   for (PetscInt b = 0; b < contact->n_bodies && !contact->ties.all_explicit; b++) {
     if (!contact->body_rows[b].n_all) continue;
     InverseMassGetBodyForces(contact, b, aligns[1], inverse->work[0]);
-    PetscCall(BodyAddAcceleration(contact->bodies[b], inverse->work[0]));
+    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, PETSC_FALSE, parts, inverse->work[0]));
   }
   PetscCall(ContactAlignTies(contact, aligns));
   for (PetscInt i = 0; i < contact->rows.n; i++) {

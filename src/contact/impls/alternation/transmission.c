@@ -48,7 +48,7 @@ static PetscErrorCode SetUpTiedWeights(Contact contact, PetscInt b, const PetscR
   PetscFunctionBegin;
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
   shift = 4 * PetscSqr(substeps / alternation->controller_step);
-  PetscCall(BodyComputeInverseLumpedMass(contact->bodies[b], &inverse));
+  PetscCall(BodyComputeInverseMass(contact->bodies[b], PETSC_TRUE, &inverse));
   PetscCall(MatCreateVecs(inverse, &diagonal, NULL));
   PetscCall(MatGetDiagonal(inverse, diagonal));
   PetscCall(VecGetArrayRead(diagonal, &flexibility));

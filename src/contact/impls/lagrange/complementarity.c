@@ -29,8 +29,8 @@ PetscErrorCode ComplementarityDestroy(Complementarity *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* C, with the rows as they are: the sum of what `compute` tells of each body */
-PetscErrorCode ComplementaritySetCompliance(Contact contact, PetscErrorCode (*compute)(Body, Mat *), Complementarity *problem)
+/* C, with the rows as they are: B M^{-1} B^T of all bodies, times a number */
+PetscErrorCode ComplementaritySetCompliance(Contact contact, PetscReal scale, Complementarity *problem)
 {
   PetscFunctionBegin;
   PetscCall(MatDestroy(&problem->compliance));
@@ -38,7 +38,8 @@ PetscErrorCode ComplementaritySetCompliance(Contact contact, PetscErrorCode (*co
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Mat matrix;
 
-    PetscCall((*compute)(contact->bodies[b], &matrix));
+    PetscCall(BodyComputeInverseMass(contact->bodies[b], PETSC_FALSE, &matrix));
+    PetscCall(MatScale(matrix, scale));
     PetscCall(ContactAddBodyMatrix(contact, b, matrix, problem->compliance));
     PetscCall(MatDestroy(&matrix));
   }

@@ -18,7 +18,7 @@ typedef struct {
 } Complementarity;
 
 PETSC_INTERN PetscErrorCode ComplementarityCreate(Contact, Complementarity *);
-PETSC_INTERN PetscErrorCode ComplementaritySetCompliance(Contact, PetscErrorCode (*)(Body, Mat *), Complementarity *);
+PETSC_INTERN PetscErrorCode ComplementaritySetCompliance(Contact, PetscReal, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementaritySolve(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementaritySolveActive(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementarityGetBodyForces(Contact, PetscInt, const Complementarity *, PetscScalar[]);

@@ -33,6 +33,7 @@ static PetscReal GapToClose(Contact contact, PetscInt i)
 
 static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
 {
+  const PetscReal  parts[]  = {0, 0.5 * contact->step, 1};
   ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
   PetscBool        penetrating;
   PetscLogDouble   begin, end;
@@ -52,7 +53,7 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->forces, lagrange->forces.mine));
-    PetscCall(BodyAddImpulse(contact->bodies[b], lagrange->forces.mine));
+    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_START, PETSC_FALSE, parts, lagrange->forces.mine));
   }
   PetscCall(ContactIntegrateBodies(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
@@ -84,8 +85,8 @@ static PetscErrorCode ContactRowsChanged_ForwardLagrange(Contact contact)
   ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(ComplementaritySetCompliance(contact, BodyComputeForwardCompliance, &lagrange->forces));
-  if (lagrange->close_rate) PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &lagrange->impulses));
+  PetscCall(ComplementaritySetCompliance(contact, PetscSqr(contact->step), &lagrange->forces));
+  if (lagrange->close_rate) PetscCall(ComplementaritySetCompliance(contact, 1, &lagrange->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -128,6 +129,6 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
     lagrange->close_rate = PETSC_TRUE;
     PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));
   }
-  PetscCall(ComplementaritySetCompliance(contact, BodyComputeForwardCompliance, &lagrange->forces));
+  PetscCall(ComplementaritySetCompliance(contact, PetscSqr(contact->step), &lagrange->forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

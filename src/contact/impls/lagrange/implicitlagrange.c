@@ -78,8 +78,9 @@ static PetscErrorCode Step(Contact contact)
    which the contact-stabilised method starts its next step */
 static PetscErrorCode Accept(Contact contact)
 {
-  Corrections *corrections = CorrectionsOf(contact);
-  PetscBool    in_contact;
+  const PetscReal parts[]     = {0, 0, 1};
+  Corrections    *corrections = CorrectionsOf(contact);
+  PetscBool       in_contact;
 
   PetscFunctionBegin;
   PetscCall(ContactStepperAccept(contact));
@@ -90,7 +91,7 @@ static PetscErrorCode Accept(Contact contact)
   for (PetscInt i = 0; i < contact->rows.n; i++) corrections->impulses.forces[i] = -TIMES * contact->end.force[i];
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, &corrections->impulses, corrections->impulses.mine));
-    PetscCall(BodyAddAcceleration(contact->bodies[b], corrections->impulses.mine));
+    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, PETSC_FALSE, parts, corrections->impulses.mine));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -99,7 +100,7 @@ static PetscErrorCode RowsChanged(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(ContactStepperRowsChanged(contact));
-  PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &CorrectionsOf(contact)->impulses));
+  PetscCall(ComplementaritySetCompliance(contact, 1, &CorrectionsOf(contact)->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,8 +108,7 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   PetscCall(ContactStepperVisit(contact, checkpoint));
-  if (CheckpointLoads(checkpoint))
-    PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, &CorrectionsOf(contact)->impulses));
+  if (CheckpointLoads(checkpoint)) PetscCall(ComplementaritySetCompliance(contact, 1, &CorrectionsOf(contact)->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -19,7 +19,7 @@ PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Compl
                option, ((PetscObject)first)->name, ((PetscObject)second)->name, ((PetscObject)first)->name);
   }
   PetscCall(ComplementarityCreate(contact, impulses));
-  PetscCall(ComplementaritySetCompliance(contact, BodyComputeInverseMass, impulses));
+  PetscCall(ComplementaritySetCompliance(contact, 1, impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -27,7 +27,8 @@ PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Compl
    norm of the mass, so that no energy is gained. With `pushing_only` a gap that opens may go on opening. */
 PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Complementarity *impulses)
 {
-  PetscBool in_contact;
+  const PetscReal parts[] = {0, 1, 0};
+  PetscBool       in_contact;
 
   PetscFunctionBegin;
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
@@ -38,7 +39,7 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
   PetscCall(ComplementaritySolveActive(contact, impulses));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
-    PetscCall(BodyAddVelocity(contact->bodies[b], impulses->mine));
+    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, PETSC_FALSE, parts, impulses->mine));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -47,7 +48,8 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
    them outside: their projection in the norm of the mass onto what is admissible */
 PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Complementarity *impulses)
 {
-  int any = 0;
+  const PetscReal parts[] = {1, 0, 0};
+  int             any     = 0;
 
   PetscFunctionBegin;
   PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, impulses->gaps));
@@ -61,7 +63,7 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
-    PetscCall(BodyShiftStart(contact->bodies[b], impulses->mine));
+    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_START, PETSC_FALSE, parts, impulses->mine));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -75,12 +75,12 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
     PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
     if (!is_explicit || massless) continue;
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    PetscCall(BodyBoundForwardCompliance(contact->bodies[b], bound));
+    PetscCall(BodyBoundInverseMass(contact->bodies[b], bound));
     for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
       const PetscInt i = contact->body_rows[b].rows[k];
 
-      compliance[0][i] += bound[k];
-      compliance[1][i] += substeps * substeps * bound[k];
+      compliance[0][i] += PetscSqr(contact->step / substeps) * bound[k];
+      compliance[1][i] += PetscSqr(contact->step) * bound[k];
     }
   }
   worst[0] = worst[1] = 0;
