@@ -208,8 +208,6 @@ PETSC_INTERN PetscErrorCode ContactReadFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyFrictionLaw(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpFriction(Contact);
 PETSC_INTERN void           ContactAlignRubbingRows(Contact);
-PETSC_INTERN PetscErrorCode ContactGetOpening(Contact, PetscInt, PetscReal *);
-PETSC_INTERN PetscErrorCode ContactJudgeRubbing(Contact, const PetscReal[], PetscBool[], PetscReal[], PetscBool *);
 PETSC_INTERN void           ContactCarryFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactDriveFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeFrictionLoss(Contact, const PetscReal[]);

@@ -5,153 +5,199 @@
 
      g = g* + S l,   S = sum_bodies B K_LL^{-1} B^T,   g*: gaps of layers that relax without contact.
 
-   Rows that are tied have g = 0, others l >= 0, g >= 0, l g = 0; where springs hold the rows, as in the penalty method, g = -l / k stands
-   in place of g = 0. The active set settles in rounds, the forces of each are found by conjugate gradients. Nonlinear bodies repeat it with
-   the tangents at the displacements found. The forces are those of the first record of the history.
-
-   With friction, closed nodes stick where they have been put, so that a state of rest under friction stays one; rows across their normals
-   are then like ties. Those whose forces are beyond what the law allows slide under forces that are given: see frictionstart.c.
+   The laws of rows hold for g and l as they do in a step (contact/solve), with the springs of the penalty method on the diagonal of S. Rows
+   across normals read how far they have slipped from where the user has put the bodies, so that a state of rest under friction stays one.
+   Nonlinear bodies repeat it with the tangents at the displacements found. The forces are those of the first record of the history.
 */
-#include <contact/activeset/rounds.h>
+#include <contact/parts.h>
 #include <contact/rows/inversemass.h>
+#include <contact/solve/lawproblem.h>
 
-/* Of the gaps, relative: near round-off, since a gap that is left does work in the first step */
-#define TOLERANCE 1e-15
-/* What may be left where round-off keeps conjugate gradients from that, as with rows that depend on each other; and iterations at most */
-#define WORST          1e-9
-#define MAX_ITERATIONS 5000
+/* Rows up to which S has entries; more are products with it */
+#define FEW_ROWS 500
 /* Rounds of nonlinear layers; the layer is in balance when its last change is below this part of the largest one */
 #define MAX_ROUNDS 50
 #define SMALL      1e-13
-/* Times that friction may change its mind about which nodes stick */
-#define MAX_RUBS 100
+
+/* What all ranks have to know of a row: how it takes part, with the bounds of friction of its node, the compliance of its spring [m/N],
+   what it reads without forces [m], and the force to begin with [N] */
+enum { TOLD_KIND, TOLD_COHESION, TOLD_COEFFICIENT, TOLD_SPRING, TOLD_READ, TOLD_FORCE, N_TOLD };
+enum { ROW_NONE, ROW_OPENS, ROW_HELD, ROW_ACROSS }; /* rows across a normal follow that along it */
 
 typedef struct {
   Contact      contact;
-  PetscBool   *takes_part;      /* per row: its force is looked for here */
-  PetscReal   *springs;         /* per row: compliance of the spring that holds it, 0 if it is rigid [m/N] */
-  PetscReal   *relaxed;         /* per row: g* [m] */
-  PetscBool   *sticks;          /* per row across a normal: its force is looked for as long as its node is closed */
-  PetscReal   *given;           /* per row across a normal that does not stick: its force [N] */
-  PetscReal   *put, *slip;      /* per row across a normal: B u as the bodies have been put, and by how much it has changed [m] */
-  PetscScalar *on_body, *moved; /* work space, per row */
-  PetscBool    rubs;            /* there is friction */
-  PetscReal    change;          /* of the layers in this round [m] */
-  Rounds       rounds;
-  KSP          ksp;
-  Mat          S;
-  Vec          rhs, solution;
+  PetscBool   *takes_part;                     /* per row: its force is looked for here */
+  PetscReal   *relaxed;                        /* per row: g*, or across a normal the slip of layers that relax [m] */
+  PetscReal   *put;                            /* per row across a normal: B u as the bodies have been put [m] */
+  PetscReal    change;                         /* of the layers in this round [m] */
+  LawProblem   problem;                        /* the same on every rank */
+  RowLaw       open, held;                     /* of rows that push, and of those that pull as well */
+  PetscInt    *rows;                           /* of the problem, by their numbers among those of all ranks, ascending */
+  PetscReal   *springs;                        /* of the same [m/N] */
+  PetscScalar *on_body, *moved, *force, *ways; /* work space, per row */
+  PetscReal   *told, *all;                     /* the same: numbers of each row of this rank; of all ranks */
 } StartBalance;
 
-/* change = S force on this rank's rows [m] */
-static PetscErrorCode MultiplyLayers(StartBalance *start, const PetscScalar force[], PetscScalar change[])
+/* all = what the ranks have in `told`, n numbers for each row */
+static PetscErrorCode Gather(StartBalance *start, PetscMPIInt n)
+{
+  const Contact contact = start->contact;
+  MPI_Datatype  numbers;
+
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Type_contiguous(n, MPIU_REAL, &numbers));
+  PetscCallMPI(MPI_Type_commit(&numbers));
+  PetscCallMPI(MPI_Allgatherv(start->told, (PetscMPIInt)contact->rows.n, numbers, start->all, contact->ranks.counts, contact->ranks.offsets,
+                              numbers, PetscObjectComm((PetscObject)contact)));
+  PetscCallMPI(MPI_Type_free(&numbers));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* force = forces on the rows of the problem, ways = S force without springs: of this rank's rows */
+static PetscErrorCode Respond(StartBalance *start, const PetscScalar of_problem[])
 {
   const Contact contact = start->contact;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(change, contact->rows.n));
+  PetscCall(PetscArrayzero(start->force, contact->rows.n));
+  for (PetscInt k = 0; k < start->problem.n; k++) {
+    const PetscInt i = start->rows[k] - contact->rows.begin;
+
+    if (i >= 0 && i < contact->rows.n) start->force[i] = of_problem[k];
+  }
+  PetscCall(PetscArrayzero(start->ways, contact->rows.n));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    InverseMassGetBodyForces(contact, b, force, start->on_body);
+    InverseMassGetBodyForces(contact, b, start->force, start->on_body);
     PetscCall(BodyMultiplyLayerCompliance(contact->bodies[b], start->on_body, start->moved));
-    InverseMassAddBodyRows(contact, b, start->moved, change);
+    InverseMassAddBodyRows(contact, b, start->moved, start->ways);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the force of a row is looked for in this round */
-static inline PetscBool IsSolved(const StartBalance *start, PetscInt i)
-{
-  const Contact contact = start->contact;
-
-  if (!ContactRowRubs(contact, i)) return contact->end.active[i];
-  return (PetscBool)(start->sticks[i] && contact->end.active[ContactFirstRow(contact, i)]);
-}
-
-/* The force that a row has, whatever is found */
-static inline PetscReal GetGiven(const StartBalance *start, PetscInt i)
-{
-  const Contact contact = start->contact;
-
-  return ContactRowRubs(contact, i) && !start->sticks[i] && contact->end.active[ContactFirstRow(contact, i)] ? start->given[i] : 0;
-}
-
-/* y = (S + springs) x on active rows; ones on the diagonal of the others */
-static PetscErrorCode MultiplyActive(Mat S, Vec x, Vec y)
+/* y = S x of the rows of the problem, collective */
+static PetscErrorCode Multiply(Mat S, Vec x, Vec y)
 {
   StartBalance      *start;
   const PetscScalar *in;
-  PetscScalar       *force, *out;
+  PetscScalar       *out;
 
   PetscFunctionBegin;
   PetscCall(MatShellGetContext(S, &start));
-  PetscCall(PetscMalloc1(start->contact->rows.n, &force));
   PetscCall(VecGetArrayRead(x, &in));
+  PetscCall(Respond(start, in));
+  for (PetscInt i = 0; i < start->contact->rows.n; i++) start->told[i] = PetscRealPart(start->ways[i]);
+  PetscCall(Gather(start, 1));
   PetscCall(VecGetArrayWrite(y, &out));
-  for (PetscInt i = 0; i < start->contact->rows.n; i++) force[i] = IsSolved(start, i) ? in[i] : 0;
-  PetscCall(MultiplyLayers(start, force, out));
-  for (PetscInt i = 0; i < start->contact->rows.n; i++) out[i] = IsSolved(start, i) ? out[i] + start->springs[i] * in[i] : in[i];
+  for (PetscInt k = 0; k < start->problem.n; k++) out[k] = start->all[start->rows[k]] + start->springs[k] * in[k];
   PetscCall(VecRestoreArrayWrite(y, &out));
   PetscCall(VecRestoreArrayRead(x, &in));
-  PetscCall(PetscFree(force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces of the active rows, and the gaps that they leave; of rows across normals the slips */
-static PetscErrorCode SolveActive(StartBalance *start)
+/* S of the present tangents */
+static PetscErrorCode TakeS(StartBalance *start)
 {
-  const Contact      contact = start->contact;
-  PetscScalar       *change = start->moved + contact->rows.n, *all = change + contact->rows.n, *rhs;
-  KSPConvergedReason reason;
-  PetscReal          left, size;
-  const PetscScalar *force;
+  const PetscInt n = start->problem.n;
+  Mat            S, near = NULL;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(change, contact->rows.n));
-  for (PetscInt i = 0; i < contact->rows.n; i++) all[i] = GetGiven(start, i);
-  if (start->rubs) PetscCall(MultiplyLayers(start, all, change));
-  PetscCall(VecGetArrayWrite(start->rhs, &rhs));
-  for (PetscInt i = 0; i < contact->rows.n; i++) rhs[i] = IsSolved(start, i) ? -start->relaxed[i] - change[i] : 0;
-  PetscCall(VecRestoreArrayWrite(start->rhs, &rhs));
-  PetscCall(KSPSolve(start->ksp, start->rhs, start->solution));
-  PetscCall(KSPGetConvergedReason(start->ksp, &reason));
-  PetscCall(KSPGetResidualNorm(start->ksp, &left));
-  PetscCall(VecNorm(start->rhs, NORM_2, &size));
-  PetscCheck(reason >= 0 || left <= WORST * size, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-             "The contact forces of the first state, in which massless nodes are in balance, were not found: %s, with %g of the gaps left; "
-             "set -contact_balanced_start false to start from the displacements as they are",
-             KSPConvergedReasons[reason], (double)(left / size));
-  PetscCall(VecGetArrayRead(start->solution, &force));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    contact->end.force[i] = IsSolved(start, i) ? PetscRealPart(force[i]) : GetGiven(start, i);
-    all[i]                = contact->end.force[i];
-  }
-  PetscCall(VecRestoreArrayRead(start->solution, &force));
-  PetscCall(MultiplyLayers(start, all, change));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const PetscReal opened = start->relaxed[i] + PetscRealPart(change[i]);
-    const PetscBool rubs   = ContactRowRubs(contact, i);
+  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, start, &S));
+  PetscCall(MatShellSetOperation(S, MATOP_MULT, (void (*)(void))Multiply));
+  if (n > FEW_ROWS) {
+    PetscCall(MatCreateConstantDiagonal(PETSC_COMM_SELF, n, n, n, n, 1, &near));
+    PetscCall(MatConvert(near, MATSEQAIJ, MAT_INPLACE_MATRIX, &near));
+    PetscCall(LawProblemMatchTrace(S, near));
+  } else {
+    Mat products = S;
 
-    contact->end.gap[i] = start->takes_part[i] && !rubs ? opened : contact->start.gap[i];
-    start->slip[i]      = rubs ? opened : 0;
+    PetscCall(MatComputeOperator(products, MATSEQDENSE, &S));
+    PetscCall(MatDestroy(&products));
   }
+  PetscCall(LawProblemTakeS(&start->problem, &S, near ? &near : NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows join and leave until the forces fit the gaps, under given forces of nodes that slide */
-static PetscErrorCode SolveRounds(StartBalance *start)
+/* Compliance of the springs that a method has between both sides of a row, from what they store at a penetration of a metre */
+static PetscReal SpringCompliance(Contact contact, PetscInt i)
 {
-  const Contact contact = start->contact;
-  PetscBool     changed = PETSC_TRUE, flips;
+  const PetscReal stored = contact->ops->stored ? (*contact->ops->stored)(contact, i, -1) : 0;
+
+  return stored > 0 ? 0.5 / stored : 0;
+}
+
+/* Those rows make up the problem that take part and have a partner, with those across their normals */
+static void Tell(StartBalance *start)
+{
+  const Contact             contact = start->contact;
+  const ContactFrictionLaw *law     = &contact->friction.law;
+  PetscInt                  first   = 0;
+
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscBool rubs = ContactRowRubs(contact, i);
+    PetscReal      *told = start->told + N_TOLD * i;
+
+    if (!rubs) first = i;
+    told[TOLD_KIND] = rubs ? ROW_ACROSS : contact->rows.tied[i] ? ROW_HELD : ROW_OPENS;
+    if (!start->takes_part[first] || !(contact->rows.tied[first] || contact->rows.opposite[first])) told[TOLD_KIND] = ROW_NONE;
+    told[TOLD_SPRING]   = SpringCompliance(contact, i);
+    told[TOLD_READ]     = start->relaxed[i];
+    told[TOLD_FORCE]    = contact->end.force[i];
+    told[TOLD_COHESION] = told[TOLD_COEFFICIENT] = 0;
+    if (i + 1 < contact->rows.n && !rubs && ContactRowRubs(contact, i + 1))
+      (*law->getlimit)(contact, law->data, i, contact->friction.speed[i], &told[TOLD_COHESION], &told[TOLD_COEFFICIENT]);
+  }
+}
+
+static PetscErrorCode TakeRows(StartBalance *start)
+{
+  LawProblem *problem = &start->problem;
+  PetscInt    n       = 0;
 
   PetscFunctionBegin;
-  PetscCall(RoundsBegin(&start->rounds));
-  while (changed) {
-    PetscCall(RoundsNext(&start->rounds));
-    PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
-    PetscCall(SolveActive(start));
-    PetscCall(RoundsChange(&start->rounds));
-    PetscCall(RoundsHaveChanged(&start->rounds, &changed));
-    if (changed) PetscCall(RoundsBreakCycle(&start->rounds, &flips));
+  Tell(start);
+  PetscCall(Gather(start, N_TOLD));
+  for (PetscInt i = 0; i < start->contact->rows.n_all; i++)
+    if (start->all[N_TOLD * i + TOLD_KIND] != ROW_NONE) start->rows[n++] = i;
+  PetscCall(LawProblemResize(problem, n));
+  problem->n_nodes = 0;
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscReal *told = start->all + N_TOLD * start->rows[k];
+
+    start->springs[k] = told[TOLD_SPRING];
+    problem->read[k]  = told[TOLD_READ];
+    problem->force[k] = told[TOLD_FORCE];
+    problem->base[k]  = 0;
+    if (told[TOLD_KIND] == ROW_ACROSS) continue;
+    problem->begin[problem->n_nodes]         = k;
+    problem->law[problem->n_nodes]           = told[TOLD_KIND] == ROW_HELD ? &start->held : &start->open;
+    problem->limit[2 * problem->n_nodes]     = told[TOLD_COHESION];
+    problem->limit[2 * problem->n_nodes + 1] = told[TOLD_COEFFICIENT];
+    problem->n_nodes++;
+  }
+  problem->begin[problem->n_nodes] = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The forces of the problem, and the gaps that they leave, to the rows */
+static PetscErrorCode TakeForces(StartBalance *start)
+{
+  const Contact     contact = start->contact;
+  const LawProblem *problem = &start->problem;
+
+  PetscFunctionBegin;
+  PetscCall(Respond(start, problem->force));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    const PetscBool rubs = ContactRowRubs(contact, i);
+
+    contact->end.force[i]  = PetscRealPart(start->force[i]);
+    contact->end.active[i] = (PetscBool)(!rubs && start->takes_part[i] && (contact->rows.tied[i] || contact->end.force[i] > 0));
+    contact->end.gap[i]    = start->takes_part[i] && !rubs ? start->relaxed[i] + PetscRealPart(start->ways[i]) : contact->start.gap[i];
+  }
+  for (PetscInt node = 0; node < problem->n_nodes && contact->friction.slip; node++) {
+    const PetscInt i = start->rows[problem->begin[node]] - contact->rows.begin;
+
+    if (i < 0 || i >= contact->rows.n) continue;
+    contact->friction.slides[i] = (PetscBool)(contact->end.active[i] && LawProblemSlides(problem, node));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -159,25 +205,33 @@ static PetscErrorCode SolveRounds(StartBalance *start)
 /* Forces of all rows */
 static PetscErrorCode SolveRows(StartBalance *start)
 {
-  const Contact contact = start->contact;
-  PetscBool     changed = start->rubs;
+  LawProblem *problem = &start->problem;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    contact->end.active[i] = (PetscBool)(start->takes_part[i] && !ContactRowRubs(contact, i) &&
-                                         (contact->rows.tied[i] || start->relaxed[i] < -contact->options.tolerance));
-    start->sticks[i]       = start->rubs;
-    start->given[i]        = 0;
+  PetscCall(TakeRows(start));
+  if (problem->n) {
+    PetscCall(TakeS(start));
+    PetscCall(LawProblemSolve(problem));
+    PetscCheck(problem->solved, PetscObjectComm((PetscObject)start->contact), PETSC_ERR_NOT_CONVERGED,
+               "The contact forces of the first state, in which massless nodes are in balance, were not found in %" PetscInt_FMT
+               " iterations for %" PetscInt_FMT " rows; raise -law_snes_max_it, or set -contact_balanced_start false to start from the "
+               "displacements as they are",
+               problem->iterations, problem->n);
   }
-  PetscCall(SolveRounds(start));
-  for (PetscInt rub = 0; changed; rub++) {
-    PetscCheck(rub < MAX_RUBS, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED,
-               "The forces of friction of the first state, in which massless nodes are in balance, did not settle in %d rounds; set "
-               "-contact_balanced_start false to start from the displacements as they are",
-               MAX_RUBS);
-    PetscCall(ContactJudgeRubbing(contact, start->slip, start->sticks, start->given, &changed));
-    if (changed) PetscCall(SolveRounds(start));
-  }
+  PetscCall(TakeForces(start));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* B u of a row as the bodies are now, without what their meshes are apart by [m] */
+static PetscErrorCode GetOpening(Contact contact, PetscInt i, PetscReal *opening)
+{
+  const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+  PetscScalar       *dirichlet, *neumann;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
+  PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
+  *opening = PetscRealPart(neumann[i - pair->shift[1]] - dirichlet[i - pair->shift[0]]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,7 +247,7 @@ static PetscErrorCode Relax(StartBalance *start)
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     start->relaxed[i] = contact->start.gap[i];
     if (!ContactRowRubs(contact, i)) continue;
-    PetscCall(ContactGetOpening(contact, i, &start->relaxed[i]));
+    PetscCall(GetOpening(contact, i, &start->relaxed[i]));
     start->relaxed[i] -= start->put[i];
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -253,56 +307,33 @@ static PetscErrorCode FindRows(StartBalance *start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Compliance of the springs that a method has between both sides of a row, from what they store at a penetration of a metre */
-static PetscReal SpringCompliance(Contact contact, PetscInt i)
-{
-  const PetscReal stored = contact->ops->stored ? (*contact->ops->stored)(contact, i, -1) : 0;
-
-  return stored > 0 ? 0.5 / stored : 0;
-}
-
 static PetscErrorCode Create(Contact contact, StartBalance *start)
 {
   const PetscInt n = contact->rows.n;
-  PC             pc;
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(start, sizeof(*start)));
   start->contact = contact;
-  PetscCall(PetscCalloc5(n, &start->takes_part, n, &start->springs, n, &start->relaxed, n, &start->on_body, 3 * n, &start->moved));
-  start->rubs = ContactAnyPairHas(contact, CONTACT_LAW_FRICTION);
-  PetscCall(PetscCalloc4(n, &start->sticks, n, &start->given, n, &start->put, n, &start->slip));
+  PetscCall(PetscCalloc3(n, &start->takes_part, n, &start->relaxed, n, &start->put));
+  PetscCall(PetscCalloc5(n, &start->on_body, n, &start->moved, n, &start->force, n, &start->ways, N_TOLD * n, &start->told));
+  PetscCall(
+      PetscMalloc3(N_TOLD * contact->rows.n_all, &start->all, contact->rows.n_all, &start->rows, contact->rows.n_all, &start->springs));
+  PetscCall(RowLawCreate("unilateral", &start->open));
+  PetscCall(RowLawCreate("tie", &start->held));
+  PetscCall(LawProblemSetUp(&start->problem));
   PetscCall(FindRows(start));
-  for (PetscInt i = 0; i < n; i++) start->springs[i] = SpringCompliance(contact, i);
-  PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &start->rounds));
-  start->rounds.known = start->takes_part;
   for (PetscInt i = 0; i < n; i++)
-    if (ContactRowRubs(contact, i)) PetscCall(ContactGetOpening(contact, i, &start->put[i]));
-  PetscCall(ContactCreateRowVec(contact, &start->rhs));
-  PetscCall(VecDuplicate(start->rhs, &start->solution));
-  PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), n, n, contact->rows.n_all, contact->rows.n_all, start, &start->S));
-  PetscCall(MatShellSetOperation(start->S, MATOP_MULT, (void (*)(void))MultiplyActive));
-  PetscCall(MatSetOption(start->S, MAT_SYMMETRIC, PETSC_TRUE));
-  PetscCall(KSPCreate(PetscObjectComm((PetscObject)contact), &start->ksp));
-  PetscCall(KSPSetOperators(start->ksp, start->S, start->S));
-  PetscCall(KSPSetType(start->ksp, KSPCG));
-  PetscCall(KSPSetNormType(start->ksp, KSP_NORM_UNPRECONDITIONED));
-  PetscCall(KSPSetTolerances(start->ksp, TOLERANCE, 0, PETSC_CURRENT, MAX_ITERATIONS));
-  PetscCall(KSPGetPC(start->ksp, &pc));
-  PetscCall(PCSetType(pc, PCNONE));
+    if (ContactRowRubs(contact, i)) PetscCall(GetOpening(contact, i, &start->put[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode Destroy(StartBalance *start)
 {
   PetscFunctionBegin;
-  PetscCall(RoundsDestroy(&start->rounds));
-  PetscCall(KSPDestroy(&start->ksp));
-  PetscCall(MatDestroy(&start->S));
-  PetscCall(VecDestroy(&start->rhs));
-  PetscCall(VecDestroy(&start->solution));
-  PetscCall(PetscFree4(start->sticks, start->given, start->put, start->slip));
-  PetscCall(PetscFree5(start->takes_part, start->springs, start->relaxed, start->on_body, start->moved));
+  PetscCall(LawProblemDestroy(&start->problem));
+  PetscCall(PetscFree3(start->all, start->rows, start->springs));
+  PetscCall(PetscFree5(start->on_body, start->moved, start->force, start->ways, start->told));
+  PetscCall(PetscFree3(start->takes_part, start->relaxed, start->put));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -42,6 +42,7 @@ PETSC_INTERN PetscErrorCode LawProblemSetUp(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemResize(LawProblem *, PetscInt);
 PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemMultiply(LawProblem *, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode LawProblemMatchTrace(Mat, Mat);
 PETSC_INTERN PetscErrorCode LawProblemSolve(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemDestroy(LawProblem *);
 PETSC_INTERN PetscReal      LawProblemGetFrictionResidual(const LawProblem *);
@@ -56,6 +57,17 @@ typedef struct {
 static inline PetscBool LawProblemHasProducts(const LawProblem *problem)
 {
   return (PetscBool)(problem->entries != problem->S);
+}
+
+/* Whether a node that pushes slides, by the forces of the last solution */
+static inline PetscBool LawProblemSlides(const LawProblem *problem, PetscInt node)
+{
+  const PetscInt  first = problem->begin[node], end = problem->begin[node + 1];
+  const PetscReal bound  = problem->limit[2 * node] + problem->limit[2 * node + 1] * PetscRealPart(problem->force[first]);
+  PetscReal       across = 0;
+
+  for (PetscInt i = first + 1; i < end; i++) across += PetscSqr(PetscRealPart(problem->force[i]));
+  return (PetscBool)(end > first + 1 && !problem->law[node]->pulls && PetscSqrtReal(across) >= bound * (1 - PETSC_SQRT_MACHINE_EPSILON));
 }
 
 /* For the files of this folder */

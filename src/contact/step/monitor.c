@@ -32,7 +32,7 @@ static void CountNodes(Contact contact, const ContactStepper *stepper, PetscInt 
     if (!(PetscRealPart(problem->force[first]) > 0) && !problem->law[node]->pulls) continue;
     counts->push++;
     if (problem->begin[node + 1] == first + 1) continue;
-    if (ContactStepperSlides(problem, node)) counts->slide++;
+    if (LawProblemSlides(problem, node)) counts->slide++;
     else counts->stick++;
   }
 }

@@ -6,8 +6,7 @@
    diagonal of K, it is the one whose product with D^{-1} K is nearest to one on an interval of eigenvalues, which is Chebyshev's.
 
    Sources: O. G. Johnson, C. A. Micchelli, G. Paul, Polynomial preconditioners for conjugate gradient calculations, SIAM Journal on
-   Numerical Analysis 20 (1983) 362-376; M. F. Hutchinson, A stochastic estimator of the trace of the influence matrix for Laplacian
-   smoothing splines, Communications in Statistics - Simulation and Computation 19 (1990).
+   Numerical Analysis 20 (1983) 362-376.
 */
 #include "stepimpl.h"
 
@@ -195,37 +194,6 @@ static PetscErrorCode AddNear(Contact contact, ContactStepper *stepper, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives a matrix near S the trace of S, which laws take their weights from, by that of x x^T S with signs x that are taken at random
-   (Hutchinson 1990). The same on every rank. */
-static PetscErrorCode MatchTrace(Mat S, Mat near)
-{
-  PetscRandom  random;
-  PetscScalar *signs, ours, its;
-  PetscInt     n;
-  Vec          x, y;
-
-  PetscFunctionBegin;
-  PetscCall(MatCreateVecs(near, &x, &y));
-  PetscCall(PetscRandomCreate(PETSC_COMM_SELF, &random));
-  PetscCall(PetscRandomSetType(random, PETSCRANDER48));
-  PetscCall(PetscRandomSetInterval(random, -1, 1));
-  PetscCall(VecSetRandom(x, random));
-  PetscCall(PetscRandomDestroy(&random));
-  PetscCall(VecGetLocalSize(x, &n));
-  PetscCall(VecGetArray(x, &signs));
-  for (PetscInt i = 0; i < n; i++) signs[i] = PetscRealPart(signs[i]) < 0 ? -1 : 1;
-  PetscCall(VecRestoreArray(x, &signs));
-  PetscCall(MatMult(near, x, y));
-  PetscCall(VecDot(x, y, &ours));
-  PetscCall(MatMult(S, x, y));
-  PetscCall(VecDot(x, y, &its));
-  if (PetscRealPart(its) > 0 && PetscRealPart(ours) > 0) PetscCall(MatScale(near, its / ours));
-  PetscCall(PetscInfo(S, "a matrix near S for %" PetscInt_FMT " rows, made %g times as large\n", n, (double)PetscRealPart(its / ours)));
-  PetscCall(VecDestroy(&x));
-  PetscCall(VecDestroy(&y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* S as products, and a sparse matrix near it. No body needs secants, as one does whose nodes answer alone. */
 PetscErrorCode ContactStepperCreateProducts(Contact contact, ContactStepper *stepper, Mat *S, Mat *near)
 {
@@ -246,6 +214,6 @@ PetscErrorCode ContactStepperCreateProducts(Contact contact, ContactStepper *ste
   PetscCall(MatAssemblyBegin(*near, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*near, MAT_FINAL_ASSEMBLY));
   PetscCall(ContactStepperAddSprings(stepper, *near));
-  PetscCall(MatchTrace(*S, *near));
+  PetscCall(LawProblemMatchTrace(*S, *near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

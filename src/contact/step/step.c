@@ -106,7 +106,7 @@ static PetscErrorCode MarkSliding(Contact contact, const ContactStepper *stepper
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first, i = stepper->rows[first] - contact->rows.begin;
 
     for (PetscInt k = 0; k < rows && i >= 0 && i < contact->rows.n && contact->end.force[i] > 0; k++)
-      contact->friction.slides[i + k] = ContactStepperSlides(problem, node);
+      contact->friction.slides[i + k] = LawProblemSlides(problem, node);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

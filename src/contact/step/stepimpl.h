@@ -156,17 +156,6 @@ struct _ContactStepper {
   int         *moves;     /* per body */
 };
 
-/* Whether a node that pushes slides, by the forces of the last solution */
-static inline PetscBool ContactStepperSlides(const LawProblem *problem, PetscInt node)
-{
-  const PetscInt  first = problem->begin[node], end = problem->begin[node + 1];
-  const PetscReal bound  = problem->limit[2 * node] + problem->limit[2 * node + 1] * PetscRealPart(problem->force[first]);
-  PetscReal       across = 0;
-
-  for (PetscInt i = first + 1; i < end; i++) across += PetscSqr(PetscRealPart(problem->force[i]));
-  return (PetscBool)(end > first + 1 && !problem->law[node]->pulls && PetscSqrtReal(across) >= bound * (1 - PETSC_SQRT_MACHINE_EPSILON));
-}
-
 PETSC_INTERN PetscErrorCode ContactStepperSetFromOptions(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperSetUp(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperView(Contact, PetscViewer);

@@ -1,0 +1,38 @@
+/*
+   The size of a matrix near S, where S is products alone: that of S, in the mean.
+
+   Source: M. F. Hutchinson, A stochastic estimator of the trace of the influence matrix for Laplacian smoothing splines, Communications in
+   Statistics - Simulation and Computation 19 (1990).
+*/
+#include "lawproblem.h"
+
+/* Gives a matrix near S the trace of S, which laws take their weights from, by that of x x^T S with signs x that are taken at random
+   (Hutchinson 1990). The same on every rank. */
+PetscErrorCode LawProblemMatchTrace(Mat S, Mat near)
+{
+  PetscRandom  random;
+  PetscScalar *signs, ours, its;
+  PetscInt     n;
+  Vec          x, y;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreateVecs(near, &x, &y));
+  PetscCall(PetscRandomCreate(PETSC_COMM_SELF, &random));
+  PetscCall(PetscRandomSetType(random, PETSCRANDER48));
+  PetscCall(PetscRandomSetInterval(random, -1, 1));
+  PetscCall(VecSetRandom(x, random));
+  PetscCall(PetscRandomDestroy(&random));
+  PetscCall(VecGetLocalSize(x, &n));
+  PetscCall(VecGetArray(x, &signs));
+  for (PetscInt i = 0; i < n; i++) signs[i] = PetscRealPart(signs[i]) < 0 ? -1 : 1;
+  PetscCall(VecRestoreArray(x, &signs));
+  PetscCall(MatMult(near, x, y));
+  PetscCall(VecDot(x, y, &ours));
+  PetscCall(MatMult(S, x, y));
+  PetscCall(VecDot(x, y, &its));
+  if (PetscRealPart(its) > 0 && PetscRealPart(ours) > 0) PetscCall(MatScale(near, its / ours));
+  PetscCall(PetscInfo(S, "a matrix near S for %" PetscInt_FMT " rows, made %g times as large\n", n, (double)PetscRealPart(its / ours)));
+  PetscCall(VecDestroy(&x));
+  PetscCall(VecDestroy(&y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
