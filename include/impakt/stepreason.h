@@ -24,7 +24,7 @@
    Note:
    Negative where the step has not been made; the same on every rank.
 
-.seealso: `ContactTryStep()`, `BodyTryIntegrate()`, `ControllerSetStepCuts()`
+.seealso: `ContactTryStep()`, `BodyTryIntegrateRows()`, `ControllerSetStepCuts()`
 E*/
 typedef enum {
   STEP_CONVERGED           = 0,

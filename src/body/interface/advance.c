@@ -29,7 +29,7 @@ static void CountSubsteps(Body body)
 }
 
 /*@
-  BodyTryIntegrateRows - as `BodyTryIntegrate()`, as far as the rows depend on it
+  BodyTryIntegrateRows - as `BodyIntegrate()`, as far as the rows depend on it, and for those who can do something about a step that fails
 
   Collective
 
@@ -46,7 +46,7 @@ static void CountSubsteps(Body body)
   have. An explicit body whose rows are on massless nodes has its displacements, and leaves the forces of its elements, its acceleration
   and its velocity to `BodyCompleteStep()`: no sweep changes them but by where the massless nodes get. Other bodies are complete.
 
-.seealso: `Body`, `BodyTryIntegrate()`, `BodyCompleteStep()`
+.seealso: `Body`, `BodyIntegrate()`, `BodyCompleteStep()`
 @*/
 PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
 {
@@ -117,25 +117,7 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyTryIntegrate - as `BodyIntegrate()`, for those who can do something about a step that fails
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. reason - negative where the step has failed, the same on every rank; or `NULL`
-
-  Level: developer
-
-  Note:
-  After a failure state and output traces are good for nothing, and the saved state is as it was: `BodyRestore()` or another integration
-  begins there. `BodyGetFailure()` has the message.
-
-.seealso: `Body`, `BodyIntegrate()`, `BodyTryIntegrateRows()`, `BodyGetFailure()`, `StepConvergedReason`
-@*/
+/* BodyIntegrate() for those who can do something about a step that fails; `reason` is the same on every rank, or NULL */
 PetscErrorCode BodyTryIntegrate(Body body, StepConvergedReason *reason)
 {
   PetscFunctionBegin;
@@ -185,7 +167,7 @@ PetscErrorCode BodyIsLocal(Body body, PetscBool *local)
 
   Level: developer
 
-.seealso: `Body`, `BodyTryIntegrate()`
+.seealso: `Body`, `BodyTryIntegrateRows()`
 @*/
 PetscErrorCode BodyGetFailure(Body body, const StepFailure **failure)
 {
@@ -213,9 +195,9 @@ PetscErrorCode BodyGetFailure(Body body, const StepFailure **failure)
   Where the body is linear and makes one substep, a repeated call with other input traces adds what their change brings about
   instead of making the step again; the result is the same up to round-off.
 
-  A step that fails is an error; `BodyTryIntegrate()` tells of it instead.
+  A step that fails is an error; `BodyTryIntegrateRows()` and `BodyCompleteStep()` tell of it instead.
 
-.seealso: `Body`, `BodyTryIntegrate()`, `BodySave()`, `BodySetConditions()`, `BodyGetTraces()`
+.seealso: `Body`, `BodyTryIntegrateRows()`, `BodySave()`, `BodySetConditions()`, `BodyGetTraces()`
 @*/
 PetscErrorCode BodyIntegrate(Body body)
 {

@@ -27,7 +27,7 @@
 
   The first call of an integrator makes what it needs once. So there are several, of which the fastest counts, unless they take long.
 
-.seealso: `Body`, `BodyGetSubsteps()`, `BodyTryIntegrate()`
+.seealso: `Body`, `BodyGetSubsteps()`, `BodyIntegrate()`
 @*/
 PetscErrorCode BodyMeasureSubstep(Body body, PetscLogDouble *seconds)
 {

@@ -494,6 +494,8 @@ PETSC_INTERN PetscErrorCode BodyAddStoppedHandover(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyAddHandover(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodyTurnToMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyEndMeanForce(Body);
+PETSC_INTERN PetscErrorCode BodyReadRows(Body, Mat, Vec, PetscScalar[]);
+PETSC_INTERN PetscErrorCode BodySpreadRows(Body, Mat, const PetscScalar[], Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyMultiplyNearRows(Body, Vec, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyAddNearRows(Body, const PetscScalar[], Vec);

@@ -8,15 +8,10 @@
 /* change = M_L^{-1} B^T impulse with the lumped mass M_L, zero on massless nodes */
 static PetscErrorCode SolveLumpedMassOfRows(Body body, const PetscScalar impulse[], Vec change)
 {
-  PetscScalar *row;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, impulse, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(BodySpreadRows(body, body->rows.free_matrix, impulse, body->work.nodes[0]));
   PetscCall(VecCopy(body->mass.row_sum, change));
   PetscCall(VecReciprocal(change)); /* leaves zeros */
-  PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], body->work.nodes[0]));
   PetscCall(VecPointwiseMult(change, change, body->work.nodes[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -9,7 +9,7 @@
    little from one coarse node to the next: what reaches far from the surface does. A slab whose far side is held lacks all that, and at
    steps in which waves cross the body that is most of what long waves on the surface answer with.
 */
-#include <body/layout/bodyimpl.h>
+#include "complianceimpl.h"
 
 /* Edge of a coarse cell, in edges of elements as they are on average */
 #define CELL 4
@@ -223,25 +223,9 @@ static PetscErrorCode FindNear(Mat A, IS surface, PetscInt layers, IS *near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyCreateSlabFunctions - the displacements near a surface, and what the body may do beyond them on a coarse grid
-
-  Collective
-
-  Input Parameters:
-+ A         - matrix of the body, without entries beside the diagonal in rows of held dofs
-. positions - coordinates of its nodes [m]
-. dim       - of space
-. surface   - dofs of any rank: functions have those one by one that are within some layers of elements of them
-- layers    - how many
-
-  Output Parameter:
-. functions - P: all dofs by functions, those near the surface first on each rank
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetNodalCompliance()`
-@*/
+/* P, the displacements near a surface and what the body may do beyond them on a coarse grid: all dofs by functions, those near the surface
+   first on each rank. `A`: matrix of the body, without entries beside the diagonal in rows of held dofs; `surface`: dofs of any rank, of
+   which functions have those one by one that are within so many layers of elements */
 PetscErrorCode BodyCreateSlabFunctions(Mat A, Vec positions, PetscInt dim, IS surface, PetscInt layers, Mat *functions)
 {
   MPI_Comm   comm   = PetscObjectComm((PetscObject)A);

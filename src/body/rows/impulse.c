@@ -7,13 +7,8 @@
 /* change = M^{-1} B^T force, zero on massless nodes; one force for each row of this rank */
 PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[], Vec change)
 {
-  PetscScalar *row;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, force, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], body->work.nodes[0]));
+  PetscCall(BodySpreadRows(body, body->rows.matrix, force, body->work.nodes[0]));
   PetscCall(BodyZeroHeld(body, body->work.nodes[0]));
   PetscCall(BodySolveMass(body, body->work.nodes[0], change));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -141,15 +136,10 @@ PetscErrorCode BodyComputeInverseMass(Body body, PetscBool lumped, Mat *matrix)
 @*/
 PetscErrorCode BodyMultiplyInverseMass(Body body, const PetscScalar impulse[], PetscScalar velocity[])
 {
-  const PetscScalar *rows;
-
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodySolveMassOfRows(body, impulse, body->work.nodes[2]));
-  PetscCall(MatMult(body->rows.matrix, body->work.nodes[2], body->work.rows[0]));
-  PetscCall(VecGetArrayRead(body->work.rows[0], &rows));
-  PetscCall(PetscArraycpy(velocity, rows, body->rows.local));
-  PetscCall(VecRestoreArrayRead(body->work.rows[0], &rows));
+  PetscCall(BodyReadRows(body, body->rows.matrix, body->work.nodes[2], velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,4 +1,5 @@
-/* What a body has to set against a push on its rows: the stiffness of the elements beside them. */
+/* What a body has to set against a push on its rows: the stiffness of the elements beside them; and whether a push at the end of a step
+   moves them. */
 #include <body/layout/bodyimpl.h>
 
 /*@
@@ -44,5 +45,30 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
     PetscCall(MatRestoreRow(body->rows.matrix, rows->begin + i, &n_row, &of_row, &row));
   }
   PetscCall(MatDestroy(&forces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  BodyFeelsEndForce - whether displacements at the end of the controller step answer to the contact forces there
+
+  Not Collective
+
+  Input Parameter:
+. body - the `Body`, set up
+
+  Output Parameter:
+. feels - false for explicit bodies with mass on their contact nodes and one substep to a controller step, where the force at its end goes
+          into the acceleration alone
+
+  Level: developer
+
+.seealso: `Body`, `BodyIntegrate()`
+@*/
+PetscErrorCode BodyFeelsEndForce(Body body, PetscBool *feels)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
+  PetscAssertPointer(feels, 2);
+  *feels = body->integrator->feels_end_force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -16,18 +16,12 @@
    displacement, which must have been computed. A rank without rows has no forces, but takes part. */
 static PetscErrorCode ComputeImbalance(Body body, PetscBool pushed, const PetscScalar force[], Vec f)
 {
-  PetscScalar *row;
-
   PetscFunctionBegin;
-  PetscCall(VecZeroEntries(f));
+  if (pushed) PetscCall(BodySpreadRows(body, body->rows.free_matrix, force, f));
+  else PetscCall(VecZeroEntries(f));
   PetscCall(VecAXPY(f, -1, body->state.internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
   if (body->state.damping) PetscCall(VecAXPY(f, -1, body->state.damping));
   PetscCall(BodyAddExternalForce(body, body->state.time, 1, f));
-  if (!pushed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, force, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTransposeAdd(body->rows.free_matrix, body->work.rows[0], f, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,19 +147,6 @@ static PetscErrorCode MeasureChange(Body body, Vec du, PetscReal *change)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of a vector */
-static PetscErrorCode GetRows(Body body, Vec vec, PetscScalar rows[])
-{
-  const PetscScalar *values;
-
-  PetscFunctionBegin;
-  PetscCall(MatMult(body->rows.free_matrix, vec, body->work.rows[0]));
-  PetscCall(VecGetArrayRead(body->work.rows[0], &values));
-  PetscCall(PetscArraycpy(rows, values, body->rows.local));
-  PetscCall(VecRestoreArrayRead(body->work.rows[0], &values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   BodyRelaxLayer - how far the rows would move if the massless layer went into balance without contact forces
 
@@ -197,7 +178,7 @@ PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(ComputeImbalance(body, PETSC_FALSE, NULL, f));
   PetscCall(BodyApplyLayerCompliance(body, f, du));
-  PetscCall(GetRows(body, du, displacement));
+  PetscCall(BodyReadRows(body, body->rows.free_matrix, du, displacement));
   PetscCall(MeasureChange(body, du, change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,8 +201,7 @@ PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *
 @*/
 PetscErrorCode BodyMultiplyLayerCompliance(Body body, const PetscScalar force[], PetscScalar displacement[])
 {
-  Vec          f = body->work.nodes[0], du = body->work.nodes[1];
-  PetscScalar *row;
+  Vec f = body->work.nodes[0], du = body->work.nodes[1];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
@@ -229,12 +209,9 @@ PetscErrorCode BodyMultiplyLayerCompliance(Body body, const PetscScalar force[],
     PetscCall(PetscArrayzero(displacement, body->rows.local));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, force, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], f));
+  PetscCall(BodySpreadRows(body, body->rows.free_matrix, force, f));
   PetscCall(BodyApplyLayerCompliance(body, f, du));
-  PetscCall(GetRows(body, du, displacement));
+  PetscCall(BodyReadRows(body, body->rows.free_matrix, du, displacement));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -280,14 +257,11 @@ static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[]
 {
   Vec                on_nodes = body->work.nodes[0];
   const PetscScalar *contact;
-  PetscScalar       *row, *applied;
+  PetscScalar       *applied;
 
   PetscFunctionBegin;
   if (!body->loads || (body->integrator->has_inertia && !body->held.any && !BodyIsLed(body))) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, force, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], on_nodes));
+  PetscCall(BodySpreadRows(body, body->rows.matrix, force, on_nodes));
   if (!body->integrator->has_inertia || BodyIsLed(body)) {
     PetscCall(VecAXPY(body->state.applied, -1, on_nodes));
     PetscFunctionReturn(PETSC_SUCCESS);

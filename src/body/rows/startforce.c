@@ -29,13 +29,8 @@ PetscErrorCode BodyAnswerAtStart(Body body, Vec change)
 /* The same of forces on the rows, and of those that go over from the rows of the last step */
 static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec change)
 {
-  PetscScalar *row;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  PetscCall(PetscArraycpy(row, force, body->rows.local));
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTranspose(body->rows.free_matrix, body->work.rows[0], body->work.nodes[0]));
+  PetscCall(BodySpreadRows(body, body->rows.free_matrix, force, body->work.nodes[0]));
   PetscCall(BodyAddStoppedHandover(body, body->work.nodes[0]));
   PetscCall(BodyAnswerAtStart(body, change));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,18 +1,40 @@
 /* What the rows of a body do in a substep, written to its traces. */
 #include <body/layout/bodyimpl.h>
 
-/* What rows make of a vector, at a level of a trace */
-PetscErrorCode BodyWriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscInt level)
+/* values = rows vec, of this rank */
+PetscErrorCode BodyReadRows(Body body, Mat rows, Vec vec, PetscScalar values[])
 {
   const PetscScalar *row;
-  PetscScalar       *values;
 
   PetscFunctionBegin;
   PetscCall(MatMult(rows, vec, body->work.rows[0]));
-  PetscCall(TraceGetLevel(trace, level, &values));
   PetscCall(VecGetArrayRead(body->work.rows[0], &row));
   PetscCall(PetscArraycpy(values, row, body->rows.local));
   PetscCall(VecRestoreArrayRead(body->work.rows[0], &row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* f = rows^T values, which this rank has of its rows */
+PetscErrorCode BodySpreadRows(Body body, Mat rows, const PetscScalar values[], Vec f)
+{
+  PetscScalar *row;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
+  PetscCall(PetscArraycpy(row, values, body->rows.local));
+  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
+  PetscCall(MatMultTranspose(rows, body->work.rows[0], f));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What rows make of a vector, at a level of a trace */
+PetscErrorCode BodyWriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscInt level)
+{
+  PetscScalar *values;
+
+  PetscFunctionBegin;
+  PetscCall(TraceGetLevel(trace, level, &values));
+  PetscCall(BodyReadRows(body, rows, vec, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

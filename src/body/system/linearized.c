@@ -1,24 +1,9 @@
 /* The forces that a nonlinear body would have if it were linear: what its responses are probed with. */
 #include <body/layout/bodyimpl.h>
 
-/*@
-  BodyPrepareLinearized - makes the elements of the linear body that a nonlinear one is at small displacements
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Level: developer
-
-  Notes:
-  The same mesh, cross-section or thickness, with the linear elastic material of `MaterialLinearize()`. Internal forces and tangents
-  come from there while `body->model.linearized` is set. A linear body is its own.
-
-  The second call and later ones cost nothing.
-
-.seealso: `Body`, `MaterialLinearize()`
-@*/
+/* Makes the elements of the linear body that a nonlinear one is at small displacements: the same mesh, with the linear elastic material of
+   `MaterialLinearize()`. Internal forces and tangents come from there while `body->model.linearized` is set. A linear body is its own; the
+   second call and later ones cost nothing. */
 PetscErrorCode BodyPrepareLinearized(Body body)
 {
   PetscFunctionBegin;
