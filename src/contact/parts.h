@@ -1,5 +1,6 @@
 /* What the folders of src/contact have of each other. Implementations of methods by others need <impakt/private/contactimpl.h> alone. */
 #pragma once
+#include <checkpoint/statelist.h>
 #include <impakt/private/box.h>
 #include <impakt/private/contactimpl.h>
 
@@ -79,7 +80,7 @@ PETSC_INTERN PetscReal      ContactBoxDistance(const PetscReal[], const PetscRea
 PETSC_INTERN PetscErrorCode ContactLayOutRows(Contact);
 PETSC_INTERN PetscErrorCode ContactReplacePairs(Contact, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode ContactRenewNeighbours(Contact, PetscReal, PetscBool, PetscBool *);
-PETSC_INTERN void           ContactCopyRow(Contact, PetscInt, PetscBool, PetscReal *);
+PETSC_INTERN void           ContactListRowState(Contact, StateList *);
 PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTold(Contact);
 PETSC_INTERN PetscErrorCode ContactTakeLeave(Contact, const ContactPair *, const PetscReal[], const PetscReal[]);
@@ -188,8 +189,6 @@ PETSC_INTERN PetscReal      ContactPairReach(Contact, const ContactPair *);
 PETSC_INTERN PetscReal      ContactRowReach(Contact, const ContactPair *, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscErrorCode ContactPairStartsAnew(Contact, const ContactPair *, PetscBool *);
-PETSC_INTERN PetscErrorCode ContactSetUpSavedRows(Contact);
-PETSC_INTERN PetscErrorCode ContactDestroySavedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactListAllRows(Contact);
 PETSC_INTERN PetscErrorCode ContactListNearRows(Contact, PetscReal);
 PETSC_INTERN void           ContactListActingRows(Contact, const PetscBool[]);

@@ -95,10 +95,10 @@ static void FindUnevenness(Transfer transfer, const PetscReal force[], PetscReal
     FindAcross(transfer, row, across);
     for (PetscInt d = 0; d < 3 && force[row] > 0; d++) across[d] = last[d] + pace * (across[d] - last[d]);
     for (PetscInt k = 0; k < balance->n; k++) {
-      const PetscReal now = Dot(balance->axes[k], across);
+      const PetscReal now = Dot(transfer->numbers.axes[k], across);
 
       balance->uneven[balance->n * row + k] = now;
-      balance->lever[balance->n * row + k]  = force[row] > 0 ? 0.5 * (now + Dot(balance->axes[k], last)) : now;
+      balance->lever[balance->n * row + k]  = force[row] > 0 ? 0.5 * (now + Dot(transfer->numbers.axes[k], last)) : now;
     }
   }
 }
@@ -125,9 +125,9 @@ static PetscErrorCode FindAxes(Transfer transfer, const PetscReal force[], Petsc
   if (!(Normalize(sums) > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt d = 1; d < 3; d++)
     if (PetscAbsReal(sums[d]) < PetscAbsReal(sums[least])) least = d;
-  for (PetscInt d = 0; d < 3; d++) balance->axes[0][d] = (d == least) - sums[d] * sums[least];
-  (void)Normalize(balance->axes[0]);
-  Cross(sums, balance->axes[0], balance->axes[1]);
+  for (PetscInt d = 0; d < 3; d++) transfer->numbers.axes[0][d] = (d == least) - sums[d] * sums[least];
+  (void)Normalize(transfer->numbers.axes[0]);
+  Cross(sums, transfer->numbers.axes[0], transfer->numbers.axes[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,7 +164,7 @@ PetscErrorCode TransferSetBalance(Transfer transfer, PetscReal largest)
                          &balance->bend));
   FindBends(&transfer->dirichlet->data, balance->bends[0]);
   FindBends(&transfer->neumann->data, balance->bends[1]);
-  if (transfer->dim == 2) balance->axes[0][2] = 1;
+  if (transfer->dim == 2) transfer->numbers.axes[0][2] = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,7 +201,7 @@ PetscErrorCode TransferGetTurns(Transfer transfer, PetscInt *n, const PetscReal 
   if (uneven) *uneven = balance->uneven;
   if (lever) *lever = balance->lever;
   if (bend) *bend = balance->bend;
-  for (PetscInt k = 0; turn && k < balance->n; k++) turn[k] = Dot(balance->turn, balance->axes[k]);
+  for (PetscInt k = 0; turn && k < balance->n; k++) turn[k] = Dot(transfer->numbers.turn, transfer->numbers.axes[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,7 +226,7 @@ PetscErrorCode TransferTurn(Transfer transfer, const PetscReal change[])
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscAssertPointer(change, 2);
   for (PetscInt k = 0; k < balance->n; k++)
-    for (PetscInt d = 0; d < 3; d++) balance->turn[d] += change[k] * balance->axes[k][d];
+    for (PetscInt d = 0; d < 3; d++) transfer->numbers.turn[d] += change[k] * transfer->numbers.axes[k][d];
   for (PetscInt row = 0; row < transfer->n; row++)
     for (PetscInt k = 0; k < balance->n; k++) {
       const PetscReal more = change[k] * balance->lever[balance->n * row + k];
@@ -287,13 +287,13 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
   PetscCall(FindPace(transfer, force, &pace));
   FindUnevenness(transfer, force, pace);
   if (!(most[1] > 0)) {
-    PetscCall(PetscArrayzero(balance->turn, 3));
+    PetscCall(PetscArrayzero(transfer->numbers.turn, 3));
     if (-most[0] > reach) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(TransferFindTurn(transfer, turn));
     for (PetscInt k = 0; k < balance->n; k++)
-      for (PetscInt d = 0; d < 3; d++) balance->turn[d] += turn[k] * balance->axes[k][d];
+      for (PetscInt d = 0; d < 3; d++) transfer->numbers.turn[d] += turn[k] * transfer->numbers.axes[k][d];
   } else
-    for (PetscInt k = 0; k < balance->n; k++) turn[k] = Dot(balance->turn, balance->axes[k]);
+    for (PetscInt k = 0; k < balance->n; k++) turn[k] = Dot(transfer->numbers.turn, transfer->numbers.axes[k]);
   for (PetscInt row = 0; row < transfer->n; row++) {
     PetscReal more = -balance->turned[row];
 

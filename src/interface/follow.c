@@ -57,7 +57,7 @@ static void ExpectSlip(Transfer transfer, PetscInt row, const PetscReal across[]
   PetscReal *slip = transfer->follow.slip + 3 * row;
 
   for (PetscInt d = 0; d < transfer->dim; d++) {
-    slip[d] *= transfer->follow.scale;
+    slip[d] *= transfer->numbers.scale;
     slip[d] += (transfer->follow.known[row] ? LATEST : 1) * (ratio * across[d] - slip[d]);
   }
 }
@@ -193,10 +193,10 @@ static PetscErrorCode NoteMotion(Transfer transfer)
   PetscFunctionBegin;
   for (PetscInt side = 0; side < 2; side++)
     for (PetscInt i = 0; i < 3 * data[side]->n_owned; i++) {
-      moved[side][i]     = follow->has_last ? data[side]->positions[i] - follow->x[side][i] : 0;
+      moved[side][i]     = transfer->numbers.has_last ? data[side]->positions[i] - follow->x[side][i] : 0;
       follow->x[side][i] = data[side]->positions[i];
     }
-  follow->has_last = PETSC_TRUE;
+  transfer->numbers.has_last = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -229,9 +229,9 @@ static PetscErrorCode NoteMotion(Transfer transfer)
 PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns,
                               PetscBool middle, PetscReal step, PetscReal last, PetscBool *any)
 {
-  Follow     *follow = &transfer->follow;
-  PetscBool   found  = PETSC_FALSE;
-  PetscMPIInt size;
+  TransferNumbers *numbers = &transfer->numbers;
+  PetscBool        found   = PETSC_FALSE;
+  PetscMPIInt      size;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
@@ -248,18 +248,18 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
              (double)last);
   *any = PETSC_FALSE;
   if (transfer->idle) PetscFunctionReturn(PETSC_SUCCESS);
-  follow->scale = follow->step > 0 ? step / follow->step : 1;
+  numbers->scale = numbers->step > 0 ? step / numbers->step : 1;
   PetscCall(NoteMotion(transfer));
   PetscCall(MarkFollowers(transfer, touches, reach, &found));
   PetscCallMPI(MPI_Comm_size(transfer->comm, &size));
   /* rows of another rank may follow where those of this one do not */
-  if (found || size > 1) PetscCall(TransferGetColumns(transfer, follow->partner_moved, transfer->column_moved));
+  if (found || size > 1) PetscCall(TransferGetColumns(transfer, transfer->follow.partner_moved, transfer->column_moved));
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (!transfer->followed[row]) continue;
     transfer->saved.same = PETSC_FALSE;
     PetscCall(FollowRow(transfer, row, still, turns, middle, step / last));
     *any = (PetscBool)(*any || transfer->followed[row]);
   }
-  follow->step = step;
+  numbers->step = step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -2,6 +2,7 @@
 #pragma once
 #include <petscsf.h>
 #include <petsc/private/petscimpl.h>
+#include <checkpoint/statelist.h>
 #include <impakt/private/box.h>
 #include <impakt/transfer.h>
 
@@ -95,9 +96,6 @@ typedef struct {
 
 /* What rows that follow the surfaces know of the step before */
 typedef struct {
-  PetscBool  has_last;
-  PetscReal  step;                  /* that the slip is expected in [s] */
-  PetscReal  scale;                 /* of this step to that one */
   PetscReal *x[2];                  /* positions of the owned nodes of both sides at the last update [m] */
   PetscReal *moved, *partner_moved; /* since the update before [m] */
   PetscReal *slip;                  /* per row: what the partner is expected to slip in a step, 3 numbers each [m] */
@@ -106,69 +104,72 @@ typedef struct {
 
 /* How the gaps of the rows are turned, see src/interface/balance.c */
 typedef struct {
-  PetscInt   n;          /* number of turns: 0, gaps are not turned; 1 in two dimensions, 2 in three */
-  PetscReal  largest;    /* turn before contact [m] */
-  PetscReal  axes[2][3]; /* of the turns, unit vectors */
-  PetscReal  turn[3];    /* the sum of turns times axes [m] */
-  PetscReal *uneven;     /* per row: c_i, n each */
-  PetscReal *lever;      /* per row: the mean of these and of those of the step before, n each */
-  PetscReal *across;     /* per row: r_i x (n_i + m_i), 3 each */
-  PetscReal *bends[2];   /* per owned node of both sides: how far the normals of its faces turn in the mesh [rad], 3 numbers of which the
-                            first counts */
-  PetscReal *bend;       /* per row: half of that of both sides together */
-  PetscReal *gap;        /* per row: present gap [m] */
-  PetscReal *turned;     /* per row: what has been added to its gap [m] */
+  PetscInt   n;        /* number of turns: 0, gaps are not turned; 1 in two dimensions, 2 in three */
+  PetscReal  largest;  /* turn before contact [m] */
+  PetscReal *uneven;   /* per row: c_i, n each */
+  PetscReal *lever;    /* per row: the mean of these and of those of the step before, n each */
+  PetscReal *across;   /* per row: r_i x (n_i + m_i), 3 each */
+  PetscReal *bends[2]; /* per owned node of both sides: how far the normals of its faces turn in the mesh [rad], 3 numbers of which the
+                          first counts */
+  PetscReal *bend;     /* per row: half of that of both sides together */
+  PetscReal *gap;      /* per row: present gap [m] */
+  PetscReal *turned;   /* per row: what has been added to its gap [m] */
 } Balance;
+
+/* What updates read and change beside arrays */
+typedef struct {
+  PetscBool sleeps;        /* no row has a partner until the next update, see TransferSleep() */
+  PetscBool has_last;      /* the motion since the last update is known */
+  PetscReal near;          /* partners at most that far away are known since the last build [m] */
+  PetscReal smallest_size; /* edge of the smallest face of both sides at the last build [m] */
+  PetscReal step;          /* that the slip is expected in [s] */
+  PetscReal scale;         /* of this step to that one */
+  PetscReal turn[3];       /* of gaps: the sum of turns times axes [m] */
+  PetscReal axes[2][3];    /* of the turns, unit vectors */
+} TransferNumbers;
 
 /* What TransferSave() puts aside */
 typedef struct {
-  PetscBool  ready; /* there is room for it */
-  PetscBool  same;  /* rows have neither been built, nor have they followed or gone to sleep, since they were put aside */
-  PetscBool  sleeps;
-  PetscInt   builds; /* those counted when the rows were put aside; 0: none have been */
-  RowSet     rows;
-  PetscReal *built_x[2], *built_slip, *slip, built_near, smallest_size;
-  PetscReal *x[2], *follow_slip, step; /* of Follow */
-  PetscBool *known, has_last;
-  Balance    balance;
-  PetscReal *turned, *across; /* of Balance */
+  PetscBool       same;   /* rows have neither been built, nor have they followed or gone to sleep, since they were put aside */
+  PetscInt        builds; /* those counted when the rows were put aside; 0: none have been */
+  RowSet          rows;   /* their shares */
+  TransferNumbers numbers;
+  PetscReal      *state[2]; /* of rows and of partners, see TransferListState(); NULL: there is no room for it yet */
 } TransferSaved;
 
 struct _p_Transfer {
   PETSCHEADER(int);
-  MPI_Comm       comm;               /* of what is found of both surfaces: one rank where that has all of both */
-  PetscMPIInt    owner;              /* that rank, see TransferSetOwner(); PETSC_DECIDE: there may be several */
-  PetscBool      idle;               /* it is another one than this, which has no rows */
-  Surface        dirichlet, neumann; /* neumann NULL: an obstacle */
-  Surface        boundaries[2];      /* of both bodies, see TransferSetBoundaries(); or NULL */
-  Obstacle       obstacle;
-  PetscInt       dim, n;
-  PetscReal      slip_bound, angle_bound;
-  PetscBool      curved; /* rows take the bend of both surfaces into account, see TransferSetCurved() */
-  PetscReal      share;  /* of the partner's normals in those of rows then, see TransferSetNormalShare() */
-  PetscBool      guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
-  PetscBool      moved;  /* the caller has the surfaces moved, see TransferSetMoved() */
-  RowSet         rows;
-  PetscBool      built;
-  PetscBool      due, looks;    /* in the present update rows are built whatever the motion; the motion says whether they are */
-  PetscBool      sleeps;        /* no row has a partner until the next update, see TransferSleep() */
-  PetscReal      built_near;    /* partners at most that far away are known since the last build [m] */
-  PetscReal      smallest_size; /* edge of the smallest face of both sides at the last build [m] */
-  PetscReal     *built_x[2];    /* positions of the owned nodes of both sides at the last build */
-  PetscReal     *built_slip;    /* per row: the part of sum_j P_ij x_j - x_i across the normal at the last build, 3 numbers each [m] */
-  PetscReal     *slip; /* per row: how far the partner had slipped since the row was built, as of the last update [parts of the face] */
-  PetscInt       n_near, *near; /* rows that updates look at between builds, see TransferSetNear() */
-  PetscBool      some_near;     /* there may be others */
-  PetscBool     *keep;          /* per row: in the next build it stays as it is, being near contact and within the bounds */
-  PetscBool     *followed;      /* per row: it has followed the surfaces since the last update, see TransferFollow() */
-  PetscBool     *goes_on;       /* per row: in the next build its weights go on from where they are */
-  Follow         follow;
-  PetscReal     *column_x, *column_normals;       /* of the columns: present positions and normals, */
-  PetscReal     *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
-  PetscBool      columns_present;                 /* positions and normals are those of the last update */
-  Balance        balance;
-  TransferCounts counts;
-  TransferSaved  saved;
+  MPI_Comm        comm;               /* of what is found of both surfaces: one rank where that has all of both */
+  PetscMPIInt     owner;              /* that rank, see TransferSetOwner(); PETSC_DECIDE: there may be several */
+  PetscBool       idle;               /* it is another one than this, which has no rows */
+  Surface         dirichlet, neumann; /* neumann NULL: an obstacle */
+  Surface         boundaries[2];      /* of both bodies, see TransferSetBoundaries(); or NULL */
+  Obstacle        obstacle;
+  PetscInt        dim, n;
+  PetscReal       slip_bound, angle_bound;
+  PetscBool       curved; /* rows take the bend of both surfaces into account, see TransferSetCurved() */
+  PetscReal       share;  /* of the partner's normals in those of rows then, see TransferSetNormalShare() */
+  PetscBool       guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
+  PetscBool       moved;  /* the caller has the surfaces moved, see TransferSetMoved() */
+  RowSet          rows;
+  PetscBool       built;
+  PetscBool       due, looks; /* in the present update rows are built whatever the motion; the motion says whether they are */
+  TransferNumbers numbers;
+  PetscReal      *built_x[2]; /* positions of the owned nodes of both sides at the last build */
+  PetscReal      *built_slip; /* per row: the part of sum_j P_ij x_j - x_i across the normal at the last build, 3 numbers each [m] */
+  PetscReal      *slip; /* per row: how far the partner had slipped since the row was built, as of the last update [parts of the face] */
+  PetscInt        n_near, *near; /* rows that updates look at between builds, see TransferSetNear() */
+  PetscBool       some_near;     /* there may be others */
+  PetscBool      *keep;          /* per row: in the next build it stays as it is, being near contact and within the bounds */
+  PetscBool      *followed;      /* per row: it has followed the surfaces since the last update, see TransferFollow() */
+  PetscBool      *goes_on;       /* per row: in the next build its weights go on from where they are */
+  Follow          follow;
+  PetscReal      *column_x, *column_normals;       /* of the columns: present positions and normals, */
+  PetscReal      *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
+  PetscBool       columns_present;                 /* positions and normals are those of the last update */
+  Balance         balance;
+  TransferCounts  counts;
+  TransferSaved   saved;
 };
 
 static inline PetscReal Dot(const PetscReal a[], const PetscReal b[])
@@ -232,6 +233,7 @@ PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, Pe
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
+PETSC_INTERN void           TransferListState(Transfer, StateList[2]);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
 PETSC_INTERN PetscErrorCode TransferFindTurn(Transfer, PetscReal[]);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);

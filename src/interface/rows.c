@@ -318,7 +318,7 @@ static PetscErrorCode FindDeepest(Transfer transfer, const Vec u[2], PetscReal *
    hollow of the other, and faces farther behind a node be on the far sides of both bodies. */
 static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal *behind)
 {
-  PetscReal least = transfer->built ? LEAST_DEPTH * transfer->smallest_size : 0, round_off, deepest = 0;
+  PetscReal least = transfer->built ? LEAST_DEPTH * transfer->numbers.smallest_size : 0, round_off, deepest = 0;
 
   PetscFunctionBegin;
   PetscCall(SurfaceComputeOverlap(transfer->comm, transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind, &round_off));

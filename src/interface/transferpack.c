@@ -5,49 +5,7 @@
 #include "interfaceimpl.h"
 #include "transfervisit.h"
 
-#define N_ROW     42 /* numbers of a node of the first side: key, 39 more */
-#define N_SHARE   11 /* key of its row, position of the partner's node, weight, goal and slope */
-#define N_PARTNER 12 /* key, place at the last build, place and motion at the last update */
-
-/* One node of the first side; `packed` behind its key */
-static void CopyRow(Transfer transfer, PetscInt i, PetscBool back, PetscReal *packed)
-{
-  RowSet        *rows = &transfer->rows;
-  const PetscInt dim  = transfer->dim;
-
-  TablesCopyBool(back, &rows->opposite[i], &packed);
-  TablesCopyBool(back, &rows->beyond[i], &packed);
-  TablesCopyReals(back, 1, &rows->gap[i], &packed);
-  TablesCopyReals(back, 1, &rows->area[i], &packed);
-  TablesCopyReals(back, 1, &rows->bow[i], &packed);
-  TablesCopyReals(back, 1, &rows->rest[i], &packed);
-  TablesCopyReals(back, dim, rows->normals + dim * i, &packed);
-  packed += 3 - dim;
-  TablesCopyReals(back, 3, rows->partner + 3 * i, &packed);
-  TablesCopyReals(back, 3, transfer->built_x[0] + 3 * i, &packed);
-  TablesCopyReals(back, 3, transfer->built_slip + 3 * i, &packed);
-  TablesCopyReals(back, 1, &transfer->slip[i], &packed);
-  TablesCopyBool(back, &transfer->keep[i], &packed);
-  TablesCopyBool(back, &transfer->followed[i], &packed);
-  TablesCopyBool(back, &transfer->goes_on[i], &packed);
-  if (transfer->balance.n) { /* what turns do to gaps is found anew in each step */
-    TablesCopyReals(back, 3, transfer->balance.across + 3 * i, &packed);
-    TablesCopyReals(back, 1, &transfer->balance.gap[i], &packed);
-    TablesCopyReals(back, 1, &transfer->balance.turned[i], &packed);
-  } else packed += 5;
-  if (!transfer->neumann) return;
-  TablesCopyReals(back, 3, transfer->follow.x[0] + 3 * i, &packed);
-  TablesCopyReals(back, 3, transfer->follow.moved + 3 * i, &packed);
-  TablesCopyReals(back, 3, transfer->follow.slip + 3 * i, &packed);
-  TablesCopyBool(back, &transfer->follow.known[i], &packed);
-}
-
-static void CopyPartner(Transfer transfer, PetscInt i, PetscBool back, PetscReal *packed)
-{
-  TablesCopyReals(back, 3, transfer->built_x[1] + 3 * i, &packed);
-  TablesCopyReals(back, 3, transfer->follow.x[1] + 3 * i, &packed);
-  TablesCopyReals(back, 3, transfer->follow.partner_moved + 3 * i, &packed);
-}
+#define N_SHARE 11 /* key of its row, position of the partner's node, weight, goal and slope */
 
 /* The three tables of a pair */
 static PetscErrorCode Name(const char pair[], const char what[], char name[], size_t size)
@@ -81,6 +39,48 @@ static PetscErrorCode PackShares(Transfer transfer, const char pair[], Tables ta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Numbers of the nodes of one side, to a table or back */
+static PetscErrorCode CopyNodes(const StateList *list, const PetscReal reference[], const char pair[], const char what[], PetscBool back,
+                                Tables tables)
+{
+  const PetscInt   width  = TABLES_KEY + StateListGetWidth(list);
+  const PetscReal *values = NULL;
+  PetscReal       *packed;
+  PetscInt         n;
+  char             name[256];
+
+  PetscFunctionBegin;
+  PetscCall(Name(pair, what, name, sizeof(name)));
+  PetscCall(PetscMalloc1(width * PetscMax(list->n, 1), &packed));
+  if (back) PetscCall(TablesGet(tables, name, width, &n, &values));
+  for (PetscInt i = 0; i < list->n; i++) {
+    PetscReal *line = packed + (back ? 0 : width * i);
+    PetscInt   row;
+
+    PetscCall(PetscArraycpy(line, reference + 3 * i, TABLES_KEY));
+    if (back) {
+      PetscCall(TablesFind(tables, name, line, &row));
+      PetscCall(PetscArraycpy(line, values + width * row, width));
+    }
+    StateListCopyOne(list, i, back, line + TABLES_KEY);
+  }
+  if (!back) PetscCall(TablesAdd(tables, name, list->n, width, packed));
+  PetscCall(PetscFree(packed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the nodes of both sides have; obstacles have none */
+static PetscErrorCode CopySides(Transfer transfer, const char pair[], PetscBool back, Tables tables)
+{
+  StateList lists[2];
+
+  PetscFunctionBegin;
+  TransferListState(transfer, lists);
+  PetscCall(CopyNodes(&lists[0], transfer->dirichlet->data.reference, pair, "rows", back, tables));
+  if (transfer->neumann) PetscCall(CopyNodes(&lists[1], transfer->neumann->data.reference, pair, "partners", back, tables));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*
   TransferPack - adds the tables of a transfer
 
@@ -93,25 +93,8 @@ static PetscErrorCode PackShares(Transfer transfer, const char pair[], Tables ta
 */
 PetscErrorCode TransferPack(Transfer transfer, const char pair[], Tables tables)
 {
-  const PetscInt partners = transfer->neumann ? transfer->neumann->data.n_owned : 0;
-  PetscReal     *packed;
-  char           name[256];
-
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(PetscMax(transfer->n * N_ROW, partners * N_PARTNER), &packed));
-  for (PetscInt i = 0; i < transfer->n; i++) {
-    PetscCall(PetscArraycpy(packed + N_ROW * i, transfer->dirichlet->data.reference + 3 * i, 3));
-    CopyRow(transfer, i, PETSC_FALSE, packed + N_ROW * i + 3);
-  }
-  PetscCall(Name(pair, "rows", name, sizeof(name)));
-  PetscCall(TablesAdd(tables, name, transfer->n, N_ROW, packed));
-  for (PetscInt i = 0; i < partners; i++) {
-    PetscCall(PetscArraycpy(packed + N_PARTNER * i, transfer->neumann->data.reference + 3 * i, 3));
-    CopyPartner(transfer, i, PETSC_FALSE, packed + N_PARTNER * i + 3);
-  }
-  PetscCall(Name(pair, "partners", name, sizeof(name)));
-  PetscCall(TablesAdd(tables, name, partners, N_PARTNER, packed));
-  PetscCall(PetscFree(packed));
+  PetscCall(CopySides(transfer, pair, PETSC_FALSE, tables));
   PetscCall(PackShares(transfer, pair, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -222,28 +205,9 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
 */
 PetscErrorCode TransferUnpack(Transfer transfer, const char pair[], Tables tables)
 {
-  const PetscReal *packed;
-  PetscInt         n, row;
-  PetscReal        copy[N_ROW];
-  char             name[256];
-
   PetscFunctionBegin;
   PetscCall(UnpackShares(transfer, pair, tables));
-  PetscCall(Name(pair, "rows", name, sizeof(name)));
-  PetscCall(TablesGet(tables, name, N_ROW, &n, &packed));
-  for (PetscInt i = 0; i < transfer->n; i++) {
-    PetscCall(TablesFind(tables, name, transfer->dirichlet->data.reference + 3 * i, &row));
-    PetscCall(PetscArraycpy(copy, packed + N_ROW * row, N_ROW));
-    CopyRow(transfer, i, PETSC_TRUE, copy + 3);
-  }
+  PetscCall(CopySides(transfer, pair, PETSC_TRUE, tables));
   transfer->saved.builds = 0;
-  if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Name(pair, "partners", name, sizeof(name)));
-  PetscCall(TablesGet(tables, name, N_PARTNER, &n, &packed));
-  for (PetscInt i = 0; i < transfer->neumann->data.n_owned; i++) {
-    PetscCall(TablesFind(tables, name, transfer->neumann->data.reference + 3 * i, &row));
-    PetscCall(PetscArraycpy(copy, packed + N_PARTNER * row, N_PARTNER));
-    CopyPartner(transfer, i, PETSC_TRUE, copy + 3);
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

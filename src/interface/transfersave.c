@@ -1,33 +1,52 @@
 /* Puts the rows of a transfer aside at the start of a step, and brings them back where the step is made again. */
 #include "interfaceimpl.h"
 
-/* The numbers of a set of rows, to one of the same size */
-static PetscErrorCode CopyNumbers(PetscInt dim, PetscInt n, const RowSet *from, RowSet *to)
+/* What a transfer remembers of its rows, and of the nodes of the partner that this rank owns */
+void TransferListState(Transfer transfer, StateList lists[2])
 {
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(to->opposite, from->opposite, n));
-  PetscCall(PetscArraycpy(to->beyond, from->beyond, n));
-  PetscCall(PetscArraycpy(to->changed, from->changed, n));
-  PetscCall(PetscArraycpy(to->gap, from->gap, n));
-  PetscCall(PetscArraycpy(to->area, from->area, n));
-  PetscCall(PetscArraycpy(to->normals, from->normals, dim * n));
-  PetscCall(PetscArraycpy(to->partner, from->partner, 3 * n));
-  PetscCall(PetscArraycpy(to->rest, from->rest, n));
-  PetscCall(PetscArraycpy(to->bow, from->bow, n));
-  PetscCall(PetscArraycpy(to->shares, from->shares, from->offsets[n]));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  RowSet        *rows    = &transfer->rows;
+  Follow        *follow  = &transfer->follow;
+  Balance       *balance = &transfer->balance;
+  const PetscInt follows = transfer->neumann ? 1 : 0, turns = balance->n, turned = turns ? 1 : 0;
+
+  lists[0] = (StateList){.n      = transfer->n,
+                         .arrays = {{1, .bools = rows->opposite},
+                                    {1, .bools = rows->beyond},
+                                    {1, .bools = rows->changed},
+                                    {1, rows->gap},
+                                    {1, rows->area},
+                                    {transfer->dim, rows->normals},
+                                    {3, rows->partner},
+                                    {1, rows->bow},
+                                    {1, rows->rest},
+                                    {3, transfer->built_x[0]},
+                                    {3, transfer->built_slip},
+                                    {1, transfer->slip},
+                                    {1, .bools = transfer->keep},
+                                    {1, .bools = transfer->followed},
+                                    {1, .bools = transfer->goes_on},
+                                    {3 * follows, follow->x[0]},
+                                    {3 * follows, follow->moved},
+                                    {3 * follows, follow->slip},
+                                    {follows, .bools = follow->known},
+                                    {turns, balance->uneven},
+                                    {turns, balance->lever},
+                                    {3 * turned, balance->across},
+                                    {turned, balance->gap},
+                                    {turned, balance->turned}}};
+  lists[1] = (StateList){.n      = follows ? transfer->neumann->data.n_owned : 0,
+                         .arrays = {{3, transfer->built_x[1]}, {3, follow->x[1]}, {3, follow->partner_moved}}};
 }
 
-/* Rows that have been built since they were put aside last need room of another size; of others only the numbers have changed */
-static PetscErrorCode SaveRows(Transfer transfer)
+/* The shares. Those of rows that have been built since they were put aside last need room of another size. */
+static PetscErrorCode SaveShares(Transfer transfer)
 {
-  const RowSet  *rows  = &transfer->rows;
-  TransferSaved *saved = &transfer->saved;
+  const RowSet  *rows     = &transfer->rows;
+  TransferSaved *saved    = &transfer->saved;
+  const PetscInt n_shares = rows->offsets[transfer->n];
 
   PetscFunctionBegin;
   if (saved->builds != transfer->counts.builds) {
-    const PetscInt n_shares = rows->offsets[transfer->n];
-
     PetscCall(RowSetDestroy(&saved->rows));
     PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &saved->rows));
     PetscCall(PetscArraycpy(saved->rows.offsets, rows->offsets, transfer->n + 1));
@@ -36,21 +55,18 @@ static PetscErrorCode SaveRows(Transfer transfer)
     saved->rows.vectors   = rows->vectors;
     if (rows->vectors) PetscCall(PetscObjectReference((PetscObject)rows->vectors));
     saved->builds = transfer->counts.builds;
-    saved->same   = PETSC_FALSE;
   }
-  if (!saved->same) PetscCall(CopyNumbers(transfer->dim, transfer->n, rows, &saved->rows));
-  saved->same = PETSC_TRUE;
+  PetscCall(PetscArraycpy(saved->rows.shares, rows->shares, n_shares));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RestoreRows(Transfer transfer)
+static PetscErrorCode RestoreShares(Transfer transfer)
 {
   TransferSaved *saved = &transfer->saved;
 
   PetscFunctionBegin;
   if (saved->builds == transfer->counts.builds) {
-    PetscCall(CopyNumbers(transfer->dim, transfer->n, &saved->rows, &transfer->rows));
-    saved->same = PETSC_TRUE;
+    PetscCall(PetscArraycpy(transfer->rows.shares, saved->rows.shares, transfer->rows.offsets[transfer->n]));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(RowSetDestroy(&transfer->rows));
@@ -60,58 +76,7 @@ static PetscErrorCode RestoreRows(Transfer transfer)
     PetscCall(TransferAllocateColumns(transfer));
     PetscCall(TransferGetColumns(transfer, transfer->neumann->data.reference, transfer->column_reference));
   }
-  PetscCall(SaveRows(transfer)); /* the step may have to be made once more */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Room for what is noted of nodes and rows, whose numbers do not change */
-static PetscErrorCode Allocate(Transfer transfer)
-{
-  const PetscInt n = transfer->n, partners = transfer->neumann ? transfer->neumann->data.n_owned : 0;
-  TransferSaved *saved = &transfer->saved;
-
-  PetscFunctionBegin;
-  if (saved->ready) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc4(3 * n, &saved->built_x[0], 3 * partners, &saved->built_x[1], 3 * n, &saved->built_slip, n, &saved->slip));
-  PetscCall(PetscMalloc4(3 * n, &saved->x[0], 3 * partners, &saved->x[1], 3 * n, &saved->follow_slip, n, &saved->known));
-  if (transfer->balance.n) PetscCall(PetscMalloc2(n, &saved->turned, 3 * n, &saved->across));
-  saved->ready = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CopyReals(PetscBool back, PetscInt n, PetscReal now[], PetscReal aside[])
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(back ? now : aside, back ? aside : now, n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What an update reads and changes beside the rows, to what has been put aside or back */
-static PetscErrorCode CopyNotes(Transfer transfer, PetscBool back)
-{
-  const PetscInt n      = transfer->n;
-  TransferSaved *saved  = &transfer->saved;
-  Follow        *follow = &transfer->follow;
-
-  PetscFunctionBegin;
-  PetscCall(CopyReals(back, 3 * n, transfer->built_slip, saved->built_slip));
-  PetscCall(CopyReals(back, n, transfer->slip, saved->slip));
-  PetscCall(CopyReals(back, 1, &transfer->built_near, &saved->built_near));
-  *(back ? &transfer->sleeps : &saved->sleeps) = back ? saved->sleeps : transfer->sleeps;
-  PetscCall(CopyReals(back, 1, &transfer->smallest_size, &saved->smallest_size));
-  PetscCall(CopyReals(back, 3 * n, transfer->built_x[0], saved->built_x[0]));
-  if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CopyReals(back, 3 * transfer->neumann->data.n_owned, transfer->built_x[1], saved->built_x[1]));
-  PetscCall(CopyReals(back, 3 * n, follow->x[0], saved->x[0]));
-  PetscCall(CopyReals(back, 3 * transfer->neumann->data.n_owned, follow->x[1], saved->x[1]));
-  PetscCall(CopyReals(back, 3 * n, follow->slip, saved->follow_slip));
-  PetscCall(CopyReals(back, 1, &follow->step, &saved->step));
-  PetscCall(PetscArraycpy(back ? follow->known : saved->known, back ? saved->known : follow->known, n));
-  *(back ? &follow->has_last : &saved->has_last) = back ? saved->has_last : follow->has_last;
-  if (!transfer->balance.n) PetscFunctionReturn(PETSC_SUCCESS);
-  *(back ? &transfer->balance : &saved->balance) = back ? saved->balance : transfer->balance; /* its arrays stay where they are */
-  PetscCall(CopyReals(back, n, transfer->balance.turned, saved->turned));
-  PetscCall(CopyReals(back, 3 * n, transfer->balance.across, saved->across));
+  PetscCall(SaveShares(transfer)); /* the step may have to be made once more */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,14 +97,22 @@ static PetscErrorCode CopyNotes(Transfer transfer, PetscBool back)
 @*/
 PetscErrorCode TransferSave(Transfer transfer)
 {
-  const PetscBool same = (PetscBool)(transfer->saved.same && transfer->saved.builds == transfer->counts.builds);
+  TransferSaved  *saved = &transfer->saved;
+  const PetscBool same  = (PetscBool)(saved->same && saved->builds == transfer->counts.builds);
+  StateList       lists[2];
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
-  PetscCall(Allocate(transfer));
-  PetscCall(SaveRows(transfer));
-  if (!same || transfer->neumann) PetscCall(CopyNotes(transfer, PETSC_FALSE)); /* before an obstacle builds alone change them */
+  if (same && !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS); /* builds alone change what obstacles remember */
+  if (!same) PetscCall(SaveShares(transfer));
+  TransferListState(transfer, lists);
+  for (PetscInt side = 0; side < 2; side++) {
+    if (!saved->state[side]) PetscCall(StateListAllocate(&lists[side], &saved->state[side]));
+    PetscCall(StateListCopy(&lists[side], PETSC_FALSE, saved->state[side]));
+  }
+  saved->numbers = transfer->numbers;
+  saved->same    = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,11 +133,17 @@ PetscErrorCode TransferSave(Transfer transfer)
 @*/
 PetscErrorCode TransferRestore(Transfer transfer)
 {
+  TransferSaved *saved = &transfer->saved;
+  StateList      lists[2];
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscCheck(transfer->saved.ready, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferSave() first");
-  PetscCall(RestoreRows(transfer));
-  PetscCall(CopyNotes(transfer, PETSC_TRUE));
+  PetscCheck(saved->state[0], transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferSave() first");
+  PetscCall(RestoreShares(transfer));
+  TransferListState(transfer, lists);
+  for (PetscInt side = 0; side < 2; side++) PetscCall(StateListCopy(&lists[side], PETSC_TRUE, saved->state[side]));
+  transfer->numbers = saved->numbers;
+  saved->same       = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,8 +165,6 @@ PetscErrorCode TransferDestroySaved(Transfer transfer)
 
   PetscFunctionBegin;
   PetscCall(RowSetDestroy(&saved->rows));
-  PetscCall(PetscFree4(saved->built_x[0], saved->built_x[1], saved->built_slip, saved->slip));
-  PetscCall(PetscFree4(saved->x[0], saved->x[1], saved->follow_slip, saved->known));
-  PetscCall(PetscFree2(saved->turned, saved->across));
+  for (PetscInt side = 0; side < 2; side++) PetscCall(PetscFree(saved->state[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -133,7 +133,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
     PetscCall(PetscArraycpy(transfer->built_x[side], data[side]->positions, 3 * data[side]->n_owned));
     for (PetscInt i = 0; i < data[side]->n_owned; i++) size = PetscMin(size, data[side]->sizes[i]);
   }
-  PetscCallMPI(MPIU_Allreduce(&size, &transfer->smallest_size, 1, MPIU_REAL, MPIU_MIN, transfer->comm));
+  PetscCallMPI(MPIU_Allreduce(&size, &transfer->numbers.smallest_size, 1, MPIU_REAL, MPIU_MIN, transfer->comm));
   if (transfer->neumann) {
     PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
     for (PetscInt row = 0; row < transfer->n; row++) {
@@ -144,8 +144,8 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
       SplitOffset(transfer->dim, transfer->rows.normals + transfer->dim * row, transfer->built_slip + 3 * row, &gap);
     }
   }
-  transfer->built      = PETSC_TRUE;
-  transfer->built_near = near;
+  transfer->built        = PETSC_TRUE;
+  transfer->numbers.near = near;
   transfer->counts.builds++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -204,9 +204,9 @@ PetscErrorCode TransferSleep(Transfer transfer)
     set->opposite[row] = set->beyond[row] = transfer->keep[row] = PETSC_FALSE;
     transfer->follow.known[row] = transfer->followed[row] = transfer->goes_on[row] = PETSC_FALSE;
   }
-  transfer->saved.same      = PETSC_FALSE;
-  transfer->follow.has_last = PETSC_FALSE;
-  transfer->sleeps          = PETSC_TRUE;
+  transfer->saved.same       = PETSC_FALSE;
+  transfer->numbers.has_last = PETSC_FALSE;
+  transfer->numbers.sleeps   = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -248,9 +248,9 @@ PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neu
   transfer->columns_present = PETSC_FALSE;
   transfer->looks           = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
-  transfer->due    = (PetscBool)(!transfer->built || transfer->sleeps || near > transfer->built_near);
-  transfer->looks  = (PetscBool)(!transfer->due && transfer->dim > 1);
-  transfer->sleeps = PETSC_FALSE;
+  transfer->due            = (PetscBool)(!transfer->built || transfer->numbers.sleeps || near > transfer->numbers.near);
+  transfer->looks          = (PetscBool)(!transfer->due && transfer->dim > 1);
+  transfer->numbers.sleeps = PETSC_FALSE;
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
   if (!transfer->looks || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
@@ -330,7 +330,7 @@ PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   *rebuilt = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
   *rebuilt = transfer->due;
-  if (transfer->looks) *rebuilt = (PetscBool)(largest[0] + largest[1] > FAR_MOTION * transfer->smallest_size || largest[2] > 0);
+  if (transfer->looks) *rebuilt = (PetscBool)(largest[0] + largest[1] > FAR_MOTION * transfer->numbers.smallest_size || largest[2] > 0);
   for (PetscInt row = 0; row < transfer->n; row++) {
     transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->follow.known && transfer->follow.known[row] && !transfer->keep[row]);
     transfer->followed[row] = PETSC_FALSE;

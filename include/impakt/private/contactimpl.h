@@ -230,10 +230,8 @@ typedef struct {
 
 /* Rows and their states at the start of the controller step, before any have changed, see src/contact/rows/saverows.c */
 typedef struct {
-  PetscReal   *normal, *initial_gap, *area, *gap_shift, *merged_gap;
-  PetscBool   *opposite, *tied, *dropped, *heir;
-  ContactState start, end;
-  PetscInt     rebuilds; /* counted then */
+  PetscReal *state;    /* that of all rows, see ContactListRowState(); their normals come first; NULL: none have been put aside */
+  PetscInt   rebuilds; /* counted then */
 } ContactSavedRows;
 
 /* What every rank knows of the rows of all ranks */

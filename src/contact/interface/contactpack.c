@@ -7,39 +7,6 @@
 #include <interface/transfervisit.h>
 #include "contactvisit.h"
 
-/* What is kept of a row, to `packed` or back */
-void ContactCopyRow(Contact contact, PetscInt i, PetscBool back, PetscReal *packed)
-{
-  ContactState *const states[] = {&contact->start, &contact->end};
-
-  TablesCopyReals(back, 3, contact->rows.normal + 3 * i, &packed);
-  TablesCopyReals(back, 1, &contact->rows.initial_gap[i], &packed);
-  TablesCopyReals(back, 1, &contact->rows.area[i], &packed);
-  TablesCopyReals(back, 1, &contact->rows.gap_shift[i], &packed);
-  TablesCopyReals(back, 1, &contact->held.merged_gap[i], &packed);
-  TablesCopyBool(back, &contact->rows.opposite[i], &packed);
-  TablesCopyBool(back, &contact->rows.tied[i], &packed);
-  TablesCopyBool(back, &contact->rows.changed[i], &packed);
-  TablesCopyBool(back, &contact->rows.followed[i], &packed);
-  TablesCopyBool(back, &contact->held.dropped[i], &packed);
-  TablesCopyBool(back, &contact->held.heir[i], &packed);
-  TablesCopyBool(back, &contact->ties.holds[i], &packed);
-  TablesCopyReals(back, 1, &contact->ties.distance[i], &packed);
-  for (PetscInt k = 0; k < 2; k++) {
-    TablesCopyReals(back, 1, &states[k]->force[i], &packed);
-    TablesCopyReals(back, 1, &states[k]->gap[i], &packed);
-    TablesCopyBool(back, &states[k]->active[i], &packed);
-  }
-  TablesCopyReals(back, 1, &contact->energy.last_force[i], &packed);
-  TablesCopyReals(back, 1, &contact->energy.accepted_force[i], &packed);
-  TablesCopyReals(back, 1, &contact->energy.last_stored[i], &packed);
-  if (!contact->friction.slip) return;
-  TablesCopyReals(back, 1, &contact->friction.loss[i], &packed);
-  TablesCopyReals(back, 1, &contact->friction.distance[i], &packed);
-  TablesCopyReals(back, 1, &contact->friction.speed[i], &packed);
-  TablesCopyBool(back, &contact->friction.slides[i], &packed);
-}
-
 /* All rows of a pair to a table, a line for each node, or back */
 static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, Tables tables)
 {
@@ -48,9 +15,11 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
   const SurfaceData *data;
   PetscReal         *packed;
   PetscInt           n, n_all;
+  StateList          list;
   char               name[256];
 
   PetscFunctionBegin;
+  ContactListRowState(contact, &list);
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/contact", pair->name));
   PetscCall(SurfaceGetData(pair->surfaces[0], &data));
   n = (pair->end - pair->begin) / components;
@@ -66,7 +35,7 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
       PetscCall(PetscArraycpy(line, values + row * width, width));
     }
     for (PetscInt k = 0; k < components; k++)
-      ContactCopyRow(contact, pair->begin + i * components + k, back, line + TABLES_KEY + k * CONTACT_ROW_NUMBERS);
+      StateListCopyOne(&list, pair->begin + i * components + k, back, line + TABLES_KEY + k * CONTACT_ROW_NUMBERS);
   }
   if (!back) PetscCall(TablesAdd(tables, name, n, width, packed));
   PetscCall(PetscFree(packed));

@@ -19,28 +19,7 @@ static PetscErrorCode VisitPairs(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode VisitRows(Contact contact, Checkpoint checkpoint)
-{
-  ContactRows   *rows = &contact->rows;
-  const PetscInt n    = rows->n;
-
-  PetscFunctionBegin;
-  PetscCall(CheckpointVisitReals(checkpoint, "normal", 3 * n, rows->normal));
-  PetscCall(CheckpointVisitReals(checkpoint, "initial gap", n, rows->initial_gap));
-  PetscCall(CheckpointVisitReals(checkpoint, "area", n, rows->area));
-  PetscCall(CheckpointVisitReals(checkpoint, "gap shift", n, rows->gap_shift));
-  PetscCall(CheckpointVisitBools(checkpoint, "opposite", n, rows->opposite));
-  PetscCall(CheckpointVisitBools(checkpoint, "tied", n, rows->tied));
-  PetscCall(CheckpointVisitBools(checkpoint, "changed", n, rows->changed));
-  PetscCall(CheckpointVisitBools(checkpoint, "followed", n, rows->followed));
-  PetscCall(CheckpointVisitBools(checkpoint, "ties hold", n, contact->ties.holds));
-  PetscCall(CheckpointVisitReals(checkpoint, "tie distance", n, contact->ties.distance));
-  PetscCall(CheckpointVisitBools(checkpoint, "left out", contact->shared.offsets ? contact->shared.offsets[contact->shared.n] : 0,
-                                 contact->shared.left_out));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rows that have been dropped, and the matrix that gives their shares to others */
+/* The matrix that gives the shares of rows that have been dropped to others */
 static PetscErrorCode VisitHeld(Contact contact, Checkpoint checkpoint)
 {
   ContactHeldRows *held   = &contact->held;
@@ -48,9 +27,6 @@ static PetscErrorCode VisitHeld(Contact contact, Checkpoint checkpoint)
   PetscBool        merger = (PetscBool)(held->merger != NULL);
 
   PetscFunctionBegin;
-  PetscCall(CheckpointVisitBools(checkpoint, "dropped", n, held->dropped));
-  PetscCall(CheckpointVisitBools(checkpoint, "heir", n, held->heir));
-  PetscCall(CheckpointVisitReals(checkpoint, "merged gap", n, held->merged_gap));
   PetscCall(CheckpointVisitBools(checkpoint, "merger", 1, &merger));
   if (!merger) {
     PetscCall(ContactDestroyMerger(contact));
@@ -80,28 +56,15 @@ static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode VisitRowStates(Contact contact, Checkpoint checkpoint)
+static PetscErrorCode VisitRows(Contact contact, Checkpoint checkpoint)
 {
-  ContactState *const states[] = {&contact->start, &contact->end};
-  const PetscInt      n        = contact->rows.n;
+  SharedNodes *shared = &contact->shared;
+  StateList    list;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscCall(CheckpointVisitReals(checkpoint, "force", n, states[k]->force));
-    PetscCall(CheckpointVisitReals(checkpoint, "gap", n, states[k]->gap));
-    PetscCall(CheckpointVisitBools(checkpoint, "active", n, states[k]->active));
-  }
-  PetscCall(CheckpointVisitReals(checkpoint, "last force", n, contact->energy.last_force));
-  PetscCall(CheckpointVisitReals(checkpoint, "accepted force", n, contact->energy.accepted_force));
-  PetscCall(CheckpointVisitReals(checkpoint, "last stored", n, contact->energy.last_stored));
-  if (contact->friction.slip) {
-    PetscCall(CheckpointVisitReals(checkpoint, "friction loss", n, contact->friction.loss));
-    PetscCall(CheckpointVisitReals(checkpoint, "distance", n, contact->friction.distance));
-    PetscCall(CheckpointVisitReals(checkpoint, "speed", n, contact->friction.speed));
-    PetscCall(CheckpointVisitBools(checkpoint, "slides", n, contact->friction.slides));
-  }
-  if (contact->floating.n) PetscCall(CheckpointVisitReals(checkpoint, "stretch", contact->floating.n_springs, contact->floating.stretch));
-  if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;
+  ContactListRowState(contact, &list);
+  PetscCall(StateListVisit(&list, "rows", checkpoint));
+  PetscCall(CheckpointVisitBools(checkpoint, "left out", shared->offsets ? shared->offsets[shared->n] : 0, shared->left_out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -265,7 +228,8 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointBegin(checkpoint, "contact method"));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, visit, checkpoint);
   PetscCall(CheckpointBegin(checkpoint, "contact states"));
-  PetscCall(VisitRowStates(contact, checkpoint));
+  if (contact->floating.n) PetscCall(CheckpointVisitReals(checkpoint, "stretch", contact->floating.n_springs, contact->floating.stretch));
+  if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;
   PetscCall(ContactVisitImpulses(contact, checkpoint));
   PetscCall(ContactVisitTold(contact, checkpoint));
   PetscCall(VisitObstacleTraces(contact, checkpoint));

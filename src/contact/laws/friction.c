@@ -149,7 +149,7 @@ static void TurnAlong(const PetscReal a[], const PetscReal b[], PetscReal v[])
    plane the direction across the normal turns with the normal, and the force along it stays. */
 void ContactCarryFriction(Contact contact)
 {
-  const PetscReal *old = contact->saved.normal, *now = contact->rows.normal;
+  const PetscReal *old = contact->saved.state, *now = contact->rows.normal;
 
   for (PetscInt i = 0; i + 2 < contact->rows.n && contact->dim == 3; i++) {
     PetscReal *force = contact->start.force + i, v[3];

@@ -21,11 +21,14 @@ typedef struct {
 
 static PetscErrorCode KeepRows(Contact contact, Kept *kept)
 {
+  StateList list;
+
   PetscFunctionBegin;
+  ContactListRowState(contact, &list);
   PetscCall(PetscCalloc5(N_ROW * contact->rows.n, &kept->rows, CONTACT_IMPULSES * contact->n_pairs, &kept->impulses, 2 * contact->n_pairs,
                          &kept->pair_sums, 2 * contact->n_pairs, &kept->friction, contact->n_pairs, &kept->goes_on));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    ContactCopyRow(contact, i, PETSC_FALSE, kept->rows + N_ROW * i);
+    StateListCopyOne(&list, i, PETSC_FALSE, kept->rows + N_ROW * i);
     kept->rows[N_ROW * i + ROW_DOF] = (PetscReal)contact->rows.dof[i];
   }
   for (PetscInt k = 0; contact->shared.offsets && k < contact->shared.offsets[contact->shared.n]; k++)
@@ -94,7 +97,10 @@ static PetscErrorCode TakePairs(Contact contact, PetscInt n, const PetscInt list
 /* What was known of the rows of pairs that stay; the others are described by their transfers */
 static PetscErrorCode PutBack(Contact contact, const Kept *kept, const PetscInt old_begin[], const PetscInt was[])
 {
+  StateList list;
+
   PetscFunctionBegin;
+  ContactListRowState(contact, &list);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
@@ -106,7 +112,7 @@ static PetscErrorCode PutBack(Contact contact, const Kept *kept, const PetscInt 
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       PetscReal *row = kept->rows + N_ROW * (old_begin[p] + i - pair->begin);
 
-      ContactCopyRow(contact, i, PETSC_TRUE, row);
+      StateListCopyOne(&list, i, PETSC_TRUE, row);
       contact->rows.dof[i] = (PetscInt)row[ROW_DOF];
     }
     PetscCall(

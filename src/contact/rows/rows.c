@@ -51,7 +51,6 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->rows.followed, n, &contact->work.moved, n, &contact->work.flags, n, &contact->work.rest));
   PetscCall(PetscCalloc3(contact->n_pairs, &contact->work.updated, (2 * CONTACT_SUMS + TRANSFER_LARGEST) * contact->n_pairs,
                          &contact->work.motion, contact->n_pairs, &contact->work.off));
-  PetscCall(ContactSetUpSavedRows(contact));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
@@ -277,7 +276,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree2(contact->rows.near, contact->rows.acting));
   PetscCall(PetscFree(contact->ranks.visits));
   PetscCall(PetscFree4(contact->ties.holds, contact->ties.distance, contact->work.entry_counts, contact->work.drift));
-  PetscCall(ContactDestroySavedRows(contact));
+  PetscCall(PetscFree(contact->saved.state));
   PetscCall(ContactDestroyTurns(contact));
   PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -9,107 +9,57 @@
 */
 #include <contact/parts.h>
 
-PetscErrorCode ContactSetUpSavedRows(Contact contact)
+/* What is remembered of each row */
+void ContactListRowState(Contact contact, StateList *list)
 {
-  const PetscInt    n     = contact->rows.n;
-  ContactSavedRows *saved = &contact->saved;
+  const ContactRows     *rows     = &contact->rows;
+  const ContactState    *states[] = {&contact->start, &contact->end};
+  const ContactEnergy   *energy   = &contact->energy;
+  const ContactFriction *friction = &contact->friction;
+  const PetscInt         rubs     = friction->slip ? 1 : 0;
 
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc5(3 * n, &saved->normal, n, &saved->initial_gap, n, &saved->area, n, &saved->gap_shift, n, &saved->merged_gap));
-  PetscCall(PetscMalloc4(n, &saved->opposite, n, &saved->tied, n, &saved->dropped, n, &saved->heir));
-  PetscCall(PetscMalloc6(n, &saved->start.force, n, &saved->start.gap, n, &saved->start.active, n, &saved->end.force, n, &saved->end.gap, n,
-                         &saved->end.active));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContactDestroySavedRows(Contact contact)
-{
-  ContactSavedRows *saved = &contact->saved;
-
-  PetscFunctionBegin;
-  PetscCall(PetscFree5(saved->normal, saved->initial_gap, saved->area, saved->gap_shift, saved->merged_gap));
-  PetscCall(PetscFree4(saved->opposite, saved->tied, saved->dropped, saved->heir));
-  PetscCall(PetscFree6(saved->start.force, saved->start.gap, saved->start.active, saved->end.force, saved->end.gap, saved->end.active));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CopyReals(PetscBool back, PetscInt n, PetscReal now[], PetscReal aside[])
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(back ? now : aside, back ? aside : now, n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CopyBools(PetscBool back, PetscInt n, PetscBool now[], PetscBool aside[])
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(back ? now : aside, back ? aside : now, n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CopyState(PetscBool back, PetscInt n, ContactState *now, ContactState *aside)
-{
-  PetscFunctionBegin;
-  PetscCall(CopyReals(back, n, now->force, aside->force));
-  PetscCall(CopyReals(back, n, now->gap, aside->gap));
-  PetscCall(CopyBools(back, n, now->active, aside->active));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Copy(Contact contact, PetscBool back)
-{
-  const PetscInt    n     = contact->rows.n;
-  ContactSavedRows *saved = &contact->saved;
-
-  PetscFunctionBegin;
-  PetscCall(CopyReals(back, 3 * n, contact->rows.normal, saved->normal));
-  PetscCall(CopyReals(back, n, contact->rows.initial_gap, saved->initial_gap));
-  PetscCall(CopyReals(back, n, contact->rows.area, saved->area));
-  PetscCall(CopyReals(back, n, contact->rows.gap_shift, saved->gap_shift));
-  PetscCall(CopyReals(back, n, contact->held.merged_gap, saved->merged_gap));
-  PetscCall(CopyBools(back, n, contact->rows.opposite, saved->opposite));
-  PetscCall(CopyBools(back, n, contact->rows.tied, saved->tied));
-  PetscCall(CopyBools(back, n, contact->held.dropped, saved->dropped));
-  PetscCall(CopyBools(back, n, contact->held.heir, saved->heir));
-  PetscCall(CopyState(back, n, &contact->start, &saved->start));
-  PetscCall(CopyState(back, n, &contact->end, &saved->end));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Of near rows that are read what changes while rows stay as they are, of those that have acted in the last step forces, too; all else has
-   been put aside since rows changed last */
-static void SaveNear(Contact contact)
-{
-  ContactSavedRows *saved = &contact->saved;
-
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair)) {
-      const PetscInt i = contact->rows.near[k];
-
-      saved->initial_gap[i] = contact->rows.initial_gap[i];
-      saved->gap_shift[i]   = contact->rows.gap_shift[i];
-      saved->start.gap[i]   = contact->start.gap[i];
-      saved->end.gap[i]     = contact->end.gap[i];
-    }
-  }
-  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
-    const PetscInt i = contact->rows.acting[k];
-
-    saved->start.force[i]  = contact->start.force[i];
-    saved->start.active[i] = contact->start.active[i];
-    saved->end.force[i]    = contact->end.force[i];
-    saved->end.active[i]   = contact->end.active[i];
-  }
+  *list = (StateList){.n      = rows->n,
+                      .arrays = {{3, rows->normal},
+                                 {1, rows->initial_gap},
+                                 {1, rows->area},
+                                 {1, rows->gap_shift},
+                                 {1, contact->held.merged_gap},
+                                 {1, .bools = rows->opposite},
+                                 {1, .bools = rows->tied},
+                                 {1, .bools = rows->changed},
+                                 {1, .bools = rows->followed},
+                                 {1, .bools = contact->held.dropped},
+                                 {1, .bools = contact->held.heir},
+                                 {1, .bools = contact->ties.holds},
+                                 {1, contact->ties.distance},
+                                 {1, states[0]->force},
+                                 {1, states[0]->gap},
+                                 {1, .bools = states[0]->active},
+                                 {1, states[1]->force},
+                                 {1, states[1]->gap},
+                                 {1, .bools = states[1]->active},
+                                 {1, energy->last_force},
+                                 {1, energy->accepted_force},
+                                 {1, energy->last_stored},
+                                 {rubs, friction->loss},
+                                 {rubs, friction->distance},
+                                 {rubs, friction->speed},
+                                 {rubs, .bools = friction->slides}}};
 }
 
 /* At the start of a controller step that may have to be made again, before the rows change */
 PetscErrorCode ContactSaveRows(Contact contact)
 {
+  StateList list;
+
   PetscFunctionBegin;
-  if (contact->rows.listed) SaveNear(contact);
-  else PetscCall(Copy(contact, PETSC_FALSE));
+  ContactListRowState(contact, &list);
+  /* of others nothing has changed since they were put aside with all */
+  if (contact->rows.listed) StateListSaveSome(&list, contact->rows.n_near, contact->rows.near, contact->saved.state);
+  else {
+    if (!contact->saved.state) PetscCall(StateListAllocate(&list, &contact->saved.state));
+    PetscCall(StateListCopy(&list, PETSC_FALSE, contact->saved.state));
+  }
   contact->saved.rebuilds = contact->counts.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].saved = contact->body_rows[b].pattern;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -124,8 +74,11 @@ PetscErrorCode ContactSaveRows(Contact contact)
 /* At the start of the step that is made again. The matrices of the bodies are filled anew with the rows that follow from here. */
 PetscErrorCode ContactRestoreRows(Contact contact)
 {
+  StateList list;
+
   PetscFunctionBegin;
-  PetscCall(Copy(contact, PETSC_TRUE));
+  ContactListRowState(contact, &list);
+  PetscCall(StateListCopy(&list, PETSC_TRUE, contact->saved.state));
   ContactForgetReadRows(contact);
   contact->counts.rebuilds = contact->saved.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++)

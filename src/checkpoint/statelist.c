@@ -1,0 +1,92 @@
+/* Copies of the numbers in a list of arrays. Put aside are the arrays one behind the other, reals before flags. */
+#include <checkpoint/statelist.h>
+
+/* Numbers of each node or row */
+PetscInt StateListGetWidth(const StateList *list)
+{
+  PetscInt width = 0;
+
+  for (PetscInt k = 0; k < STATE_ARRAYS; k++) width += list->arrays[k].per;
+  return width;
+}
+
+/* Where each array begins in what is put aside */
+static void FindPlaces(const StateList *list, PetscReal aside[], StateArray places[STATE_ARRAYS])
+{
+  PetscBool *bools;
+
+  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
+    places[k].reals = aside;
+    if (list->arrays[k].reals) aside += list->arrays[k].per * list->n;
+  }
+  bools = (PetscBool *)aside;
+  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
+    places[k].bools = bools;
+    if (list->arrays[k].bools) bools += list->arrays[k].per * list->n;
+  }
+}
+
+/* Room for what is put aside, never NULL. Free with PetscFree(). */
+PetscErrorCode StateListAllocate(const StateList *list, PetscReal *aside[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(StateListGetWidth(list) * list->n + 1, aside));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All arrays, aside or back */
+PetscErrorCode StateListCopy(const StateList *list, PetscBool back, PetscReal aside[])
+{
+  StateArray places[STATE_ARRAYS];
+
+  PetscFunctionBegin;
+  FindPlaces(list, aside, places);
+  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
+    const StateArray *own = &list->arrays[k];
+    const PetscInt    n   = own->per * list->n;
+
+    if (own->reals) PetscCall(PetscArraycpy(back ? own->reals : places[k].reals, back ? places[k].reals : own->reals, n));
+    if (own->bools) PetscCall(PetscArraycpy(back ? own->bools : places[k].bools, back ? places[k].bools : own->bools, n));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Puts the numbers of some nodes or rows aside, where all have been put before */
+void StateListSaveSome(const StateList *list, PetscInt n, const PetscInt some[], PetscReal aside[])
+{
+  StateArray places[STATE_ARRAYS];
+
+  FindPlaces(list, aside, places);
+  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
+    const StateArray *own = &list->arrays[k];
+
+    for (PetscInt j = 0; j < n; j++)
+      for (PetscInt i = own->per * some[j]; i < own->per * (some[j] + 1); i++)
+        if (own->reals) places[k].reals[i] = own->reals[i];
+        else places[k].bools[i] = own->bools[i];
+  }
+}
+
+/* The numbers of node or row i, to a packed line or back */
+void StateListCopyOne(const StateList *list, PetscInt i, PetscBool back, PetscReal packed[])
+{
+  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
+    const StateArray *own = &list->arrays[k];
+
+    if (own->reals) TablesCopyReals(back, own->per, own->reals + own->per * i, &packed);
+    for (PetscInt d = 0; own->bools && d < own->per; d++) TablesCopyBool(back, &own->bools[own->per * i + d], &packed);
+  }
+}
+
+/* All arrays, to or from a checkpoint */
+PetscErrorCode StateListVisit(const StateList *list, const char name[], Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  for (PetscInt k = 0; k < STATE_ARRAYS && list->n; k++) { /* arrays of no length may be NULL */
+    const StateArray *own = &list->arrays[k];
+
+    if (own->reals) PetscCall(CheckpointVisitReals(checkpoint, name, own->per * list->n, own->reals));
+    if (own->bools) PetscCall(CheckpointVisitBools(checkpoint, name, own->per * list->n, own->bools));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
