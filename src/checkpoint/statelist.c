@@ -51,19 +51,20 @@ PetscErrorCode StateListCopy(const StateList *list, PetscBool back, PetscReal as
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the numbers of some nodes or rows aside, where all have been put before */
-void StateListSaveSome(const StateList *list, PetscInt n, const PetscInt some[], PetscReal aside[])
+/* Puts the arrays which[0] to which[1] - 1 of some nodes or rows aside, where all have been put before: of `n` numbers every `stride`-th */
+void StateListSaveSome(const StateList *list, const PetscInt which[2], PetscInt n, const PetscInt some[], PetscInt stride,
+                       PetscReal aside[])
 {
   StateArray places[STATE_ARRAYS];
 
   FindPlaces(list, aside, places);
-  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
+  for (PetscInt k = which[0]; k < which[1]; k++) {
     const StateArray *own = &list->arrays[k];
 
-    for (PetscInt j = 0; j < n; j++)
-      for (PetscInt i = own->per * some[j]; i < own->per * (some[j] + 1); i++)
-        if (own->reals) places[k].reals[i] = own->reals[i];
-        else places[k].bools[i] = own->bools[i];
+    for (PetscInt j = 0; j < n && own->reals; j += stride)
+      for (PetscInt i = own->per * some[j]; i < own->per * (some[j] + 1); i++) places[k].reals[i] = own->reals[i];
+    for (PetscInt j = 0; j < n && own->bools; j += stride)
+      for (PetscInt i = own->per * some[j]; i < own->per * (some[j] + 1); i++) places[k].bools[i] = own->bools[i];
   }
 }
 

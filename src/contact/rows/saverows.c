@@ -9,11 +9,14 @@
 */
 #include <contact/parts.h>
 
+/* Arrays of the list that change while rows stay as they are: of near rows, and of those that act */
+static const PetscInt of_near[] = {1, 5}, of_acting[] = {5, 9};
+
 /* What is remembered of each row */
 void ContactListRowState(Contact contact, StateList *list)
 {
-  const ContactRows     *rows     = &contact->rows;
-  const ContactState    *states[] = {&contact->start, &contact->end};
+  const ContactRows     *rows  = &contact->rows;
+  const ContactState    *start = &contact->start, *end = &contact->end;
   const ContactEnergy   *energy   = &contact->energy;
   const ContactFriction *friction = &contact->friction;
   const PetscInt         rubs     = friction->slip ? 1 : 0;
@@ -21,8 +24,14 @@ void ContactListRowState(Contact contact, StateList *list)
   *list = (StateList){.n      = rows->n,
                       .arrays = {{3, rows->normal},
                                  {1, rows->initial_gap},
-                                 {1, rows->area},
                                  {1, rows->gap_shift},
+                                 {1, start->gap},
+                                 {1, end->gap},
+                                 {1, start->force},
+                                 {1, .bools = start->active},
+                                 {1, end->force},
+                                 {1, .bools = end->active},
+                                 {1, rows->area},
                                  {1, contact->held.merged_gap},
                                  {1, .bools = rows->opposite},
                                  {1, .bools = rows->tied},
@@ -32,12 +41,6 @@ void ContactListRowState(Contact contact, StateList *list)
                                  {1, .bools = contact->held.heir},
                                  {1, .bools = contact->ties.holds},
                                  {1, contact->ties.distance},
-                                 {1, states[0]->force},
-                                 {1, states[0]->gap},
-                                 {1, .bools = states[0]->active},
-                                 {1, states[1]->force},
-                                 {1, states[1]->gap},
-                                 {1, .bools = states[1]->active},
                                  {1, energy->last_force},
                                  {1, energy->accepted_force},
                                  {1, energy->last_stored},
@@ -47,6 +50,21 @@ void ContactListRowState(Contact contact, StateList *list)
                                  {rubs, .bools = friction->slides}}};
 }
 
+/* Of near rows that are read what changes while rows stay as they are, of those that have acted in the last step forces, too; all else has
+   been put aside since rows changed last */
+static void SaveNear(Contact contact, const StateList *list)
+{
+  const ContactRows *rows = &contact->rows;
+
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    StateListSaveSome(list, of_near, pair->near_end - pair->near_begin, rows->near + pair->near_begin, ContactReadStride(pair),
+                      contact->saved.state);
+  }
+  StateListSaveSome(list, of_acting, rows->n_acting, rows->acting, 1, contact->saved.state);
+}
+
 /* At the start of a controller step that may have to be made again, before the rows change */
 PetscErrorCode ContactSaveRows(Contact contact)
 {
@@ -54,8 +72,7 @@ PetscErrorCode ContactSaveRows(Contact contact)
 
   PetscFunctionBegin;
   ContactListRowState(contact, &list);
-  /* of others nothing has changed since they were put aside with all */
-  if (contact->rows.listed) StateListSaveSome(&list, contact->rows.n_near, contact->rows.near, contact->saved.state);
+  if (contact->rows.listed) SaveNear(contact, &list);
   else {
     if (!contact->saved.state) PetscCall(StateListAllocate(&list, &contact->saved.state));
     PetscCall(StateListCopy(&list, PETSC_FALSE, contact->saved.state));
