@@ -136,7 +136,6 @@ PETSC_INTERN PetscErrorCode ContactReadGlue(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckLaws(Contact);
 PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN void           ContactHoldTogether(Contact);
-PETSC_INTERN PetscErrorCode ContactDropDependentTies(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
 PETSC_INTERN PetscErrorCode ContactAlignTies(Contact, PetscScalar *const[2]);
 PETSC_INTERN PetscErrorCode ContactSetUpTiedEnds(Contact);

@@ -304,7 +304,6 @@ PetscErrorCode ContactTie(Contact contact)
     contact->rows.initial_gap[i] -= contact->start.gap[i];
     contact->start.gap[i] = contact->end.gap[i] = 0;
   }
-  PetscCall(ContactDropDependentTies(contact));
   PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
