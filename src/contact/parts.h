@@ -107,7 +107,6 @@ PETSC_INTERN PetscErrorCode ContactFindSharedNodes(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroySharedNodes(Contact);
 PETSC_INTERN PetscErrorCode ContactLeaveOutObstacles(Contact);
 PETSC_INTERN PetscErrorCode ContactWeighSharedRows(Contact);
-PETSC_INTERN PetscErrorCode ContactDropShared(Contact);
 PETSC_INTERN PetscErrorCode ContactGetLeastElement(Contact, const ContactPair *, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactLetTouch(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode ContactGetBoundary(Contact, PetscInt, Surface *);

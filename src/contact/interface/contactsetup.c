@@ -271,7 +271,6 @@ static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
   PetscCall(ContactRenewNeighbours(contact, 0, PETSC_TRUE, &renewed)); /* initial displacements count */
   PetscCall(ContactComputeStartGaps(contact));
   PetscCall(ContactTie(contact));
-  PetscCall(ContactDropShared(contact));
   ContactAlignRubbingRows(contact);
   PetscCall(ContactLetTouch(contact, of_state));
   if (contact->n_pairs || contact->neighbours.come_and_go) PetscCall(ContactStartOverlaps(contact, of_state));

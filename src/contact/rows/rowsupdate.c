@@ -8,17 +8,6 @@
 #define APART 0.1
 /* What is beyond that is taken back in proportion to the slip: all of it within a slip of one over this [edges of the face] */
 #define TAKEN_BACK 3
-/* Two rows of a node are nearly the same condition if the cosine of the angle between their normals is above this: 26 degrees */
-#define PARALLEL 0.9
-
-/* Cosine of the angle between the normals of two rows */
-static PetscReal RowCosine(Contact contact, PetscInt i, PetscInt j)
-{
-  PetscReal cosine = 0;
-
-  for (PetscInt d = 0; d < 3; d++) cosine += contact->rows.normal[3 * i + d] * contact->rows.normal[3 * j + d];
-  return cosine;
-}
 
 /* Gaps at the start of the controller step, from the bodies' traces */
 PetscErrorCode ContactComputeStartGaps(Contact contact)
@@ -32,54 +21,6 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
     PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
     contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + neumann[i - pair->shift[1]] -
                                                   dirichlet[i - pair->shift[0]];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether a node that guards the end of its partner in pair p has nearly the same row in another pair q, in which it touches or nearly
-   does. If it guards an end in both pairs, the row of the first of them counts. */
-static PetscErrorCode IsShared(Contact contact, PetscInt p, PetscInt node, const TransferRows *rows, PetscBool *shared)
-{
-  const PetscInt i = contact->pairs[p].begin + node * contact->pairs[p].components;
-
-  PetscFunctionBegin;
-  *shared = PETSC_FALSE;
-  for (PetscInt q = 0; q < contact->n_pairs && !*shared; q++) {
-    const ContactPair *other = &contact->pairs[q];
-    PetscInt           place, j;
-    TransferRows       others;
-
-    if (q == p || other->body[0] != contact->pairs[p].body[0]) continue;
-    PetscCall(TransferGetRows(other->transfer, &others));
-    PetscCall(PetscFindInt(rows->dofs[node], others.n, others.dofs, &place));
-    if (place < 0) continue;
-    j = other->begin + place * other->components;
-    if (!contact->rows.opposite[j] || contact->end.gap[j] > rows->size[node] || (others.beyond[place] && q > p)) continue;
-    *shared = (PetscBool)(PetscAbsReal(RowCosine(contact, i, j)) > PARALLEL);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Drops the rows of nodes that guard the end of one partner while another one touches them: prescribed by both, such a node would have two
-   displacements. Gaps must be known. */
-PetscErrorCode ContactDropShared(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    TransferRows rows;
-
-    if (ContactPairTies(&contact->pairs[p])) continue;
-    PetscCall(TransferGetRows(contact->pairs[p].transfer, &rows));
-    for (PetscInt node = 0; node < rows.n; node++) {
-      const PetscInt i = contact->pairs[p].begin + node * contact->pairs[p].components;
-      PetscBool      shared;
-
-      if (!rows.beyond[node] || !contact->rows.opposite[i]) continue;
-      PetscCall(IsShared(contact, p, node, &rows, &shared));
-      if (!shared) continue;
-      contact->rows.opposite[i]    = PETSC_FALSE;
-      contact->rows.initial_gap[i] = contact->end.gap[i] = contact->start.gap[i] = CONTACT_NO_GAP;
-    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -286,7 +227,6 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactUpdateBodies(contact, contact->work.moved));
   PetscCall(PetscArraycpy(contact->work.last_gap, contact->start.gap, contact->rows.n));
   PetscCall(ContactComputeStartGaps(contact));
-  PetscCall(ContactDropShared(contact));
   ContactAlignRubbingRows(contact);
   PetscCall(PetscArraycpy(contact->work.last_force, contact->start.force, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
