@@ -8,8 +8,8 @@
 
    With c_i the component of n_i + m_i across the row, both sums are the same if sum lambda_i c_i is zero. What is dual to this condition is
    a turn theta of the gap: rows have the gap g_i + theta c_i, which shifts the place at which curved surfaces meet by theta. In contact the
-   turn is an unknown beside the forces, so that the condition holds at the end of each step and the turn does no work. Before contact it is
-   that which makes the smallest gap largest, so that nodes on both sides of the place where the surfaces meet touch at one time.
+   turn is an unknown beside the forces, so that the condition holds at the end of each step and the turn does no work. Before contact there
+   is none.
 
    In three dimensions there are two conditions, one for each of two axes e across the mean normal of the contact,
    c_i = e . (r_i x (n_i + m_i)) with the direction r_i of the row; in two dimensions the one axis is that across the plane.
@@ -136,27 +136,23 @@ static PetscErrorCode FindAxes(Transfer transfer, const PetscReal force[], Petsc
 
   Logically Collective
 
-  Input Parameters:
-+ transfer - the `Transfer`, between two surfaces in two or three dimensions
-- largest  - turn, by which the place where surfaces meet may be shifted before contact [m]
+  Input Parameter:
+. transfer - the `Transfer`, between two surfaces in two or three dimensions
 
   Level: developer
 
 .seealso: `Transfer`, `TransferBalance()`, `TransferTurn()`, `TransferSetCurved()`
 @*/
-PetscErrorCode TransferSetBalance(Transfer transfer, PetscReal largest)
+PetscErrorCode TransferSetBalance(Transfer transfer)
 {
   Balance *balance = &transfer->balance;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(transfer, largest, 2);
-  PetscCheck(largest > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The largest turn %g m must be positive", (double)largest);
   PetscCheck(transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_SUP,
              "Forces are balanced between two surfaces in two or three dimensions alone");
   PetscCall(PetscFree5(balance->uneven, balance->lever, balance->across, balance->gap, balance->turned));
-  balance->n       = transfer->dim - 1;
-  balance->largest = largest;
+  balance->n = transfer->dim - 1;
   PetscCall(PetscCalloc5(balance->n * transfer->n, &balance->uneven, balance->n * transfer->n, &balance->lever, 3 * transfer->n,
                          &balance->across, transfer->n, &balance->gap, transfer->n, &balance->turned));
   PetscCall(PetscFree3(balance->bends[0], balance->bends[1], balance->bend));
@@ -254,7 +250,7 @@ PetscErrorCode TransferTurn(Transfer transfer, const PetscReal change[])
   Level: developer
 
   Note:
-  Without any force the turn becomes that with which the smallest gap is largest. No row is turned into the partner.
+  Without any force there is no turn. No row is turned into the partner.
 
 .seealso: `Transfer`, `TransferFollow()`, `TransferSetBalance()`, `TransferGetTurns()`
 @*/
@@ -289,9 +285,6 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
   if (!(most[1] > 0)) {
     PetscCall(PetscArrayzero(transfer->numbers.turn, 3));
     if (-most[0] > reach) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(TransferFindTurn(transfer, turn));
-    for (PetscInt k = 0; k < balance->n; k++)
-      for (PetscInt d = 0; d < 3; d++) transfer->numbers.turn[d] += turn[k] * transfer->numbers.axes[k][d];
   } else
     for (PetscInt k = 0; k < balance->n; k++) turn[k] = Dot(transfer->numbers.turn, transfer->numbers.axes[k]);
   for (PetscInt row = 0; row < transfer->n; row++) {

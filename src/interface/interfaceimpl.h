@@ -105,7 +105,6 @@ typedef struct {
 /* How the gaps of the rows are turned, see src/interface/balance.c */
 typedef struct {
   PetscInt   n;        /* number of turns: 0, gaps are not turned; 1 in two dimensions, 2 in three */
-  PetscReal  largest;  /* turn before contact [m] */
   PetscReal *uneven;   /* per row: c_i, n each */
   PetscReal *lever;    /* per row: the mean of these and of those of the step before, n each */
   PetscReal *across;   /* per row: r_i x (n_i + m_i), 3 each */

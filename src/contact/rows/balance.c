@@ -200,11 +200,10 @@ PetscErrorCode ContactChooseBalance(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prepares a pair whose gaps can be turned: the place where its surfaces meet may be shifted by a face before contact */
+/* Prepares a pair whose gaps can be turned */
 PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
 {
   PetscBool linear = PETSC_TRUE, may = PETSC_FALSE;
-  PetscReal size = 0;
 
   PetscFunctionBegin;
   if (!contact->options.balance) PetscFunctionReturn(PETSC_SUCCESS);
@@ -216,7 +215,7 @@ PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
              "-contact_balance goes with -contact_type schwarz and massless contact nodes (-<body>_mass_redistribute true)");
   for (PetscInt side = 0; side < 2; side++) {
     const char *name = ((PetscObject)contact->bodies[pair->body[side]])->name;
-    PetscReal   edge, bend;
+    PetscReal   bend;
     PetscBool   is_static, is_linear;
 
     PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
@@ -228,12 +227,10 @@ PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
                "-contact_balance: faces of body '%s' of pair %s bend by up to %.3g degrees; refine its surface until that is 11.5 or less",
                name, pair->name, (double)(bend * 180 / PETSC_PI));
     linear = (PetscBool)(linear && is_linear);
-    PetscCall(BodyGetElementSize(contact->bodies[pair->body[side]], &edge));
-    size = PetscMax(size, edge);
   }
   PetscCheck(!linear, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_balance: the bodies of pair %s are both linear elastic, and their rows do not follow the surfaces", pair->name);
-  PetscCall(TransferSetBalance(pair->transfer, size));
+  PetscCall(TransferSetBalance(pair->transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
