@@ -126,8 +126,6 @@ PETSC_INTERN PetscErrorCode ContactAcceptTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
-PETSC_INTERN PetscBool      ContactBodyBonds(Contact, PetscInt);
-PETSC_INTERN PetscErrorCode ContactTurnMatrix(Contact, PetscInt);
 PETSC_INTERN const char    *ContactNameLaw(Contact, const ContactPair *);
 PETSC_INTERN void           ContactSpreadLaw(Contact, ContactLaw);
 PETSC_INTERN PetscErrorCode ContactReadLaw(Contact, PetscInt);

@@ -34,43 +34,6 @@ void ContactGetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscRe
   }
 }
 
-/* Whether a body has rows along the axes that are to be turned to directions */
-PetscBool ContactBodyBonds(Contact contact, PetscInt b)
-{
-  const ContactBodyRows *of = &contact->body_rows[b];
-
-  for (PetscInt k = 0; k < of->n_pairs && contact->dim > 1; k++)
-    if (contact->pairs[of->pairs[k]].law == CONTACT_LAW_BONDED) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
-/* Replaces the rows of the matrix of a body, which are along the axes, by those along the directions of the rows */
-PetscErrorCode ContactTurnMatrix(Contact contact, PetscInt b)
-{
-  const ContactBodyRows *of = &contact->body_rows[b];
-  Mat                    turn, turned;
-
-  PetscFunctionBegin;
-  if (!ContactBodyBonds(contact, b)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)contact), of->n, of->n, of->n_all, of->n_all, contact->dim, NULL, 0, NULL, &turn));
-  for (PetscInt k = 0; k < of->n; k++) {
-    const PetscInt     i    = of->rows[k];
-    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-    const PetscInt     node = k - (i - pair->begin) % pair->components;
-
-    if (pair->law != CONTACT_LAW_BONDED) PetscCall(MatSetValue(turn, of->begin + k, of->begin + k, 1, INSERT_VALUES));
-    for (PetscInt d = 0; d < contact->dim && pair->law == CONTACT_LAW_BONDED; d++)
-      PetscCall(MatSetValue(turn, of->begin + k, of->begin + node + d, contact->rows.normal[3 * i + d], INSERT_VALUES));
-  }
-  PetscCall(MatAssemblyBegin(turn, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(turn, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatMatMult(turn, contact->interfaces[b], MAT_INITIAL_MATRIX, PETSC_DETERMINE, &turned));
-  PetscCall(MatDestroy(&turn));
-  PetscCall(MatDestroy(&contact->interfaces[b]));
-  contact->interfaces[b] = turned;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* All rows of a node become ties as they are at the start of the controller step */
 static PetscErrorCode BondNode(Contact contact, const ContactPair *pair, PetscInt first)
 {

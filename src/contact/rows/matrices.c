@@ -24,7 +24,7 @@ static PetscBool HasTies(Contact contact, PetscInt b)
   const ContactBodyRows *of = &contact->body_rows[b];
 
   for (PetscInt k = 0; k < of->n_pairs; k++)
-    if (ContactPairTies(&contact->pairs[of->pairs[k]]) || contact->pairs[of->pairs[k]].law == CONTACT_LAW_BONDED) return PETSC_TRUE;
+    if (ContactPairTies(&contact->pairs[of->pairs[k]])) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -147,13 +147,13 @@ static void ChooseMatrix(Contact contact, PetscInt b)
 }
 
 /* Fills the matrices of the bodies whose rows are affected: in place if they have entries where those that were filled last have them,
-   which is so until rows are built again. Rows that are merged or turned come from products of matrices, which are made anew. */
+   which is so until rows are built again. Merged rows come from products of matrices, which are made anew. */
 PetscErrorCode ContactFillMatrices(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     ContactBodyRows *of      = &contact->body_rows[b];
-    const PetscBool  product = (PetscBool)(contact->held.merger || ContactBodyBonds(contact, b));
+    const PetscBool  product = (PetscBool)(contact->held.merger != NULL);
 
     if (!of->affected) continue;
     ChooseMatrix(contact, b);
@@ -174,7 +174,7 @@ PetscErrorCode ContactFillMatrices(Contact contact)
       rows[side] = contact->interfaces[pair->body[side]];
       any        = PETSC_TRUE;
     }
-    if (any && pair->law == CONTACT_LAW_FRICTION)
+    if (any && (pair->law == CONTACT_LAW_FRICTION || pair->law == CONTACT_LAW_BONDED))
       PetscCall(TransferSetDirectedValues(pair->transfer, begin, pair->components, contact->rows.normal + 3 * pair->begin, rows));
     else if (any) PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
   }
@@ -184,7 +184,6 @@ PetscErrorCode ContactFillMatrices(Contact contact)
     PetscCall(MatAssemblyEnd(contact->interfaces[b], MAT_FINAL_ASSEMBLY));
     /* values in the same places need no word of other ranks when they are assembled again */
     PetscCall(MatSetOption(contact->interfaces[b], MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
-    PetscCall(ContactTurnMatrix(contact, b));
     PetscCall(ContactMergeMatrix(contact, b));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
