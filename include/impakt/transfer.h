@@ -91,6 +91,7 @@ PETSC_EXTERN PetscErrorCode TransferSetCurved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetNormalShare(Transfer, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
+PETSC_EXTERN PetscErrorCode TransferGetGaps(Transfer, PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferGetTilts(Transfer, PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, const PetscInt[2], PetscInt, const Mat[2]);
 PETSC_EXTERN PetscErrorCode TransferCountValues(Transfer, PetscInt[], PetscInt[]);

@@ -123,7 +123,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactTurn(Contact, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactAcceptTurns(Contact);
-PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool, PetscBool *);
+PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
 PETSC_INTERN const char    *ContactNameLaw(Contact, const ContactPair *);

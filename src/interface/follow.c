@@ -161,6 +161,30 @@ PetscReal TransferPresentGap(Transfer transfer, PetscInt row)
          AlongRow(transfer, row, data->reference, transfer->column_reference);
 }
 
+/*@
+  TransferGetGaps - gaps of the rows where the surfaces are now
+
+  Collective
+
+  Input Parameter:
+. transfer - the `Transfer`, updated once at least
+
+  Output Parameter:
+. gaps - for each row of this rank [m], 0 where nothing is opposite
+
+  Level: developer
+
+.seealso: `Transfer`, `SurfaceUpdate()`, `TransferGetRows()`
+@*/
+PetscErrorCode TransferGetGaps(Transfer transfer, PetscReal gaps[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
+  if (transfer->neumann) PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  for (PetscInt row = 0; row < transfer->n; row++) gaps[row] = transfer->rows.opposite[row] ? TransferPresentGap(transfer, row) : 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Marks rows that are to follow: those of nodes that touch, or may within the reach. Those of nodes beyond the end of the partner continue
    it as a straight line, and slip along that; where it ends now a build tells. */
 static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscBool *any)

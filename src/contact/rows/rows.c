@@ -206,7 +206,7 @@ PetscErrorCode ContactSetUpRows(Contact contact, PetscReal extent)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscBool changed;
 
-    PetscCall(ContactMeasureTies(contact, &contact->pairs[p], PETSC_FALSE, &changed));
+    PetscCall(ContactMeasureTies(contact, &contact->pairs[p], &changed));
     PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
   }
   PetscCall(CheckHeld(contact));

@@ -38,50 +38,8 @@ static TieState JudgeDistance(Contact contact, PetscReal gap, PetscReal size)
   return gap <= APART * size ? TIE_TOO_FAR : TIE_APART;
 }
 
-/* What the displacements of the bodies add to the gaps of a pair [m], one number for each node */
-static PetscErrorCode AddDisplacements(Contact contact, const ContactPair *pair, PetscReal gaps[])
-{
-  MPI_Comm     comm = PetscObjectComm((PetscObject)contact);
-  TransferRows rows;
-  Mat          B[2]     = {NULL, NULL};
-  PetscInt     begin[2] = {0, 0};
-
-  PetscFunctionBegin;
-  PetscCall(TransferGetRows(pair->transfer, &rows));
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    Vec      u;
-    PetscInt n;
-
-    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u, NULL, NULL));
-    PetscCall(VecGetLocalSize(u, &n));
-    PetscCall(MatCreate(comm, &B[side]));
-    PetscCall(MatSetSizes(B[side], rows.n, n, PETSC_DETERMINE, PETSC_DETERMINE));
-    PetscCall(MatSetType(B[side], MATAIJ));
-    PetscCall(MatSetUp(B[side]));
-  }
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(MatGetOwnershipRange(B[side], &begin[side], NULL));
-  PetscCall(TransferSetValues(pair->transfer, begin, 1, B));
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    const PetscScalar *values;
-    Vec                u, moved;
-
-    PetscCall(MatAssemblyBegin(B[side], MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(B[side], MAT_FINAL_ASSEMBLY));
-    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u, NULL, NULL));
-    PetscCall(MatCreateVecs(B[side], NULL, &moved));
-    PetscCall(MatMult(B[side], u, moved));
-    PetscCall(VecGetArrayRead(moved, &values));
-    for (PetscInt i = 0; i < rows.n; i++) gaps[i] += (side ? 1 : -1) * PetscRealPart(values[i]);
-    PetscCall(VecRestoreArrayRead(moved, &values));
-    PetscCall(VecDestroy(&moved));
-    PetscCall(MatDestroy(&B[side]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Which nodes of a pair are tied, as its transfer has them now: with the displacements of the bodies, once these are known. `changed`
-   becomes true if any is that was not, or is no more. */
-PetscErrorCode ContactMeasureTies(Contact contact, const ContactPair *pair, PetscBool displaced, PetscBool *changed)
+/* Which nodes of a pair are tied, with its surfaces where they are now. `changed` becomes true if any is that was not, or is no more. */
+PetscErrorCode ContactMeasureTies(Contact contact, const ContactPair *pair, PetscBool *changed)
 {
   TransferRows rows;
   PetscReal   *gaps;
@@ -90,8 +48,7 @@ PetscErrorCode ContactMeasureTies(Contact contact, const ContactPair *pair, Pets
   if (!ContactPairTies(pair)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TransferGetRows(pair->transfer, &rows));
   PetscCall(PetscMalloc1(rows.n, &gaps));
-  for (PetscInt node = 0; node < rows.n; node++) gaps[node] = rows.opposite[node] ? rows.gap[node] : 0;
-  if (displaced) PetscCall(AddDisplacements(contact, pair, gaps));
+  PetscCall(TransferGetGaps(pair->transfer, gaps));
   for (PetscInt node = 0; node < rows.n; node++) {
     PetscReal size;
     PetscBool tied;
@@ -271,7 +228,7 @@ static PetscErrorCode RebuildTies(Contact contact)
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
       PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
     PetscCall(TransferUpdate(pair->transfer, u[0], u[1], contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
-    PetscCall(ContactMeasureTies(contact, pair, PETSC_TRUE, &changed));
+    PetscCall(ContactMeasureTies(contact, pair, &changed));
     any |= rebuilt || changed;
   }
   PetscCall(ContactOr(contact, &any));
