@@ -10,9 +10,7 @@
 #include <impakt/material.h>
 #include <impakt/mesh.h>
 #include <impakt/stepreason.h>
-#include <impakt/surface.h>
 #include <impakt/trace.h>
-#include <impakt/transfer.h>
 #include <impakt/tssecondorder.h>
 #include <impakt/version.h>
 

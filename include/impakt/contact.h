@@ -2,7 +2,7 @@
 #pragma once
 #include <impakt/body.h>
 #include <impakt/stepreason.h>
-#include <impakt/transfer.h>
+#include <impakt/obstacle.h>
 
 /*S
    Contact - the contact pairs among some bodies and the method that enforces contact

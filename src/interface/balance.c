@@ -131,18 +131,7 @@ static PetscErrorCode FindAxes(Transfer transfer, const PetscReal force[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetBalance - prepares a transfer for `TransferBalance()`
-
-  Logically Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, between two surfaces in two or three dimensions
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferBalance()`, `TransferTurn()`, `TransferSetCurved()`
-@*/
+/* Prepares a transfer between two surfaces, in two or three dimensions, for TransferBalance() */
 PetscErrorCode TransferSetBalance(Transfer transfer)
 {
   Balance *balance = &transfer->balance;
@@ -164,28 +153,10 @@ PetscErrorCode TransferSetBalance(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferGetTurns - tells how gaps can be turned such that forces have the same sum along the normals of both sides
-
-  Not Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, after `TransferSetBalance()`
-
-  Output Parameters:
-+ n      - number of turns: one in two dimensions, two in three
-. uneven - for each row of this rank n numbers c: sums of forces times c vanish where forces are balanced; owned by the transfer
-. lever  - for each row n numbers: a turn t changes its gap by the sum of them times t; owned by the transfer
-. bend   - for each row what c is half way between two nodes of surfaces without strain; owned by the transfer
-- turn   - all turns so far together [m]
-
-  Note:
-  Each of them may be `NULL`.
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferBalance()`, `TransferTurn()`
-@*/
+/* How gaps can be turned such that forces have the same sum along the normals of both sides; each may be NULL. `n`: number of turns, one
+   in two dimensions, two in three; for each row of this rank `uneven`: n numbers c, sums of forces times c vanish where forces are
+   balanced; `lever`: n numbers, a turn t changes its gap by the sum of them times t; `bend`: what c is half way between two nodes of
+   surfaces without strain. `turn`: all turns so far together [m] */
 PetscErrorCode TransferGetTurns(Transfer transfer, PetscInt *n, const PetscReal *uneven[], const PetscReal *lever[],
                                 const PetscReal *bend[], PetscReal turn[])
 {
@@ -201,19 +172,7 @@ PetscErrorCode TransferGetTurns(Transfer transfer, PetscInt *n, const PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferTurn - turns the gaps of all rows
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, after `TransferBalance()`
-- change   - by how much to turn about each of its axes [m]
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferGetTurns()`, `TransferBalance()`
-@*/
+/* Turns the gaps of all rows, after TransferBalance(), by `change` about each of its axes [m] */
 PetscErrorCode TransferTurn(Transfer transfer, const PetscReal change[])
 {
   Balance *balance = &transfer->balance;
@@ -234,26 +193,9 @@ PetscErrorCode TransferTurn(Transfer transfer, const PetscReal change[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferBalance - finds how gaps can be turned, and turns those of rows without a force as they are to be
-
-  Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, after `TransferFollow()` and `TransferSetBalance()`
-. force    - of each row of this rank at the start of the step [N]
-- reach    - gap up to which rows may come into contact in the step [m]
-
-  Output Parameter:
-. any - set to true if gaps have changed, else left as it is
-
-  Level: developer
-
-  Note:
-  Without any force there is no turn. No row is turned into the partner.
-
-.seealso: `Transfer`, `TransferFollow()`, `TransferSetBalance()`, `TransferGetTurns()`
-@*/
+/* Finds how gaps can be turned, after TransferFollow(), and turns those of rows without a force as they are to be. `force`: of each row
+   at the start of the step [N]; `reach`: gap up to which rows may come into contact in the step [m]; `any` becomes true if gaps have
+   changed. Without any force there is no turn. No row is turned into the partner. */
 PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], PetscReal reach, PetscBool *any)
 {
   Balance  *balance = &transfer->balance;

@@ -238,34 +238,12 @@ static PetscErrorCode MeasurePairs(ProbeSearch *search, Probes *points)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  SurfacesFindDepths - how deep bodies lie inside each other and in obstacles, anywhere on their boundaries
-
-  Collective
-
-  Input Parameters:
-+ comm        - communicator that has all of the surfaces
-. n           - number of surfaces
-. surfaces    - whole boundaries of bodies, where these are
-. n_obstacles - number of obstacles
-- obstacles   - these
-
-  Output Parameters:
-+ n_depths - number of pairs of surfaces whose bounding boxes meet, each in both orders, and of surfaces and obstacles
-- depths   - of each the deepest point; free with `PetscFree()`
-
-  Level: developer
-
-  Notes:
-  The deepest points of the first surface inside the body of the second are looked for among its nodes, the middles of its faces in space,
-  and points of its edges between any two places where these cross the second surface; those inside an obstacle among nodes and middles of
-  edges and faces. Deepest is the point whose depth is most in parts of the faces there. The depth of a point is its distance from the
-  closest face, whatever faces are opposite to each other.
-
-  Costs O(log n) for each node, edge and crossing within the boxes that two surfaces have in common.
-
-.seealso: `Surface`, `SurfaceDepth`, `SurfaceUpdate()`
-@*/
+/* How deep bodies lie inside each other and in obstacles, anywhere on their boundaries: for each pair of surfaces whose boxes meet, in
+   both orders, and of surfaces and obstacles the deepest point; free `depths` with PetscFree(). Collective on a communicator that has
+   all of the surfaces, the whole boundaries of bodies. The deepest points of the first surface inside the body of the second are looked
+   for among its nodes, the middles of its faces in space, and points of its edges between two places where these cross the second
+   surface; those inside an obstacle among nodes and middles. Deepest is the point whose depth, its distance from the closest face, is
+   most in parts of the faces there. Costs O(log n) for each node, edge and crossing within the boxes that two surfaces have in common. */
 PetscErrorCode SurfacesFindDepths(MPI_Comm comm, PetscInt n, const Surface surfaces[], PetscInt n_obstacles, const Obstacle obstacles[],
                                   PetscInt *n_depths, SurfaceDepth *depths[])
 {

@@ -47,24 +47,9 @@ static PetscErrorCode GetObstacleDrift(Transfer transfer, PetscReal drift[], Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferGetDrift - how far rows are off from those that would be built where the surfaces are now
-
-  Collective
-
-  Input Parameters:
-+ transfer    - the `Transfer`, updated once at least, in two or three dimensions
-. u_dirichlet - displacements of the body of the Dirichlet side
-- u_neumann   - of the Neumann side; `NULL`: an obstacle
-
-  Output Parameters:
-+ drift - for each row of this rank the difference of the gaps, 0 where nothing is opposite [m]
-- turn  - the angle between the normals, of rows against an obstacle, 0 of others [rad]
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferCompareMotion()`
-@*/
+/* How far rows are off from those that would be built where the surfaces are now: for each row of this rank the difference of the gaps,
+   0 where nothing is opposite [m], and the angle between the normals, of rows against an obstacle [rad]. In two or three dimensions;
+   u_neumann NULL: an obstacle */
 PetscErrorCode TransferGetDrift(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal drift[], PetscReal turn[])
 {
   PetscFunctionBegin;

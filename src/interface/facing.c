@@ -126,30 +126,10 @@ PetscErrorCode SurfacesGetOverlap(MPI_Comm comm, const Surface surfaces[2], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceKeepFacing - restricts surfaces to the faces that see the partner
-
-  Collective
-
-  Input Parameters:
-+ a        - a `Surface`
-. b        - the surface that it may touch; `NULL` if that is an obstacle
-. obstacle - the obstacle that it may touch; `NULL` if that is a surface
-. keep_a   - whether `a` is restricted to its faces that see the partner
-- keep_b   - whether `b` is
-
-  Level: developer
-
-  Notes:
-  In the reference positions, a face sees another one if their normals are opposed and each lies before the plane of the other. Where the
-  bodies overlap, a face may lie behind the plane by as much as they do. Faces of the partner are compared in groups of similar direction:
-  all faces that see one are kept, and maybe some more. Two blocks side by side keep the ends that face each other, two balls their front
-  halves.
-
-  A surface may end up without any face.
-
-.seealso: `Surface`, `SurfaceCreate()`
-@*/
+/* Restricts surfaces to the faces that see the partner, `b` or the obstacle, the other one being NULL; `keep_a`, `keep_b`: which of both
+   are restricted. In the reference positions, a face sees another one if their normals are opposed and each lies before the plane of the
+   other, or behind it by no more than the bodies overlap. Faces of the partner are compared in groups of similar direction: all faces
+   that see one are kept, and maybe some more. A surface may end up without any face. */
 PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscBool keep_a, PetscBool keep_b)
 {
   Surface     surfaces[2] = {a, b};

@@ -161,21 +161,7 @@ PetscReal TransferPresentGap(Transfer transfer, PetscInt row)
          AlongRow(transfer, row, data->reference, transfer->column_reference);
 }
 
-/*@
-  TransferGetGaps - gaps of the rows where the surfaces are now
-
-  Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, updated once at least
-
-  Output Parameter:
-. gaps - for each row of this rank [m], 0 where nothing is opposite
-
-  Level: developer
-
-.seealso: `Transfer`, `SurfaceUpdate()`, `TransferGetRows()`
-@*/
+/* Gaps of the rows of this rank where the surfaces are now [m], 0 where nothing is opposite */
 PetscErrorCode TransferGetGaps(Transfer transfer, PetscReal gaps[])
 {
   PetscFunctionBegin;
@@ -224,32 +210,11 @@ static PetscErrorCode NoteMotion(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferFollow - lets rows near contact follow the surfaces, without building them again
-
-  Neighborwise Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, between two surfaces, after `TransferUpdate()`
-. touches  - for each row of this rank, whether it is in contact
-. reach    - other rows follow if their gap is not larger than that [m]
-. still    - rows whose partner slips [parts of the face] and whose normal turns [rad] by less stay as they are, to the last bit
-. turns    - whether normals become those of the surface, which they else do where rows are built
-. middle   - whether the surfaces are where they are expected in the middle of the step, not where they are at its start
-. step     - until the next update [s]
-- last     - from the last update to this one [s]
-
-  Output Parameter:
-. any - whether any row of this rank has followed; which, `TransferRows` tells
-
-  Level: developer
-
-  Notes:
-  The weights of the partner's nodes are changed as little as possible so that a force along the
-  normal has no moment where the surfaces are expected to be after the step. The gap goes on from where it was.
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferRows`
-@*/
+/* Lets rows near contact follow two surfaces, after an update, without building them again. `touches`: which rows are in contact; others
+   follow if their gap is at most `reach` [m]; `still`: rows whose partner slips [parts of the face] and whose normal turns [rad] by less
+   stay as they are, to the last bit; `turns`: whether normals become those of the surface, which they else do where rows are built;
+   `middle`: whether the surfaces are where they are expected in the middle of the step, not at its start; `step`: until the next update,
+   `last`: from the last one to this [s]; `any`: whether any row of this rank has followed */
 PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], PetscReal reach, PetscReal still, PetscBool turns,
                               PetscBool middle, PetscReal step, PetscReal last, PetscBool *any)
 {

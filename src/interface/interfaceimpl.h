@@ -4,7 +4,7 @@
 #include <petsc/private/petscimpl.h>
 #include <checkpoint/statelist.h>
 #include <impakt/private/box.h>
-#include <impakt/transfer.h>
+#include <impakt/private/transfer.h>
 
 /* Two faces count as facing each other if the cosine of the angle between their outward normals is below this, which means an angle of more
    than 96 degrees: faces at right angles cannot push each other */
@@ -149,7 +149,6 @@ struct _p_Transfer {
   PetscBool       curved; /* rows take the bend of both surfaces into account, see TransferSetCurved() */
   PetscReal       share;  /* of the partner's normals in those of rows then, see TransferSetNormalShare() */
   PetscBool       guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
-  PetscBool       moved;  /* the caller has the surfaces moved, see TransferSetMoved() */
   RowSet          rows;
   PetscBool       built;
   PetscBool       due, looks; /* in the present update rows are built whatever the motion; the motion says whether they are */

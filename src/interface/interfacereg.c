@@ -1,5 +1,5 @@
 /* The packages of the classes. */
-#include <impakt/transfer.h>
+#include <impakt/private/transfer.h>
 #include <sys/package.h>
 
 PetscClassId OBSTACLE_CLASSID = 0, SURFACE_CLASSID = 0, TRANSFER_CLASSID = 0;
@@ -42,15 +42,6 @@ PetscErrorCode ObstacleFinalizePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceInitializePackage - registers the class; `SurfaceCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `SurfaceFinalizePackage()`, `ImpaktInitialize()`
-@*/
 PetscErrorCode SurfaceInitializePackage(void)
 {
   PetscFunctionBegin;
@@ -61,15 +52,6 @@ PetscErrorCode SurfaceInitializePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceFinalizePackage - ends the package; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `SurfaceInitializePackage()`
-@*/
 PetscErrorCode SurfaceFinalizePackage(void)
 {
   PetscFunctionBegin;
@@ -77,15 +59,6 @@ PetscErrorCode SurfaceFinalizePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferInitializePackage - registers the class; `TransferCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `TransferFinalizePackage()`, `ImpaktInitialize()`
-@*/
 PetscErrorCode TransferInitializePackage(void)
 {
   PetscFunctionBegin;
@@ -96,15 +69,6 @@ PetscErrorCode TransferInitializePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferFinalizePackage - ends the package; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `TransferInitializePackage()`
-@*/
 PetscErrorCode TransferFinalizePackage(void)
 {
   PetscFunctionBegin;

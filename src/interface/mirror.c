@@ -41,25 +41,10 @@ static PetscErrorCode FindExtents(Surface surface, PetscReal lower[], PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceSetMirrors - finds the nodes that lie in planes of symmetry, whose normals stay in them
-
-  Collective
-
-  Input Parameters:
-+ surface - the `Surface`
-. n       - number of displacements of this rank that are prescribed
-. dofs    - their numbers among those of this rank, ascending
-- first   - global number of the first displacement of this rank
-
-  Level: developer
-
-  Notes:
-  A node lies in one if it is held along one axis or two but not along all, all faces around it are on one side of it along that axis, and
-  its normal is out of the plane by 30 degrees at most. Normals count from the next `SurfaceUpdate()` on.
-
-.seealso: `Surface`, `SurfaceUpdate()`, `BodyGetHeldDofs()`
-@*/
+/* Finds the nodes that lie in planes of symmetry, whose normals stay in them from the next SurfaceUpdate() on. `dofs`: the prescribed
+   displacements of this rank, ascending, numbered from its first one, `first`, on. A node lies in a plane if it is held along one axis
+   or two but not along all, all faces around it are on one side of it along that axis, and its normal is out of the plane by 30 degrees
+   at most. */
 PetscErrorCode SurfaceSetMirrors(Surface surface, PetscInt n, const PetscInt dofs[], PetscInt first)
 {
   const SurfaceData *data = &surface->data;

@@ -17,22 +17,9 @@ PetscErrorCode SurfaceKeepFaces(Surface surface, const PetscBool keep[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceSetAxisymmetric - makes a surface that of rings about the axis x = 0
-
-  Collective
-
-  Input Parameter:
-. surface - the `Surface`, of a plane mesh
-
-  Level: developer
-
-  Notes:
-  Areas, and with them mortar integrals, get the weight 2 pi x, x being the present distance from the axis. Faces on the axis are left out,
-  as there is nothing outside; the normals of nodes on the axis are along it, as those of the whole body are.
-
-.seealso: `Surface`, `SurfaceCreate()`, `BodySetAxisymmetric()`
-@*/
+/* Makes a surface of a plane mesh that of rings about the axis x = 0. Areas, and with them mortar integrals, get the weight 2 pi x, x
+   being the present distance from the axis. Faces on the axis are left out, as there is nothing outside; the normals of nodes on the
+   axis are along it. */
 PetscErrorCode SurfaceSetAxisymmetric(Surface surface)
 {
   const SurfaceData *data = &surface->data;

@@ -302,12 +302,15 @@ static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], Petsc
 /* How far behind a node its partner may be: as far as the bodies overlap anywhere [m] */
 static PetscErrorCode GetDepth(Transfer transfer, const Vec u[2], PetscReal *behind)
 {
-  const Surface  own[2]   = {transfer->dirichlet, transfer->neumann};
-  const Surface *surfaces = transfer->boundaries[0] ? transfer->boundaries : own;
+  const Surface surfaces[2] = {transfer->dirichlet, transfer->neumann};
+  Surface      *boundaries  = transfer->boundaries;
 
   PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2 && transfer->boundaries[0]; side++) PetscCall(SurfaceUpdate(transfer->boundaries[side], u[side]));
-  PetscCall(SurfacesGetOverlap(transfer->comm, surfaces, behind));
+  for (PetscInt side = 0; side < 2; side++) {
+    if (!boundaries[side]) PetscCall(SurfaceCreate(surfaces[side]->dm, NULL, &boundaries[side]));
+    PetscCall(SurfaceUpdate(boundaries[side], u[side]));
+  }
+  PetscCall(SurfacesGetOverlap(transfer->comm, boundaries, behind));
   if (transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   *behind *= OBLIQUE;
   if (transfer->built) *behind = PetscMax(*behind, LEAST_DEPTH * transfer->numbers.smallest_size);

@@ -249,23 +249,8 @@ PetscErrorCode SurfaceClearNodes(Surface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceCreate - collects faces of a body's boundary
-
-  Collective
-
-  Input Parameters:
-+ dm   - a `DMPLEX` with a local section of one block of displacements at each vertex
-- name - as `MeshGetSurface()` takes it: a label of the mesh, a number, a side of its bounding box; `all`, `NULL` or empty for
-         the whole boundary
-
-  Output Parameter:
-. surface - the `Surface`, in its reference position
-
-  Level: developer
-
-.seealso: `Surface`, `SurfaceGetData()`, `SurfaceKeepFacing()`, `SurfaceUpdate()`, `MeshGetSurface()`
-@*/
+/* Collects faces of a body's boundary. `name`: as MeshGetSurface() takes it, NULL or empty for the whole boundary. The mesh has a
+   section of one block of displacements at each vertex. */
 PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
 {
   PetscSection section;
@@ -278,7 +263,7 @@ PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
   PetscAssertPointer(surface, 3);
   PetscCall(SurfaceInitializePackage());
   PetscCall(PetscHeaderCreate(*surface, SURFACE_CLASSID, "Surface", "Contact surface", "Interface", PetscObjectComm((PetscObject)dm),
-                              SurfaceDestroy, SurfaceView));
+                              SurfaceDestroy, NULL));
   PetscCall(PetscObjectGetName((PetscObject)dm, &body));
   PetscCall(PetscSNPrintf(full, sizeof(full), "%s.%s", body, name && name[0] ? name : "all"));
   PetscCall(PetscObjectSetName((PetscObject)*surface, full));
@@ -292,18 +277,6 @@ PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceDestroy - frees a surface
-
-  Collective
-
-  Input Parameter:
-. surface - the `Surface`, set to `NULL`
-
-  Level: developer
-
-.seealso: `Surface`, `SurfaceCreate()`
-@*/
 PetscErrorCode SurfaceDestroy(Surface *surface)
 {
   PetscFunctionBegin;
@@ -321,21 +294,6 @@ PetscErrorCode SurfaceDestroy(Surface *surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceGetData - nodes, faces, normals and areas
-
-  Not Collective
-
-  Input Parameter:
-. surface - the `Surface`
-
-  Output Parameter:
-. data - of this rank, owned by the surface
-
-  Level: developer
-
-.seealso: `Surface`, `SurfaceData`
-@*/
 PetscErrorCode SurfaceGetData(Surface surface, const SurfaceData **data)
 {
   PetscFunctionBegin;
@@ -345,22 +303,7 @@ PetscErrorCode SurfaceGetData(Surface surface, const SurfaceData **data)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceGetVertices - the mesh points of the nodes that this rank has
-
-  Not Collective
-
-  Input Parameter:
-. surface - the `Surface`
-
-  Output Parameters:
-+ n        - number of vertices
-- vertices - points of the `DMPLEX`, those owned by this rank first, then ghosts; owned by the surface
-
-  Level: developer
-
-.seealso: `Surface`
-@*/
+/* Points of the mesh of the nodes that this rank has, those that it owns first; owned by the surface */
 PetscErrorCode SurfaceGetVertices(Surface surface, PetscInt *n, const PetscInt *vertices[])
 {
   PetscFunctionBegin;

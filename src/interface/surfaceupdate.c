@@ -88,25 +88,9 @@ static PetscErrorCode ShareNodes(Surface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceSetRound - normals of nodes are those of the round surface through them
-
-  Logically Collective
-
-  Input Parameters:
-+ surface - the `Surface`
-- round   - false by default: of the faces around a node weighted by their areas
-
-  Level: developer
-
-  Notes:
-  Of nodes on a sphere they are exact, whatever the shapes and sizes of the faces, where the mean by areas is off by 0.3 degrees for a ball
-  with 32 edges round. They count from the next `SurfaceUpdate()` on.
-
-  Reference: N. Max, Weights for computing vertex normals from facet normals, Journal of Graphics Tools 4 (1999).
-
-.seealso: `Surface`, `SurfaceData`, `SurfaceUpdate()`
-@*/
+/* Whether normals of nodes are those of the round surface through them, from the next SurfaceUpdate() on, not means of the faces around
+   weighted by areas, which are off by 0.3 degrees for a ball with 32 edges round (N. Max, Weights for computing vertex normals from
+   facet normals, Journal of Graphics Tools 4, 1999) */
 PetscErrorCode SurfaceSetRound(Surface surface, PetscBool round)
 {
   PetscFunctionBegin;
@@ -153,19 +137,7 @@ static PetscErrorCode UpdateNodes(Surface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceSetNear - tells of which nodes the normals, areas and sizes are needed from now on in `SurfaceMove()`
-
-  Collective
-
-  Input Parameters:
-+ surface - the `Surface`
-- near    - for each node that this rank owns, whether they are; `NULL`: of all nodes
-
-  Level: developer
-
-.seealso: `Surface`, `SurfaceMove()`
-@*/
+/* Of which nodes that this rank owns SurfaceMove() finds normals, areas and sizes from now on; NULL: of all */
 PetscErrorCode SurfaceSetNear(Surface surface, const PetscBool near[])
 {
   const SurfaceData *data = &surface->data;
@@ -193,19 +165,7 @@ PetscErrorCode SurfaceSetNear(Surface surface, const PetscBool near[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceMove - as `SurfaceUpdate()`, but for normals, areas and sizes of nodes that are not near
-
-  Collective
-
-  Input Parameters:
-+ surface - the `Surface`
-- u       - displacements of its body, a global vector of the mesh; `NULL` for the reference position
-
-  Level: developer
-
-.seealso: `Surface`, `SurfaceSetNear()`, `SurfaceUpdate()`
-@*/
+/* As SurfaceUpdate(), but for normals, areas and sizes of nodes that are not near */
 PetscErrorCode SurfaceMove(Surface surface, Vec u)
 {
   PetscFunctionBegin;
@@ -216,22 +176,7 @@ PetscErrorCode SurfaceMove(Surface surface, Vec u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  SurfaceUpdate - moves a surface to where its body is
-
-  Collective
-
-  Input Parameters:
-+ surface - the `Surface`
-- u       - displacements of its body, a global vector of the mesh; `NULL` for the reference position
-
-  Level: developer
-
-  Note:
-  Updates the positions, normals, areas and sizes of `SurfaceData`; costs work in proportion to the number of faces.
-
-.seealso: `Surface`, `SurfaceData`, `TransferUpdate()`
-@*/
+/* Moves a surface to where its body is under the displacements u; NULL: its reference position */
 PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
 {
   PetscBool *near = surface->near;

@@ -7,24 +7,8 @@
 #define SLIP_BOUND  0.05 /* [parts of the face] */
 #define ANGLE_BOUND 0.02 /* [rad] */
 
-/*@
-  TransferCreate - prepares the rows that compare a surface with another, or with an obstacle
-
-  Collective
-
-  Input Parameters:
-+ comm      - communicator of both
-. dirichlet - surface that takes displacements and gives tractions
-. neumann   - surface that takes tractions and gives displacements; `NULL` with an obstacle
-- obstacle  - `NULL` with a second surface
-
-  Output Parameter:
-. transfer - the `Transfer`; surfaces and obstacle belong to the caller and must live as long
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferDestroy()`
-@*/
+/* Prepares the rows that compare a surface, which takes displacements and gives tractions, with another one or with an obstacle, the
+   other being NULL. Surfaces and obstacle belong to the caller and must live as long. `comm`: that of both */
 PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann, Obstacle obstacle, Transfer *transfer)
 {
   Transfer t;
@@ -36,7 +20,7 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   PetscAssertPointer(transfer, 5);
   PetscCall(TransferInitializePackage());
   PetscCall(PetscHeaderCreate(*transfer, TRANSFER_CLASSID, "Transfer", "Rows between contact surfaces", "Interface", comm, TransferDestroy,
-                              TransferView));
+                              NULL));
   PetscCheck(!neumann != !obstacle, comm, PETSC_ERR_ARG_WRONG, "A transfer is between a surface and either another surface or an obstacle");
   t              = *transfer;
   t->comm        = comm;
@@ -66,18 +50,6 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferDestroy - frees a transfer; its surfaces belong to the caller
-
-  Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, set to `NULL`
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferCreate()`
-@*/
 PetscErrorCode TransferDestroy(Transfer *transfer)
 {
   PetscFunctionBegin;
@@ -89,6 +61,7 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   }
   PetscCall(RowSetDestroy(&(*transfer)->rows));
   PetscCall(TransferDestroySaved(*transfer));
+  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceDestroy(&(*transfer)->boundaries[side]));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
   PetscCall(PetscFree((*transfer)->near));
@@ -102,20 +75,7 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetBounds - how far the surfaces may move along each other before the rows are built again
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`
-. slip     - parts of the face size, 0.05 by default
-- angle    - by which a normal may turn, 0.02 by default [rad]
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`
-@*/
+/* How far the surfaces may move along each other [parts of the face], and normals turn [rad], before the rows are built again */
 PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal angle)
 {
   PetscFunctionBegin;
@@ -129,77 +89,24 @@ PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal an
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetMoved - whether the surfaces are where their bodies are already when `TransferUpdate()` is called
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`
-- moved    - false by default: each update moves them
-
-  Level: developer
-
-  Note:
-  For surfaces that several transfers have in common: the caller moves each once, by `SurfaceUpdate()`.
-
-.seealso: `Transfer`, `TransferUpdate()`, `SurfaceUpdate()`
-@*/
-PetscErrorCode TransferSetMoved(Transfer transfer, PetscBool moved)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(transfer, moved, 2);
-  transfer->moved = moved;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  TransferSetBoundaries - gives the whole boundaries of both bodies, by which it is known how deep they lie inside each other
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer  - the `Transfer`, between two surfaces
-. dirichlet - all faces of the body of the Dirichlet side; it belongs to the caller and must live as long
-- neumann   - of the Neumann side
-
-  Level: developer
-
-  Note:
-  Without them partners are looked for as far behind a node as the hulls of both bodies overlap, which is far where one body is in a hollow
-  of the other.
-
-.seealso: `Transfer`, `TransferUpdate()`, `SurfacesFindDepths()`
-@*/
+/* The whole boundaries of both bodies, by which it is known how deep they lie inside each other, for all transfers of these bodies; else
+   each has its own */
 PetscErrorCode TransferSetBoundaries(Transfer transfer, Surface dirichlet, Surface neumann)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscValidHeaderSpecific(dirichlet, SURFACE_CLASSID, 2);
   PetscValidHeaderSpecific(neumann, SURFACE_CLASSID, 3);
-  transfer->boundaries[0] = dirichlet;
-  transfer->boundaries[1] = neumann;
+  for (PetscInt side = 0; side < 2; side++) {
+    PetscCall(PetscObjectReference((PetscObject)(side ? neumann : dirichlet)));
+    PetscCall(SurfaceDestroy(&transfer->boundaries[side]));
+    transfer->boundaries[side] = side ? neumann : dirichlet;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetOwner - says that one rank has all of both surfaces, so that it needs no other to update the rows
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, before the first `TransferUpdate()`
-- rank     - that rank
-
-  Level: developer
-
-  Note:
-  From then on what an update finds, whether rows have been built and whether any has followed, that rank alone knows; and updates are
-collective no more. Gaps must not be turned.
-
-.seealso: `Transfer`, `TransferGetOwner()`, `TransferUpdate()`, `TransferFollow()`, `TransferSetBalance()`
-@*/
+/* Says, before the first update, that one rank has all of both surfaces. From then on that rank alone knows what an update finds;
+   updates are collective no more. Gaps must not be turned. */
 PetscErrorCode TransferSetOwner(Transfer transfer, PetscMPIInt rank)
 {
   PetscMPIInt mine;
@@ -214,21 +121,7 @@ PetscErrorCode TransferSetOwner(Transfer transfer, PetscMPIInt rank)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferGetOwner - which rank has all of both surfaces
-
-  Not Collective
-
-  Input Parameter:
-. transfer - the `Transfer`
-
-  Output Parameter:
-. rank - as `TransferSetOwner()` was told; `PETSC_DECIDE`: there may be several
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferSetOwner()`
-@*/
+/* Which rank has all of both surfaces; PETSC_DECIDE: there may be several */
 PetscErrorCode TransferGetOwner(Transfer transfer, PetscMPIInt *rank)
 {
   PetscFunctionBegin;
@@ -238,26 +131,10 @@ PetscErrorCode TransferGetOwner(Transfer transfer, PetscMPIInt *rank)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetGuards - whether Dirichlet nodes just beyond the end of the partner have rows too
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, before the first `TransferUpdate()`
-- guards   - true by default
-
-  Level: developer
-
-  Notes:
-  If a face is covered in part, a node of it beyond the end of the partner is compared with the straight line that continues the covered
-  part, as in Popp, Seitz, Gee, Wall (2013), with the gap counted from where the partner ends. Without these rows the last covered node
-  has the mean gap of the whole covered part, and the end of a tilting partner gets into the surface by half an element times the angle.
-
-  A node beyond the end of one partner may be in contact with another one: `TransferRows` tells which nodes are beyond an end.
-
-.seealso: `Transfer`, `TransferUpdate()`
-@*/
+/* Whether Dirichlet nodes just beyond the end of the partner have rows too, which they do by default. If a face is covered in part, a
+   node of it beyond the end of the partner is compared with the straight line that continues the covered part (Popp, Seitz, Gee, Wall
+   2013), with the gap counted from where the partner ends. Without these rows the end of a tilting partner gets into the surface by half
+   an element times the angle. */
 PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
 {
   PetscFunctionBegin;
@@ -268,21 +145,6 @@ PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferGetRows - the rows of the nodes that this rank owns
-
-  Not Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, updated once at least
-
-  Output Parameter:
-. rows - see `TransferRows`
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferSetValues()`
-@*/
 PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
 {
   const RowSet *set = &transfer->rows;
@@ -305,21 +167,6 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferGetCounts - what the updates have done
-
-  Not Collective
-
-  Input Parameter:
-. transfer - the `Transfer`
-
-  Output Parameter:
-. counts - see `TransferCounts`; the same on every rank
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`
-@*/
 PetscErrorCode TransferGetCounts(Transfer transfer, TransferCounts *counts)
 {
   PetscFunctionBegin;

@@ -1,25 +1,10 @@
 /* Normals of rows: what they are made of, what they would be where surfaces are now, and by how much they differ from that. */
 #include "interfaceimpl.h"
 
-/*@
-  TransferSetCurved - whether rows take the bend of both surfaces into account
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, before the first `TransferUpdate()`
-- curved   - false by default
-
-  Level: developer
-
-  Notes:
-  If so, the normal of a row is between that of its node and those of the partner opposite, half way unless `TransferSetNormalShare()` says
-  otherwise, and its gap is counted to a surface of second order that has the normals of the partner's nodes. Then what comes of it hardly
-depends on which surface has the nodes of the rows, nor on where the corners of the faces are. Where normals differ by more than 26 degrees,
-which is an edge, the row is as it is otherwise: with the normal of its node, and the gap to the faces.
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferSetNormalShare()`
-@*/
+/* Whether rows take the bend of both surfaces into account, before the first update. If so, the normal of a row is between that of its
+   node and those of the partner opposite, half way unless TransferSetNormalShare() says otherwise, and its gap is counted to a surface
+   of second order that has the normals of the partner's nodes. Then it hardly matters which surface has the nodes of the rows. Where
+   normals differ by more than 26 degrees, which is an edge, the row is as it is otherwise. */
 PetscErrorCode TransferSetCurved(Transfer transfer, PetscBool curved)
 {
   PetscFunctionBegin;
@@ -30,24 +15,10 @@ PetscErrorCode TransferSetCurved(Transfer transfer, PetscBool curved)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetNormalShare - how much of the normal of a row is that of the partner, where rows take bends into account
-
-  Logically Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, before the first `TransferUpdate()`
-- share    - from 0, the normal is that of the node, to 1, those of the partner; 0.5 by default
-
-  Level: developer
-
-  Note:
-  Where two curved surfaces are pressed flat on each other, each gives way in proportion to its compliance: what is flat then has a slope
-  between those of both, closer to that of the stiffer one (Johnson 1985, section 4.2). With moduli E1 of the side with the nodes and E2 of
-  the partner the share is E2 / (E1 + E2).
-
-.seealso: `Transfer`, `TransferSetCurved()`
-@*/
+/* How much of the normal of a row is that of the partner, from 0 to 1, where rows take bends into account. Where two curved surfaces are
+   pressed flat on each other, each gives way in proportion to its compliance: what is flat then has a slope between those of both,
+   closer to that of the stiffer one (Johnson 1985, section 4.2). With moduli E1 of the side with the nodes and E2 of the partner the
+   share is E2 / (E1 + E2). */
 PetscErrorCode TransferSetNormalShare(Transfer transfer, PetscReal share)
 {
   PetscFunctionBegin;
@@ -83,24 +54,8 @@ void TransferPresentNormal(Transfer transfer, PetscInt row, PetscReal normal[])
   RowNormal(transfer->dim, PetscMin(n, FOLLOW_MAX), transfer->share, transfer->dirichlet->data.normals + 3 * row, normals, weights, normal);
 }
 
-/*@
-  TransferGetTilts - by how much the normal of each row differs from that which it would have where the surfaces are
-
-  Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, updated once at least
-
-  Output Parameter:
-. tilts - for each row of this rank the angle [rad], 0 where nothing is opposite; owned by the caller
-
-  Level: developer
-
-  Note:
-  Surfaces are where the last `SurfaceUpdate()` has moved them to.
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferSetBounds()`
-@*/
+/* By how much the normal of each row of this rank differs from that which it would have where the surfaces are [rad], 0 where nothing is
+   opposite */
 PetscErrorCode TransferGetTilts(Transfer transfer, PetscReal tilts[])
 {
   const SurfaceData *data = &transfer->dirichlet->data;

@@ -80,21 +80,8 @@ static PetscErrorCode RestoreShares(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSave - puts the rows aside as they are, and what the next update and `TransferFollow()` start from
-
-  Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, updated once at least
-
-  Level: developer
-
-  Note:
-  Allocates only where rows have been built since the last call.
-
-.seealso: `Transfer`, `TransferRestore()`, `TransferUpdate()`, `TransferFollow()`
-@*/
+/* Puts the rows aside as they are, and what the next update and TransferFollow() start from. Allocates only where rows have been built
+   since the last call. */
 PetscErrorCode TransferSave(Transfer transfer)
 {
   TransferSaved  *saved = &transfer->saved;
@@ -116,21 +103,8 @@ PetscErrorCode TransferSave(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferRestore - goes back to the last `TransferSave()`, as if rows had neither been built nor followed the surfaces since
-
-  Collective
-
-  Input Parameter:
-. transfer - the `Transfer`
-
-  Level: developer
-
-  Note:
-  May be called any number of times. The counts of builds go on: they count work.
-
-.seealso: `Transfer`, `TransferSave()`
-@*/
+/* Goes back to the last TransferSave(), any number of times, as if rows had neither been built nor followed the surfaces since. The
+   counts of builds go on: they count work. */
 PetscErrorCode TransferRestore(Transfer transfer)
 {
   TransferSaved *saved = &transfer->saved;

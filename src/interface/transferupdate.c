@@ -176,21 +176,8 @@ PetscErrorCode TransferGetReach(Transfer transfer, PetscReal near, PetscReal *re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSleep - leaves all rows without a partner, since the surfaces are far apart, until the next `TransferUpdate()` builds them
-
-  Logically Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, between two surfaces, updated once at least
-
-  Level: developer
-
-  Note:
-  Rows that had a partner count as changed.
-
-.seealso: `Transfer`, `TransferUpdate()`
-@*/
+/* Leaves all rows between two surfaces without a partner, since these are far apart, until the next update builds them. Rows that had a
+   partner count as changed. */
 PetscErrorCode TransferSleep(Transfer transfer)
 {
   RowSet *set = &transfer->rows;
@@ -210,40 +197,15 @@ PetscErrorCode TransferSleep(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferBeginUpdate - the part of `TransferUpdate()` before ranks add up motions, which callers do for many transfers at once
-
-  Not Collective
-
-  Input Parameters:
-+ transfer    - the `Transfer`
-. u_dirichlet - displacements of the body of the Dirichlet side; `NULL`: none
-. u_neumann   - of the Neumann side; `NULL`: none, or an obstacle
-- near        - partners at least this close must be known; `PETSC_MAX_REAL`: at any distance [m]
-
-  Output Parameter:
-. sums - of this rank, to be added up over all ranks and given to `TransferCompareMotion()`
-
-  Level: developer
-
-  Note:
-  Collective if the surfaces are not where they are yet, see `TransferSetMoved()`.
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferCompareMotion()`, `TransferEndUpdate()`
-@*/
-PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscReal sums[TRANSFER_SUMS])
+/* The part of TransferUpdate() before ranks add up motions, which callers do for many transfers at once. Surfaces are where they are.
+   `sums`: of this rank, to be added up over all ranks and given to TransferCompareMotion() */
+PetscErrorCode TransferBeginUpdate(Transfer transfer, PetscReal near, PetscReal sums[TRANSFER_SUMS])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  if (u_dirichlet) PetscValidHeaderSpecific(u_dirichlet, VEC_CLASSID, 2);
-  if (u_neumann) PetscValidHeaderSpecific(u_neumann, VEC_CLASSID, 3);
-  PetscAssertPointer(sums, 5);
+  PetscAssertPointer(sums, 3);
   PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
              (double)near);
-  if (!transfer->moved) {
-    PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
-    if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
-  }
   for (PetscInt k = 0; k < TRANSFER_SUMS; k++) sums[k] = 0;
   transfer->columns_present = PETSC_FALSE;
   transfer->looks           = PETSC_FALSE;
@@ -259,23 +221,8 @@ PetscErrorCode TransferBeginUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neu
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferCompareMotion - the part of `TransferUpdate()` after that: how far surfaces have moved since the last build
-
-  Neighborwise Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`
-. sums     - of all ranks
-- anew     - whether to build all rows where the surfaces are, however little these have moved
-
-  Output Parameter:
-. largest - of this rank, of which the largest of all ranks are to be given to `TransferEndUpdate()`
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferBeginUpdate()`, `TransferEndUpdate()`
-@*/
+/* How far surfaces have moved since the last build. `sums`: of all ranks; `anew`: whether to build all rows where the surfaces are,
+   however little these have moved; `largest`: of this rank, of which the largest of all ranks are to be given to TransferEndUpdate() */
 PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRANSFER_SUMS], PetscBool anew,
                                      PetscReal largest[TRANSFER_LARGEST])
 {
@@ -298,25 +245,7 @@ PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRA
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferEndUpdate - the rest of `TransferUpdate()`, after `TransferCompareMotion()`: builds the rows again where that is needed
-
-  Collective
-
-  Input Parameters:
-+ transfer    - the `Transfer`
-. u_dirichlet - displacements of the body of the Dirichlet side, as `TransferBeginUpdate()` got them
-. u_neumann   - of the Neumann side
-. near        - partners at least this close must be known [m]
-- largest     - of all ranks
-
-  Output Parameter:
-. rebuilt - whether the rows have been built
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`, `TransferBeginUpdate()`, `TransferCompareMotion()`
-@*/
+/* Builds the rows again where that is needed, with the displacements of both bodies. `largest`: of all ranks */
 PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near,
                                  const PetscReal largest[TRANSFER_LARGEST], PetscBool *rebuilt)
 {
@@ -350,24 +279,9 @@ PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetNear - tells which rows may touch before rows are built again: updates look at no others until they build
-
-  Neighborwise Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, updated once at least, whose surfaces the caller moves, see `TransferSetMoved()`
-- near     - for each row of this rank, whether it may; `NULL`: all rows. Others have a gap of more than two edges of the face.
-
-  Output Parameters:
-+ dirichlet - of the nodes of the Dirichlet side that this rank owns those whose normals near rows need are set to true, for
-              `SurfaceSetNear()`: none before a plane
-- neumann   - of the Neumann side those that these rows name; `NULL` with an obstacle
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferUpdate()`, `SurfaceSetNear()`
-@*/
+/* Which rows may touch before rows are built again; updates look at no others until then. NULL: all rows; others have a gap of more than
+   two edges of the face. For SurfaceSetNear() the nodes whose normals near rows need are set to true: of the Dirichlet side, none before
+   a plane, and of the Neumann side, NULL with an obstacle */
 PetscErrorCode TransferSetNear(Transfer transfer, const PetscBool near[], PetscBool dirichlet[], PetscBool neumann[])
 {
   const RowSet *set = &transfer->rows;
@@ -396,34 +310,13 @@ PetscErrorCode TransferSetNear(Transfer transfer, const PetscBool near[], PetscB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferUpdate - moves both surfaces to where they are, unless `TransferSetMoved()` says that they are there, and builds the rows again
-  where that is needed
-
-  Collective
-
-  Input Parameters:
-+ transfer    - the `Transfer`
-. u_dirichlet - displacements of the body of the Dirichlet side; `NULL`: none
-. u_neumann   - of the Neumann side; `NULL`: none, or an obstacle
-- near        - partners at least this close must be known; `PETSC_MAX_REAL`: at any distance [m]
-
-  Output Parameter:
-. rebuilt - whether the rows have been built, which the first call always does
-
-  Level: developer
-
-  Notes:
-  The rows are built again if a row whose gap is less than two edges of the face has slipped or turned by more than the bounds; if the
-  surfaces have moved by more than a quarter of the smallest face relative to each other, so that other faces may lie opposite; and if
-  `near` exceeds that of the last build. Between builds normals stay as they are. In a build, rows near contact that are within both bounds
-  stay as they are too: each change of a row costs a little energy. In one dimension rows are built once.
-
-  A build looks ahead of a node as far as `near`, or four faces further than the distance of the boxes about both surfaces, if that is more;
-  and behind the node as far as the two bodies overlap, see `TransferSetBoundaries()`.
-
-.seealso: `Transfer`, `TransferSetBounds()`, `TransferGetRows()`, `TransferBeginUpdate()`
-@*/
+/* Moves both surfaces to where they are, and builds the rows again where that is needed, which the first call always does. u NULL: no
+   displacements; partners at least as close as `near` must be known; PETSC_MAX_REAL: at any distance [m]. The rows are built again if a
+   row whose gap is less than two edges of the face has slipped or turned by more than the bounds; if the surfaces have moved by more
+   than a quarter of the smallest face relative to each other, so that other faces may lie opposite; and if `near` exceeds that of the
+   last build. In a build, rows near contact that are within both bounds stay as they are: each change of a row costs a little energy. In
+   one dimension rows are built once. A build looks ahead of a node as far as `near`, or four faces further than the distance of the
+   boxes about both surfaces, if that is more; and behind the node as far as the two bodies overlap. */
 PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscBool *rebuilt)
 {
   PetscReal sums[TRANSFER_SUMS], largest[TRANSFER_LARGEST];
@@ -432,7 +325,9 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscValidLogicalCollectiveReal(transfer, near, 4);
   PetscAssertPointer(rebuilt, 5);
-  PetscCall(TransferBeginUpdate(transfer, u_dirichlet, u_neumann, near, sums));
+  PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
+  if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
+  PetscCall(TransferBeginUpdate(transfer, near, sums));
   if (transfer->looks && transfer->neumann)
     PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, TRANSFER_SUMS, MPIU_REAL, MPIU_SUM, transfer->comm));
   PetscCall(TransferCompareMotion(transfer, sums, PETSC_FALSE, largest));

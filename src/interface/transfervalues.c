@@ -4,22 +4,8 @@
 /* Shares of a row whose entries go into a matrix together */
 #define SHARES_AT_ONCE 32
 
-/*@
-  TransferCountValues - how many entries a row has in the matrices of both sides
-
-  Not Collective
-
-  Input Parameter:
-. transfer - the `Transfer`, updated once at least
-
-  Output Parameters:
-+ first  - for each node of this rank: of a row of it, along its normal or another direction, in the matrix of the first side
-- second - the same in that of the second side; `NULL` for obstacles
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferSetValues()`, `TransferSetDirectedValues()`
-@*/
+/* How many entries a row of each node of this rank has, along its normal or another direction, in the matrices of both sides; `second`
+   NULL for obstacles */
 PetscErrorCode TransferCountValues(Transfer transfer, PetscInt first[], PetscInt second[])
 {
   const RowSet *set = &transfer->rows;
@@ -64,33 +50,17 @@ static PetscErrorCode SetRow(Transfer transfer, PetscInt i, const PetscInt row[2
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetValues - puts the rows of this rank into the matrices of both sides
-
-  Not Collective
-
-  Input Parameters:
-+ transfer   - the `Transfer`, updated once at least
-. begin      - global number of the first row of this rank in the matrix of the first side, and in that of the second
-. components - 1: the normal gap, a row for each node; the space dimension: all components of sum_j P_ij u_j - u_i, as many rows for each
-- rows       - the first gets the normal of the node, or the unit vectors, at its displacements; the second the same times the weights, at
-               the displacements of the nodes opposite. Either may be `NULL`; the second is for obstacles
-
-  Level: developer
-
-  Notes:
-  Assemble both afterwards; values that were there before must have been set to zero. Rows without anything opposite have entries on the
-  Dirichlet side alone.
-
-  A force f on the gap acts on the Neumann side as the transpose times f and on the Dirichlet side as its transpose times -f: both have
-  the same resultant, since the weights sum to one, and the same moment about any point.
-
-.seealso: `Transfer`
-@*/
-PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], PetscInt components, const Mat rows[2])
+/* Puts the rows of this rank into the matrices of both sides, which are assembled afterwards. `begin`: global numbers of the first row
+   of this rank in both matrices; `directions`: of each row 3 numbers, or NULL: with one component the normals of the rows, else the unit
+   vectors, so that sum_j P_ij u_j - u_i has as many rows as components. The first matrix gets the direction at the displacements of the
+   node, the second one the same times the weights, at those of the nodes opposite. Either may be NULL. A force f on the gap acts on the
+   Neumann side as the transpose times f and on the Dirichlet side as its transpose times -f: both have the same resultant and moment. */
+PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], PetscInt components, const PetscReal directions[],
+                                 const Mat rows[2])
 {
-  const RowSet  *set = &transfer->rows;
-  const PetscInt dim = transfer->dim;
+  const RowSet   *set = &transfer->rows;
+  const PetscInt  dim = transfer->dim;
+  const PetscReal one = 1;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
@@ -99,65 +69,18 @@ PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], Pet
              "A row has 1 or %" PetscInt_FMT " components, not %" PetscInt_FMT, dim, components);
   for (PetscInt i = 0; i < transfer->n; i++)
     for (PetscInt c = 0; c < components; c++) {
-      const PetscInt  row[2] = {begin[0] + i * components + c, begin[1] + i * components + c};
-      const PetscReal unit   = 1;
+      const PetscInt k = i * components + c, row[2] = {begin[0] + k, begin[1] + k};
 
-      if (components == 1) PetscCall(SetRow(transfer, i, row, 0, dim, set->normals + dim * i, rows));
-      else PetscCall(SetRow(transfer, i, row, c, 1, &unit, rows));
+      if (directions) PetscCall(SetRow(transfer, i, row, 0, dim, directions + 3 * k, rows));
+      else if (components == 1) PetscCall(SetRow(transfer, i, row, 0, dim, set->normals + dim * i, rows));
+      else PetscCall(SetRow(transfer, i, row, c, 1, &one, rows));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TransferSetDirectedValues - puts rows of given directions into the matrices of both sides
-
-  Not Collective
-
-  Input Parameters:
-+ transfer   - the `Transfer`, updated once at least
-. begin      - global number of the first row of this rank in the matrix of the first side, and in that of the second
-. components - rows of each node
-. directions - of each row of this rank: 3 numbers, zeros beyond the space dimension
-- rows       - as in `TransferSetValues()`, with these directions in place of the normal
-
-  Level: developer
-
-.seealso: `Transfer`, `TransferSetValues()`
-@*/
-PetscErrorCode TransferSetDirectedValues(Transfer transfer, const PetscInt begin[2], PetscInt components, const PetscReal directions[],
-                                         const Mat rows[2])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
-  for (PetscInt i = 0; i < transfer->n; i++)
-    for (PetscInt k = i * components; k < (i + 1) * components; k++) {
-      const PetscInt row[2] = {begin[0] + k, begin[1] + k};
-
-      PetscCall(SetRow(transfer, i, row, 0, transfer->dim, directions + 3 * k, rows));
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  TransferSetNeighbours - marks which rows belong to nodes of the Dirichlet side with an edge in common
-
-  Collective
-
-  Input Parameters:
-+ transfer   - the `Transfer`
-. row_begin  - global number of the first row of this rank
-. components - rows of each node
-. slope      - nodes whose gaps differ by more than this part of their distance are left out
-- neighbours - all rows by all rows: gets ones where rows of one component of two such nodes meet
-
-  Level: developer
-
-  Note:
-  Assemble it afterwards. In two dimensions edges are the faces themselves; in one dimension there are none.
-
-.seealso: `Transfer`, `TransferSetValues()`
-@*/
+/* Marks which rows belong to nodes of the Dirichlet side with an edge in common: `neighbours`, all rows by all rows, to be assembled
+   afterwards, gets ones where rows of one component of two such nodes meet, unless their gaps differ by more than `slope` of their
+   distance. In one dimension there are none. */
 PetscErrorCode TransferSetNeighbours(Transfer transfer, PetscInt row_begin, PetscInt components, PetscReal slope, Mat neighbours)
 {
   const Surface      surface = transfer->dirichlet;

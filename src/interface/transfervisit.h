@@ -2,7 +2,7 @@
 #pragma once
 #include <checkpoint/checkpoint.h>
 #include <checkpoint/tables.h>
-#include <impakt/transfer.h>
+#include <impakt/private/transfer.h>
 
 PETSC_INTERN PetscErrorCode TransferVisit(Transfer, Checkpoint);
 PETSC_INTERN PetscErrorCode TransferVisitShared(Transfer, Checkpoint);

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include "errors.h"
 #include "petsccompat.h"
+#include <impakt/private/transfer.h>
 #include <sys/stages.h>
 
 static const char help[] = "Impakt: dynamic contact by the Schwarz alternating method; `impakt -help` on the command line tells more.\n";

@@ -357,8 +357,6 @@ static const KnownOption options[] = {
     {"files", OPTION_OF_BODY, "element_view", "[viewer]", "prints the body's elements"},
     {"files", OPTION_OF_OBSTACLE, "obstacle_view", "[viewer]", "prints shape and place of the obstacle"},
     {"files", OPTION_OF_RUN, "contact_view", "[viewer]", "prints pairs and contact method"},
-    {"files", OPTION_OF_RUN, "contact_surface_view", "[viewer]", "prints the surfaces of all pairs"},
-    {"files", OPTION_OF_RUN, "contact_transfer_view", "[viewer]", "prints the rows between the surfaces of all pairs"},
     {"files", OPTION_OF_RUN, "exact_view", "[viewer]", "prints the exact solution"},
     {"files", OPTION_OF_RUN, "output_view", "[viewer]", "prints which files are written"},
 };

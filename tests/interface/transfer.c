@@ -448,7 +448,7 @@ static void rows_over_obstacles(void **state)
     ok(VecGetLocalSize(u, &n));
     ok(MatCreateAIJ(PETSC_COMM_WORLD, rows.n, n, PETSC_DETERMINE, PETSC_DETERMINE, 2, NULL, 2, NULL, &matrix));
     ok(MatGetOwnershipRange(matrix, &start, NULL));
-    ok(TransferSetValues(transfer, (const PetscInt[]){start, 0}, 1, (const Mat[]){matrix, NULL}));
+    ok(TransferSetValues(transfer, (const PetscInt[]){start, 0}, 1, NULL, (const Mat[]){matrix, NULL}));
     ok(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
     ok(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
     ok(MatCreateVecs(matrix, NULL, &change));

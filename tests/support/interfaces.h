@@ -1,6 +1,7 @@
 /* Two boxes whose surfaces may touch, moved in space, and the rows between them. */
 #pragma once
 #include "simulation.h"
+#include <impakt/private/transfer.h>
 
 typedef struct {
   PetscInt     dim;
@@ -129,7 +130,7 @@ static inline PetscBool interface_update(Interface *interface, PetscReal near, P
     ok(MatSetType(interface->matrix[side], MATAIJ));
     ok(MatSetUp(interface->matrix[side]));
   }
-  ok(TransferSetValues(interface->transfer, (const PetscInt[]){interface->begin, interface->begin}, components, interface->matrix));
+  ok(TransferSetValues(interface->transfer, (const PetscInt[]){interface->begin, interface->begin}, components, NULL, interface->matrix));
   for (PetscInt side = 0; side < 2; side++) {
     ok(MatAssemblyBegin(interface->matrix[side], MAT_FINAL_ASSEMBLY));
     ok(MatAssemblyEnd(interface->matrix[side], MAT_FINAL_ASSEMBLY));

@@ -254,11 +254,6 @@ PetscErrorCode ContactSetUp(Contact contact)
   StatusLineTell("first state");
   PetscCall(ContactCheckInitialGap(contact));
   PetscCall(ContactViewFromOptions(contact, NULL, "-contact_view"));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++)
-      PetscCall(SurfaceViewFromOptions(contact->pairs[p].surfaces[side], (PetscObject)contact, "-contact_surface_view"));
-    PetscCall(TransferViewFromOptions(contact->pairs[p].transfer, (PetscObject)contact, "-contact_transfer_view"));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -68,7 +68,7 @@ static PetscErrorCode FindHopeless(Contact contact, const ContactPair *pair, Pet
   PetscCall(MatSetType(B[1], MATAIJ));
   PetscCall(MatSetUp(B[1]));
   PetscCall(MatGetOwnershipRange(B[1], &begin[1], NULL));
-  PetscCall(TransferSetValues(pair->transfer, begin, pair->components, B));
+  PetscCall(TransferSetValues(pair->transfer, begin, pair->components, NULL, B));
   PetscCall(MatAssemblyBegin(B[1], MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(B[1], MAT_FINAL_ASSEMBLY));
   PetscCall(MatCreateVecs(B[1], NULL, &way));

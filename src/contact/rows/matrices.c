@@ -166,7 +166,7 @@ PetscErrorCode ContactFillMatrices(Contact contact)
     const ContactPair *pair     = &contact->pairs[p];
     PetscInt           begin[2] = {0, 0};
     Mat                rows[2]  = {NULL, NULL};
-    PetscBool          any      = PETSC_FALSE;
+    PetscBool          any      = PETSC_FALSE, directed;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
       begin[side] = contact->body_rows[pair->body[side]].begin + pair->begin - pair->shift[side];
@@ -174,9 +174,9 @@ PetscErrorCode ContactFillMatrices(Contact contact)
       rows[side] = contact->interfaces[pair->body[side]];
       any        = PETSC_TRUE;
     }
-    if (any && (pair->law == CONTACT_LAW_FRICTION || pair->law == CONTACT_LAW_BONDED))
-      PetscCall(TransferSetDirectedValues(pair->transfer, begin, pair->components, contact->rows.normal + 3 * pair->begin, rows));
-    else if (any) PetscCall(TransferSetValues(pair->transfer, begin, pair->components, rows));
+    directed = (PetscBool)(pair->law == CONTACT_LAW_FRICTION || pair->law == CONTACT_LAW_BONDED);
+    if (any)
+      PetscCall(TransferSetValues(pair->transfer, begin, pair->components, directed ? contact->rows.normal + 3 * pair->begin : NULL, rows));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     if (!contact->body_rows[b].affected) continue;

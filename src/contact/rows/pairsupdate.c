@@ -98,11 +98,9 @@ static PetscErrorCode CompareMotion(Contact contact)
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    Vec                u[2];
 
     if (!MayChange(pair)) continue;
-    PetscCall(GetDisplacements(contact, pair, u));
-    PetscCall(TransferBeginUpdate(pair->transfer, u[0], u[1], ContactPairReach(contact, pair), sums + CONTACT_SUMS * p));
+    PetscCall(TransferBeginUpdate(pair->transfer, ContactPairReach(contact, pair), sums + CONTACT_SUMS * p));
     CountTouching(contact, pair, sums + CONTACT_SUMS * p + TRANSFER_SUMS);
   }
   PetscCall(ReduceMotion(contact, CONTACT_SUMS, MPIU_SUM, sums));

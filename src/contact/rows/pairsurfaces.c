@@ -332,7 +332,6 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
     for (PetscInt side = 0; side < 2; side++) PetscCall(ContactGetBoundary(contact, pair->body[side], &boundaries[side]));
     PetscCall(TransferSetBoundaries(pair->transfer, boundaries[0], boundaries[1]));
   }
-  PetscCall(TransferSetMoved(pair->transfer, PETSC_TRUE));
   PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
   pair->rests = (PetscBool)!inertia;
   PetscCall(TransferSetCurved(pair->transfer, IsCurved(contact, pair, inertia, linear)));

@@ -1,35 +1,27 @@
 /* What goes between the two surfaces of a contact pair, and back by the transpose. */
 #pragma once
 #include <petscmat.h>
-#include <impakt/surface.h>
+#include <impakt/private/surface.h>
 
-/*S
+/*
    Transfer - rows that compare the two surfaces of a contact pair, or a surface and an obstacle: the gap at a node i of the
    Dirichlet side is
 
      gap_i = n_i . (sum_j P_ij x_j - x_i)
 
    with its outward normal n_i and weights P_ij of the nodes j of the Neumann side that sum to one. Forces go back by the transposes.
-
-   Level: developer
-
-.seealso: `TransferCreate()`, `TransferUpdate()`, `TransferGetRows()`, `TransferSetValues()`
-S*/
+*/
 typedef struct _p_Transfer *Transfer;
 
 PETSC_EXTERN PetscClassId TRANSFER_CLASSID;
 
-/*S
+/*
    TransferRows - the rows of the Dirichlet nodes that this rank owns; arrays are owned by the `Transfer`, and valid until it is
    updated again
 
-   Level: developer
-
    Note:
    A row without anything opposite has gap `PETSC_MAX_REAL`, area 0, and no entries on the Neumann side.
-
-.seealso: `Transfer`, `TransferGetRows()`
-S*/
+*/
 typedef struct {
   PetscInt         n;        /* the same over the whole run */
   const PetscInt  *dofs;     /* global number of the first displacement */
@@ -46,13 +38,9 @@ typedef struct {
   const PetscReal *bow;      /* depth that the row may have between surfaces which only touch, since the partner's faces are bent [m] */
 } TransferRows;
 
-/*S
+/*
    TransferCounts - what the updates of a transfer have done; sums over all ranks
-
-   Level: developer
-
-.seealso: `TransferGetCounts()`
-S*/
+*/
 typedef struct {
   PetscInt   builds;     /* the first one included */
   PetscInt64 candidates; /* pairs of faces that were compared in the last build */
@@ -68,14 +56,13 @@ PETSC_EXTERN PetscErrorCode TransferFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
 PETSC_EXTERN PetscErrorCode TransferGetDrift(Transfer, Vec, Vec, PetscReal[], PetscReal[]);
-PETSC_EXTERN PetscErrorCode TransferSetMoved(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferSetBoundaries(Transfer, Surface, Surface);
 PETSC_EXTERN PetscErrorCode TransferSetOwner(Transfer, PetscMPIInt);
 PETSC_EXTERN PetscErrorCode TransferGetOwner(Transfer, PetscMPIInt *);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferSetNear(Transfer, const PetscBool[], PetscBool[], PetscBool[]);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
-PETSC_EXTERN PetscErrorCode TransferBeginUpdate(Transfer, Vec, Vec, PetscReal, PetscReal[TRANSFER_SUMS]);
+PETSC_EXTERN PetscErrorCode TransferBeginUpdate(Transfer, PetscReal, PetscReal[TRANSFER_SUMS]);
 PETSC_EXTERN PetscErrorCode TransferCompareMotion(Transfer, const PetscReal[TRANSFER_SUMS], PetscBool, PetscReal[TRANSFER_LARGEST]);
 PETSC_EXTERN PetscErrorCode TransferEndUpdate(Transfer, Vec, Vec, PetscReal, const PetscReal[TRANSFER_LARGEST], PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscBool, PetscReal, PetscReal,
@@ -93,11 +80,8 @@ PETSC_EXTERN PetscErrorCode TransferSetGuards(Transfer, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);
 PETSC_EXTERN PetscErrorCode TransferGetGaps(Transfer, PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferGetTilts(Transfer, PetscReal[]);
-PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, const PetscInt[2], PetscInt, const Mat[2]);
+PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, const PetscInt[2], PetscInt, const PetscReal[], const Mat[2]);
 PETSC_EXTERN PetscErrorCode TransferCountValues(Transfer, PetscInt[], PetscInt[]);
-PETSC_EXTERN PetscErrorCode TransferSetDirectedValues(Transfer, const PetscInt[2], PetscInt, const PetscReal[], const Mat[2]);
 PETSC_EXTERN PetscErrorCode TransferSetNeighbours(Transfer, PetscInt, PetscInt, PetscReal, Mat);
 PETSC_EXTERN PetscErrorCode TransferGetCounts(Transfer, TransferCounts *);
-PETSC_EXTERN PetscErrorCode TransferView(Transfer, PetscViewer);
-PETSC_EXTERN PetscErrorCode TransferViewFromOptions(Transfer, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode TransferDestroy(Transfer *);

@@ -3,30 +3,22 @@
 #include <petscdmplex.h>
 #include <impakt/obstacle.h>
 
-/*S
+/*
    Surface - faces of a `DMPLEX` boundary with their nodes, normals and areas; each rank knows those of its own faces
-
-   Level: developer
-
-.seealso: `SurfaceCreate()`, `SurfaceUpdate()`, `Transfer`
-S*/
+*/
 typedef struct _p_Surface *Surface;
 
 PETSC_EXTERN PetscClassId SURFACE_CLASSID;
 
-/*S
+/*
    SurfaceData - what a rank has of a surface; arrays are owned by the `Surface` and are not to be changed
-
-   Level: developer
 
    Notes:
    Vectors have three components in any dimension. The nodes of a face are ordered such that its normal is outward. In one
    dimension a face is a point of area and size 1.
 
    Nodes that this rank owns come first, in the order of their vertices; then come ghosts.
-
-.seealso: `Surface`, `SurfaceGetData()`
-S*/
+*/
 typedef struct {
   PetscInt   dim, face_nodes;           /* space dimension, nodes of one face */
   PetscInt   n_faces, n_nodes, n_owned; /* of this rank */
@@ -43,13 +35,9 @@ typedef struct {
   PetscReal *face_areas;                /* per face [m^2, m or 1] */
 } SurfaceData;
 
-/*S
+/*
    SurfaceDepth - the deepest point of one surface inside the body of another
-
-   Level: developer
-
-.seealso: `Surface`, `SurfacesFindDepths()`
-S*/
+*/
 typedef struct {
   PetscInt  surfaces[2]; /* number of the surface that has the point, and of that whose body it is in; numbers of obstacles follow */
   PetscReal depth;       /* distance of the point from the closest face of the second surface; 0 where no point is inside [m] */
@@ -69,8 +57,6 @@ PETSC_EXTERN PetscErrorCode SurfaceSetNear(Surface, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode SurfaceUpdate(Surface, Vec);
 PETSC_EXTERN PetscErrorCode SurfacesFindDepths(MPI_Comm, PetscInt, const Surface[], PetscInt, const Obstacle[], PetscInt *,
                                                SurfaceDepth *[]);
-PETSC_EXTERN PetscErrorCode SurfaceView(Surface, PetscViewer);
-PETSC_EXTERN PetscErrorCode SurfaceViewFromOptions(Surface, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode SurfaceDestroy(Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceGetData(Surface, const SurfaceData **);
 PETSC_EXTERN PetscErrorCode SurfaceGetVertices(Surface, PetscInt *, const PetscInt *[]);
