@@ -137,7 +137,6 @@ PetscErrorCode TransferSetBalance(Transfer transfer)
   Balance *balance = &transfer->balance;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_SUP,
              "Forces are balanced between two surfaces in two or three dimensions alone");
   PetscCall(PetscFree5(balance->uneven, balance->lever, balance->across, balance->gap, balance->turned));
@@ -163,7 +162,6 @@ PetscErrorCode TransferGetTurns(Transfer transfer, PetscInt *n, const PetscReal 
   const Balance *balance = &transfer->balance;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   if (n) *n = balance->n;
   if (uneven) *uneven = balance->uneven;
   if (lever) *lever = balance->lever;
@@ -178,8 +176,6 @@ PetscErrorCode TransferTurn(Transfer transfer, const PetscReal change[])
   Balance *balance = &transfer->balance;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscAssertPointer(change, 2);
   for (PetscInt k = 0; k < balance->n; k++)
     for (PetscInt d = 0; d < 3; d++) transfer->numbers.turn[d] += change[k] * transfer->numbers.axes[k][d];
   for (PetscInt row = 0; row < transfer->n; row++)
@@ -203,11 +199,8 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
   PetscReal turn[2] = {0, 0}, pace = 1;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(transfer, reach, 3);
-  PetscAssertPointer(any, 4);
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
+  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
+  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->smooth, transfer->column_normals));
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (!transfer->rows.opposite[row]) continue;
     balance->gap[row] = TransferPresentGap(transfer, row);
@@ -216,7 +209,8 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
   }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, most, 2, MPIU_REAL, MPIU_MAX, transfer->comm));
   PetscCall(FindAxes(transfer, force, reach));
-  PetscCall(TransferGetColumns(transfer, balance->bends[1], transfer->column_moved)); /* what these have moved is not needed any more */
+  PetscCall(
+      RowSetGetColumns(&transfer->rows, balance->bends[1], transfer->column_moved)); /* what these have moved is not needed any more */
   for (PetscInt row = 0; row < transfer->n; row++) {
     balance->bend[row] = 0.5 * balance->bends[0][3 * row];
     for (PetscInt j = transfer->rows.offsets[row]; j < transfer->rows.offsets[row + 1]; j++)

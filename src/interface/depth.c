@@ -251,8 +251,6 @@ PetscErrorCode SurfacesFindDepths(MPI_Comm comm, PetscInt n, const Surface surfa
   Probes      points = {0};
 
   PetscFunctionBegin;
-  PetscAssertPointer(n_depths, 6);
-  PetscAssertPointer(depths, 7);
   PetscCallMPI(MPI_Comm_size(comm, &search.n_ranks));
   PetscCallMPI(MPI_Comm_rank(comm, &search.rank));
   PetscCall(MeasurePairs(&search, &points));

@@ -14,14 +14,14 @@ static PetscErrorCode GetNewGaps(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(PetscArrayzero(transfer->goes_on, transfer->n));
   PetscCall(TransferGetReach(transfer, 0, &reach));
   PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
   for (PetscInt row = 0; row < transfer->n; row++)
     gaps[row] = transfer->rows.opposite[row] ? TransferPresentGap(transfer, row) : PETSC_MAX_REAL;
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows   = kept;
   transfer->counts = counts;
   PetscCall(TransferAllocateColumns(transfer));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.reference, transfer->column_reference));
+  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.reference, transfer->column_reference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -53,7 +53,6 @@ static PetscErrorCode GetObstacleDrift(Transfer transfer, PetscReal drift[], Pet
 PetscErrorCode TransferGetDrift(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal drift[], PetscReal turn[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCall(PetscArrayzero(drift, transfer->n));
   PetscCall(PetscArrayzero(turn, transfer->n));
   if (transfer->idle) PetscFunctionReturn(PETSC_SUCCESS);
@@ -64,7 +63,7 @@ PetscErrorCode TransferGetDrift(Transfer transfer, Vec u_dirichlet, Vec u_neuman
   }
   PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   PetscCall(GetNewGaps(transfer, u_dirichlet, u_neumann, drift));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
   for (PetscInt row = 0; row < transfer->n; row++)
     drift[row] = transfer->rows.opposite[row] && drift[row] < PETSC_MAX_REAL ? drift[row] - TransferPresentGap(transfer, row) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -138,13 +138,9 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
   PetscReal   depth      = 0;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(a, SURFACE_CLASSID, 1);
-  if (b) PetscValidHeaderSpecific(b, SURFACE_CLASSID, 2);
-  if (obstacle) PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 3);
-  if (b) {
+  if (b)
     PetscCheck(a->data.dim == b->data.dim, PetscObjectComm((PetscObject)a->dm), PETSC_ERR_USER_INPUT,
                "The two bodies of a contact pair have %" PetscInt_FMT " and %" PetscInt_FMT " dimensions", a->data.dim, b->data.dim);
-  }
   if (!keep_a && !keep_b) PetscFunctionReturn(PETSC_SUCCESS);
   if (b) {
     PetscCall(PetscMalloc1(2, &directions));

@@ -28,7 +28,7 @@
 #define LATEST 0.5
 
 /* What a row makes of vectors of the nodes: n . (sum_j P_j x_j - x), and the part across the normal */
-static PetscReal SplitRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[], PetscReal across[])
+PetscReal TransferSplitRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[], PetscReal across[])
 {
   const RowSet    *set    = &transfer->rows;
   const PetscReal *normal = set->normals + transfer->dim * row;
@@ -48,7 +48,7 @@ static PetscReal AlongRow(const Transfer transfer, PetscInt row, const PetscReal
 {
   PetscReal across[3];
 
-  return SplitRow(transfer, row, x, columns, across);
+  return TransferSplitRow(transfer, row, x, columns, across);
 }
 
 /* Takes the slip of the last step into the mean. `across`: that slip [m]; `ratio`: of this step to the last one */
@@ -132,8 +132,8 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
 
   PetscFunctionBegin;
   gap = set->gap[row] - AlongRow(transfer, row, data->reference, transfer->column_reference) +
-        SplitRow(transfer, row, data->positions, transfer->column_x, before);
-  way = SplitRow(transfer, row, follow->moved, transfer->column_moved, across);
+        TransferSplitRow(transfer, row, data->positions, transfer->column_x, before);
+  way = TransferSplitRow(transfer, row, follow->moved, transfer->column_moved, across);
   ExpectSlip(transfer, row, across, ratio);
   if (follow->known[row]) PetscCall(PetscArraycpy(expected, follow->slip + 3 * row, dim));
   if (!middle) PetscCall(PetscArraycpy(ahead, expected, dim));
@@ -146,7 +146,7 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
   PetscCall(Approach(transfer, row, expected, ahead));
   way           = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
   set->gap[row] = gap + (middle ? 0.5 : -0.5) * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
-                  SplitRow(transfer, row, data->positions, transfer->column_x, after);
+                  TransferSplitRow(transfer, row, data->positions, transfer->column_x, after);
   /* slips are counted from the last build on */
   for (PetscInt d = 0; d < dim; d++) transfer->built_slip[3 * row + d] += after[d] - before[d];
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -165,8 +165,7 @@ PetscReal TransferPresentGap(Transfer transfer, PetscInt row)
 PetscErrorCode TransferGetGaps(Transfer transfer, PetscReal gaps[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  if (transfer->neumann) PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
+  if (transfer->neumann) PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
   for (PetscInt row = 0; row < transfer->n; row++) gaps[row] = transfer->rows.opposite[row] ? TransferPresentGap(transfer, row) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -179,8 +178,8 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
 
   PetscFunctionBegin;
   if (!transfer->columns_present) {
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
+    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
+    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->smooth, transfer->column_normals));
   }
   for (PetscInt k = 0; k < (transfer->some_near ? transfer->n_near : transfer->n); k++) {
     const PetscInt row = transfer->some_near ? transfer->near[k] : k, n = set->offsets[row + 1] - set->offsets[row];
@@ -223,14 +222,6 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   PetscMPIInt      size;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(transfer, reach, 3);
-  PetscValidLogicalCollectiveReal(transfer, still, 4);
-  PetscValidLogicalCollectiveBool(transfer, turns, 5);
-  PetscValidLogicalCollectiveBool(transfer, middle, 6);
-  PetscValidLogicalCollectiveReal(transfer, step, 7);
-  PetscValidLogicalCollectiveReal(transfer, last, 8);
-  PetscAssertPointer(any, 9);
   PetscCheck(transfer->built && transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
              "Only rows between two surfaces in two or three dimensions follow, after TransferUpdate()");
   PetscCheck(step > 0 && last > 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The steps %g s and %g s must be positive", (double)step,
@@ -242,7 +233,7 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   PetscCall(MarkFollowers(transfer, touches, reach, &found));
   PetscCallMPI(MPI_Comm_size(transfer->comm, &size));
   /* rows of another rank may follow where those of this one do not */
-  if (found || size > 1) PetscCall(TransferGetColumns(transfer, transfer->follow.partner_moved, transfer->column_moved));
+  if (found || size > 1) PetscCall(RowSetGetColumns(&transfer->rows, transfer->follow.partner_moved, transfer->column_moved));
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (!transfer->followed[row]) continue;
     transfer->saved.same = PETSC_FALSE;

@@ -229,12 +229,13 @@ PETSC_INTERN PetscErrorCode SurfacesGetOverlap(MPI_Comm, const Surface[2], Petsc
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscReal[], PetscInt *,
                                               Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
-PETSC_INTERN PetscErrorCode TransferGetColumns(Transfer, const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscErrorCode RowSetGetColumns(const RowSet *, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
 PETSC_INTERN void           TransferListState(Transfer, StateList[2]);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
 PETSC_INTERN PetscErrorCode TransferFindTurn(Transfer, PetscReal[]);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
+PETSC_INTERN PetscReal      TransferSplitRow(const Transfer, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferGetReach(Transfer, PetscReal, PetscReal *);
 PETSC_INTERN PetscBool      RowPartnerNormal(Surface, const RowSet *, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);

@@ -51,7 +51,6 @@ PetscErrorCode SurfaceSetMirrors(Surface surface, PetscInt n, const PetscInt dof
   PetscReal         *lower, *upper;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
   PetscCall(PetscFree(surface->mirrors));
   if (data->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SurfaceUpdate(surface, NULL));

@@ -26,7 +26,6 @@ PetscErrorCode SurfaceSetAxisymmetric(Surface surface)
   PetscBool         *keep;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
   PetscCheck(data->dim == 2, PetscObjectComm((PetscObject)surface->dm), PETSC_ERR_ARG_INCOMP,
              "Surface '%s' has %" PetscInt_FMT " dimensions; rings are made of plane meshes", ((PetscObject)surface)->name, data->dim);
   if (surface->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);

@@ -338,14 +338,10 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(PetscFree(shares));
   PetscCall(RowSetConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
   PetscCall(PetscMalloc4(3 * set.n_columns, &x, 3 * set.n_columns, &reference, 3 * set.n_columns, &normals, 3 * set.n_columns, &smooth));
-  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->normals, normals, MPI_REPLACE));
-  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, transfer->neumann->smooth, smooth, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, transfer->neumann->smooth, smooth, MPI_REPLACE));
-  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->positions, x, MPI_REPLACE));
-  PetscCall(PetscSFBcastBegin(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(set.vectors, MPIU_REAL, neumann->reference, reference, MPI_REPLACE));
+  PetscCall(RowSetGetColumns(&set, neumann->normals, normals));
+  PetscCall(RowSetGetColumns(&set, transfer->neumann->smooth, smooth));
+  PetscCall(RowSetGetColumns(&set, neumann->positions, x));
+  PetscCall(RowSetGetColumns(&set, neumann->reference, reference));
   for (PetscInt row = 0; row < transfer->n; row++) {
     set.beyond[row] = (PetscBool)(transfer->keep[row] ? transfer->rows.beyond[row] : marks[row] == MARK_BEYOND);
     set.area[row]   = lumped[row];

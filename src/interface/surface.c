@@ -259,8 +259,6 @@ PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
   char         full[256];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(dm, DM_CLASSID, 1);
-  PetscAssertPointer(surface, 3);
   PetscCall(SurfaceInitializePackage());
   PetscCall(PetscHeaderCreate(*surface, SURFACE_CLASSID, "Surface", "Contact surface", "Interface", PetscObjectComm((PetscObject)dm),
                               SurfaceDestroy, NULL));
@@ -297,8 +295,6 @@ PetscErrorCode SurfaceDestroy(Surface *surface)
 PetscErrorCode SurfaceGetData(Surface surface, const SurfaceData **data)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
-  PetscAssertPointer(data, 2);
   *data = &surface->data;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -307,9 +303,6 @@ PetscErrorCode SurfaceGetData(Surface surface, const SurfaceData **data)
 PetscErrorCode SurfaceGetVertices(Surface surface, PetscInt *n, const PetscInt *vertices[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
-  PetscAssertPointer(n, 2);
-  PetscAssertPointer(vertices, 3);
   *n        = surface->data.n_nodes;
   *vertices = surface->data.vertices;
   PetscFunctionReturn(PETSC_SUCCESS);

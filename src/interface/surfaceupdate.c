@@ -94,8 +94,6 @@ static PetscErrorCode ShareNodes(Surface surface)
 PetscErrorCode SurfaceSetRound(Surface surface, PetscBool round)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(surface, round, 2);
   surface->round = round;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -143,7 +141,6 @@ PetscErrorCode SurfaceSetNear(Surface surface, const PetscBool near[])
   const SurfaceData *data = &surface->data;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
   PetscCall(PetscFree3(surface->near, surface->near_nodes, surface->near_faces));
   if (!near) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc3(data->n_nodes + 1, &surface->near, data->n_nodes, &surface->near_nodes, data->n_faces,
@@ -169,8 +166,6 @@ PetscErrorCode SurfaceSetNear(Surface surface, const PetscBool near[])
 PetscErrorCode SurfaceMove(Surface surface, Vec u)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(surface, SURFACE_CLASSID, 1);
-  if (u) PetscValidHeaderSpecific(u, VEC_CLASSID, 2);
   PetscCall(UpdatePositions(surface, u));
   PetscCall(UpdateNodes(surface));
   PetscFunctionReturn(PETSC_SUCCESS);

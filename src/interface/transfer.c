@@ -14,10 +14,6 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   Transfer t;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(dirichlet, SURFACE_CLASSID, 2);
-  if (neumann) PetscValidHeaderSpecific(neumann, SURFACE_CLASSID, 3);
-  if (obstacle) PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 4);
-  PetscAssertPointer(transfer, 5);
   PetscCall(TransferInitializePackage());
   PetscCall(PetscHeaderCreate(*transfer, TRANSFER_CLASSID, "Transfer", "Rows between contact surfaces", "Interface", comm, TransferDestroy,
                               NULL));
@@ -79,9 +75,6 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
 PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal angle)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(transfer, slip, 2);
-  PetscValidLogicalCollectiveReal(transfer, angle, 3);
   PetscCheck(slip >= 0 && angle >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "The bounds of slip, %g, and angle, %g, must not be negative", (double)slip, (double)angle);
   transfer->slip_bound  = slip;
@@ -94,9 +87,6 @@ PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal an
 PetscErrorCode TransferSetBoundaries(Transfer transfer, Surface dirichlet, Surface neumann)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidHeaderSpecific(dirichlet, SURFACE_CLASSID, 2);
-  PetscValidHeaderSpecific(neumann, SURFACE_CLASSID, 3);
   for (PetscInt side = 0; side < 2; side++) {
     PetscCall(PetscObjectReference((PetscObject)(side ? neumann : dirichlet)));
     PetscCall(SurfaceDestroy(&transfer->boundaries[side]));
@@ -112,7 +102,6 @@ PetscErrorCode TransferSetOwner(Transfer transfer, PetscMPIInt rank)
   PetscMPIInt mine;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
   PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)transfer), &mine));
   transfer->comm  = PETSC_COMM_SELF;
@@ -125,8 +114,6 @@ PetscErrorCode TransferSetOwner(Transfer transfer, PetscMPIInt rank)
 PetscErrorCode TransferGetOwner(Transfer transfer, PetscMPIInt *rank)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscAssertPointer(rank, 2);
   *rank = transfer->owner;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -138,8 +125,6 @@ PetscErrorCode TransferGetOwner(Transfer transfer, PetscMPIInt *rank)
 PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(transfer, guards, 2);
   PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
   transfer->guards = guards;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -150,7 +135,6 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   const RowSet *set = &transfer->rows;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   rows->n        = transfer->n;
   rows->dofs     = transfer->dirichlet->data.dofs;
@@ -170,8 +154,6 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
 PetscErrorCode TransferGetCounts(Transfer transfer, TransferCounts *counts)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscAssertPointer(counts, 2);
   *counts = transfer->counts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

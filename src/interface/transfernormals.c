@@ -8,8 +8,6 @@
 PetscErrorCode TransferSetCurved(Transfer transfer, PetscBool curved)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(transfer, curved, 2);
   PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
   transfer->curved = curved;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -22,8 +20,6 @@ PetscErrorCode TransferSetCurved(Transfer transfer, PetscBool curved)
 PetscErrorCode TransferSetNormalShare(Transfer transfer, PetscReal share)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(transfer, share, 2);
   PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
   PetscCheck(share >= 0 && share <= 1, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "The share %g of the partner's normals is not from 0 to 1",
              (double)share);
@@ -62,14 +58,12 @@ PetscErrorCode TransferGetTilts(Transfer transfer, PetscReal tilts[])
   const PetscInt     dim  = transfer->dim;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  if (transfer->n) PetscAssertPointer(tilts, 2);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   PetscCall(PetscArrayzero(tilts, transfer->n));
   if (transfer->idle || dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   if (transfer->neumann) {
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
+    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
+    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->smooth, transfer->column_normals));
   }
   for (PetscInt row = 0; row < transfer->n; row++) {
     const PetscReal *normal = transfer->rows.normals + dim * row;

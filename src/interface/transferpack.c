@@ -189,7 +189,7 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
   if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, transfer->n, &transfer->rows));
   PetscCall(TransferAllocateColumns(transfer));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.reference, transfer->column_reference));
+  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.reference, transfer->column_reference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -74,7 +74,7 @@ static PetscErrorCode RestoreShares(Transfer transfer)
   PetscCall(PetscMemzero(&saved->rows, sizeof(saved->rows)));
   if (transfer->neumann) {
     PetscCall(TransferAllocateColumns(transfer));
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.reference, transfer->column_reference));
+    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.reference, transfer->column_reference));
   }
   PetscCall(SaveShares(transfer)); /* the step may have to be made once more */
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -89,7 +89,6 @@ PetscErrorCode TransferSave(Transfer transfer)
   StateList       lists[2];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   if (same && !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS); /* builds alone change what obstacles remember */
   if (!same) PetscCall(SaveShares(transfer));
@@ -111,7 +110,6 @@ PetscErrorCode TransferRestore(Transfer transfer)
   StateList      lists[2];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(saved->state[0], transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferSave() first");
   PetscCall(RestoreShares(transfer));
   TransferListState(transfer, lists);

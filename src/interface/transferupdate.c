@@ -42,33 +42,12 @@ static void GetMotion(Transfer transfer, const PetscReal sums[4], PetscReal larg
   for (PetscInt side = 0; side < 2; side++) largest[side] = data[side] ? LargestMotion(data[side], transfer->built_x[side], mean) : 0;
 }
 
-/* sum_j P_ij x_j - x_i with the present positions [m] */
-static void GetOffset(Transfer transfer, PetscInt row, PetscReal offset[])
-{
-  const RowSet    *set = &transfer->rows;
-  const PetscReal *x   = transfer->dirichlet->data.positions + 3 * row;
-
-  for (PetscInt d = 0; d < 3; d++) {
-    offset[d] = -x[d];
-    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
-      offset[d] += set->shares[j].value * transfer->column_x[3 * set->columns[j] + d];
-  }
-}
-
-/* Splits an offset into the gap along the normal and the part across it [m] */
-static void SplitOffset(PetscInt dim, const PetscReal normal[], PetscReal offset[], PetscReal *gap)
-{
-  *gap = 0;
-  for (PetscInt d = 0; d < dim; d++) *gap += offset[d] * normal[d];
-  for (PetscInt d = 0; d < dim; d++) offset[d] -= *gap * normal[d];
-}
-
 /* Brings vectors of the partner's nodes to the ranks whose rows name them */
-PetscErrorCode TransferGetColumns(Transfer transfer, const PetscReal vectors[], PetscReal columns[])
+PetscErrorCode RowSetGetColumns(const RowSet *set, const PetscReal vectors[], PetscReal columns[])
 {
   PetscFunctionBegin;
-  PetscCall(PetscSFBcastBegin(transfer->rows.vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(transfer->rows.vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
+  PetscCall(PetscSFBcastBegin(set->vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set->vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,8 +61,8 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
   PetscFunctionBegin;
   *slipped = PETSC_FALSE;
   if (transfer->neumann) {
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->smooth, transfer->column_normals));
+    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
+    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->smooth, transfer->column_normals));
     transfer->columns_present = PETSC_TRUE;
   }
   for (PetscInt k = 0; k < (transfer->some_near ? transfer->n_near : transfer->n); k++) {
@@ -96,8 +75,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     transfer->slip[row] = 0;
     if (!transfer->rows.opposite[row]) continue;
     if (transfer->neumann) {
-      GetOffset(transfer, row, offset);
-      SplitOffset(dim, normal, offset, &gap);
+      gap = TransferSplitRow(transfer, row, data->positions, transfer->column_x, offset);
       for (PetscInt d = 0; d < dim; d++) slip += PetscSqr(offset[d] - transfer->built_slip[3 * row + d]);
       transfer->slip[row] = PetscSqrtReal(slip) / size;
       if (PetscAbsReal(gap) >= NEAR_CONTACT * size) continue; /* of most rows the normals do not matter */
@@ -135,14 +113,10 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   }
   PetscCallMPI(MPIU_Allreduce(&size, &transfer->numbers.smallest_size, 1, MPIU_REAL, MPIU_MIN, transfer->comm));
   if (transfer->neumann) {
-    PetscCall(TransferGetColumns(transfer, transfer->neumann->data.positions, transfer->column_x));
-    for (PetscInt row = 0; row < transfer->n; row++) {
-      PetscReal gap;
-
-      if (transfer->keep[row]) continue; /* its slip is still counted from its own last build */
-      GetOffset(transfer, row, transfer->built_slip + 3 * row);
-      SplitOffset(transfer->dim, transfer->rows.normals + transfer->dim * row, transfer->built_slip + 3 * row, &gap);
-    }
+    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
+    for (PetscInt row = 0; row < transfer->n; row++) /* the slip of rows that are kept is still counted from their own last build */
+      if (!transfer->keep[row])
+        (void)TransferSplitRow(transfer, row, data[0]->positions, transfer->column_x, transfer->built_slip + 3 * row);
   }
   transfer->built        = PETSC_TRUE;
   transfer->numbers.near = near;
@@ -183,7 +157,6 @@ PetscErrorCode TransferSleep(Transfer transfer)
   RowSet *set = &transfer->rows;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built && transfer->neumann, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
              "Only rows between two surfaces can sleep, after TransferUpdate()");
   for (PetscInt row = 0; row < transfer->n; row++) {
@@ -202,8 +175,6 @@ PetscErrorCode TransferSleep(Transfer transfer)
 PetscErrorCode TransferBeginUpdate(Transfer transfer, PetscReal near, PetscReal sums[TRANSFER_SUMS])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscAssertPointer(sums, 3);
   PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
              (double)near);
   for (PetscInt k = 0; k < TRANSFER_SUMS; k++) sums[k] = 0;
@@ -229,9 +200,6 @@ PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRA
   PetscBool slipped = PETSC_FALSE;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscAssertPointer(sums, 2);
-  PetscAssertPointer(largest, 4);
   for (PetscInt k = 0; k < TRANSFER_LARGEST; k++) largest[k] = 0;
   if (anew) {
     transfer->due   = PETSC_TRUE;
@@ -253,9 +221,6 @@ PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscBool slipped;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscAssertPointer(largest, 5);
-  PetscAssertPointer(rebuilt, 6);
   *rebuilt = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
   *rebuilt = transfer->due;
@@ -288,7 +253,6 @@ PetscErrorCode TransferSetNear(Transfer transfer, const PetscBool near[], PetscB
   PetscReal    *columns, *nodes;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCall(PetscFree(transfer->near));
   transfer->some_near = (PetscBool)(near != NULL);
   transfer->n_near    = 0;
@@ -322,9 +286,6 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   PetscReal sums[TRANSFER_SUMS], largest[TRANSFER_LARGEST];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(transfer, near, 4);
-  PetscAssertPointer(rebuilt, 5);
   PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
   if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   PetscCall(TransferBeginUpdate(transfer, near, sums));

@@ -11,9 +11,7 @@ PetscErrorCode TransferCountValues(Transfer transfer, PetscInt first[], PetscInt
   const RowSet *set = &transfer->rows;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
-  if (transfer->n) PetscAssertPointer(first, 2);
   for (PetscInt i = 0; i < transfer->n; i++) {
     first[i] = transfer->dim;
     if (second) second[i] = set->opposite[i] ? transfer->dim * (set->offsets[i + 1] - set->offsets[i]) : 0;
@@ -63,7 +61,6 @@ PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], Pet
   const PetscReal one = 1;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   PetscCheck(components == 1 || components == dim, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "A row has 1 or %" PetscInt_FMT " components, not %" PetscInt_FMT, dim, components);
@@ -90,7 +87,6 @@ PetscErrorCode TransferSetNeighbours(Transfer transfer, PetscInt row_begin, Pets
   PetscReal         *gap;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(transfer, TRANSFER_CLASSID, 1);
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   PetscCall(PetscMalloc2(data->n_nodes, &first, data->n_nodes, &gap));
   for (PetscInt i = 0; i < data->n_owned; i++) {

@@ -20,7 +20,7 @@ static PetscErrorCode VisitShares(Transfer transfer, Checkpoint checkpoint)
   if (!CheckpointLoads(checkpoint) || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, n, rows));
   PetscCall(TransferAllocateColumns(transfer));
-  PetscCall(TransferGetColumns(transfer, transfer->neumann->data.reference, transfer->column_reference));
+  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.reference, transfer->column_reference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
