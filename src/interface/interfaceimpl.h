@@ -233,7 +233,6 @@ PETSC_INTERN PetscErrorCode RowSetGetColumns(const RowSet *, const PetscReal[], 
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
 PETSC_INTERN void           TransferListState(Transfer, StateList[2]);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
-PETSC_INTERN PetscErrorCode TransferFindTurn(Transfer, PetscReal[]);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
 PETSC_INTERN PetscReal      TransferSplitRow(const Transfer, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferGetReach(Transfer, PetscReal, PetscReal *);
