@@ -56,147 +56,6 @@ E*/
 typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED, CONTACT_LAW_GLUE, CONTACT_LAW_FRICTION } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
 
-/*E
-   ContactRowSide - which body of a pair has a contact row for each of its nodes
-
-   Level: intermediate
-
-   Values:
-+  `CONTACT_ROW_SIDE_FIRST`  - the one that is named first
-.  `CONTACT_ROW_SIDE_SECOND` - the one that is named second
--  `CONTACT_ROW_SIDE_FINER`  - the one whose surface is finer where the two may touch
-
-.seealso: `ContactSetRowSide()`, `ContactSetPairRowSide()`
-E*/
-typedef enum { CONTACT_ROW_SIDE_FIRST, CONTACT_ROW_SIDE_SECOND, CONTACT_ROW_SIDE_FINER } ContactRowSide;
-PETSC_EXTERN const char *const ContactRowSides[];
-
-/*E
-   ContactConstraint - what contact forces keep from becoming negative
-
-   Values:
-+ `CONTACT_CONSTRAINT_GAP`      - the gap
-. `CONTACT_CONSTRAINT_GAP_RATE` - the rate at which the gap changes over a controller step, where bodies touch
-- `CONTACT_CONSTRAINT_BOTH`     - both
-
-   Level: intermediate
-
-   Note:
-   The condition on the rate is the persistency condition of Laursen and Chawla 1997.
-
-.seealso: `ContactSetConstraint()`
-E*/
-typedef enum { CONTACT_CONSTRAINT_GAP, CONTACT_CONSTRAINT_GAP_RATE, CONTACT_CONSTRAINT_BOTH } ContactConstraint;
-PETSC_EXTERN const char *const ContactConstraints[];
-
-/*E
-   ContactStabilization - what is done against chatter where contact nodes have mass
-
-   Values:
-+ `CONTACT_STABILIZATION_NONE`               - nothing
-. `CONTACT_STABILIZATION_NAIVE`              - the acceleration of the nodes in contact is set to zero after each controller step
-- `CONTACT_STABILIZATION_CONTACT_STABILIZED` - contact-stabilized Newmark method (Deuflhard, Krause, Ertel 2008)
-
-   Level: intermediate
-
-.seealso: `ContactSetStabilization()`
-E*/
-typedef enum { CONTACT_STABILIZATION_NONE, CONTACT_STABILIZATION_NAIVE, CONTACT_STABILIZATION_CONTACT_STABILIZED } ContactStabilization;
-PETSC_EXTERN const char *const ContactStabilizations[];
-
-/*E
-   SchwarzTransmission - what Schwarz's method prescribes on both sides of the contact boundary
-
-   Values:
-+ `SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN` - displacements one way, tractions the other
-. `SCHWARZ_TRANSMISSION_ROBIN`             - both ways traction and displacement, weighted by a stiffness
-- `SCHWARZ_TRANSMISSION_IMPEDANCE`         - both ways traction and velocity, weighted by an impedance
-
-   Level: intermediate
-
-.seealso: `ContactSchwarzSetTransmission()`
-E*/
-typedef enum { SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN, SCHWARZ_TRANSMISSION_ROBIN, SCHWARZ_TRANSMISSION_IMPEDANCE } SchwarzTransmission;
-
-/*E
-   SchwarzPredictor - where the first sweep of a controller step starts from
-
-   Values:
-+ `SCHWARZ_PREDICTOR_LAST`        - where the contact nodes were at its start
-. `SCHWARZ_PREDICTOR_TRIAL`       - where they go without contact
-. `SCHWARZ_PREDICTOR_EXTRAPOLATE` - where they go with their velocity
-- `SCHWARZ_PREDICTOR_INELASTIC`   - where they go with the common velocity after an inelastic collision
-
-   Level: intermediate
-
-.seealso: `ContactSchwarzSetPredictor()`
-E*/
-typedef enum {
-  SCHWARZ_PREDICTOR_LAST,
-  SCHWARZ_PREDICTOR_TRIAL,
-  SCHWARZ_PREDICTOR_EXTRAPOLATE,
-  SCHWARZ_PREDICTOR_INELASTIC
-} SchwarzPredictor;
-
-/*E
-   SchwarzWaveform - how the traction of a partner with longer substeps varies in the course of them
-
-   Values:
-+ `SCHWARZ_WAVEFORM_LINEAR`   - linearly, which keeps momentum
-- `SCHWARZ_WAVEFORM_CONSTANT` - not at all
-
-   Level: advanced
-
-.seealso: `ContactSchwarzSetTractionWaveform()`
-E*/
-typedef enum { SCHWARZ_WAVEFORM_LINEAR, SCHWARZ_WAVEFORM_CONSTANT } SchwarzWaveform;
-
-/*E
-   SchwarzRelaxation - relaxation of the plain alternation
-
-   Values:
-+ `SCHWARZ_RELAXATION_FIXED`  - by a given factor
-- `SCHWARZ_RELAXATION_AITKEN` - by Aitken's, from the last two residuals
-
-   Level: advanced
-
-.seealso: `ContactSchwarzSetRelaxation()`
-E*/
-typedef enum { SCHWARZ_RELAXATION_FIXED, SCHWARZ_RELAXATION_AITKEN } SchwarzRelaxation;
-
-/*E
-   SchwarzConvergence - what change of position is compared with the tolerances of the outer iteration
-
-   Values:
-+ `SCHWARZ_CONVERGENCE_AUTO`             - the first of those below for the plain alternation with fixed relaxation, the last otherwise
-. `SCHWARZ_CONVERGENCE_POSITION`         - of all nodes of every body, from one sweep to the next (Hoy, Tezaur, Mota)
-. `SCHWARZ_CONVERGENCE_CONTACT_POSITION` - of the contact nodes of every body, from one sweep to the next
-- `SCHWARZ_CONVERGENCE_MISMATCH`         - of the contact nodes, that one more plain sweep would bring
-
-   Level: advanced
-
-.seealso: `ContactSchwarzSetConvergence()`
-E*/
-typedef enum {
-  SCHWARZ_CONVERGENCE_AUTO,
-  SCHWARZ_CONVERGENCE_POSITION,
-  SCHWARZ_CONVERGENCE_CONTACT_POSITION,
-  SCHWARZ_CONVERGENCE_MISMATCH
-} SchwarzConvergence;
-
-/*E
-   SchwarzUnconverged - what becomes of a controller step whose outer iteration does not converge
-
-   Values:
-+ `SCHWARZ_UNCONVERGED_ERROR`  - the run ends with an error
-- `SCHWARZ_UNCONVERGED_ACCEPT` - it is accepted and counted
-
-   Level: advanced
-
-.seealso: `ContactSchwarzSetUnconverged()`
-E*/
-typedef enum { SCHWARZ_UNCONVERGED_ERROR, SCHWARZ_UNCONVERGED_ACCEPT } SchwarzUnconverged;
-
 PETSC_EXTERN PetscClassId CONTACT_CLASSID;
 
 /* The gap of a row, or of a pair, that has no partner opposite: larger than any gap, in whatever unit, and still a number that
@@ -304,13 +163,9 @@ PETSC_EXTERN PetscErrorCode ContactGetObstacle(Contact, PetscInt, Obstacle *);
 PETSC_EXTERN PetscErrorCode ContactGetPairObstacle(Contact, PetscInt, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactPairIsNamed(Contact, PetscInt, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
-PETSC_EXTERN PetscErrorCode ContactSetRowSide(Contact, ContactRowSide);
-PETSC_EXTERN PetscErrorCode ContactGetRowSide(Contact, ContactRowSide *);
-PETSC_EXTERN PetscErrorCode ContactSetPairRowSide(Contact, PetscInt, ContactRowSide);
 PETSC_EXTERN PetscErrorCode ContactGetPairRowSide(Contact, PetscInt, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
 PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);
-PETSC_EXTERN PetscErrorCode ContactSetEnergyTolerance(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetLaw(Contact, ContactLaw);
 PETSC_EXTERN PetscErrorCode ContactGetLaw(Contact, ContactLaw *);
@@ -329,35 +184,13 @@ PETSC_EXTERN PetscErrorCode ContactSetPairFriction(Contact, PetscInt, PetscReal)
 PETSC_EXTERN PetscErrorCode ContactSetKineticFriction(Contact, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetFrictionLoss(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetObstacleWork(Contact, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactSetConstraint(Contact, ContactConstraint);
-PETSC_EXTERN PetscErrorCode ContactGetConstraint(Contact, ContactConstraint *);
-PETSC_EXTERN PetscErrorCode ContactSetStabilization(Contact, ContactStabilization);
-PETSC_EXTERN PetscErrorCode ContactGetStabilization(Contact, ContactStabilization *);
-PETSC_EXTERN PetscErrorCode ContactSetFacing(Contact, PetscBool);
-PETSC_EXTERN PetscErrorCode ContactGetFacing(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactSetBounds(Contact, PetscReal, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactGetBounds(Contact, PetscReal *, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactSetAllowUnstable(Contact, PetscBool);
-PETSC_EXTERN PetscErrorCode ContactGetAllowUnstable(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactSetSharedTimes(Contact, PetscBool);
-PETSC_EXTERN PetscErrorCode ContactSetBalance(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetBalance(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactSetAutomaticBalance(Contact);
-PETSC_EXTERN PetscErrorCode ContactGetSharedTimes(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetUnlimitedReason(Contact, const char *[], const char *[]);
 PETSC_EXTERN PetscErrorCode ContactGetLossReason(Contact, const char *[]);
-PETSC_EXTERN PetscErrorCode ContactSetBalancedStart(Contact, PetscBool);
-PETSC_EXTERN PetscErrorCode ContactGetBalancedStart(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetParts(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactSetStartEnergies(Contact, const PetscReal[]);
-PETSC_EXTERN PetscErrorCode ContactSetEnergyCap(Contact, PetscBool, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyCap(Contact, PetscBool *, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactSetTolerance(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactSetSeparation(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactGetSeparation(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactSetTieDistance(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactGetTieDistance(Contact, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactGetTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUpSurfaces(Contact);
@@ -379,22 +212,6 @@ PETSC_EXTERN PetscErrorCode ContactGetUnresolvedEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
-
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetTransmission(Contact, SchwarzTransmission);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetRobinParameter(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetImpedanceParameter(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetTraction(Contact, BodyTractionType);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetTractionWaveform(Contact, SchwarzWaveform);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetPredictor(Contact, SchwarzPredictor);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetSwapSides(Contact, PetscBool);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetRelaxation(Contact, SchwarzRelaxation);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetConvergence(Contact, SchwarzConvergence);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetUnconverged(Contact, SchwarzUnconverged);
-PETSC_EXTERN PetscErrorCode ContactSchwarzSetRecheck(Contact, PetscBool);
-PETSC_EXTERN PetscErrorCode ContactPenaltySetParameter(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactPenaltySetScale(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactPenaltySetDamping(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactPenaltySetAugmentation(Contact, PetscReal, PetscInt);
 
 PETSC_EXTERN PetscErrorCode ContactGetNumPairs(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetPair(Contact, PetscInt, const char *[], Body *, Body *);

@@ -93,7 +93,7 @@ typedef struct {
   PetscInt cuts;  /* steps, whole or cut before, that were made again in halves */
   PetscInt steps; /* controller steps with cuts */
   PetscInt
-      lossy_steps; /* accepted after the last cut although contact took or brought more energy than `ContactSetEnergyTolerance()` allows */
+      lossy_steps; /* accepted after the last cut although contact took or brought more energy than `ContactGetEnergyTolerance()` allows */
   PetscReal smallest_step; /* that has been made; the controller step if none was cut [s] */
 } ControllerCuts;
 

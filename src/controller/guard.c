@@ -25,7 +25,7 @@
   displacements, at the end of each controller step. There is no guard where nothing can touch, nor where a body is static: what its contact
   forces have done is known up to their lag behind it by a step.
 
-.seealso: `Controller`, `ControllerGetEnergyGuard()`, `ContactSetEnergyCap()`
+.seealso: `Controller`, `ControllerGetEnergyGuard()`, `ContactGetEnergyCap()`
 @*/
 PetscErrorCode ControllerSetEnergyGuard(Controller controller, PetscReal part)
 {

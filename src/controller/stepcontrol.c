@@ -28,7 +28,7 @@
 
   Notes:
   A step fails whose outer iteration, active set, Newton's method or massless layer does not converge, that inverts an element, or in which
-  contact takes or brings more energy than `ContactSetEnergyTolerance()` allows. It is undone and made again in halves, these again in
+  contact takes or brings more energy than `-contact_energy_tolerance` allows. It is undone and made again in halves, these again in
 halves where they fail, up to so many times. After both halves the next step is one of the size that has been cut, so that each controller
 step begins whole. A run that makes cuts ends with the same bits as one that makes these steps without any that fail.
 
@@ -40,7 +40,7 @@ energy is accepted, and counted: `ControllerGetCuts()`.
 
   Forward-increment Lagrange multipliers and the contact-stabilised method change the start of their steps, which are never cut.
 
-.seealso: `Controller`, `ControllerGetStepCuts()`, `ControllerGetCuts()`, `ContactSetEnergyTolerance()`, `StepConvergedReason`
+.seealso: `Controller`, `ControllerGetStepCuts()`, `ControllerGetCuts()`, `ContactGetEnergyTolerance()`, `StepConvergedReason`
 @*/
 PetscErrorCode ControllerSetStepCuts(Controller controller, PetscInt cuts)
 {

@@ -162,8 +162,8 @@ static void bars(void **state)
   ok(ControllerGetContact(controller, &contact));
   ok(ContactAddPair(contact, "left:right"));
   ok(ContactSetType(contact, CONTACT_PENALTY));
-  ok(ContactSetTolerance(contact, 1e-9));
-  ok(ControllerSetFromOptions(controller)); /* with no options at all: the penalty method reads its defaults there */
+  ok(PetscOptionsSetValue(NULL, "-contact_tolerance", "1e-9"));
+  ok(ControllerSetFromOptions(controller)); /* the penalty method reads its defaults there */
   run(controller, &code);
   expect_equal(&options, &code);
 }
@@ -179,7 +179,6 @@ static void plate(void **state)
   Obstacle        floor_plane, disc;
   ObstacleType    type;
   ContactLaw      law;
-  PetscReal       slip, angle;
   End             options, code;
   Body            b;
 
@@ -229,14 +228,11 @@ static void plate(void **state)
   ok(ObstacleDestroy(&disc));
   ok(ContactAddPair(contact, "plate:floor"));
   ok(ContactAddPair(contact, "plate.xmax:disc"));
-  ok(ContactSetBounds(contact, 0.3, 0.2));
-  ok(ContactSetFacing(contact, PETSC_FALSE));
-  ok(ContactGetBounds(contact, &slip, &angle));
-  near(slip, 0.3, 0);
-  near(angle, 0.2, 0);
+  ok(PetscOptionsInsertString(NULL, "-contact_slip_bound 0.3 -contact_angle_bound 0.2 -contact_facing false"));
+  ok(ContactSetFromOptions(contact));
   ok(ContactGetLaw(contact, &law));
   assert_int_equal(law, CONTACT_LAW_FRICTIONLESS);
-  ok(ControllerSetUp(controller)); /* without options */
+  ok(ControllerSetUp(controller));
   run(controller, &code);
   expect_equal(&options, &code);
 }
@@ -412,7 +408,6 @@ static void what_comes_too_late_is_refused(void **state)
   refused(PETSC_ERR_ARG_WRONGSTATE, "'bar'|BodySetInitialState()", BodySetInitialVelocity(b, zero));
   ok(ControllerGetContact(controller, &contact));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetLaw()|before ContactSetUp()", ContactSetLaw(contact, CONTACT_LAW_TIED));
-  refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetTolerance()", ContactSetTolerance(contact, 1));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 0; there are 0", ContactGetPairState(contact, 0, &end));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "interval of 0 steps must be positive", ControllerSetMonitorInterval(controller, 0));
   ok(BodyGetReferencePositions(b, &positions));

@@ -32,13 +32,31 @@ struct _ContactOps {
      another number of ranks; and back, after rowschanged() */
   PetscErrorCode (*pack)(Contact, Tables);
   PetscErrorCode (*unpack)(Contact, Tables);
-  PetscErrorCode (*maybalance)(Contact, PetscBool *); /* (NULL: not) whether gaps may be turned, see ContactSetBalance() */
+  PetscErrorCode (*maybalance)(Contact, PetscBool *); /* (NULL: not) whether gaps may be turned, see src/contact/rows/balance.c */
   /* (NULL) whether pairs may come and go in the course of a run; then `reset` undoes `setup`, which follows if there are rows */
   PetscBool (*mayreplacerows)(Contact);
   PetscErrorCode (*reset)(Contact);
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };
+
+/* Which body of a pair has a contact row for each of its nodes: the first, the second, or the one whose surface is finer where they may
+ * touch */
+typedef enum { CONTACT_ROW_SIDE_FIRST, CONTACT_ROW_SIDE_SECOND, CONTACT_ROW_SIDE_FINER } ContactRowSide;
+PETSC_INTERN const char *const ContactRowSides[];
+
+/* What contact forces keep from becoming negative: the gap, or, where bodies touch, the rate at which it changes over a controller step
+   (the persistency condition of Laursen and Chawla 1997), or both */
+typedef enum { CONTACT_CONSTRAINT_GAP, CONTACT_CONSTRAINT_GAP_RATE, CONTACT_CONSTRAINT_BOTH } ContactConstraint;
+PETSC_INTERN const char *const ContactConstraints[];
+
+/* What is done against chatter where contact nodes have mass: nothing; their acceleration is set to zero after each controller step; the
+   contact-stabilized Newmark method (Deuflhard, Krause, Ertel 2008) */
+typedef enum { CONTACT_STABILIZATION_NONE, CONTACT_STABILIZATION_NAIVE, CONTACT_STABILIZATION_CONTACT_STABILIZED } ContactStabilization;
+PETSC_INTERN const char *const ContactStabilizations[];
+
+/* What becomes of a controller step whose outer iteration does not converge: the run ends with an error, or it is accepted and counted */
+typedef enum { SCHWARZ_UNCONVERGED_ERROR, SCHWARZ_UNCONVERGED_ACCEPT } SchwarzUnconverged;
 
 /* Two bodies, or a body and an obstacle, that may touch */
 typedef struct {
@@ -123,9 +141,11 @@ typedef struct {
   PetscBool            keep_mass;        /* contact nodes keep it where that is left to the bodies */
   PetscBool            shared_times;     /* contact holds at all times that all bodies have, not at the ends of controller steps alone */
   PetscBool            balanced_start;   /* massless nodes are brought into balance in the first state */
-  PetscBool            balance;          /* forces have the same sum along the normals of both sides, see ContactSetBalance() */
+  PetscBool            balance;          /* forces have the same sum along the normals of both sides, see src/contact/rows/balance.c */
   PetscBool            auto_balance;     /* whether they have follows from the bodies, at the set-up */
-  PetscReal            energy_tolerance; /* energy that contact may take in a step [parts of the system's]; 0: the default */
+  PetscReal            energy_tolerance; /* energy that contact may take or bring in a step before it is cut [parts of the system's] */
+  PetscBool            energy_cap;       /* steps in which contact would gain more energy than it has room for are made again */
+  PetscReal            energy_excess;    /* part of the energy that contact may bring out of nothing in the whole run */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
   PetscReal            friction;         /* coefficient of friction of nodes that stick; less than 0: not set */
@@ -270,12 +290,10 @@ typedef struct {
 
 /* Energy that contact brings and takes, see src/contact/energy/README.md. Work on bodies is positive. */
 typedef struct {
-  PetscBool      limits;                  /* steps must not gain more than there is room for */
   const char    *unlimited;               /* why the method cannot have that, or NULL */
   const char    *not_always;              /* why it cannot in every step, or NULL */
   const char    *takes;                   /* what contact takes by its rule, which brings none, and what makes that less; or NULL */
   const char    *asked;                   /* an option that limits what contact brings or takes, as the user has given it, or NULL */
-  PetscReal      excess;                  /* part of the energy that contact may bring out of nothing in the whole run */
   PetscReal      scale;                   /* that energy [J] */
   PetscBool      begun;                   /* it is known */
   PetscBool      at_rest;                 /* there is none at the start */

@@ -349,7 +349,7 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs && !touch; p++) touch = (PetscBool)(energy->pair_sums[2 * p + 1] != 0);
   if (energy->rebuilt && touch) PetscCall(MeasureGroupWork(contact));
   PetscCall(ContactLeaveOutStatic(contact));
-  if (energy->limits) PetscCall(LimitFriction(contact));
+  if (contact->options.energy_cap) PetscCall(LimitFriction(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;
   if (contact->attempt.may_cut) { /* what is cut in halves all the same need not be limited */
@@ -363,7 +363,7 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
       energy->stays_whole = PETSC_TRUE;
     }
   }
-  if (!energy->limits || !AnyGainsTooMuch(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->options.energy_cap || !AnyGainsTooMuch(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AttemptWithFriction(contact));
   energy->step_work = 0;
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;

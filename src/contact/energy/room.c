@@ -76,7 +76,7 @@ static PetscReal SumForces(Contact contact)
   bodies start at rest without strain, and loads grow slowly, there is less energy than that in the first steps. Where rows in contact hold
   the change of their gaps, not these, it is that of all steps so far.
 
-.seealso: `Contact`, `ContactSetTolerance()`, `ContactSetEnergyCap()`
+.seealso: `Contact`, `ContactGetEnergyCap()`
 @*/
 PetscErrorCode ContactGetUnresolvedEnergy(Contact contact, PetscReal *energy)
 {
@@ -125,7 +125,7 @@ PetscErrorCode ContactCanAffordHalves(Contact contact, PetscBool *can)
 
   PetscFunctionBegin;
   *can = PETSC_TRUE;
-  if (!energy->limits) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->options.energy_cap) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(energy->energies, contact->n_bodies));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal change;
@@ -183,10 +183,11 @@ static PetscErrorCode GrowRoom(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += ContactMoreRoom(contact);
-  if (!energy->at_rest || energy->excess == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!energy->at_rest || contact->options.energy_excess == 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetOwnEnergy(contact, &now));
   if (now <= energy->scale) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] += energy->excess * (now - energy->scale) / contact->n_bodies;
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    energy->room[b] += contact->options.energy_excess * (now - energy->scale) / contact->n_bodies;
   energy->scale = now;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -199,7 +200,7 @@ PetscErrorCode ContactBookWork(Contact contact)
 
   PetscFunctionBegin;
   energy->rebuilt = PETSC_FALSE;
-  if (energy->limits && !energy->unlimited) PetscCall(GrowRoom(contact));
+  if (contact->options.energy_cap && !energy->unlimited) PetscCall(GrowRoom(contact));
   if (!energy->known) PetscFunctionReturn(PETSC_SUCCESS);
   energy->largest_force = PetscMax(energy->largest_force, SumForces(contact));
   PetscCall(PetscArraycpy(energy->accepted_force, contact->end.force, contact->rows.n));
@@ -288,7 +289,7 @@ PetscErrorCode ContactBeginEnergy(Contact contact)
   PetscCall(GetOwnEnergy(contact, &energy->scale));
   energy->at_rest = (PetscBool)(energy->scale <= PetscSqr(ROUND_OFF_STRAIN) * contact->scale.force * contact->scale.length);
   energy->scale   = PetscMax(energy->scale, 0);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] = energy->excess * energy->scale / contact->n_bodies;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->room[b] = contact->options.energy_excess * energy->scale / contact->n_bodies;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

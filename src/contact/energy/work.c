@@ -159,7 +159,7 @@ PetscErrorCode ContactNoteRebuild(Contact contact)
   Note:
   Saves computing them again where the energy that contact gains follows from them.
 
-.seealso: `Contact`, `ContactSetEnergyCap()`
+.seealso: `Contact`, `ContactGetEnergyCap()`
 @*/
 PetscErrorCode ContactSetStartEnergies(Contact contact, const PetscReal energies[])
 {

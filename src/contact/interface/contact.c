@@ -8,13 +8,15 @@
 #define MOST_NAMED 50
 /* Up to so many pairs are printed with their distances; of more, those that the user has named, and the nearest one */
 #define MOST_DISTANCES 10
+/* Parts of the energy of the system: contact may gain so much in a run, see tests/README.md, energy at any step; and take or bring so much
+   in a step before it is made again in halves */
+#define ENERGY_EXCESS    1e-3
+#define ENERGY_TOLERANCE 1e-3
 /* Slip [parts of the face] and turn [rad] after which rows are built again by default. Smaller bounds follow curved surfaces better, larger
    ones lose less energy: a half disc that is led round another one has ripples of 1.5 % in its normal force with these, and 0.2 % with
    0.05. */
-/* Part of the energy that contact may gain in a run: see tests/README.md, energy at any step */
-#define ENERGY_EXCESS 1e-3
-#define SLIP_BOUND    0.2
-#define ANGLE_BOUND   0.1
+#define SLIP_BOUND  0.2
+#define ANGLE_BOUND 0.1
 /* Gap or overlap up to which nodes are tied by default [parts of a face]: above what meshes of one curved surface differ by where a face
    spans 1/10 rad, 1/800 of a face, and far below what a user takes for bodies that lie apart */
 #define TIE_DISTANCE 0.01
@@ -43,20 +45,23 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
   PetscCallMPI(MPI_Comm_rank(comm, &(*contact)->ranks.rank));
-  (*contact)->attempt.failed           = PETSC_INT_MAX;
-  (*contact)->options.separation       = PETSC_TRUE;
-  (*contact)->options.facing           = PETSC_TRUE;
-  (*contact)->options.shared_times     = PETSC_TRUE;
-  (*contact)->options.balanced_start   = PETSC_TRUE;
-  (*contact)->options.auto_balance     = PETSC_TRUE;
-  (*contact)->options.slip_bound       = SLIP_BOUND;
-  (*contact)->energy.limits            = PETSC_TRUE;
-  (*contact)->energy.excess            = ENERGY_EXCESS;
-  (*contact)->options.angle_bound      = ANGLE_BOUND;
-  (*contact)->options.tolerance        = PETSC_DEFAULT;
-  (*contact)->options.tie_distance     = TIE_DISTANCE;
-  (*contact)->options.friction         = -1;
-  (*contact)->options.friction_kinetic = -1;
+  (*contact)->attempt.failed = PETSC_INT_MAX;
+  (*contact)->options        = (ContactOptions){
+      .separation       = PETSC_TRUE,
+      .facing           = PETSC_TRUE,
+      .shared_times     = PETSC_TRUE,
+      .balanced_start   = PETSC_TRUE,
+      .auto_balance     = PETSC_TRUE,
+      .energy_cap       = PETSC_TRUE,
+      .energy_excess    = ENERGY_EXCESS,
+      .energy_tolerance = ENERGY_TOLERANCE,
+      .slip_bound       = SLIP_BOUND,
+      .angle_bound      = ANGLE_BOUND,
+      .tolerance        = PETSC_DEFAULT,
+      .tie_distance     = TIE_DISTANCE,
+      .friction         = -1,
+      .friction_kinetic = -1,
+  };
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -378,10 +383,10 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  forces balanced along the normals of both sides%s\n",
                                      contact->options.auto_balance ? " (-contact_balance auto)" : ""));
   if (contact->energy.unlimited) PetscCall(PetscViewerASCIIPrintf(viewer, "  energy not limited: %s\n", contact->energy.unlimited));
-  else if (contact->energy.limits)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  energy limited: contact may gain %g of it in all%s%s\n", (double)contact->energy.excess,
-                                     contact->energy.not_always ? "; not in every step, since " : "",
-                                     contact->energy.not_always ? contact->energy.not_always : ""));
+  else if (contact->options.energy_cap)
+    PetscCall(PetscViewerASCIIPrintf(
+        viewer, "  energy limited: contact may gain %g of it in all%s%s\n", (double)contact->options.energy_excess,
+        contact->energy.not_always ? "; not in every step, since " : "", contact->energy.not_always ? contact->energy.not_always : ""));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, view, viewer); /* without rows the method has not been set up */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -46,7 +46,7 @@ PetscErrorCode ContactGetNumPairs(Contact contact, PetscInt *n)
 a body, `body:others`, of which that body is both the first and the second, or a body and an obstacle: first all of the former, in the order
 of the bodies.
 
-  The first body takes displacements and has the contact rows, the second one takes tractions, unless `ContactSetRowSide()` has turned that
+  The first body takes displacements and has the contact rows, the second one takes tractions, unless `-contact_rows` has turned that
   round: see `ContactGetPairRowSide()`.
 
 .seealso: `Contact`, `ContactGetNumPairs()`, `ContactGetPairRowSide()`

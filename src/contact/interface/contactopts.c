@@ -3,78 +3,79 @@
 #include <sys/names.h>
 #include <sys/optionvalues.h>
 
+const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
+
 /* -contact_balance: on where it has no value */
 static PetscErrorCode ReadBalance(Contact contact, const char value[])
 {
-  PetscBool automatic, balance = PETSC_TRUE;
+  ContactOptions *options = &contact->options;
 
   PetscFunctionBegin;
-  PetscCall(PetscStrcasecmp(value, "auto", &automatic));
-  if (automatic) {
-    PetscCall(ContactSetAutomaticBalance(contact));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (value[0]) PetscCall(OptionsReadSwitch(PetscObjectComm((PetscObject)contact), "contact_balance", " or auto", value, &balance));
-  PetscCall(ContactSetBalance(contact, balance));
+  PetscCall(PetscStrcasecmp(value, "auto", &options->auto_balance));
+  options->balance = (PetscBool)!options->auto_balance;
+  if (!options->auto_balance && value[0])
+    PetscCall(OptionsReadSwitch(PetscObjectComm((PetscObject)contact), "contact_balance", " or auto", value, &options->balance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What the methods share */
 static PetscErrorCode ReadSettings(Contact contact)
 {
-  PetscReal energy_tolerance = 0;
-  char      balance[64]      = "";
-  PetscBool given, set;
+  ContactOptions *options = &contact->options;
+  const struct {
+    const char *name, *text;
+    PetscBool  *value;
+    const char *limits; /* what limits the energy of contact where it is true */
+  } switches[] = {
+      {"-contact_separation", "Surfaces that have met may come apart again", &options->separation, NULL},
+      {"-contact_facing", "Whole bodies come with the faces alone that see each other at the start", &options->facing, NULL},
+      {"-contact_allow_unstable", "What is known to gain energy runs all the same", &options->allow_unstable, NULL},
+      {"-contact_shared_times", "Contact holds at all times that all bodies have", &options->shared_times, NULL},
+      {"-contact_balanced_start", "Massless nodes are brought into balance in the first state", &options->balanced_start, NULL},
+      {"-contact_energy_cap", "Steps that would gain energy at contact are made again", &options->energy_cap, "-contact_energy_cap true"},
+  };
+  const struct {
+    const char *name, *text;
+    PetscReal  *value;
+    PetscBool   may_be_zero, limits;
+  } numbers[] = {
+      {"-contact_tolerance", "Depth that does not yet count as penetration [m]", &options->tolerance, PETSC_TRUE, PETSC_FALSE},
+      {"-contact_energy_tolerance", "Energy that contact may take or bring in a step [parts of the system's]", &options->energy_tolerance,
+       PETSC_FALSE, PETSC_TRUE},
+      {"-contact_energy_excess", "Part of the energy that contact may gain in the whole run", &options->energy_excess, PETSC_TRUE,
+       PETSC_TRUE},
+      {"-contact_tie_distance", "Gap or overlap up to which nodes are tied, parts of a face", &options->tie_distance, PETSC_FALSE,
+       PETSC_FALSE},
+      {"-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", &options->slip_bound, PETSC_FALSE,
+       PETSC_FALSE},
+      {"-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", &options->angle_bound, PETSC_FALSE,
+       PETSC_FALSE},
+  };
+  char      balance[64] = "";
+  PetscBool given, set, sets[PETSC_STATIC_ARRAY_LENGTH(numbers)];
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_tolerance", "Depth that does not yet count as penetration [m]", "ContactSetTolerance",
-                             contact->options.tolerance, &contact->options.tolerance, NULL));
-  PetscCall(ContactGetEnergyTolerance(contact, &energy_tolerance));
-  PetscCall(PetscOptionsReal("-contact_energy_tolerance", "Energy that contact may take or bring in a step [parts of the system's]",
-                             "ContactSetEnergyTolerance", energy_tolerance, &energy_tolerance, &set));
-  if (set) contact->energy.asked = "-contact_energy_tolerance";
-  PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "ContactSetConstraint",
-                             ContactConstraints, (PetscEnum)contact->options.constraint, (PetscEnum *)&contact->options.constraint, NULL));
-  PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetStabilization", ContactStabilizations,
-                             (PetscEnum)contact->options.stabilization, (PetscEnum *)&contact->options.stabilization, NULL));
-  PetscCall(PetscOptionsBool("-contact_separation", "Surfaces that have met may come apart again", "ContactSetSeparation",
-                             contact->options.separation, &contact->options.separation, NULL));
-  PetscCall(PetscOptionsReal("-contact_tie_distance", "Gap or overlap up to which nodes are tied, parts of a face", "ContactSetTieDistance",
-                             contact->options.tie_distance, &contact->options.tie_distance, NULL));
-  PetscCall(PetscOptionsBool("-contact_facing", "Whole bodies come with the faces alone that see each other at the start",
-                             "ContactSetFacing", contact->options.facing, &contact->options.facing, NULL));
-  PetscCall(PetscOptionsReal("-contact_slip_bound", "Slip after which contact rows are built again, parts of a face", "ContactSetBounds",
-                             contact->options.slip_bound, &contact->options.slip_bound, NULL));
-  PetscCall(PetscOptionsReal("-contact_angle_bound", "Turn of a normal after which contact rows are built again [rad]", "ContactSetBounds",
-                             contact->options.angle_bound, &contact->options.angle_bound, NULL));
-  PetscCall(PetscOptionsBool("-contact_allow_unstable", "What is known to gain energy runs all the same", "ContactSetAllowUnstable",
-                             contact->options.allow_unstable, &contact->options.allow_unstable, NULL));
-  PetscCall(PetscOptionsString("-contact_balance", "Forces have the same sum along the normals of both sides", "ContactSetBalance",
-                               contact->options.auto_balance ? "auto" : PetscBools[contact->options.balance], balance, sizeof(balance),
-                               &given));
-  PetscCall(PetscOptionsBool("-contact_shared_times", "Contact holds at all times that all bodies have", "ContactSetSharedTimes",
-                             contact->options.shared_times, &contact->options.shared_times, NULL));
-  PetscCall(PetscOptionsBool("-contact_balanced_start", "Massless nodes are brought into balance in the first state",
-                             "ContactSetBalancedStart", contact->options.balanced_start, &contact->options.balanced_start, NULL));
-  PetscCall(PetscOptionsBool("-contact_energy_cap", "Steps that would gain energy at contact are made again", "ContactSetEnergyCap",
-                             contact->energy.limits, &contact->energy.limits, &set));
-  if (set && contact->energy.limits) contact->energy.asked = "-contact_energy_cap true";
-  PetscCall(PetscOptionsReal("-contact_energy_excess", "Part of the energy that contact may gain in the whole run", "ContactSetEnergyCap",
-                             contact->energy.excess, &contact->energy.excess, &set));
-  if (set) contact->energy.asked = "-contact_energy_excess";
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(switches); k++) {
+    PetscCall(PetscOptionsBool(switches[k].name, switches[k].text, "ContactSetFromOptions", *switches[k].value, switches[k].value, &set));
+    if (set && switches[k].limits && *switches[k].value) contact->energy.asked = switches[k].limits;
+  }
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(numbers); k++) {
+    PetscCall(PetscOptionsReal(numbers[k].name, numbers[k].text, "ContactSetFromOptions", *numbers[k].value, numbers[k].value, &sets[k]));
+    if (sets[k] && numbers[k].limits) contact->energy.asked = numbers[k].name;
+  }
+  PetscCall(PetscOptionsEnum("-contact_constraint", "What contact forces keep from becoming negative", "ContactSetFromOptions",
+                             ContactConstraints, (PetscEnum)options->constraint, (PetscEnum *)&options->constraint, NULL));
+  PetscCall(PetscOptionsEnum("-contact_stabilization", "What is done against chatter", "ContactSetFromOptions", ContactStabilizations,
+                             (PetscEnum)options->stabilization, (PetscEnum *)&options->stabilization, NULL));
+  PetscCall(PetscOptionsString("-contact_balance", "Forces have the same sum along the normals of both sides", "ContactSetFromOptions",
+                               options->auto_balance ? "auto" : PetscBools[options->balance], balance, sizeof(balance), &given));
   PetscOptionsEnd();
-  PetscCheck(energy_tolerance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_energy_tolerance %g must be positive; a large one for none", (double)energy_tolerance);
-  PetscCall(ContactSetEnergyTolerance(contact, energy_tolerance));
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(numbers); k++)
+    PetscCheck(!sets[k] || *numbers[k].value > 0 || (numbers[k].may_be_zero && *numbers[k].value == 0),
+               PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "%s %g must %s", numbers[k].name, (double)*numbers[k].value,
+               numbers[k].may_be_zero ? "not be negative" : "be positive");
   if (given) PetscCall(ReadBalance(contact, balance));
-  PetscCheck(contact->options.slip_bound > 0 && contact->options.angle_bound > 0, PetscObjectComm((PetscObject)contact),
-             PETSC_ERR_USER_INPUT, "-contact_slip_bound %g and -contact_angle_bound %g must be positive",
-             (double)contact->options.slip_bound, (double)contact->options.angle_bound);
-  PetscCheck(contact->energy.excess >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_energy_excess %g must not be negative", (double)contact->energy.excess);
-  PetscCheck(contact->options.tie_distance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_tie_distance %g must be positive: it is a part of a face", (double)contact->options.tie_distance);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,8 +140,15 @@ static PetscErrorCode TakeRowSides(Contact contact, PetscInt n, char *names[])
     PetscCall(PetscEnumFind(ContactRowSides, names[p], &side, &found));
     PetscCheck(found, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_rows %s is none of first, second, finer",
                names[p]);
-    if (n == 1) PetscCall(ContactSetRowSide(contact, (ContactRowSide)side));
-    else PetscCall(ContactSetPairRowSide(contact, p, (ContactRowSide)side));
+    if (n == 1) contact->options.row_side = (ContactRowSide)side;
+    else {
+      ContactPair *pair = &contact->pairs[p];
+
+      PetscCheck(!pair->obstacle || side != (PetscEnum)CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+                 "-contact_rows second: pair %s is that of a body and an obstacle, which has no rows; say first", pair->name);
+      pair->row_side = (ContactRowSide)side;
+      pair->own_side = PETSC_TRUE;
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,12 +228,9 @@ static PetscErrorCode TakeAlternation(Contact contact, size_t size, char type[])
 
   Note:
   What the program has set before holds where the options are silent: pairs of the options come after those that have been added, and
-  the two bodies are a pair by themselves only where none has been.
+  the two bodies are a pair by themselves only where none has been. A program gives options of its own by `PetscOptionsSetValue()` before.
 
-.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetPairLaw()`,
-`ContactSetConstraint()`, `ContactSetStabilization()`, `ContactSetFacing()`, `ContactSetBounds()`, `ContactSetTolerance()`,
-          `ContactSetEnergyTolerance()`, `ContactSetAllowUnstable()`, `ContactSetSharedTimes()`, `ContactSetEnergyCap()`,
-          `ContactSetTieDistance()`, `ContactSetSeparation()`, `ContactSetBalance()`, `ContactSetRowSide()`
+.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetPairLaw()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {

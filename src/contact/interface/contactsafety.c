@@ -17,116 +17,7 @@ PetscErrorCode ContactRefuseSlopes(Contact contact, const char prefix[], SNESLin
 }
 
 /*@
-  ContactSetAllowUnstable - whether choices that are known to gain energy run all the same
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- allow   - false by default
-
-  Options Database Key:
-. -contact_allow_unstable (true|false) - whether they do
-
-  Level: intermediate
-
-  Note:
-  Refused otherwise, where contact nodes have mass: Robin and impedance conditions, Lagrange multipliers at the end of the step without a
-  stabilization, and in two and three dimensions `-schwarz_traction reaction` over several substeps. Robin and impedance conditions are
-  refused as well where two bodies make unequal substeps. To compare with.
-
-.seealso: `Contact`, `ContactGetAllowUnstable()`, `ContactSetEnergyCap()`
-@*/
-PetscErrorCode ContactSetAllowUnstable(Contact contact, PetscBool allow)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, allow, 2);
-  ContactCheckNotSetUp(contact);
-  contact->options.allow_unstable = allow;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetAllowUnstable - whether choices that are known to gain energy run all the same
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. allow - whether they do
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetAllowUnstable()`
-@*/
-PetscErrorCode ContactGetAllowUnstable(Contact contact, PetscBool *allow)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(allow, 2);
-  *allow = contact->options.allow_unstable;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSetSharedTimes - whether contact holds at all times that all bodies have in common, or at the ends of controller steps alone
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- shared  - true by default
-
-  Options Database Key:
-. -contact_shared_times (true|false) - whether it does
-
-  Level: intermediate
-
-  Note:
-  Where the substeps of all bodies have a common divisor, a controller step is made in so many parts, each like a controller step of its own
-  for the contact: rows join and leave, and monitors see the end of the last one.
-
-.seealso: `Contact`, `ContactGetSharedTimes()`, `ContactGetParts()`
-@*/
-PetscErrorCode ContactSetSharedTimes(Contact contact, PetscBool shared)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, shared, 2);
-  ContactCheckNotSetUp(contact);
-  contact->options.shared_times = shared;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetSharedTimes - whether contact holds at all times that all bodies have in common
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. shared - whether it does
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetSharedTimes()`
-@*/
-PetscErrorCode ContactGetSharedTimes(Contact contact, PetscBool *shared)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(shared, 2);
-  *shared = contact->options.shared_times;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetUnlimitedReason - why steps may gain energy at contact in spite of `ContactSetEnergyCap()`
+  ContactGetUnlimitedReason - why steps may gain energy at contact in spite of `-contact_energy_cap`
 
   Not Collective
 
@@ -139,7 +30,7 @@ PetscErrorCode ContactGetSharedTimes(Contact contact, PetscBool *shared)
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactGetLossReason()`, `ContactSetEnergyCap()`, `ContactView()`
+.seealso: `Contact`, `ContactGetEnergyCap()`, `ContactGetLossReason()`, `ContactView()`
 @*/
 PetscErrorCode ContactGetUnlimitedReason(Contact contact, const char *always[], const char *some[])
 {
@@ -175,102 +66,6 @@ PetscErrorCode ContactGetLossReason(Contact contact, const char *reason[])
 }
 
 /*@
-  ContactSetBalancedStart - whether massless nodes are brought into balance in the first state
-
-  Logically Collective
-
-  Input Parameters:
-+ contact  - the `Contact`, not yet set up
-- balanced - true by default
-
-  Options Database Key:
-. -contact_balanced_start (true|false) - whether they are
-
-  Level: intermediate
-
-  Notes:
-  Initial displacements and loads need not leave massless nodes in balance. These have no inertia: at the end of the first step they would
-  be in balance all the same, at a loss of energy. So they are moved there before the run starts, under the forces of ties and closed
-  contacts, and what is compared with later is that state. All other nodes start as they have been told.
-
-  Where a body has no inertia, all bodies start as they have been told.
-
-.seealso: `Contact`, `ContactGetBalancedStart()`, `ContactCheckInitialGap()`, `BodySetMassRedistribute()`
-@*/
-PetscErrorCode ContactSetBalancedStart(Contact contact, PetscBool balanced)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, balanced, 2);
-  ContactCheckNotSetUp(contact);
-  contact->options.balanced_start = balanced;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetBalancedStart - whether massless nodes are brought into balance in the first state
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. balanced - whether they are
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetBalancedStart()`
-@*/
-PetscErrorCode ContactGetBalancedStart(Contact contact, PetscBool *balanced)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(balanced, 2);
-  *balanced = contact->options.balanced_start;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-. cap     - whether steps are made again; true by default
-- excess  - part of the system's energy that contact may gain in the whole run, 1e-3 by default
-
-  Options Database Keys:
-+ -contact_energy_cap (true|false) - whether steps are made again
-- -contact_energy_excess e         - the part
-
-  Level: intermediate
-
-  Notes:
-  A controller step that does not resolve the contact gains energy where rows open: with the trapezoidal rule half the force at the start of
-  the step times the gap at its end. Beyond what contact has lost before and the excess, such a step is made again, with less force at its
-  start on the rows that open, on both bodies.
-
-  The energy is that at the start or, where all starts at rest without strain, the largest one so far.
-
-.seealso: `Contact`, `ContactGetEnergyCap()`, `ContactCounts`
-@*/
-PetscErrorCode ContactSetEnergyCap(Contact contact, PetscBool cap, PetscReal excess)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, cap, 2);
-  PetscValidLogicalCollectiveReal(contact, excess, 3);
-  ContactCheckNotSetUp(contact);
-  PetscCheck(excess >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE, "The energy excess %g must not be negative",
-             (double)excess);
-  contact->energy.limits = cap;
-  contact->energy.excess = excess;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   ContactGetEnergyCap - whether controller steps in which contact would gain energy are made again, and how much it may gain all the same
 
   Not Collective
@@ -284,14 +79,14 @@ PetscErrorCode ContactSetEnergyCap(Contact contact, PetscBool cap, PetscReal exc
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactSetEnergyCap()`
+.seealso: `Contact`, `ContactGetUnlimitedReason()`
 @*/
 PetscErrorCode ContactGetEnergyCap(Contact contact, PetscBool *cap, PetscReal *excess)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  if (cap) *cap = contact->energy.limits;
-  if (excess) *excess = contact->energy.excess;
+  if (cap) *cap = contact->options.energy_cap;
+  if (excess) *excess = contact->options.energy_excess;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

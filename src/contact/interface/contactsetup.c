@@ -58,7 +58,7 @@ static PetscErrorCode ShareControllerStep(Contact contact)
 
   Level: developer
 
-.seealso: `Contact`, `ContactStep()`, `ContactSetSharedTimes()`
+.seealso: `Contact`, `ContactStep()`, `ContactSetFromOptions()`
 @*/
 PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
 {
@@ -290,9 +290,9 @@ static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
   To be called again when the initial states have been changed after `ContactSetUp()`. Under `CONTACT_LAW_TIED` nodes within the tie
   distance of their partner are tied as they lie there; a pair that ties nothing, a gap above that distance or an overlap is an error.
 
-  Massless nodes go where loads, strains, ties and closed rows have them in balance, unless `ContactSetBalancedStart()` has said otherwise.
+  Massless nodes go where loads, strains, ties and closed rows have them in balance, unless `-contact_balanced_start false` is given.
 
-.seealso: `Contact`, `BodySetInitialState()`, `ContactSetTieDistance()`, `ContactSetBalancedStart()`
+.seealso: `Contact`, `BodySetInitialState()`, `ContactSetFromOptions()`
 @*/
 PetscErrorCode ContactCheckInitialGap(Contact contact)
 {

@@ -1,9 +1,6 @@
 /* The energy that contact takes in a controller step. */
 #include <contact/parts.h>
 
-/* Of the energy of the system: contact may take or bring so much in a step before it is made again in halves */
-#define ENERGY_TOLERANCE 1e-3
-
 /* Whether a row joins or leaves contact in the step under way, on any rank; and whether the nodes of such a row have mass, or a body of
    theirs has no inertia: then what the step takes is not the step's doing */
 static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *left_out)
@@ -53,7 +50,7 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
 does not tell what its springs store, and where -contact_constraint has gap rates end; and, where all starts at rest without strain,
   below what `ContactGetUnresolvedEnergy()` tells.
 
-.seealso: `Contact`, `ContactSetEnergyTolerance()`, `ContactTryStep()`
+.seealso: `Contact`, `ContactGetEnergyTolerance()`, `ContactTryStep()`
 @*/
 PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
 {
@@ -74,39 +71,6 @@ PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
 }
 
 /*@
-  ContactSetEnergyTolerance - how much energy contact may take or bring in a controller step before it is made again in halves
-
-  Logically Collective
-
-  Input Parameters:
-+ contact   - the `Contact`
-- tolerance - part of the energy of the system, of which the summary's errors are parts too; `PETSC_DEFAULT`: 1e-3
-
-  Options Database Key:
-. -contact_energy_tolerance t - the tolerance
-
-  Level: intermediate
-
-  Notes:
-  A step that does not resolve contact takes energy where rows join, and brings it where they leave. A block that hits a beam ends with +185
-% of the energy at a step of 2e-4 s without cuts and without `ContactSetEnergyCap()`.
-
-  When all cuts are used up the step is accepted, and counted.
-
-.seealso: `Contact`, `ContactGetEnergyLoss()`, `ControllerSetStepCuts()`
-@*/
-PetscErrorCode ContactSetEnergyTolerance(Contact contact, PetscReal tolerance)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(contact, tolerance, 2);
-  PetscCheck(tolerance == (PetscReal)PETSC_DEFAULT || tolerance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "-contact_energy_tolerance %g must be positive", (double)tolerance);
-  contact->options.energy_tolerance = tolerance == (PetscReal)PETSC_DEFAULT ? ENERGY_TOLERANCE : tolerance;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   ContactGetEnergyTolerance - how much energy contact may take or bring in a controller step before it is made again in halves
 
   Not Collective
@@ -119,13 +83,13 @@ PetscErrorCode ContactSetEnergyTolerance(Contact contact, PetscReal tolerance)
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactSetEnergyTolerance()`
+.seealso: `Contact`, `ContactGetEnergyLoss()`, `ControllerSetStepCuts()`
 @*/
 PetscErrorCode ContactGetEnergyTolerance(Contact contact, PetscReal *tolerance)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(tolerance, 2);
-  *tolerance = contact->options.energy_tolerance > 0 ? contact->options.energy_tolerance : ENERGY_TOLERANCE;
+  *tolerance = contact->options.energy_tolerance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

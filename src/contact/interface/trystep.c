@@ -16,41 +16,13 @@ PetscErrorCode ContactGetTime(Contact contact, PetscReal *time)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactSchwarzSetUnconverged - sets what becomes of a controller step whose outer iteration does not converge
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- what    - what becomes of it
-
-  Options Database Key:
-. -schwarz_unconverged (error|accept) - what becomes of a controller step that does not converge
-
-  Level: advanced
-
-.seealso: `Contact`, `CONTACT_SCHWARZ`, `CONTACT_ALTERNATION`, `SchwarzUnconverged`
-@*/
-PetscErrorCode ContactSchwarzSetUnconverged(Contact contact, SchwarzUnconverged what)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveEnum(contact, what, 2);
-  ContactCheckNotSetUp(contact);
-  PetscCheck((int)what >= 0 && what <= SCHWARZ_UNCONVERGED_ACCEPT, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no way to go on unconverged %d", (int)what);
-  contact->options.unconverged = what;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same from the options, by methods with an outer iteration */
+/* What becomes of a step whose outer iteration does not converge, from the options; for methods that have one */
 PetscErrorCode ContactReadUnconverged(Contact contact)
 {
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "ContactSchwarzSetUnconverged",
-                             Unconvergeds, (PetscEnum)contact->options.unconverged, (PetscEnum *)&contact->options.unconverged, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "ContactSetFromOptions", Unconvergeds,
+                             (PetscEnum)contact->options.unconverged, (PetscEnum *)&contact->options.unconverged, NULL));
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,4 +1,23 @@
-/* Whether forces have the same sum along the normals of both sides. */
+/*
+   Whether forces have the same sum along the normals of both sides, -contact_balance.
+
+   Without friction they should. Where few nodes are in contact the centre of pressure hangs on where the nodes lie, which spins bodies that
+   hit each other off-centre: discs of 64 edges by up to 0.05 of the ratio of speed and radius, balls by 0.1, and by 4e-4 and 2e-3 at most
+   with this option. It costs no energy to speak of: discs lose 1e-5 of it, as without. The run takes a fifth longer.
+
+   Where two nodes bear all it helps less, since normals of rows are half way between those of both sides up to 10 degrees alone: balls of
+   40 edges spin by 0.003 at 2 m/s, but by 0.008 at 0.4 m/s and 0.023 at 0.04 m/s.
+
+   In two dimensions there is one condition for each pair, in three there are two. In three dimensions the bends of both surfaces count and
+   nodes have the normals of round surfaces, see SurfaceSetRound().
+
+   It means something for rows that follow the surfaces: frictionless pairs of bodies with inertia that are not both linear. It goes with
+   CONTACT_SCHWARZ and massless contact nodes. For others it is an error. A pair should touch in one place, and faces bend by 11.5 degrees at
+   most. One of its bodies should be free: where both are led moments are no measure of anything, and what turns of gaps bring or take is
+   not limited.
+
+   With auto, the default, forces are balanced where all that holds, and all pairs are of bodies whose surfaces are round without edges.
+*/
 #include <contact/parts.h>
 
 /* Chords of angles between the normals of two nodes of a face: from 18 degrees on the face is beside an edge; faces that bend by more than
@@ -9,78 +28,6 @@
 #define FLAT 1e-3
 /* Pairs whose gaps are turned unasked, at most: the turns of all are unknowns of one dense matrix */
 #define MOST_PAIRS 100
-
-/*@
-  ContactSetBalance - whether the forces of a pair have the same sum along the normals of both of its surfaces
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- balance - what `ContactSetAutomaticBalance()` would choose by default
-
-  Options Database Key:
-. -contact_balance (true|false|auto) - whether they have
-
-  Level: intermediate
-
-  Notes:
-  Without friction they should. Where few nodes are in contact the centre of pressure hangs on where the nodes lie, which spins bodies that
-  hit each other off-centre: discs of 64 edges by up to 0.05 of the ratio of speed and radius, balls by 0.1, and by 4e-4 and 2e-3 at most
-  with this option. It costs no energy to speak of: discs lose 1e-5 of it, as without. The run takes a fifth longer.
-
-  Where two nodes bear all it helps less, since normals of rows are half way between those of both sides up to 10 degrees alone: balls of 40
-  edges spin by 0.003 at 2 m/s, but by 0.008 at 0.4 m/s and 0.023 at 0.04 m/s.
-
-  In two dimensions there is one condition for each pair, in three there are two. In three dimensions the bends of both surfaces count and
-  nodes have the normals of round surfaces, see `SurfaceSetRound()`.
-
-  It means something for rows that follow the surfaces: frictionless pairs of bodies with inertia that are not both linear. It goes with
-  `CONTACT_SCHWARZ` and massless contact nodes. For others it is an error. A pair should touch in one place, and faces bend by 11.5
-  degrees at most. One of its bodies should be free: where both are led moments are no measure of anything, and what turns of gaps bring
-  or take is not limited.
-
-.seealso: `Contact`, `ContactSetAutomaticBalance()`, `ContactGetBalance()`, `ContactSetBounds()`
-@*/
-PetscErrorCode ContactSetBalance(Contact contact, PetscBool balance)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, balance, 2);
-  ContactCheckNotSetUp(contact);
-  contact->options.balance      = balance;
-  contact->options.auto_balance = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSetAutomaticBalance - lets the set-up choose whether forces of a pair have the same sum along the normals of both sides; default
-
-  Logically Collective
-
-  Input Parameter:
-. contact - the `Contact`, not yet set up
-
-  Options Database Key:
-. -contact_balance auto - the same
-
-  Level: intermediate
-
-  Note:
-  They have where all pairs are of bodies whose surfaces are round without edges, by 11.5 degrees a face at most, one of which at least is
-  held nowhere, and all the rest is as `ContactSetBalance()` wants it.
-
-.seealso: `Contact`, `ContactSetBalance()`, `ContactGetBalance()`
-@*/
-PetscErrorCode ContactSetAutomaticBalance(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  ContactCheckNotSetUp(contact);
-  contact->options.balance      = PETSC_FALSE;
-  contact->options.auto_balance = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /*@
   ContactGetBalance - whether the forces of a pair have the same sum along the normals of both of its surfaces
@@ -95,7 +42,7 @@ PetscErrorCode ContactSetAutomaticBalance(Contact contact)
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactSetBalance()`, `ContactSetAutomaticBalance()`
+.seealso: `Contact`, `ContactSetFromOptions()`
 @*/
 PetscErrorCode ContactGetBalance(Contact contact, PetscBool *balance)
 {

@@ -72,37 +72,6 @@ PetscErrorCode ContactBond(Contact contact)
 }
 
 /*@
-  ContactSetSeparation - sets whether surfaces that have met may come apart again
-
-  Logically Collective
-
-  Input Parameters:
-+ contact    - the `Contact`, not yet set up
-- separation - `PETSC_TRUE`, the default: they only push; `PETSC_FALSE`: nodes that have been in contact at the end of a controller step
-               slide on along the partner from then on, pushed or pulled, until there is no partner opposite any more
-
-  Options Database Key:
-. -contact_separation (true|false) - whether they may
-
-  Level: intermediate
-
-  Note:
-  `PETSC_FALSE` needs `CONTACT_SCHWARZ` or `CONTACT_ALTERNATION`, and frictionless pairs. Ties beside them stay as they are. Other programs
-call this contact without separation, or sliding.
-
-.seealso: `Contact`, `ContactSetLaw()`, `ContactGetSeparation()`, `ContactSetFromOptions()`
-@*/
-PetscErrorCode ContactSetSeparation(Contact contact, PetscBool separation)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(contact, separation, 2);
-  ContactCheckNotSetUp(contact);
-  contact->options.separation = separation;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   ContactGetSeparation - whether surfaces that have met may come apart again
 
   Not Collective
@@ -111,11 +80,12 @@ PetscErrorCode ContactSetSeparation(Contact contact, PetscBool separation)
 . contact - the `Contact`
 
   Output Parameter:
-. separation - see `ContactSetSeparation()`
+. separation - `PETSC_FALSE` under `-contact_separation false`: nodes that have been in contact at the end of a controller step slide on
+               along the partner from then on, pushed or pulled, until there is no partner opposite any more
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactSetSeparation()`
+.seealso: `Contact`, `ContactSetFromOptions()`
 @*/
 PetscErrorCode ContactGetSeparation(Contact contact, PetscBool *separation)
 {

@@ -5,114 +5,15 @@
 /* Two surfaces are alike if the ratio of the distances between their nodes is above this, so that round-off does not choose the side */
 #define ALIKE 0.999
 
+/* The body that has the rows takes displacements, its partner tractions, whatever their order in ContactAddPair(). Names, forces, moments
+   and normals of the pair stay in that order.
+
+   The finer surface is the one whose nodes are closer together by more than a thousandth where the two may touch; else the first body has
+   the rows. That distance is the mean over those faces of each surface, in the reference positions, that lie within the box around the
+   other one; along an axis on which the boxes are apart all do. It is the same on any number of ranks. In one dimension the first body has
+   the rows. A pair for which that would bring the bodies into a circle, each waiting for the reaction of the one before, has them on its
+   first body too. A pair with an obstacle has its rows on the body. */
 const char *const ContactRowSides[] = {"first", "second", "finer", "ContactRowSide", "CONTACT_ROW_SIDE_", NULL};
-
-static PetscErrorCode CheckSide(Contact contact, ContactRowSide side)
-{
-  PetscFunctionBegin;
-  PetscCheck((int)side >= 0 && side <= CONTACT_ROW_SIDE_FINER, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no side %d; a pair has its rows on the first body, the second, or the finer one", (int)side);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSetRowSide - sets which body of each pair has the contact rows, one for each of its nodes
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-- side    - a `ContactRowSide`, `CONTACT_ROW_SIDE_FIRST` by default
-
-  Options Database Key:
-. -contact_rows (first|second|finer) - the side
-
-  Level: intermediate
-
-  Notes:
-  The body that has the rows takes displacements, its partner tractions, whatever their order in `ContactAddPair()`. Names, forces, moments
-  and normals of the pair stay in that order.
-
-  The finer surface is the one whose nodes are closer together by more than a thousandth where the two may touch; else the first body
-  has the rows. That distance is the mean over those faces of each surface, in the reference positions, that lie within the box around the
-  other one; along an axis on which the boxes are apart all do. It is the same on any number of ranks. In one dimension the first body has
-the rows. A pair for which that would bring the bodies into a circle, each waiting for the reaction of the one before, has them on its first
-  body too. `ContactView()` says which body has the rows, if it is the second.
-
-  A pair with an obstacle has its rows on the body.
-
-.seealso: `Contact`, `ContactGetRowSide()`, `ContactSetPairRowSide()`, `ContactAddPair()`
-@*/
-PetscErrorCode ContactSetRowSide(Contact contact, ContactRowSide side)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveEnum(contact, side, 2);
-  PetscCheck(!contact->surfaces_known, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
-  PetscCall(CheckSide(contact, side));
-  contact->options.row_side = side;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetRowSide - which body of each pair has the contact rows
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. side - see `ContactSetRowSide()`
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetRowSide()`, `ContactGetPairRowSide()`
-@*/
-PetscErrorCode ContactGetRowSide(Contact contact, ContactRowSide *side)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(side, 2);
-  *side = contact->options.row_side;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactSetPairRowSide - sets which body of one pair has the contact rows
-
-  Logically Collective
-
-  Input Parameters:
-+ contact - the `Contact`, not yet set up
-. pair    - 0 to the number of pairs - 1
-- side    - a `ContactRowSide`; that of `ContactSetRowSide()` by default
-
-  Options Database Key:
-. -contact_rows first,finer - a side for each pair
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetRowSide()`, `ContactGetPairRowSide()`
-@*/
-PetscErrorCode ContactSetPairRowSide(Contact contact, PetscInt pair, ContactRowSide side)
-{
-  ContactPair *p;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscValidLogicalCollectiveInt(contact, pair, 2);
-  PetscValidLogicalCollectiveEnum(contact, side, 3);
-  PetscCheck(!contact->surfaces_known, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
-  ContactCheckPair(contact, pair);
-  PetscCall(CheckSide(contact, side));
-  p = &contact->pairs[pair];
-  PetscCheck(!p->obstacle || side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_rows second: pair %s is that of a body and an obstacle, which has no rows; say first", p->name);
-  p->row_side = side;
-  p->own_side = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /*@
   ContactGetPairRowSide - which body of a pair has the contact rows
@@ -128,7 +29,7 @@ PetscErrorCode ContactSetPairRowSide(Contact contact, PetscInt pair, ContactRowS
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactSetRowSide()`, `ContactGetPair()`
+.seealso: `Contact`, `ContactGetPair()`, `ContactView()`
 @*/
 PetscErrorCode ContactGetPairRowSide(Contact contact, PetscInt pair, PetscInt *body)
 {

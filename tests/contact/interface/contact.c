@@ -170,85 +170,22 @@ static void set_up_is_final(void **state)
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetUp()", ContactSetType(simulation->contact, CONTACT_LAGRANGE));
 }
 
-typedef struct {
-  PetscBool            unstable, shared_times, cap, facing, balance;
-  PetscReal            excess, tolerance, tie_distance;
-  ContactConstraint    constraint;
-  ContactStabilization stabilization;
-} Settings;
-
-static void get(Contact contact, Settings *settings)
+static void bad_values_are_refused(void **state)
 {
-  ok(ContactGetAllowUnstable(contact, &settings->unstable));
-  ok(ContactGetSharedTimes(contact, &settings->shared_times));
-  ok(ContactGetEnergyCap(contact, &settings->cap, &settings->excess));
-  ok(ContactGetFacing(contact, &settings->facing));
-  ok(ContactGetBalance(contact, &settings->balance));
-  ok(ContactGetTolerance(contact, &settings->tolerance));
-  ok(ContactGetTieDistance(contact, &settings->tie_distance));
-  ok(ContactGetConstraint(contact, &settings->constraint));
-  ok(ContactGetStabilization(contact, &settings->stabilization));
-}
+  static const char *const cases[][2] = {
+      {"-contact_tolerance", "not be negative"},    {"-contact_energy_excess", "not be negative"},
+      {"-contact_energy_tolerance", "be positive"}, {"-contact_tie_distance", "be positive"},
+      {"-contact_slip_bound", "be positive"},       {"-contact_angle_bound", "be positive"},
+  };
+  Simulation *simulation = (Simulation *)*state;
 
-/* Twice, with other values: one of the two differs from the default */
-static void set_and_got(void **state)
-{
-  Contact  contact;
-  Settings settings;
-
-  (void)state;
-  ok(ContactCreate(PETSC_COMM_WORLD, &contact));
-  for (PetscInt k = 0; k < 2; k++) {
-    const PetscBool flag = k ? PETSC_TRUE : PETSC_FALSE, other = k ? PETSC_FALSE : PETSC_TRUE;
-
-    ok(ContactSetAllowUnstable(contact, flag));
-    ok(ContactSetSharedTimes(contact, other));
-    ok(ContactSetEnergyCap(contact, flag, 0.25 + k));
-    ok(ContactSetFacing(contact, other));
-    ok(ContactSetBalance(contact, flag));
-    ok(ContactSetTolerance(contact, 1e-5 * (1 + k)));
-    ok(ContactSetTieDistance(contact, 0.5 + k));
-    ok(ContactSetConstraint(contact, k ? CONTACT_CONSTRAINT_GAP_RATE : CONTACT_CONSTRAINT_BOTH));
-    ok(ContactSetStabilization(contact, k ? CONTACT_STABILIZATION_NAIVE : CONTACT_STABILIZATION_CONTACT_STABILIZED));
-    get(contact, &settings);
-    assert_int_equal(settings.unstable, flag);
-    assert_int_equal(settings.shared_times, other);
-    assert_int_equal(settings.cap, flag);
-    near(settings.excess, 0.25 + k, 0);
-    assert_int_equal(settings.facing, other);
-    assert_int_equal(settings.balance, flag);
-    near(settings.tolerance, 1e-5 * (1 + k), 0);
-    near(settings.tie_distance, 0.5 + k, 0);
-    assert_int_equal(settings.constraint, k ? CONTACT_CONSTRAINT_GAP_RATE : CONTACT_CONSTRAINT_BOTH);
-    assert_int_equal(settings.stabilization, k ? CONTACT_STABILIZATION_NAIVE : CONTACT_STABILIZATION_CONTACT_STABILIZED);
+  AddCollision(4, 3, 0);
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(cases); k++) {
+    ok(PetscOptionsSetValue(NULL, cases[k][0], "-1"));
+    refused(PETSC_ERR_USER_INPUT, cases[k][1], SimulationCreate(simulation));
+    ok(ControllerDestroy(&simulation->controller));
+    ok(PetscOptionsClearValue(NULL, cases[k][0]));
   }
-  ok(ContactSetAutomaticBalance(contact));
-  get(contact, &settings);
-  assert_int_equal(settings.balance, PETSC_FALSE); /* until the set-up finds that it suits the bodies */
-  ok(ContactDestroy(&contact));
-}
-
-static void refused_values(void **state)
-{
-  const PetscErrorCode code = PETSC_ERR_ARG_OUTOFRANGE;
-  Contact              contact;
-  Settings             before, after;
-
-  (void)state;
-  ok(ContactCreate(PETSC_COMM_WORLD, &contact));
-  get(contact, &before);
-  refused(code, "energy excess -1|negative", ContactSetEnergyCap(contact, PETSC_TRUE, -1));
-  refused(code, "tolerance of -1|negative", ContactSetTolerance(contact, -1));
-  refused(code, "tie distance of 0|positive", ContactSetTieDistance(contact, 0));
-  refused(code, "no constraint 3", ContactSetConstraint(contact, (ContactConstraint)3));
-  refused(code, "no stabilization 3", ContactSetStabilization(contact, (ContactStabilization)3));
-  get(contact, &after);
-  near(after.excess, before.excess, 0);
-  near(after.tolerance, before.tolerance, 0);
-  near(after.tie_distance, before.tie_distance, 0);
-  assert_int_equal(after.constraint, before.constraint);
-  assert_int_equal(after.stabilization, before.stabilization);
-  ok(ContactDestroy(&contact));
 }
 
 static void of_the_controller(void **state)
@@ -491,8 +428,7 @@ int main(int argc, char **argv)
       simulation_test(displacement_into_each_other_is_refused),
       simulation_test(tolerances_follow_the_size),
       simulation_test(set_up_is_final),
-      cmocka_unit_test(set_and_got),
-      cmocka_unit_test(refused_values),
+      simulation_test(bad_values_are_refused),
       cmocka_unit_test(of_the_controller),
       simulation_test(sides_are_chosen),
       simulation_test(tilde_leaves_the_order_open),

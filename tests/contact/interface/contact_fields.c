@@ -175,21 +175,15 @@ static void start_in_balance(void **state)
   for (PetscInt balanced = 0; balanced < 2; balanced++) {
     ContactPairState start, end;
     PetscReal        before = 0, after = 0;
-    PetscBool        is;
     PetscInt         n;
     const Body      *bodies;
 
     ok(ControllerDestroy(&simulation->controller));
+    ok(PetscOptionsSetValue(NULL, "-contact_balanced_start", PetscBools[balanced]));
     ok(ControllerCreate(PETSC_COMM_WORLD, &simulation->controller));
     ok(ControllerSetFromOptions(simulation->controller));
     ok(ControllerGetContact(simulation->controller, &simulation->contact));
-    ok(ContactGetBalancedStart(simulation->contact, &is));
-    assert_true(is);
-    if (!balanced) ok(ContactSetBalancedStart(simulation->contact, PETSC_FALSE));
     ok(ControllerSetUp(simulation->controller));
-    ok(ContactGetBalancedStart(simulation->contact, &is));
-    assert_int_equal(is, balanced);
-    refused(PETSC_ERR_ARG_WRONGSTATE, "before ContactSetUp()", ContactSetBalancedStart(simulation->contact, PETSC_TRUE));
     ok(ContactGetPairState(simulation->contact, 0, &start));
     ok(ControllerGetBodies(simulation->controller, &n, &bodies));
     for (PetscInt b = 0; b < n; b++) {

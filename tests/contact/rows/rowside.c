@@ -183,7 +183,6 @@ static void pairs_have_sides_of_their_own(void **state)
 {
   static const PetscInt rows[] = {0, 1, 1}, finer[] = {1, 0}, circle[] = {0, 0, 0};
   Simulation           *simulation = (Simulation *)*state;
-  ContactRowSide        side;
 
   AddBox("a", "1,4", "0,0", "1,1"); /* fine at x = 1, coarse at y = 1 */
   AddBox("b", "3,2", "1.01,0", "2.01,1");
@@ -192,17 +191,12 @@ static void pairs_have_sides_of_their_own(void **state)
              "first,second,finer -contact_type alternation");
   ok(SimulationCreate(simulation));
   check_rows(simulation, 3, rows);
-  ok(ContactGetRowSide(simulation->contact, &side));
-  assert_int_equal(side, CONTACT_ROW_SIDE_FIRST);
   ok(ContactStep(simulation->contact));
-  refused(PETSC_ERR_ARG_WRONGSTATE, "before ContactSetUp", ContactSetRowSide(simulation->contact, CONTACT_ROW_SIDE_FINER));
   /* where they meet c is finer than a, a than b, and b than c: the pair that has been turned round is turned back */
   SimulationRepeat(simulation, "-contact_pairs a.ymax:c.ymin,a.xmax:b.xmin -contact_rows finer");
   check_rows(simulation, 2, finer);
   SimulationRepeat(simulation, "-contact_pairs a.ymax:c.ymin,a.xmax:b.xmin,b.ymax:c.ymin");
   check_rows(simulation, 3, circle);
-  ok(ContactGetRowSide(simulation->contact, &side));
-  assert_int_equal(side, CONTACT_ROW_SIDE_FINER);
   ok(ControllerDestroy(&simulation->controller));
   AddOptions("-contact_rows second,first,first");
   refused(PETSC_ERR_USER_INPUT, "circle|-contact_rows", SimulationCreate(simulation));

@@ -20,32 +20,32 @@ static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "ContactSchwarzSetTransmission", Transmissions,
+  PetscCall(PetscOptionsEnum("-schwarz_transmission", "What is prescribed on both sides", "ContactSetFromOptions", Transmissions,
                              (PetscEnum)alternation->transmission, (PetscEnum *)&alternation->transmission, NULL));
   /* only where it has an effect, so that it is an unused option elsewhere */
   if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
-    PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "ContactSchwarzSetTraction",
-                               BodyTractionTypes, (PetscEnum)alternation->traction, (PetscEnum *)&alternation->traction, NULL));
+    PetscCall(PetscOptionsEnum("-schwarz_traction", "Nodal force handed to the Neumann side", "ContactSetFromOptions", BodyTractionTypes,
+                               (PetscEnum)alternation->traction, (PetscEnum *)&alternation->traction, NULL));
     PetscCall(PetscOptionsEnum("-schwarz_traction_waveform", "Traction of a partner with longer substeps in their course",
-                               "ContactSchwarzSetTractionWaveform", Waveforms, (PetscEnum)alternation->waveform,
-                               (PetscEnum *)&alternation->waveform, NULL));
+                               "ContactSetFromOptions", Waveforms, (PetscEnum)alternation->waveform, (PetscEnum *)&alternation->waveform,
+                               NULL));
   }
   if (alternation->transmission == SCHWARZ_TRANSMISSION_ROBIN)
     PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]",
-                               "ContactSchwarzSetRobinParameter", alternation->robin_parameter, &alternation->robin_parameter, &set));
+                               "ContactSetFromOptions", alternation->robin_parameter, &alternation->robin_parameter, &set));
   if (alternation->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
     PetscCall(PetscOptionsReal("-schwarz_impedance_parameter", "Impedance of impedance conditions [N s/m for each unit of area]",
-                               "ContactSchwarzSetImpedanceParameter", alternation->impedance, &alternation->impedance, &set_impedance));
-  PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "ContactSchwarzSetPredictor", Predictors,
+                               "ContactSetFromOptions", alternation->impedance, &alternation->impedance, &set_impedance));
+  PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "ContactSetFromOptions", Predictors,
                              (PetscEnum)alternation->predictor, (PetscEnum *)&alternation->predictor, NULL));
-  PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "ContactSchwarzSetSwapSides",
-                             alternation->swap, &alternation->swap, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "ContactSchwarzSetRelaxation", Relaxations,
+  PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "ContactSetFromOptions", alternation->swap,
+                             &alternation->swap, NULL));
+  PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "ContactSetFromOptions", Relaxations,
                              (PetscEnum)alternation->relaxation, (PetscEnum *)&alternation->relaxation, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "ContactSchwarzSetConvergence", ConvergenceTests,
+  PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "ContactSetFromOptions", ConvergenceTests,
                              (PetscEnum)alternation->convergence, (PetscEnum *)&alternation->convergence, NULL));
   PetscCall(ContactReadUnconverged(contact));
-  PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "ContactSchwarzSetRecheck",
+  PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "ContactSetFromOptions",
                              alternation->recheck, &alternation->recheck, NULL));
   PetscOptionsEnd();
   PetscCheck(!set || alternation->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,

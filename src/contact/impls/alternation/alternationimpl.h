@@ -2,6 +2,35 @@
 #include <contact/activeset/rounds.h>
 #include "outersolver.h"
 
+/* What both sides of the contact boundary get: displacements one way, tractions the other; or both ways traction and displacement, weighted
+   by a stiffness, or traction and velocity, weighted by an impedance */
+typedef enum { SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN, SCHWARZ_TRANSMISSION_ROBIN, SCHWARZ_TRANSMISSION_IMPEDANCE } SchwarzTransmission;
+
+/* Where the first sweep of a controller step starts from: where the contact nodes were at its start, go without contact, go with their
+   velocity, or go with the common velocity after an inelastic collision */
+typedef enum {
+  SCHWARZ_PREDICTOR_LAST,
+  SCHWARZ_PREDICTOR_TRIAL,
+  SCHWARZ_PREDICTOR_EXTRAPOLATE,
+  SCHWARZ_PREDICTOR_INELASTIC
+} SchwarzPredictor;
+
+/* How the traction of a partner with longer substeps varies in the course of them: linearly, which keeps momentum, or not at all */
+typedef enum { SCHWARZ_WAVEFORM_LINEAR, SCHWARZ_WAVEFORM_CONSTANT } SchwarzWaveform;
+
+/* Relaxation of the plain alternation, by a given factor, or by Aitken's from the last two residuals */
+typedef enum { SCHWARZ_RELAXATION_FIXED, SCHWARZ_RELAXATION_AITKEN } SchwarzRelaxation;
+
+/* What change of position is compared with the tolerances of the outer iteration: position, for the plain alternation with fixed
+   relaxation, or mismatch; that of all nodes of every body from one sweep to the next (Hoy, Tezaur, Mota); that of its contact nodes; what
+   one more plain sweep would bring there */
+typedef enum {
+  SCHWARZ_CONVERGENCE_AUTO,
+  SCHWARZ_CONVERGENCE_POSITION,
+  SCHWARZ_CONVERGENCE_CONTACT_POSITION,
+  SCHWARZ_CONVERGENCE_MISMATCH
+} SchwarzConvergence;
+
 typedef struct {
   /* options */
   SchwarzConvergence  convergence;

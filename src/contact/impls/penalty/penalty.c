@@ -23,7 +23,7 @@ static PetscErrorCode ContactSetFromOptions_Penalty(Contact contact)
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP_RATE) PetscCall(PenaltyReadParameter(contact));
   if (contact->options.constraint == CONTACT_CONSTRAINT_GAP) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "ContactPenaltySetDamping",
+  PetscCall(PetscOptionsReal("-contact_penalty_damping", "Damping of the gap rate [N s/m in 1-D, N s/m^3 else]", "ContactSetFromOptions",
                              penalty->damping, &penalty->damping, &set));
   PetscOptionsEnd();
   PetscCheck(!set || penalty->damping > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
@@ -40,10 +40,10 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
   PetscCall(ContactStepperSetFromOptions(contact));
   PetscCall(PenaltyReadParameter(contact));
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "ContactPenaltySetAugmentation", penalty->tolerance,
+  PetscCall(PetscOptionsReal("-contact_augmentation_tolerance", "Gap that is left [m]", "ContactSetFromOptions", penalty->tolerance,
                              &penalty->tolerance, NULL));
-  PetscCall(PetscOptionsInt("-contact_augmentation_max_it", "Limit of augmentations in a step", "ContactPenaltySetAugmentation",
-                            penalty->rounds, &penalty->rounds, NULL));
+  PetscCall(PetscOptionsInt("-contact_augmentation_max_it", "Limit of augmentations in a step", "ContactSetFromOptions", penalty->rounds,
+                            &penalty->rounds, NULL));
   PetscOptionsEnd();
   PetscCheck(penalty->tolerance == (PetscReal)PETSC_DEFAULT || penalty->tolerance > 0, comm, PETSC_ERR_USER_INPUT,
              "-contact_augmentation_tolerance %g%s must be positive", (double)penalty->tolerance,

@@ -18,11 +18,11 @@ PetscErrorCode PenaltyReadParameter(Contact contact)
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "ContactPenaltySetParameter",
-                             penalty->parameter, &penalty->parameter, &set));
+  PetscCall(PetscOptionsReal("-contact_penalty", "Penalty parameter [N/m in 1-D, N/m^3 else]", "ContactSetFromOptions", penalty->parameter,
+                             &penalty->parameter, &set));
   if (!set)
     PetscCall(PetscOptionsReal("-contact_penalty_scale", "Penalty parameter relative to the stiffness of the elements",
-                               "ContactPenaltySetScale", penalty->scale, &penalty->scale, &scaled));
+                               "ContactSetFromOptions", penalty->scale, &penalty->scale, &scaled));
   PetscOptionsEnd();
   PetscCheck(!set || penalty->parameter > 0, comm, PETSC_ERR_USER_INPUT, "-contact_penalty %g must be positive",
              (double)penalty->parameter);
