@@ -44,8 +44,8 @@ PetscErrorCode AlternationSetUpAitken(Contact contact)
   SNESLineSearch line_search;
 
   PetscFunctionBegin;
-  PetscCall(VecDuplicate(alternation->outer.x, &alternation->last_residual));
-  PetscCall(SNESGetLineSearch(alternation->outer.snes, &line_search));
+  PetscCall(VecDuplicate(alternation->x, &alternation->last_residual));
+  PetscCall(SNESGetLineSearch(alternation->snes, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHSHELL));
   PetscCall(SNESLineSearchShellSetApply(line_search, ApplyAitken, contact));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,6 @@
 /* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, destruction. */
 #include "alternationimpl.h"
+#include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
 #include <sys/petsccompat.h>
 #include <stddef.h>
@@ -79,37 +80,9 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   }
   PetscCall(PetscMalloc3(contact->rows.n, &alternation->kept_force, 2 * contact->rows.n, &alternation->stall.force, 2 * contact->rows.n,
                          &alternation->previous));
-  PetscCall(RoundsCreate(contact, contact->end.active, contact->end.force, contact->end.gap, &alternation->rounds));
+  PetscCall(RoundsCreate(contact, &alternation->rounds));
   alternation->rounds.recheck = alternation->recheck;
   PetscCall(PetscMalloc1(contact->rows.n, &alternation->row_work));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The outer iteration, as the options have it */
-static PetscErrorCode SetUpOuterSolver(Contact contact, PetscInt unknowns)
-{
-  Alternation   *alternation = (Alternation *)contact->data;
-  PetscBool      richardson, damping_set;
-  SNESLineSearch line_search;
-
-  PetscFunctionBegin;
-  PetscCall(OuterSolverCreate(contact, "schwarz_", unknowns, AlternationSweep, &alternation->outer));
-  PetscCall(OuterSolverSetFromOptions(contact, &alternation->outer, CONTACT_POSITION_TOLERANCE * contact->scale.length, OUTER_POSITION_RTOL,
-                                      OUTER_MAX_ITERATIONS));
-  PetscCall(SNESGetTolerances(alternation->outer.snes, &alternation->atol, &alternation->rtol, NULL, NULL, NULL));
-  PetscCall(SNESSetConvergenceTest(alternation->outer.snes, AlternationTestConvergence, contact, NULL));
-  PetscCall(PetscObjectTypeCompare((PetscObject)alternation->outer.snes, SNESNRICHARDSON, &richardson));
-  if (alternation->relaxation == SCHWARZ_RELAXATION_AITKEN) {
-    PetscCheck(richardson, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-schwarz_relaxation aitken goes with -schwarz_snes_type nrichardson only");
-    PetscCall(PetscOptionsHasName(NULL, "schwarz_", "-snes_linesearch_damping", &damping_set));
-    PetscCall(AlternationSetUpAitken(contact));
-    PetscCall(SNESGetLineSearch(alternation->outer.snes, &line_search));
-    if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
-  }
-  if (alternation->convergence == SCHWARZ_CONVERGENCE_AUTO)
-    alternation->convergence = richardson && alternation->relaxation == SCHWARZ_RELAXATION_FIXED ? SCHWARZ_CONVERGENCE_POSITION
-                                                                                                 : SCHWARZ_CONVERGENCE_MISMATCH;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -146,7 +119,7 @@ static PetscErrorCode ContactSetUp_Alternation(Contact contact)
   PetscCall(SetUpUnknowns(contact, &unknowns));
   PetscCall(AlternationSetUpTransmission(contact));
   PetscCall(ContactWeighSharedRows(contact));
-  PetscCall(SetUpOuterSolver(contact, unknowns));
+  PetscCall(AlternationSetUpOuterSolver(contact, unknowns));
   PetscCall(SetUpTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -165,6 +138,18 @@ static PetscErrorCode ContactAccept_Alternation(Contact contact)
 
   PetscFunctionBegin;
   if (contact->ties.inverse) PetscCall(ContactAlignTies(contact, alternation->drift));
+  if (alternation->swap) PetscCall(AlternationSwapSides(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Nothing is remembered from step to step but which side takes displacements, which contact itself has in a checkpoint */
+static PetscErrorCode ContactVisit_Alternation(Contact contact, Checkpoint checkpoint)
+{
+  Alternation *alternation = (Alternation *)contact->data;
+
+  PetscFunctionBegin;
+  alternation->controller_step = contact->step;
+  PetscCall(CheckpointVisitReals(checkpoint, "weight", contact->rows.n, alternation->weight));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -174,7 +159,7 @@ static PetscErrorCode ContactView_Alternation(Contact contact, PetscViewer viewe
   SNESType           type;
 
   PetscFunctionBegin;
-  PetscCall(SNESGetType(alternation->outer.snes, &type));
+  PetscCall(SNESGetType(alternation->snes, &type));
   PetscCall(PetscViewerASCIIPrintf(
       viewer, "  outer iteration %s%s, %s conditions, %s traction, %s predictor, tolerances %g%s and %g relative\n", type,
       alternation->relaxation == SCHWARZ_RELAXATION_AITKEN ? " (Aitken)" : "", Transmissions[alternation->transmission],
@@ -199,12 +184,13 @@ static PetscErrorCode ContactReset_Alternation(Contact contact)
   for (PetscInt p = 0; alternation->trace && p < alternation->n_traces; p++) PetscCall(TraceDestroy(&alternation->trace[p]));
   for (PetscInt b = 0; alternation->exchange && b < contact->n_bodies; b++) PetscCall(TraceDestroy(&alternation->exchange[b]));
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&alternation->rate[k]));
-  PetscCall(OuterSolverDestroy(&alternation->outer));
+  PetscCall(SNESDestroy(&alternation->snes));
+  PetscCall(VecDestroy(&alternation->x));
+  PetscCall(VecDestroy(&alternation->residual));
   PetscCall(VecDestroy(&alternation->last_residual));
   PetscCall(ContactDestroyTiedEnds(contact));
   PetscCall(PetscFree2(alternation->drift[0], alternation->drift[1]));
-  PetscCall(
-      PetscFree5(alternation->side_levels[0], alternation->side_levels[1], alternation->trace, alternation->room, alternation->kinematic));
+  PetscCall(PetscFree5(alternation->levels[0], alternation->levels[1], alternation->trace, alternation->room, alternation->kinematic));
   PetscCall(PetscFree2(alternation->exchange, alternation->offset));
   PetscCall(PetscFree3(alternation->weight, alternation->mass[0], alternation->mass[1]));
   PetscCall(PetscFree3(alternation->kept_force, alternation->stall.force, alternation->previous));
@@ -284,9 +270,7 @@ PetscErrorCode ContactCreate_Alternation(Contact contact)
   contact->ops->mayreplacerows = MayReplaceRows;
   contact->ops->reset          = ContactReset_Alternation;
   contact->ops->view           = ContactView_Alternation;
-  contact->ops->visit          = AlternationVisit;
-  contact->ops->pack           = AlternationPack;
-  contact->ops->unpack         = AlternationUnpack;
+  contact->ops->visit          = ContactVisit_Alternation;
   contact->ops->destroy        = ContactDestroy_Alternation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

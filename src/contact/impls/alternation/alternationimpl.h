@@ -1,6 +1,6 @@
 #pragma once
 #include <contact/activeset/rounds.h>
-#include "outersolver.h"
+#include <petscsnes.h>
 
 /* What both sides of the contact boundary get: displacements one way, tractions the other; or both ways traction and displacement, weighted
    by a stiffness, or traction and velocity, weighted by an impedance */
@@ -48,11 +48,11 @@ typedef struct {
   PetscBool mass_prescribed; /* contact nodes of a Dirichlet side have mass: they take velocity and acceleration from their partner */
   PetscReal controller_step; /* [s]; of the present level */
   /* unknowns of the outer iteration */
-  OuterSolver outer;
-  PetscInt   *levels;         /* per pair: times in the controller step at which its trace is an unknown */
-  PetscInt   *side_levels[2]; /* the same for each choice of sides */
-  PetscInt   *room;           /* per pair: unknowns that each of its rows has room for */
-  PetscInt   *offset;         /* per row: its first unknown on this rank */
+  SNES      snes;
+  Vec       x, residual;
+  PetscInt *levels[2]; /* per pair and choice of sides: times in the controller step at which its trace is an unknown */
+  PetscInt *room;      /* per pair: unknowns that each of its rows has room for */
+  PetscInt *offset;    /* per row: its first unknown on this rank */
   /* what goes back and forth */
   PetscInt   n_traces;  /* of `trace`: two for each pair */
   Trace     *trace;     /* per pair and side, of its rows: what its unknowns put on the Dirichlet side */
@@ -67,8 +67,6 @@ typedef struct {
   PetscReal damping; /* relaxation of the last iteration */
   Vec       last_residual;
   /* the controller step under way */
-  PetscInt  side;    /* 0, or 1 while sides are swapped */
-  PetscBool started; /* a step has been made */
   Rounds    rounds;
   PetscBool swept;            /* `previous` is of this step */
   PetscReal change, position; /* of the last sweep: the body with the worst ratio */
@@ -113,9 +111,9 @@ static inline PetscInt NeumannShift(const ContactPair *pair)
 }
 
 /* Index of a pair in arrays that have an entry for each choice of sides */
-static inline PetscInt SideIndex(const Alternation *alternation, PetscInt p)
+static inline PetscInt SideIndex(Contact contact, PetscInt p)
 {
-  return 2 * p + alternation->side;
+  return 2 * p + contact->pairs[p].dirichlet;
 }
 
 /* What active rows mean to the bodies */
@@ -138,6 +136,4 @@ PETSC_INTERN PetscErrorCode AlternationSetUpAitken(Contact);
 PETSC_INTERN PetscErrorCode AlternationMeasureChange(Contact, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode AlternationTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
 PETSC_INTERN PetscErrorCode AlternationCheckConverged(Contact);
-PETSC_INTERN PetscErrorCode AlternationVisit(Contact, Checkpoint);
-PETSC_INTERN PetscErrorCode AlternationPack(Contact, Tables);
-PETSC_INTERN PetscErrorCode AlternationUnpack(Contact, Tables);
+PETSC_INTERN PetscErrorCode AlternationSetUpOuterSolver(Contact, PetscInt);

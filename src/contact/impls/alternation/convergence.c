@@ -55,7 +55,7 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
   *lag = 0;
   PetscCall(BodyPrescribesMass(body, &mass));
   if (!mass || alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ||
-      alternation->kinematic[SideIndex(alternation, contact->rows.pair[i])])
+      alternation->kinematic[SideIndex(contact, contact->rows.pair[i])])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TraceGetSizes(given, NULL, &given_levels));
   PetscCall(TraceGetSizes(has, NULL, &has_levels));
@@ -184,9 +184,9 @@ static PetscErrorCode AdviseRelaxation(Contact contact, char advice[], size_t si
 
   PetscFunctionBegin;
   advice[0] = 0;
-  PetscCall(PetscObjectTypeCompare((PetscObject)alternation->outer.snes, SNESNRICHARDSON, &richardson));
+  PetscCall(PetscObjectTypeCompare((PetscObject)alternation->snes, SNESNRICHARDSON, &richardson));
   if (!richardson || alternation->relaxation == SCHWARZ_RELAXATION_AITKEN) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESGetLineSearch(alternation->outer.snes, &line_search));
+  PetscCall(SNESGetLineSearch(alternation->snes, &line_search));
   PetscCall(SNESLineSearchGetDamping(line_search, &damping));
   ratio = (1 + alternation->growth) / damping - 1;
   if (!(alternation->growth > 1 - damping) || !(ratio > 0)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -209,7 +209,7 @@ PetscErrorCode AlternationCheckConverged(Contact contact)
   char                advice[512];
 
   PetscFunctionBegin;
-  PetscCall(SNESGetConvergedReason(alternation->outer.snes, &reason));
+  PetscCall(SNESGetConvergedReason(alternation->snes, &reason));
   if (reason > 0 || ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   if (contact->options.unconverged == SCHWARZ_UNCONVERGED_ACCEPT && reason != SNES_DIVERGED_NAN && !contact->attempt.may_cut) {
     contact->counts.unconverged_steps++;

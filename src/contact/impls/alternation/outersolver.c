@@ -1,170 +1,96 @@
-#include "outersolver.h"
-#include <sys/optionstext.h>
+/* The SNES of the sweeps: a fixed-point iteration, accelerated or not. */
+#include "alternationimpl.h"
 #include <sys/petsccompat.h>
-#include <strings.h>
 
-/* A SNES of `local` unknowns on this rank: a fixed-point iteration, accelerated or not */
-PetscErrorCode OuterSolverCreate(Contact contact, const char prefix[], PetscInt local, PetscErrorCode (*function)(SNES, Vec, Vec, void *),
-                                 OuterSolver *solver)
-{
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
-
-  PetscFunctionBegin;
-  PetscCall(VecCreate(comm, &solver->x));
-  PetscCall(VecSetSizes(solver->x, local, PETSC_DETERMINE));
-  PetscCall(VecSetType(solver->x, VECSTANDARD));
-  PetscCall(VecDuplicate(solver->x, &solver->residual));
-  PetscCall(SNESCreate(comm, &solver->snes));
-  PetscCall(SNESSetOptionsPrefix(solver->snes, prefix));
-  PetscCall(SNESSetFunction(solver->snes, solver->residual, function, contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A value for an option that PETSc has no setter for: put in before the options are read, taken out again afterwards. One that is given
-   stays, unless it is to be replaced. */
-typedef struct {
-  const char *prefix, *option;
-  char        given[64];
-  PetscBool   is_given, inserted;
-} Insertion;
-
-static PetscErrorCode SetValue(const Insertion *insertion, const char value[])
-{
-  char full[128];
-
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(full, sizeof(full), "-%s%s", insertion->prefix, insertion->option + 1));
-  PetscCall(value ? PetscOptionsSetValue(NULL, full, value) : PetscOptionsClearValue(NULL, full));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode InsertValue(const char value[], PetscBool replaces, Insertion *insertion)
-{
-  PetscFunctionBegin;
-  PetscCall(
-      PetscOptionsGetString(NULL, insertion->prefix, insertion->option, insertion->given, sizeof(insertion->given), &insertion->is_given));
-  insertion->inserted = (PetscBool)(replaces || !insertion->is_given);
-  if (insertion->inserted) PetscCall(SetValue(insertion, value));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RemoveValue(const Insertion *insertion)
-{
-  PetscFunctionBegin;
-  if (insertion->inserted) PetscCall(SetValue(insertion, insertion->is_given ? insertion->given : NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether options name the SNES with anything but what says how it solves */
-static PetscErrorCode FindWatched(const char prefix[], PetscBool *watched)
-{
-  const char *solves[] = {"type", "atol", "rtol", "stol", "max_it", "linesearch_type", "linesearch_damping"};
-  const char *name, *value;
-  char        begin[128], *all, *text;
-
-  PetscFunctionBegin;
-  *watched = PETSC_FALSE;
-  PetscCall(PetscSNPrintf(begin, sizeof(begin), "-%ssnes_", prefix));
-  PetscCall(PetscOptionsGetAll(NULL, &all));
-  for (text = all; OptionsTextNext(&text, &name, &value);) {
-    PetscBool known = PETSC_FALSE;
-
-    if (strncasecmp(name, begin, strlen(begin)) != 0) continue;
-    for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(solves) && !known; i++)
-      known = (PetscBool)!strcasecmp(name + strlen(begin), solves[i]);
-    if (!known) *watched = PETSC_TRUE;
-  }
-  PetscCall(PetscFree(all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+/* Iterations: more of them mean that it does not converge. The plain alternation of impedance conditions takes up to 41 in the paper's
+   impacts. Evaluations do not end it: they are more than any number of iterations needs. */
+#define MAX_ITERATIONS  50
+#define MAX_EVALUATIONS 1000000
+/* Relative tolerance on positions: round-off of their sums, so that it is the absolute one that counts but far from the origin */
+#define POSITION_RTOL 1e-15
 
 /* The type of the iteration, as the options have it: Newton's method needs a Jacobian, and Anderson's acceleration serves where there is
- * none
- */
-static PetscErrorCode ReadType(Contact contact, const char prefix[], char type[], size_t size)
+   none */
+static PetscErrorCode ReadType(Contact contact, char type[], size_t size)
 {
   const char *known[] = {SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
   PetscBool   newton, same = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(type, SNESANDERSON, size));
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-snes_type", type, size, NULL));
+  PetscCall(PetscOptionsGetString(NULL, "schwarz_", "-snes_type", type, size, NULL));
   PetscCall(PetscStrcmp(type, SNESNEWTONLS, &newton));
   if (newton) { /* the default of older versions */
     PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,
-                           "impakt: warning: -%ssnes_type newtonls has no effect any more: sweeps have no Jacobian, and anderson is taken; "
-                           "leave it out\n",
-                           prefix));
+                           "impakt: warning: -schwarz_snes_type newtonls has no effect any more: sweeps have no Jacobian, and anderson is "
+                           "taken; leave it out\n"));
     PetscCall(PetscStrncpy(type, SNESANDERSON, size));
+    PetscCall(PetscOptionsSetValue(NULL, "-schwarz_snes_type", type));
   }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(known) && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
-  PetscCheck(same || newton, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
-             "Unknown -%ssnes_type '%s'; known: anderson, nrichardson, ngmres, qn", prefix, type);
+  PetscCheck(same, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
+             "Unknown -schwarz_snes_type '%s'; known: anderson, nrichardson, ngmres, qn", type);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads type and tolerances. The defaults for Anderson (mixing 1/2, eight vectors) suit an iteration with a gain of about -1,
-   which is that of the Dirichlet-Neumann alternation between equal bodies. */
-PetscErrorCode OuterSolverSetFromOptions(Contact contact, OuterSolver *solver, PetscReal atol, PetscReal rtol, PetscInt max_it)
+/* Type, tolerances and relaxation, as the options have them. Anderson's mixing 1/2 and eight vectors suit an iteration with a gain of about
+   -1, which is that of the Dirichlet-Neumann alternation between equal bodies. PETSc has no setter for them: they are put in before the
+   options are read, and taken out again afterwards. */
+static PetscErrorCode SetFromOptions(Contact contact, SNES snes)
 {
-  const char    *prefix;
-  char           type[64];
-  PetscBool      anderson;
-  SNESLineSearch line_search;
-  Insertion      inserted[] = {{.option = "-snes_type"}, {.option = "-snes_anderson_beta"}, {.option = "-snes_anderson_m"}};
+  static const char *const defaults[][2] = {{"-schwarz_snes_anderson_beta", "0.5"}, {"-schwarz_snes_anderson_m", "8"}};
+  char                     type[64];
+  PetscBool                anderson, given[PETSC_STATIC_ARRAY_LENGTH(defaults)];
+  SNESLineSearch           line_search;
 
   PetscFunctionBegin;
-  PetscCall(SNESGetOptionsPrefix(solver->snes, &prefix));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(inserted); i++) inserted[i].prefix = prefix;
-  PetscCall(ReadType(contact, prefix, type, sizeof(type)));
+  PetscCall(ReadType(contact, type, sizeof(type)));
   PetscCall(PetscStrcmp(type, SNESANDERSON, &anderson));
-  PetscCall(SNESSetType(solver->snes, type));
+  PetscCall(SNESSetType(snes, type));
   /* after the type, which brings a line search of its own */
-  PetscCall(SNESGetLineSearch(solver->snes, &line_search));
+  PetscCall(SNESGetLineSearch(snes, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-  PetscCall(SNESSetTolerances(solver->snes, atol, rtol, 0, max_it, OUTER_MAX_EVALUATIONS));
-  PetscCall(InsertValue(type, PETSC_TRUE, &inserted[0]));
-  if (anderson) {
-    PetscCall(InsertValue("0.5", PETSC_FALSE, &inserted[1]));
-    PetscCall(InsertValue("8", PETSC_FALSE, &inserted[2]));
+  PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->scale.length, POSITION_RTOL, 0, MAX_ITERATIONS, MAX_EVALUATIONS));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(defaults) && anderson; i++) {
+    PetscCall(PetscOptionsHasName(NULL, NULL, defaults[i][0], &given[i]));
+    if (!given[i]) PetscCall(PetscOptionsSetValue(NULL, defaults[i][0], defaults[i][1]));
   }
-  PetscCall(SNESSetFromOptions(solver->snes));
-  PetscCall(FindWatched(prefix, &solver->watched));
-  PetscCall(ContactRefuseSlopes(contact, prefix, line_search));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(inserted); i++) PetscCall(RemoveValue(&inserted[i]));
+  PetscCall(SNESSetFromOptions(snes));
+  PetscCall(ContactRefuseSlopes(contact, "schwarz_", line_search));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(defaults) && anderson; i++)
+    if (!given[i]) PetscCall(PetscOptionsClearValue(NULL, defaults[i][0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solves from x on. Newton's method evaluates the function first: where that is `converged` then, as in most steps of linear bodies, there
-   is nothing to solve, and no SNESSolve(), which looks for a dozen options each time. The function is not evaluated twice where there is.
- */
-PetscErrorCode OuterSolverSolve(Contact contact, OuterSolver *solver, PetscErrorCode (*function)(SNES, Vec, Vec, void *),
-                                const PetscBool *converged)
+/* The outer iteration, of so many unknowns on this rank */
+PetscErrorCode AlternationSetUpOuterSolver(Contact contact, PetscInt unknowns)
 {
-  PetscBool newton;
+  Alternation   *alternation = (Alternation *)contact->data;
+  MPI_Comm       comm        = PetscObjectComm((PetscObject)contact);
+  PetscBool      richardson, damping_set;
+  SNESLineSearch line_search;
 
   PetscFunctionBegin;
-  PetscCall(PetscObjectTypeCompare((PetscObject)solver->snes, SNESNEWTONLS, &newton));
-  if (newton && !solver->watched) {
-    PetscReal norm;
-
-    PetscCall((*function)(solver->snes, solver->x, solver->residual, contact));
-    PetscCall(VecNorm(solver->residual, NORM_2, &norm));
-    if (*converged && !PetscIsInfOrNanReal(norm)) {
-      PetscCall(SNESSetConvergedReason(solver->snes, SNES_CONVERGED_FNORM_ABS));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    PetscCall(SNESSetInitialFunction(solver->snes, solver->residual));
+  PetscCall(VecCreate(comm, &alternation->x));
+  PetscCall(VecSetSizes(alternation->x, unknowns, PETSC_DETERMINE));
+  PetscCall(VecSetType(alternation->x, VECSTANDARD));
+  PetscCall(VecDuplicate(alternation->x, &alternation->residual));
+  PetscCall(SNESCreate(comm, &alternation->snes));
+  PetscCall(SNESSetOptionsPrefix(alternation->snes, "schwarz_"));
+  PetscCall(SNESSetFunction(alternation->snes, alternation->residual, AlternationSweep, contact));
+  PetscCall(SetFromOptions(contact, alternation->snes));
+  PetscCall(SNESGetTolerances(alternation->snes, &alternation->atol, &alternation->rtol, NULL, NULL, NULL));
+  PetscCall(SNESSetConvergenceTest(alternation->snes, AlternationTestConvergence, contact, NULL));
+  PetscCall(PetscObjectTypeCompare((PetscObject)alternation->snes, SNESNRICHARDSON, &richardson));
+  if (alternation->relaxation == SCHWARZ_RELAXATION_AITKEN) {
+    PetscCheck(richardson, comm, PETSC_ERR_USER_INPUT, "-schwarz_relaxation aitken goes with -schwarz_snes_type nrichardson only");
+    PetscCall(PetscOptionsHasName(NULL, "schwarz_", "-snes_linesearch_damping", &damping_set));
+    PetscCall(AlternationSetUpAitken(contact));
+    PetscCall(SNESGetLineSearch(alternation->snes, &line_search));
+    if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
-  PetscCall(SNESSolve(solver->snes, NULL, solver->x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode OuterSolverDestroy(OuterSolver *solver)
-{
-  PetscFunctionBegin;
-  PetscCall(SNESDestroy(&solver->snes));
-  PetscCall(VecDestroy(&solver->x));
-  PetscCall(VecDestroy(&solver->residual));
+  if (alternation->convergence == SCHWARZ_CONVERGENCE_AUTO)
+    alternation->convergence = richardson && alternation->relaxation == SCHWARZ_RELAXATION_FIXED ? SCHWARZ_CONVERGENCE_POSITION
+                                                                                                 : SCHWARZ_CONVERGENCE_MISMATCH;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

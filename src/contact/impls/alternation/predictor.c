@@ -62,10 +62,10 @@ PetscErrorCode AlternationPredict(Contact contact)
   if (alternation->predictor == SCHWARZ_PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
   else
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
-  PetscCall(VecZeroEntries(alternation->outer.x));
-  PetscCall(VecGetArray(alternation->outer.x, &x));
+  PetscCall(VecZeroEntries(alternation->x));
+  PetscCall(VecGetArray(alternation->x, &x));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const PetscInt     p = contact->rows.pair[i], levels = alternation->levels[p];
+    const PetscInt     p = contact->rows.pair[i], levels = alternation->levels[contact->pairs[p].dirichlet][p];
     const ContactPair *pair = &contact->pairs[p];
     const PetscReal    sign = NeumannSign(pair), width = alternation->controller_step / levels, force = contact->start.force[i];
     PetscScalar       *unknown = x + alternation->offset[i], *reaction;
@@ -86,6 +86,6 @@ PetscErrorCode AlternationPredict(Contact contact)
     PetscCall(TraceGetLevel(contact->traces[NeumannBody(pair)].reaction, 0, &reaction));
     reaction[i - NeumannShift(pair)] = sign * force;
   }
-  PetscCall(VecRestoreArray(alternation->outer.x, &x));
+  PetscCall(VecRestoreArray(alternation->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

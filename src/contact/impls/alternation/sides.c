@@ -147,20 +147,18 @@ PetscErrorCode AlternationSetUpSides(Contact contact)
                "-contact_swap_sides: the rows of pair %s are on its second body, and the first one takes displacements first; leave "
                "-contact_rows at first",
                contact->pairs[p].name);
-  PetscCall(PetscCalloc5(contact->n_pairs, &alternation->side_levels[0], contact->n_pairs, &alternation->side_levels[1],
-                         2 * contact->n_pairs, &alternation->trace, contact->n_pairs, &alternation->room, 2 * contact->n_pairs,
-                         &alternation->kinematic));
+  PetscCall(PetscCalloc5(contact->n_pairs, &alternation->levels[0], contact->n_pairs, &alternation->levels[1], 2 * contact->n_pairs,
+                         &alternation->trace, contact->n_pairs, &alternation->room, 2 * contact->n_pairs, &alternation->kinematic));
   alternation->n_traces = 2 * contact->n_pairs;
   for (PetscInt side = 0; side <= (alternation->swap ? 1 : 0); side++)
     for (PetscInt p = 0; p < contact->n_pairs; p++) {
-      PetscInt *levels = &alternation->side_levels[side][p];
+      PetscInt *levels = &alternation->levels[side][p];
 
       PetscCall(CountLevels(contact, p, side, levels));
       PetscCall(TraceCreate(contact->pairs[p].end - contact->pairs[p].begin, *levels, &alternation->trace[2 * p + side]));
       PetscCall(SetUpReactionTraction(contact, p, side));
       alternation->room[p] = PetscMax(alternation->room[p], *levels);
     }
-  alternation->levels = alternation->side_levels[0];
   for (PetscInt b = 0; b < contact->n_bodies && alternation->swap; b++) PetscCall(CheckSwappable(contact, b));
   PetscCall(PrescribesMass(contact, &alternation->mass_prescribed));
   if (alternation->mass_prescribed) contact->energy.unlimited = "nodes with mass take velocity and acceleration from their partner";
@@ -170,12 +168,8 @@ PetscErrorCode AlternationSetUpSides(Contact contact)
 /* From now on the other body of each pair takes displacements. What came before its partner in a sweep comes after it. */
 PetscErrorCode AlternationSwapSides(Contact contact)
 {
-  Alternation *alternation = (Alternation *)contact->data;
-
   PetscFunctionBegin;
-  alternation->side   = 1 - alternation->side;
-  alternation->levels = alternation->side_levels[alternation->side];
-  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].dirichlet = alternation->side;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].dirichlet = 1 - contact->pairs[p].dirichlet;
   for (PetscInt b = 0; b < contact->n_bodies / 2; b++) {
     const PetscInt first = contact->order[b];
 

@@ -29,7 +29,7 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscCall(ContactSetConditions(contact, AlternationConditions(alternation)));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   alternation->swept = PETSC_FALSE;
-  PetscCall(OuterSolverSolve(contact, &alternation->outer, AlternationSweep, &alternation->converged));
+  PetscCall(SNESSolve(alternation->snes, NULL, alternation->x));
   PetscCall(AlternationCheckConverged(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AlternationGetForces(contact, contact->end.force));
@@ -37,23 +37,14 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows that penetrate join, rows that are pulled leave, or the first of them alone */
-static PetscErrorCode UpdateActiveSet(Contact contact, PetscBool *changed)
-{
-  Alternation *alternation = (Alternation *)contact->data;
-
-  PetscFunctionBegin;
-  PetscCall(RoundsChange(&alternation->rounds));
-  PetscCall(RoundsHaveChanged(&alternation->rounds, changed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Free trial, where no pair is pushed together already; the rows that penetrate at its end become active */
 static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
 {
+  PetscBool changed;
+
   PetscFunctionBegin;
   PetscCall(ContactIntegrateFree(contact, in_contact));
-  if (*in_contact) PetscCall(RoundsChange(&((Alternation *)contact->data)->rounds));
+  if (*in_contact) PetscCall(RoundsChange(&((Alternation *)contact->data)->rounds, &changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -73,7 +64,7 @@ static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, 
   PetscCall(Trial(contact, in_contact));
   if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RoundsBreakCycle(&alternation->rounds, &flips));
-  if (!flips || alternation->rounds.single) PetscFunctionReturn(PETSC_SUCCESS); /* where single rows change, others may penetrate */
+  if (!flips) PetscFunctionReturn(PETSC_SUCCESS);
   *taken_back = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
   PetscCall(PetscArraycpy(contact->end.force, alternation->kept_force, contact->rows.n));
@@ -88,9 +79,6 @@ PetscErrorCode ContactStep_Alternation(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(RoundsBegin(&alternation->rounds));
-  if (alternation->swap && alternation->started && !contact->energy.again && !contact->attempt.again)
-    PetscCall(AlternationSwapSides(contact));
-  alternation->started = PETSC_TRUE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
   for (PetscInt i = 0; i < contact->rows.n; i++)
     contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || (contact->start.active[i] && contact->start.force[i] > 0));
@@ -100,7 +88,7 @@ PetscErrorCode ContactStep_Alternation(Contact contact)
     PetscCall(RoundsNext(&alternation->rounds));
     if (!ContactFailed(contact)) PetscCall(SolveActive(contact));
     if (ContactFailed(contact)) break;
-    PetscCall(UpdateActiveSet(contact, &changed));
+    PetscCall(RoundsChange(&alternation->rounds, &changed));
     if (!changed) break;
     contact->counts.set_changes++;
     PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));

@@ -18,7 +18,7 @@ static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
 
   PetscFunctionBegin;
   PetscCall(BodyGetNewmark(contact->bodies[NeumannBody(pair)], &dv, &v_v, &v_a, &da, &a_v, &a_a));
-  PetscCall(TraceGetLevel(alternation->trace[SideIndex(alternation, p)], 1, &x));
+  PetscCall(TraceGetLevel(alternation->trace[SideIndex(contact, p)], 1, &x));
   PetscCall(TraceGetLevel(from->displacement, 0, &u0));
   PetscCall(TraceGetLevel(from->velocity, 0, &v0));
   PetscCall(TraceGetLevel(from->acceleration, 0, &a0));
@@ -48,7 +48,7 @@ static PetscErrorCode CopyUnknowns(Contact contact, PetscInt p, const PetscScala
   PetscScalar       *values;
 
   PetscFunctionBegin;
-  for (PetscInt level = 1; level <= alternation->levels[p]; level++) {
+  for (PetscInt level = 1; level <= alternation->levels[contact->pairs[p].dirichlet][p]; level++) {
     PetscCall(TraceGetLevel(trace, level, &values));
     for (PetscInt i = pair->begin; i < pair->end; i++) values[i - pair->begin] = x[alternation->offset[i] + level - 1];
   }
@@ -61,8 +61,8 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   Alternation       *alternation = (Alternation *)contact->data;
   const ContactPair *pair        = &contact->pairs[p];
   const BodyTraces  *to = &contact->traces[DirichletBody(pair)], *from = &contact->traces[NeumannBody(pair)];
-  Trace              trace     = alternation->trace[SideIndex(alternation, p)];
-  const PetscBool    kinematic = alternation->kinematic[SideIndex(alternation, p)];
+  Trace              trace     = alternation->trace[SideIndex(contact, p)];
+  const PetscBool    kinematic = alternation->kinematic[SideIndex(contact, p)];
   const PetscInt     n = pair->end - pair->begin, to_begin = pair->begin - DirichletShift(pair);
   const PetscInt     rate_begin = kinematic ? pair->begin : pair->begin - NeumannShift(pair);
   PetscScalar       *start, *values;
@@ -100,7 +100,7 @@ static PetscErrorCode LoadDirichlet(Contact contact, PetscInt p, const PetscScal
   Alternation       *alternation = (Alternation *)contact->data;
   const ContactPair *pair        = &contact->pairs[p];
   const BodyTraces  *to          = &contact->traces[DirichletBody(pair)];
-  Trace              trace       = alternation->trace[SideIndex(alternation, p)];
+  Trace              trace       = alternation->trace[SideIndex(contact, p)];
   PetscScalar       *force, *displacement, *values;
 
   PetscFunctionBegin;
@@ -168,7 +168,7 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
   Alternation       *alternation = (Alternation *)contact->data;
   const ContactPair *pair        = &contact->pairs[p];
   const BodyTraces  *from        = &contact->traces[NeumannBody(pair)];
-  const PetscInt     levels      = alternation->levels[p];
+  const PetscInt     levels      = alternation->levels[contact->pairs[p].dirichlet][p];
   const PetscReal    sign        = NeumannSign(pair);
   PetscInt           from_levels;
   PetscScalar       *displacement, *r, *force;

@@ -15,6 +15,7 @@
 typedef struct {
   Complementarity impulses;
   PetscBool       close_rate, stabilized;
+  ContactRule     rule; /* of the contact-stabilised method: that of the step, with forces as the integrators take them */
 } Corrections;
 
 /* Contact-stabilised, by the trapezoidal rule: with accelerations without contact forces at the start of a step and this many times the
@@ -26,7 +27,6 @@ static Corrections *CorrectionsOf(Contact contact)
   return (Corrections *)((ContactStepper *)contact->data)->method;
 }
 
-/* The rule of the contact-stabilised method: that of the step, with forces as the integrators take them */
 static PetscErrorCode BeginStabilized(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
   PetscFunctionBegin;
@@ -42,27 +42,6 @@ static PetscErrorCode EndStabilized(Contact contact, ContactStepper *stepper, co
   for (PetscInt i = pair->begin; i < pair->end; i++) contact->end.force[i] /= TIMES;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-static PetscErrorCode LoadStabilized(Contact contact, ContactStepper *stepper, PetscInt b)
-{
-  PetscFunctionBegin;
-  PetscCall((*ContactRuleLinear.load)(contact, stepper, b));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MoreStabilized(Contact contact, ContactStepper *stepper, const ContactPair *pair, PetscBool *more)
-{
-  PetscFunctionBegin;
-  PetscCall((*ContactRuleLinear.more)(contact, stepper, pair, more));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static const ContactRule stabilized_rule = {.name  = "contact-stabilised",
-                                            .begin = BeginStabilized,
-                                            .load  = LoadStabilized,
-                                            .shape = BODY_FORCE_LINEAR,
-                                            .more  = MoreStabilized,
-                                            .end   = EndStabilized};
 
 static PetscErrorCode Step(Contact contact)
 {
@@ -164,26 +143,35 @@ static PetscErrorCode CheckStabilized(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Impulses around the step, where options ask for them */
-static PetscErrorCode SetUpCorrections(Contact contact)
+/* The step with impulses around it, where options ask for them */
+static PetscErrorCode SetUpCorrected(Contact contact, PetscBool stabilized)
 {
-  const PetscBool rates = (PetscBool)(contact->options.constraint == CONTACT_CONSTRAINT_BOTH);
+  ContactStepper *stepper = (ContactStepper *)contact->data;
   Corrections    *corrections;
 
   PetscFunctionBegin;
+  if (stabilized) PetscCall(CheckStabilized(contact));
   PetscCall(PetscNew(&corrections));
-  corrections->close_rate                   = rates;
-  corrections->stabilized                   = (PetscBool)!rates;
-  ((ContactStepper *)contact->data)->method = corrections;
-  contact->ops->step                        = Step;
-  contact->ops->accept                      = Accept;
-  contact->ops->rowschanged                 = RowsChanged;
-  contact->ops->visit                       = Visit;
-  contact->ops->pack                        = NULL;
-  contact->ops->unpack                      = NULL;
-  contact->ops->destroy                     = Destroy;
-  if (corrections->stabilized) contact->attempt.moves_start = PETSC_TRUE;
-  PetscCall(LagrangeSetUpImpulses(contact, rates ? "-contact_constraint both" : "-contact_stabilization contact_stabilized",
+  corrections->close_rate = (PetscBool)!stabilized;
+  corrections->stabilized = stabilized;
+  if (stabilized) {
+    corrections->rule            = ContactRuleLinear;
+    corrections->rule.name       = "contact-stabilised";
+    corrections->rule.begin      = BeginStabilized;
+    corrections->rule.end        = EndStabilized;
+    stepper->asked               = &corrections->rule;
+    contact->attempt.moves_start = PETSC_TRUE;
+  }
+  stepper->method       = corrections;
+  contact->ops->destroy = Destroy;
+  PetscCall(ContactStepperSetUp(contact));
+  contact->ops->step        = Step;
+  contact->ops->accept      = Accept;
+  contact->ops->rowschanged = RowsChanged;
+  contact->ops->visit       = Visit;
+  contact->ops->pack        = NULL;
+  contact->ops->unpack      = NULL;
+  PetscCall(LagrangeSetUpImpulses(contact, stabilized ? "-contact_stabilization contact_stabilized" : "-contact_constraint both",
                                   &corrections->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -207,9 +195,7 @@ PetscErrorCode LagrangeSetUpImplicit(Contact contact)
   PetscCheck(!ContactAllPairsTie(contact), PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
              "-contact_law tied with -contact_type lagrange is for bodies that are all explicit, with mass on their contact nodes and "
              "without substeps: with others the multipliers only push; choose -contact_type schwarz or penalty");
-  if (is_stabilized) PetscCall(CheckStabilized(contact));
-  if (is_stabilized) ((ContactStepper *)contact->data)->asked = &stabilized_rule;
-  PetscCall(ContactStepperSetUp(contact));
-  if (is_stabilized || contact->options.constraint == CONTACT_CONSTRAINT_BOTH) PetscCall(SetUpCorrections(contact));
+  if (is_stabilized || contact->options.constraint == CONTACT_CONSTRAINT_BOTH) PetscCall(SetUpCorrected(contact, is_stabilized));
+  else PetscCall(ContactStepperSetUp(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
