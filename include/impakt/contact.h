@@ -220,7 +220,6 @@ PETSC_EXTERN PetscErrorCode ContactGetPairState(Contact, PetscInt, ContactPairSt
 PETSC_EXTERN PetscErrorCode ContactGetPairStates(Contact, ContactPairState[]);
 PETSC_EXTERN PetscErrorCode ContactGetPenaltyEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);
-PETSC_EXTERN PetscErrorCode ContactGetBodyTrace(Contact, PetscInt, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactGetBodyTraces(Contact, PetscReal[], PetscReal[]);
 
 PETSC_EXTERN PetscErrorCode ContactFieldsCreate(Contact, ContactFields *);

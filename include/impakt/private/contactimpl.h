@@ -104,14 +104,10 @@ typedef struct {
   Surface     surface;
 } ContactSurface;
 
-/* Default tolerances on lengths, in parts of the size of the smallest body: see ContactGetLengthScale(). That of the outer iterations is
+/* Default tolerances on lengths, in parts of the size of the smallest body: see ContactSetUpScales(). That of the outer iterations is
    1e-12 m for bars of 0.25 m, as in Hoy, Tezaur, Mota, section 4. */
 #define CONTACT_POSITION_TOLERANCE     4e-12
 #define CONTACT_AUGMENTATION_TOLERANCE 4e-10 /* gap that the augmented Lagrangian leaves: its rounds converge linearly only */
-/* Default tolerance on contact forces, in parts of ContactGetForceScale(). A strain of 1e-17 is below all round-off: forces are found to
-   their relative tolerance unless they vanish. */
-#define CONTACT_FORCE_TOLERANCE 1e-17
-
 /* Nodes of this rank that have rows of several pairs, see src/contact/rows/sharednodes.c */
 typedef struct {
   PetscInt   n, *offsets, *rows; /* node k has the rows rows[offsets[k]] to rows[offsets[k + 1] - 1] */
@@ -586,8 +582,6 @@ static inline PetscBool ContactAllPairsTie(Contact contact)
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;
 
 PETSC_EXTERN PetscErrorCode ContactLawRegister(const char[], PetscErrorCode (*)(Contact, ContactFrictionLaw *));
-PETSC_EXTERN PetscErrorCode ContactGetLengthScale(Contact, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactGetForceScale(Contact, PetscReal *);
 
 /* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
    can: ContactFailed() tells. */

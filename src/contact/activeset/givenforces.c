@@ -24,33 +24,13 @@ PetscErrorCode ContactLoadRows(Contact contact, PetscInt b, const PetscReal end[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactIntegrateForces - advances all bodies from their saved states through one controller step under given contact forces
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up
-- force   - of each row of this rank at the end of the step, compression positive [N]
-
-  Level: developer
-
-  Notes:
-  For implementations of contact methods, which find it in `<impakt/private/contactimpl.h>`. In the course of the step each force goes
-  linearly from that of the last accepted step, `contact->start.force`, to the one given. Afterwards `contact->end.gap` has the gaps at the
-end of the step, `contact->end.force` the forces, and rows with a force are active.
-
-  Where a body's step fails, this returns without gaps, and the step is to return too: `ContactFailed()` tells.
-
-  May be called any number of times in a step, as a method looks for the forces that fit to the gaps: each call begins at the saved states.
-
-.seealso: `Contact`, `ContactRegister()`, `ContactStep()`
-@*/
+/* ContactIntegrateForces - advances all bodies from their saved states through one controller step, any number of times in it, under forces
+   that go linearly from those of the last accepted step to `force`, of each row of this rank at the end of the step, compression positive
+   [N]. Afterwards `contact->end` has forces and gaps at the end, and rows with a force are active. Where a body's step fails there are no
+   gaps, and the step is to return too: ContactFailed() tells. Collective. */
 PetscErrorCode ContactIntegrateForces(Contact contact, const PetscReal force[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  if (contact->rows.n) PetscAssertPointer(force, 2);
   PetscCall(PetscLogEventBegin(CONTACT_Sweep, contact, 0, 0, 0));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactLoadRows(contact, b, force));

@@ -208,53 +208,6 @@ static PetscErrorCode SumBodyTrace(Contact contact, PetscInt body, PetscReal sum
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Means of some bodies, from the first one on */
-static PetscErrorCode GetTraces(Contact contact, PetscInt first, PetscInt n, PetscReal sums[], PetscReal positions[],
-                                PetscReal velocities[])
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < n; b++) PetscCall(SumBodyTrace(contact, first + b, sums + 6 * b));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(6 * n), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt b = 0; b < n; b++)
-    for (PetscInt d = 0; d < 3; d++) {
-      const PetscInt nodes = contact->nodes.n_all[first + b];
-
-      positions[3 * b + d]  = nodes ? sums[6 * b + d] / nodes : 0;
-      velocities[3 * b + d] = nodes ? sums[6 * b + 3 + d] / nodes : 0;
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetBodyTrace - mean position and velocity of the contact nodes of a body, in the first pair it takes part in
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up
-- body    - number of the body
-
-  Output Parameters:
-+ position - 3 numbers [m]
-- velocity - 3 numbers [m/s]
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetBodyTraces()`
-@*/
-PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal position[], PetscReal velocity[])
-{
-  PetscReal sums[6];
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(position, 3);
-  PetscAssertPointer(velocity, 4);
-  PetscCall(GetTraces(contact, body, 1, sums, position, velocity));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   ContactGetBodyTraces - mean position and velocity of the contact nodes of each body, in the first pair it takes part in
 
@@ -269,17 +222,26 @@ PetscErrorCode ContactGetBodyTrace(Contact contact, PetscInt body, PetscReal pos
 
   Level: intermediate
 
-  Note:
-  As `ContactGetBodyTrace()` of each, with one sum over the ranks for all.
-
-.seealso: `Contact`, `ContactGetBodyTrace()`
+.seealso: `Contact`
 @*/
 PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], PetscReal velocities[])
 {
+  const PetscInt n    = contact->n_bodies;
+  PetscReal     *sums = contact->work.traces;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(positions, 2);
   PetscAssertPointer(velocities, 3);
-  PetscCall(GetTraces(contact, 0, contact->n_bodies, contact->work.traces, positions, velocities));
+  for (PetscInt b = 0; b < n; b++) PetscCall(SumBodyTrace(contact, b, sums + 6 * b));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(6 * n), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt b = 0; b < n; b++)
+    for (PetscInt d = 0; d < 3; d++) {
+      const PetscInt nodes = contact->nodes.n_all[b];
+
+      positions[3 * b + d]  = nodes ? sums[6 * b + d] / nodes : 0;
+      velocities[3 * b + d] = nodes ? sums[6 * b + 3 + d] / nodes : 0;
+    }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

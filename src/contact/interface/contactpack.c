@@ -7,6 +7,37 @@
 #include <interface/transfervisit.h>
 #include "contactvisit.h"
 
+/* Sums whose shares ranks have, to a table or from it: the first rank takes them */
+static PetscErrorCode CopySums(Contact contact, PetscBool back, const char name[], PetscInt n, PetscReal shares[], Tables tables)
+{
+  const PetscInt   first = contact->ranks.rank ? 0 : 1;
+  const PetscReal *sums;
+  PetscReal       *all;
+  PetscInt         lines;
+
+  PetscFunctionBegin;
+  if (!n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (back) {
+    PetscCall(TablesGet(tables, name, n, &lines, &sums));
+    for (PetscInt k = 0; k < n; k++) shares[k] = first * sums[k];
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(PetscMalloc1(n, &all));
+  PetscCallMPI(MPIU_Allreduce(shares, all, (PetscMPIInt)n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(TablesAdd(tables, name, first, n, all));
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What pairs have done so far, those that have gone too */
+static PetscErrorCode CopyImpulses(Contact contact, PetscBool back, Tables tables)
+{
+  PetscFunctionBegin;
+  PetscCall(CopySums(contact, back, "impulses", CONTACT_IMPULSES * contact->n_pairs, contact->resultants.impulse, tables));
+  PetscCall(CopySums(contact, back, "gone", CONTACT_IMPULSES * contact->neighbours.told.n, contact->neighbours.told.gone, tables));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All rows of a pair to a table, a line for each node, or back */
 static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, Tables tables)
 {
@@ -60,8 +91,7 @@ PetscErrorCode ContactPack(Contact contact, Tables tables)
     PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, tables));
   }
   if (contact->rows.n_all) PetscTryTypeMethod(contact, pack, tables);
-  PetscCall(ContactPackImpulses(contact, tables));
-  PetscCall(ContactPackTold(contact, PETSC_FALSE, tables));
+  PetscCall(CopyImpulses(contact, PETSC_FALSE, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,8 +137,8 @@ PetscErrorCode ContactUnpack(Contact contact, Tables tables)
     PetscTryTypeMethod(contact, unpack, tables);
     for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
   }
-  PetscCall(ContactUnpackImpulses(contact, tables));
-  PetscCall(ContactPackTold(contact, PETSC_TRUE, tables));
+  PetscCall(CopyImpulses(contact, PETSC_TRUE, tables));
+  PetscCall(ContactStartImpulses(contact)); /* the forces of the last step each rank has of its own rows */
   contact->attempt.again = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -230,8 +230,8 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointBegin(checkpoint, "contact states"));
   if (contact->floating.n) PetscCall(CheckpointVisitReals(checkpoint, "stretch", contact->floating.n_springs, contact->floating.stretch));
   if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;
-  PetscCall(ContactVisitImpulses(contact, checkpoint));
-  PetscCall(ContactVisitTold(contact, checkpoint));
+  PetscCall(CheckpointVisitReals(checkpoint, "impulses", CONTACT_IMPULSES * contact->n_pairs, contact->resultants.impulse));
+  PetscCall(CheckpointVisitReals(checkpoint, "gone", CONTACT_IMPULSES * contact->neighbours.told.n, contact->neighbours.told.gone));
   PetscCall(VisitObstacleTraces(contact, checkpoint));
   if (contact->turns.n) PetscCall(CheckpointVisitReals(checkpoint, "turned", contact->rows.n, contact->turns.turned));
   PetscFunctionReturn(PETSC_SUCCESS);

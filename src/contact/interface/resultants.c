@@ -1,7 +1,5 @@
 /* What the contact forces of each pair amount to: resultant, moment, impulse, area. */
 #include <contact/parts.h>
-#include <checkpoint/checkpoint.h>
-#include <checkpoint/tables.h>
 
 /* What is summed over the rows of a pair */
 enum {
@@ -114,51 +112,6 @@ PetscErrorCode ContactStartImpulses(Contact contact)
     SumForces(contact, &contact->pairs[p], contact->end.force, impulse + 3);
     PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->end.force, impulse + 7));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The impulses so far, to or from a checkpoint */
-PetscErrorCode ContactVisitImpulses(Contact contact, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  PetscCall(CheckpointVisitReals(checkpoint, "impulses", N_KEPT * contact->n_pairs, contact->resultants.impulse));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The impulses of all ranks together, to a table or from it: the first rank takes them */
-PetscErrorCode ContactPackImpulses(Contact contact, Tables tables)
-{
-  const PetscInt width = N_KEPT * contact->n_pairs;
-  PetscReal     *sums;
-  PetscMPIInt    rank;
-
-  PetscFunctionBegin;
-  if (!width) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(width, &sums));
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)contact), &rank));
-  PetscCallMPI(
-      MPIU_Allreduce(contact->resultants.impulse, sums, (PetscMPIInt)width, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscCall(TablesAdd(tables, "impulses", rank ? 0 : 1, width, sums));
-  PetscCall(PetscFree(sums));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContactUnpackImpulses(Contact contact, Tables tables)
-{
-  const PetscInt   width = N_KEPT * contact->n_pairs;
-  const PetscReal *sums;
-  PetscMPIInt      rank;
-  PetscInt         n;
-
-  PetscFunctionBegin;
-  if (!width) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)contact), &rank));
-  PetscCall(TablesGet(tables, "impulses", width, &n, &sums));
-  /* the forces of the last step each rank has of its own rows */
-  PetscCall(ContactStartImpulses(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt k = 0; k < N_KEPT; k++)
-      if (k < 3 || k == 6 || k == 8) contact->resultants.impulse[N_KEPT * p + k] = rank ? 0 : sums[N_KEPT * p + k];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -368,8 +321,14 @@ PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairSt
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(state, 3);
   ContactCheckPair(contact, pair);
-  if (contact->neighbours.come_and_go) PetscCall(ContactTellState(contact, pair, state));
-  else PetscCall(ContactComputePairStates(contact, pair, pair + 1, state));
+  if (contact->neighbours.come_and_go) {
+    ContactPairState *states;
+
+    PetscCall(PetscMalloc1(contact->neighbours.told.n, &states));
+    PetscCall(ContactTellStates(contact, states));
+    *state = states[pair];
+    PetscCall(PetscFree(states));
+  } else PetscCall(ContactComputePairStates(contact, pair, pair + 1, state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -57,8 +57,9 @@ static PetscErrorCode GetElementForce(Body body, PetscReal *force)
    3e7 times the other */
 #define LARGEST_TOLERANCE 1e-4
 
-/* Of bodies with meshes and materials, which need not be set up. The smallest values of all bodies: what is small beside the least of them
-   is small beside the others. */
+/* The length that default tolerances on gaps and positions are parts of is the size of the smallest body [m]. The force that those on
+   contact forces are parts of is the modulus of plane waves times the area of a face of an element of mean size, E A of bars, of all bodies
+   the least [N]. Of bodies with meshes and materials, which need not be set up. */
 PetscErrorCode ContactSetUpScales(Contact contact)
 {
   const PetscReal tolerance = contact->options.tolerance;
@@ -87,52 +88,5 @@ PetscErrorCode ContactSetUpScales(Contact contact)
       "not differ in size so much. Check their units, -%s_scale and -%s_scale",
       (double)tolerance, UnitsOf((PetscObject)contact, UNIT_LENGTH), small, (double)contact->scale.length,
       UnitsOf((PetscObject)contact, UNIT_LENGTH), large, (double)largest, UnitsOf((PetscObject)contact, UNIT_LENGTH), small, large);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetLengthScale - the length that default tolerances on gaps and positions are parts of
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`, in or after `ContactSetUp()`
-
-  Output Parameter:
-. length - size of the smallest body: of each body the diameter of the ball about the mean of its nodes that has all of them in it, of all
-           bodies the least [m]
-
-  Level: developer
-
-.seealso: `Contact`, `ContactGetForceScale()`
-@*/
-PetscErrorCode ContactGetLengthScale(Contact contact, PetscReal *length)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  *length = contact->scale.length;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetForceScale - the force that default tolerances on contact forces are parts of
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`, in or after `ContactSetUp()`
-
-  Output Parameter:
-. force - modulus of plane waves times the area of a face of an element of mean size, of all bodies the least; E A of bars [N]
-
-  Level: developer
-
-.seealso: `Contact`, `ContactGetLengthScale()`
-@*/
-PetscErrorCode ContactGetForceScale(Contact contact, PetscReal *force)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  *force = contact->scale.force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

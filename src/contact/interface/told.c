@@ -3,8 +3,6 @@
    told what each body does to all others together, as a pair BODY:others, and what it does to each obstacle, as a pair BODY:OBSTACLE.
 */
 #include <contact/parts.h>
-#include <checkpoint/checkpoint.h>
-#include <checkpoint/tables.h>
 
 #define OTHERS "others"
 
@@ -148,62 +146,9 @@ PetscErrorCode ContactTellStates(Contact contact, ContactPairState states[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same of one that is told */
-PetscErrorCode ContactTellState(Contact contact, PetscInt p, ContactPairState *state)
-{
-  PetscReal sums[CONTACT_IMPULSES];
-  PetscInt  body, obstacle;
-
-  PetscFunctionBegin;
-  ContactGetTold(contact, p, &body, &obstacle);
-  PetscCallMPI(MPIU_Allreduce(contact->neighbours.told.gone + CONTACT_IMPULSES * p, sums, CONTACT_IMPULSES, MPIU_REAL, MPIU_SUM,
-                              PetscObjectComm((PetscObject)contact)));
-  BeginState(sums, contact->neighbours.told.gone_friction + 2 * p, state);
-  for (PetscInt q = 0; q < contact->n_pairs; q++) {
-    const ContactPair *pair = &contact->pairs[q];
-    const PetscInt     sign = pair->body[0] == body ? 1 : pair->body[1] == body ? -1 : 0;
-    ContactPairState   of_pair;
-
-    if (!sign || pair->obstacle != (obstacle < 0 ? NULL : contact->obstacles[obstacle])) continue;
-    PetscCall(ContactComputePairStates(contact, q, q + 1, &of_pair));
-    AddState(state, sign, &of_pair);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The bodies of what is told, and its obstacle, -1 for none: what the others do to a body is between that body and itself */
 void ContactGetTold(Contact contact, PetscInt p, PetscInt *body, PetscInt *obstacle)
 {
   *body     = p < contact->n_bodies ? p : (p - contact->n_bodies) / contact->n_obstacles;
   *obstacle = p < contact->n_bodies ? -1 : (p - contact->n_bodies) % contact->n_obstacles;
-}
-
-/* What pairs that have gone have done so far, to or from a checkpoint */
-PetscErrorCode ContactVisitTold(Contact contact, Checkpoint checkpoint)
-{
-  ContactTold *told = &contact->neighbours.told;
-
-  PetscFunctionBegin;
-  if (contact->neighbours.come_and_go) PetscCall(CheckpointVisitReals(checkpoint, "gone", CONTACT_IMPULSES * told->n, told->gone));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same of all ranks together, to a table or from it: the first rank takes it */
-PetscErrorCode ContactPackTold(Contact contact, PetscBool back, Tables tables)
-{
-  ContactTold     *told  = &contact->neighbours.told;
-  const PetscInt   width = CONTACT_IMPULSES * told->n;
-  const PetscReal *sums;
-  PetscInt         n;
-
-  PetscFunctionBegin;
-  if (!contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
-  if (back) {
-    PetscCall(TablesGet(tables, "gone", width, &n, &sums));
-    for (PetscInt k = 0; k < width; k++) told->gone[k] = contact->ranks.rank ? 0 : sums[k];
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCallMPI(MPIU_Allreduce(told->gone, told->sums, (PetscMPIInt)width, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscCall(TablesAdd(tables, "gone", contact->ranks.rank ? 0 : 1, width, told->sums));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

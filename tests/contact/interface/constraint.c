@@ -9,10 +9,10 @@ static const char all_explicit[] = "-left_ts_type centraldifference -right_ts_ty
 /* Rate of the gap by the velocities at the end of the step */
 static PetscReal GapRate(Simulation *simulation)
 {
-  PetscReal position[3], velocity[2][3];
+  PetscReal positions[6], velocities[6];
 
-  for (PetscInt b = 0; b < 2; b++) ok(ContactGetBodyTrace(simulation->contact, b, position, velocity[b]));
-  return velocity[1][0] - velocity[0][0];
+  ok(ContactGetBodyTraces(simulation->contact, positions, velocities));
+  return velocities[3] - velocities[0];
 }
 
 /* Force of damper, or of spring and damper, against the gaps at both ends of the step */

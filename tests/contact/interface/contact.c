@@ -74,7 +74,7 @@ static void two_bodies_are_a_pair(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
   const char *name;
-  PetscReal   normal[3], position[3], velocity[3];
+  PetscReal   normal[3], positions[6], velocities[6];
   ContactType type;
   PetscInt    n;
   Body        sides[2];
@@ -85,11 +85,11 @@ static void two_bodies_are_a_pair(void **state)
   assert_int_equal(n, 1);
   ok(ContactGetPair(simulation->contact, 0, &name, &sides[0], &sides[1]));
   assert_string_equal(name, "left:right");
+  ok(ContactGetBodyTraces(simulation->contact, positions, velocities));
   for (PetscInt b = 0; b < 2; b++) {
     assert_ptr_equal(sides[b], simulation->bodies[b]);
-    ok(ContactGetBodyTrace(simulation->contact, b, position, velocity));
-    near(position[0], (b ? 1 : -1) * COLLISION_GAP / 2, 1e-15);
-    near(velocity[0], (b ? -1 : 1) * COLLISION_SPEED, 0);
+    near(positions[3 * b], (b ? 1 : -1) * COLLISION_GAP / 2, 1e-15);
+    near(velocities[3 * b], (b ? -1 : 1) * COLLISION_SPEED, 0);
   }
   ok(ContactGetPairNormal(simulation->contact, 0, normal));
   near(normal[0], 1, 0);
@@ -149,15 +149,12 @@ static void displacement_into_each_other_is_refused(void **state)
 static void tolerances_follow_the_size(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
-  PetscReal   length, force;
 
   AddCollision(4, 3, 0);
   AddOptions("-right_dm_plex_box_upper 0.251 -left_youngs_modulus 3 -left_cross_section 2 -right_youngs_modulus 5 -right_cross_section 1");
   ok(SimulationCreate(simulation));
-  ok(ContactGetLengthScale(simulation->contact, &length));
-  ok(ContactGetForceScale(simulation->contact, &force));
-  near(length, 0.25, 1e-15);
-  near(force, 5, 1e-14);
+  near(simulation->contact->scale.length, 0.25, 1e-15);
+  near(simulation->contact->scale.force, 5, 1e-14);
 }
 
 static void set_up_is_final(void **state)
