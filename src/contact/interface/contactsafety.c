@@ -1,6 +1,77 @@
 /* What keeps the energy of a run: steps made again, contact at all shared times, refusals of what is known to be unstable. */
 #include <contact/parts.h>
 
+/* Ends with an error where a choice is known to gain energy, unless the user wants it all the same; what: the choice, and what to do */
+PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const char what[])
+{
+  PetscFunctionBegin;
+  PetscCheck(!unstable || contact->options.allow_unstable, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "%s; -contact_allow_unstable true lets it run all the same", what);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether the contact nodes of a body have mass */
+PetscErrorCode ContactBodyHasMass(Body body, PetscBool *has)
+{
+  PetscBool massless, without_inertia, rigid;
+
+  PetscFunctionBegin;
+  PetscCall(BodyIsRigid(body, &rigid));
+  PetscCall(BodyIsRedistributed(body, &massless));
+  PetscCall(BodyIsStatic(body, &without_inertia));
+  *has = (PetscBool)(!massless && !without_inertia && !rigid);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a set needs the rule `impulse`: contact nodes that have mass, be it that of a rigid body which meets what cannot yield */
+PetscErrorCode ContactNeedsImpulse(Contact contact, PetscInt b, PetscBool *needs)
+{
+  PetscBool rigid;
+
+  PetscFunctionBegin;
+  PetscCall(ContactBodyHasMass(contact->bodies[b], needs));
+  PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
+  for (PetscInt p = 0; p < contact->n_pairs && rigid && !*needs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+
+    if (pair->body[0] != b && pair->body[1] != b) continue;
+    if (pair->obstacle) *needs = PETSC_TRUE;
+    else PetscCall(BodyIsRigid(contact->bodies[pair->body[pair->body[0] == b]], needs));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on their contact nodes. Those of a rigid
+   body are no nodes that could move by themselves. */
+PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *has)
+{
+  PetscInt all = 0;
+
+  PetscFunctionBegin;
+  *has = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const PetscInt sides = contact->pairs[p].obstacle ? 1 : 2;
+    PetscInt       with  = 0;
+
+    for (PetscInt side = 0; side < sides; side++) {
+      PetscBool mass = PETSC_FALSE;
+
+      PetscCall(ContactBodyHasMass(contact->bodies[contact->pairs[p].body[side]], &mass));
+      with += mass;
+    }
+    *has = (PetscBool)(*has || (all_sides ? with == sides : with > 0));
+  }
+  if (!contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) { /* any two of them may come near */
+    PetscBool mass = PETSC_FALSE;
+
+    PetscCall(ContactBodyHasMass(contact->bodies[b], &mass));
+    all += mass;
+  }
+  if (all > (all_sides && !contact->n_obstacles ? 1 : 0)) *has = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Line searches that want the slope of the residual's norm multiply with the Jacobian, of which there is only what divides by it */
 PetscErrorCode ContactRefuseSlopes(Contact contact, const char prefix[], SNESLineSearch line_search)
 {

@@ -5,7 +5,7 @@
 
      g + C lambda >= 0,   lambda >= 0,   lambda . (g + C lambda) = 0.
 */
-#include "lagrangeimpl.h"
+#include "forwardimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
 

@@ -1,5 +1,5 @@
 /* Lagrange multipliers: which method suits the bodies. */
-#include "lagrangeimpl.h"
+#include "forwardimpl.h"
 
 /* The forward increment moves contact nodes through their mass, and all at once */
 static PetscErrorCode SuitsForward(Contact contact, PetscBool *suits)

@@ -1,5 +1,5 @@
 /* Impulses on the contact nodes at one instant: what ends the gap rate, and what closes a predicted gap in the norm of the mass. */
-#include "lagrangeimpl.h"
+#include "forwardimpl.h"
 
 /* The effect of unit impulses on the gap rates [1/kg]. One side of each pair must have mass, since `option` cannot do without. */
 PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Complementarity *impulses)

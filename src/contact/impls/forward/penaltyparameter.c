@@ -1,5 +1,5 @@
 /* How stiff the springs and dampers of the penalty method are, and whether explicit steps stand them. */
-#include "penaltyimpl.h"
+#include "forwardimpl.h"
 #include <sys/units.h>
 
 /* Penalty parameter relative to that of an element on each side, one behind the other. Two plane strain blocks that meet at 100 m/s

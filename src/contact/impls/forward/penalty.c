@@ -7,7 +7,7 @@
    with a spring tau, a damper c, or both; m is zero but for the augmented Lagrangian. Tied rows are held by springs that pull as well. With
    explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: S is then that of the springs.
 */
-#include "penaltyimpl.h"
+#include "forwardimpl.h"
 #include <sys/units.h>
 
 /* Each augmentation makes the gap smaller by 1 / (1 + tau A W): where a soft spring has tau A W = 1/10, 200 of them do by 2e8 */

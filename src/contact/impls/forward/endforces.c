@@ -1,5 +1,5 @@
 /* What methods that close gaps by the force at the end of a step need of bodies. */
-#include "endforces.h"
+#include "forwardimpl.h"
 
 static PetscErrorCode CheckBeforeObstacle(Contact contact, const ContactPair *pair, const char type[])
 {

@@ -8,7 +8,7 @@
    Around the step there are impulses that end the rate of closed gaps (-contact_constraint both), and the contact-stabilised Newmark method
    (Deuflhard, Krause, Ertel 2008).
 */
-#include "lagrangeimpl.h"
+#include "forwardimpl.h"
 #include <checkpoint/checkpoint.h>
 
 /* What changes states beside the forces of the step */
