@@ -168,23 +168,24 @@ PetscErrorCode ContactDestroyPairs(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a pair of whole bodies whose sides the user has not chosen */
-static PetscErrorCode AddUnordered(Contact contact, PetscInt first, PetscInt second, const ContactPreference preferences[])
+/* Adds a pair of whole bodies that the user has not named; `second`: a body, or the number of bodies and that of an obstacle; `why`: the
+   first one takes displacements */
+static PetscErrorCode AppendChosen(Contact contact, PetscInt first, PetscInt second, const char why[], ContactPair **pair)
 {
-  const char     *why;
-  const PetscBool turn    = ContactChooseSides(&preferences[first], &preferences[second], &why);
-  const PetscInt  body[2] = {turn ? second : first, turn ? first : second};
-  ContactPair    *pair;
-  char            name[256];
+  const PetscInt o    = second - contact->n_bodies;
+  const char    *name = NULL;
+  char           names[256];
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(name, sizeof(name), "%s:%s", ((PetscObject)contact->bodies[body[0]])->name,
-                          ((PetscObject)contact->bodies[body[1]])->name));
-  PetscCall(AppendPair(contact, name, &pair));
-  pair->body[0] = body[0];
-  pair->body[1] = body[1];
-  pair->chosen  = PETSC_TRUE;
-  pair->why     = why;
+  if (o >= 0) PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+  else name = ((PetscObject)contact->bodies[second])->name;
+  PetscCall(PetscSNPrintf(names, sizeof(names), "%s:%s", ((PetscObject)contact->bodies[first])->name, name));
+  PetscCall(AppendPair(contact, names, pair));
+  (*pair)->body[0]  = first;
+  (*pair)->body[1]  = PetscMin(second, contact->n_bodies);
+  (*pair)->obstacle = o >= 0 ? contact->obstacles[o] : NULL;
+  (*pair)->chosen   = PETSC_TRUE;
+  (*pair)->why      = why;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -272,24 +273,15 @@ PetscErrorCode ContactChooseAllPairs(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a pair that is near; `second`: a body, or the number of bodies and that of an obstacle. The first body comes before it in the order
-   of the bodies. */
+/* Adds a pair that is near. The first body comes before the second in the order of the bodies. */
 PetscErrorCode ContactAppendNeighbours(Contact contact, PetscInt first, PetscInt second, ContactPair **pair)
 {
-  const PetscInt o    = second - contact->n_bodies;
-  const char    *name = NULL;
-  char           names[256];
+  const ContactPreference *preferences = contact->neighbours.preferences;
+  const char              *why         = NULL;
 
   PetscFunctionBegin;
-  if (o >= 0) PetscCall(ObstacleGetName(contact->obstacles[o], &name));
-  else name = ((PetscObject)contact->bodies[second])->name;
-  PetscCall(PetscSNPrintf(names, sizeof(names), "%s:%s", ((PetscObject)contact->bodies[first])->name, name));
-  PetscCall(AppendPair(contact, names, pair));
-  (*pair)->body[0] = first;
-  (*pair)->body[1] = PetscMin(second, contact->n_bodies);
-  (*pair)->chosen  = PETSC_TRUE;
-  if (o >= 0) (*pair)->obstacle = contact->obstacles[o];
-  else (void)ContactChooseSides(&contact->neighbours.preferences[first], &contact->neighbours.preferences[second], &(*pair)->why);
+  if (second < contact->n_bodies) (void)ContactChooseSides(&preferences[first], &preferences[second], &why);
+  PetscCall(AppendChosen(contact, first, second, why, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -297,6 +289,7 @@ PetscErrorCode ContactAppendNeighbours(Contact contact, PetscInt first, PetscInt
 PetscErrorCode ContactAddEachPair(Contact contact)
 {
   ContactPreference *preferences;
+  ContactPair       *pair;
   PetscBool          hidden;
 
   PetscFunctionBegin;
@@ -305,25 +298,17 @@ PetscErrorCode ContactAddEachPair(Contact contact)
   PetscCall(ContactGetPreferences(contact, preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
     for (PetscInt b = a + 1; b < contact->n_bodies; b++) {
+      const char     *why;
+      const PetscBool turn = ContactChooseSides(&preferences[a], &preferences[b], &why);
+
       PetscCall(IsHidden(contact, a, b, NULL, &hidden));
-      if (!hidden) PetscCall(AddUnordered(contact, a, b, preferences));
+      if (!hidden) PetscCall(AppendChosen(contact, turn ? b : a, turn ? a : b, why, &pair));
     }
   PetscCall(PetscFree(preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
     for (PetscInt o = 0; o < contact->n_obstacles; o++) {
-      ContactPair *pair;
-      const char  *name;
-      char         names[256];
-
       PetscCall(IsHidden(contact, a, -1, contact->obstacles[o], &hidden));
-      if (hidden) continue;
-      PetscCall(ObstacleGetName(contact->obstacles[o], &name));
-      PetscCall(PetscSNPrintf(names, sizeof(names), "%s:%s", ((PetscObject)contact->bodies[a])->name, name));
-      PetscCall(AppendPair(contact, names, &pair));
-      pair->body[0]  = a;
-      pair->body[1]  = contact->n_bodies;
-      pair->obstacle = contact->obstacles[o];
-      pair->chosen   = PETSC_TRUE;
+      if (!hidden) PetscCall(AppendChosen(contact, a, contact->n_bodies + o, NULL, &pair));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
