@@ -38,8 +38,8 @@ static PetscErrorCode ReadType(Contact contact, char type[], size_t size)
    options are read, and taken out again afterwards. */
 static PetscErrorCode SetFromOptions(Contact contact, SNES snes)
 {
-  static const char *const defaults[][2] = {{"-schwarz_snes_anderson_beta", "0.5"}, {"-schwarz_snes_anderson_m", "8"}};
-  char                     type[64];
+  static const char *const defaults[][2] = {{"snes_anderson_beta", "0.5"}, {"snes_anderson_m", "8"}};
+  char                     type[64], names[PETSC_STATIC_ARRAY_LENGTH(defaults)][64];
   PetscBool                anderson, given[PETSC_STATIC_ARRAY_LENGTH(defaults)];
   SNESLineSearch           line_search;
 
@@ -52,13 +52,14 @@ static PetscErrorCode SetFromOptions(Contact contact, SNES snes)
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->scale.length, POSITION_RTOL, 0, MAX_ITERATIONS, MAX_EVALUATIONS));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(defaults) && anderson; i++) {
-    PetscCall(PetscOptionsHasName(NULL, NULL, defaults[i][0], &given[i]));
-    if (!given[i]) PetscCall(PetscOptionsSetValue(NULL, defaults[i][0], defaults[i][1]));
+    PetscCall(PetscSNPrintf(names[i], sizeof(names[i]), "-schwarz_%s", defaults[i][0]));
+    PetscCall(PetscOptionsHasName(NULL, NULL, names[i], &given[i]));
+    if (!given[i]) PetscCall(PetscOptionsSetValue(NULL, names[i], defaults[i][1]));
   }
   PetscCall(SNESSetFromOptions(snes));
   PetscCall(ContactRefuseSlopes(contact, "schwarz_", line_search));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(defaults) && anderson; i++)
-    if (!given[i]) PetscCall(PetscOptionsClearValue(NULL, defaults[i][0]));
+    if (!given[i]) PetscCall(PetscOptionsClearValue(NULL, names[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
