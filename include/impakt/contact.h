@@ -41,7 +41,7 @@ typedef const char *ContactType;
 
    Values:
 + `CONTACT_LAW_FRICTIONLESS` - they push along the normal and slide without resistance
-. `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start, see `ContactSetTieDistance()`, stay there: all components of the
+. `CONTACT_LAW_TIED`         - nodes that lie on the partner at the start, see `-contact_tie_distance`, stay there: all components of the
                                displacement since then are equal
 . `CONTACT_LAW_BONDED`       - they slide without resistance until they meet; a node that has been pushed against the partner stays there
                                from the next controller step on

@@ -45,6 +45,8 @@ static const struct {
   const char *name, *now;
 } gone_options[] = {
     {"contact_friction_dense_limit", "matrices are as the bodies need them"},
+    {"contact_surface_view", "-contact_view shows pairs and their rows"},
+    {"contact_transfer_view", "-contact_view shows pairs and their rows"},
     {"lagrange_snes_", "forces are found as with -contact_type schwarz, whose options are -schwarz_snes_..."},
     {"penalty_snes_", "forces are found as with -contact_type schwarz, whose options are -schwarz_snes_..."},
     {"schwarz_condense", "sweeps advance the bodies themselves"},

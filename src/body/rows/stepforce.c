@@ -142,7 +142,7 @@ linear bodies and explicit ones with massless contact nodes. More than 100 of an
 all nodes and no dashpots, are found 8 together by these substeps where forces are felt. Those of a rigid body are found where it will be in
 the middle of the controller step, anew for each, and cost next to nothing.
 
-.seealso: `Body`, `BodySetConstantForces()`, `BodyGetCompliance()`, `BodyNodalComplianceFollows()`
+.seealso: `Body`, `BodySetConstantForces()`, `BodyNodalComplianceFollows()`
 @*/
 PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], const PetscInt *place[],
                                       PetscInt *leading, const PetscScalar *matrix[])
