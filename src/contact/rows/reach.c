@@ -49,26 +49,34 @@ static PetscErrorCode SumNodes(Contact contact, PetscInt body, Vec vec, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The square of the most by which the vector of a node differs from `mean`. Loops over `dim`, known where this is called, are unrolled. */
+static inline PetscReal LargestSquare(PetscInt dim, PetscInt n, const PetscInt dofs[], const PetscScalar values[], const PetscReal mean[])
+{
+  const PetscReal m[3] = {mean[0], mean[1], mean[2]};
+  PetscReal       most = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal square = 0;
+
+    for (PetscInt d = 0; d < dim; d++) square += PetscSqr(PetscRealPart(values[dofs[i] + d]) - m[d]);
+    most = PetscMax(most, square);
+  }
+  return most;
+}
+
 /* The most by which the vector of any boundary node of this rank differs from `mean` */
 static PetscErrorCode FindSpread(Contact contact, PetscInt body, Vec vec, const PetscReal mean[], PetscReal *spread)
 {
   const PetscInt    *dofs;
   const PetscScalar *values;
-  PetscReal          most = 0;
   PetscInt           n, start;
 
   PetscFunctionBegin;
   PetscCall(GetNodes(contact, body, vec, &n, &dofs, &start));
   PetscCall(VecGetArrayRead(vec, &values));
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscScalar *of     = values + dofs[i] - start;
-    PetscReal          square = 0;
-
-    for (PetscInt d = 0; d < contact->dim; d++) square += PetscSqr(PetscRealPart(of[d]) - mean[d]);
-    most = PetscMax(most, square);
-  }
+  *spread = PetscSqrtReal(contact->dim > 2 ? LargestSquare(3, n, dofs, values - start, mean)
+                                           : LargestSquare(2, n, dofs, values - start, mean));
   PetscCall(VecRestoreArrayRead(vec, &values));
-  *spread = PetscSqrtReal(most);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -14,6 +14,14 @@
 #define DEEP   0.25
 #define GRAZES 1e-3
 
+/* end = u + step v of some nodes. Loops over `dim`, known where this is called, are unrolled. */
+static inline void MoveNodes(PetscInt dim, PetscInt n, const PetscInt dofs[], const PetscScalar *restrict u, PetscReal step,
+                             const PetscScalar *restrict v, PetscScalar *restrict end)
+{
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt d = 0; d < dim; d++) end[dofs[i] + d] = u[dofs[i] + d] + step * v[dofs[i] + d];
+}
+
 /* Where the boundary of a body will be in the middle of the step, if its nodes keep their velocities */
 static PetscErrorCode Place(Contact contact, PetscInt b)
 {
@@ -34,8 +42,8 @@ static PetscErrorCode Place(Contact contact, PetscInt b)
   PetscCall(VecGetArrayRead(displacement, &u));
   PetscCall(VecGetArrayRead(velocity, &v));
   PetscCall(VecGetArray(contact->ends[b], &end));
-  for (PetscInt i = 0; i < data->n_owned; i++)
-    for (PetscInt dof = data->dofs[i] - start, d = 0; d < contact->dim; d++, dof++) end[dof] = u[dof] + half * v[dof];
+  if (contact->dim > 2) MoveNodes(3, data->n_owned, data->dofs, u - start, half, v - start, end - start);
+  else MoveNodes(contact->dim, data->n_owned, data->dofs, u - start, half, v - start, end - start);
   PetscCall(VecRestoreArray(contact->ends[b], &end));
   PetscCall(VecRestoreArrayRead(velocity, &v));
   PetscCall(VecRestoreArrayRead(displacement, &u));
