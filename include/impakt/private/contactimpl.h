@@ -440,7 +440,7 @@ typedef struct {
 
 /* How fast bodies move at the start of the step, see reach.c */
 typedef struct {
-  PetscReal *mean;         /* per body: mean velocity of its boundary nodes [m/s], and their number */
+  PetscReal *mean;         /* per body: mean velocity of its nodes [m/s], and their number */
   PetscReal *spread;       /* per body: the most by which the velocity of a node differs from that [m/s] */
   PetscReal *acceleration; /* per body: the largest of a node, where pairs come and go [m/s^2]; follows `spread` in memory */
   PetscReal  all;          /* surfaces that far apart may touch in the step, as far as speeds tell [m] */

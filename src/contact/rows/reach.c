@@ -1,9 +1,10 @@
 /*
    How far apart surfaces may be that touch in the next controller step. What counts is the motion of one body relative to the other, not
-   that of the frame in which both are described: velocities are told by their mean over the nodes at the boundary of a body, and by the
-   most by which that of a node there differs from this mean.
+   that of the frame in which both are described: velocities are told by their mean over the nodes of a body, and by the most by which that
+   of a node differs from this mean.
 */
 #include <contact/parts.h>
+#include <impakt/private/simd.h>
 
 /* Surfaces are looked for within this many times the way that bodies can make relative to each other in the step at their speeds */
 #define AHEAD 2
@@ -15,68 +16,80 @@ static PetscReal Norm(const PetscReal v[3])
   return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* The places of the boundary nodes of this rank in vectors of a body, whose owned part they count from */
-static PetscErrorCode GetNodes(Contact contact, PetscInt body, Vec vec, PetscInt *n, const PetscInt *dofs[], PetscInt *start)
+/* Adds up the vectors of nodes, in as many sums at once as an instruction can */
+SIMD_CLONES static void AddNodes(PetscInt n, PetscInt dim, const PetscScalar values[], PetscReal sum[3])
 {
-  Surface            boundary;
-  const SurfaceData *data;
+  const PetscInt width = dim * SIMD_WIDTH;
+  PetscReal      sums[3 * SIMD_WIDTH];
+  PetscInt       i;
 
-  PetscFunctionBegin;
-  PetscCall(ContactGetBoundary(contact, body, &boundary));
-  PetscCall(SurfaceGetData(boundary, &data));
-  PetscCall(VecGetOwnershipRange(vec, start, NULL));
-  *n    = data->n_owned;
-  *dofs = data->dofs;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt k = 0; k < width; k++) sums[k] = 0;
+  for (i = 0; i + width <= n; i += width)
+    for (PetscInt k = 0; k < width; k++) sums[k] += PetscRealPart(values[i + k]);
+  for (PetscInt k = 0; i < n; i++, k++) sums[k] += PetscRealPart(values[i]);
+  for (PetscInt k = 0; k < width; k++) sum[k % dim] += sums[k];
 }
 
-/* Adds up the vectors of the boundary nodes of this rank, and their number */
-static PetscErrorCode SumNodes(Contact contact, PetscInt body, Vec vec, PetscReal sum[4])
+/* The square of the most by which the vector of a node in space differs from `mean` */
+SIMD_CLONES static PetscReal LargestSquare(PetscInt n, const PetscScalar values[], const PetscReal mean[3])
 {
-  const PetscInt    *dofs;
-  const PetscScalar *values;
-  PetscReal          of[3] = {0};
-  PetscInt           n, start;
+  PetscReal means[3 * SIMD_WIDTH], squares[3 * SIMD_WIDTH];
+  SimdReal  most = {0};
+  PetscInt  i;
 
-  PetscFunctionBegin;
-  PetscCall(GetNodes(contact, body, vec, &n, &dofs, &start));
-  PetscCall(VecGetArrayRead(vec, &values));
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt d = 0; d < contact->dim; d++) of[d] += PetscRealPart(values[dofs[i] - start + d]);
-  PetscCall(VecRestoreArrayRead(vec, &values));
-  PetscCall(PetscArraycpy(sum, of, 3));
-  sum[3] = (PetscReal)n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  for (PetscInt k = 0; k < 3 * SIMD_WIDTH; k++) means[k] = mean[k % 3];
+  for (i = 0; i + 3 * SIMD_WIDTH <= n; i += 3 * SIMD_WIDTH) {
+    for (PetscInt k = 0; k < 3 * SIMD_WIDTH; k++) squares[k] = PetscSqr(PetscRealPart(values[i + k]) - means[k]);
+    for (PetscInt k = 0; k < SIMD_WIDTH; k++) {
+      const PetscReal square = squares[3 * k] + squares[3 * k + 1] + squares[3 * k + 2];
 
-/* The square of the most by which the vector of a node differs from `mean`. Loops over `dim`, known where this is called, are unrolled. */
-static inline PetscReal LargestSquare(PetscInt dim, PetscInt n, const PetscInt dofs[], const PetscScalar values[], const PetscReal mean[])
-{
-  const PetscReal m[3] = {mean[0], mean[1], mean[2]};
-  PetscReal       most = 0;
-
-  for (PetscInt i = 0; i < n; i++) {
+      most[k] = square > most[k] ? square : most[k];
+    }
+  }
+  for (; i < n; i += 3) {
     PetscReal square = 0;
 
-    for (PetscInt d = 0; d < dim; d++) square += PetscSqr(PetscRealPart(values[dofs[i] + d]) - m[d]);
-    most = PetscMax(most, square);
+    for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscRealPart(values[i + d]) - mean[d]);
+    most[0] = square > most[0] ? square : most[0];
   }
-  return most;
+  for (PetscInt k = 1; k < SIMD_WIDTH; k++) most[0] = most[k] > most[0] ? most[k] : most[0];
+  return most[0];
 }
 
-/* The most by which the vector of any boundary node of this rank differs from `mean` */
-static PetscErrorCode FindSpread(Contact contact, PetscInt body, Vec vec, const PetscReal mean[], PetscReal *spread)
+/* Adds up the vectors of the nodes of this rank, and their number */
+static PetscErrorCode SumNodes(Vec vec, PetscInt dim, PetscReal sum[4])
 {
-  const PetscInt    *dofs;
   const PetscScalar *values;
-  PetscInt           n, start;
+  PetscInt           n;
 
   PetscFunctionBegin;
-  PetscCall(GetNodes(contact, body, vec, &n, &dofs, &start));
+  PetscCall(VecGetLocalSize(vec, &n));
   PetscCall(VecGetArrayRead(vec, &values));
-  *spread = PetscSqrtReal(contact->dim > 2 ? LargestSquare(3, n, dofs, values - start, mean)
-                                           : LargestSquare(2, n, dofs, values - start, mean));
+  AddNodes(n, dim, values, sum);
+  sum[3] = (PetscReal)n / (PetscReal)dim;
   PetscCall(VecRestoreArrayRead(vec, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The most by which the vector of any node of this rank differs from `mean` */
+static PetscErrorCode FindSpread(Vec vec, PetscInt dim, const PetscReal mean[], PetscReal *spread)
+{
+  const PetscScalar *values;
+  PetscReal          most = 0;
+  PetscInt           n;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetLocalSize(vec, &n));
+  PetscCall(VecGetArrayRead(vec, &values));
+  if (dim == 3) most = LargestSquare(n, values, mean);
+  for (PetscInt i = 0; i < n && dim < 3; i += dim) {
+    PetscReal square = PetscSqr(PetscRealPart(values[i]) - mean[0]);
+
+    if (dim > 1) square += PetscSqr(PetscRealPart(values[i + 1]) - mean[1]);
+    most = square > most ? square : most;
+  }
+  PetscCall(VecRestoreArrayRead(vec, &values));
+  *spread = PetscSqrtReal(most);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -117,7 +130,7 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
     Vec velocity;
 
     PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
-    PetscCall(SumNodes(contact, b, velocity, mean + 4 * b));
+    PetscCall(SumNodes(velocity, contact->dim, mean + 4 * b));
   }
   if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean, (PetscMPIInt)(4 * n), MPIU_REAL, MPIU_SUM, comm));
   for (PetscInt b = 0; b < n; b++) {
@@ -125,8 +138,8 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
 
     for (PetscInt d = 0; d < 3; d++) mean[4 * b + d] /= PetscMax(mean[4 * b + 3], 1);
     PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, &acceleration));
-    PetscCall(FindSpread(contact, b, velocity, mean + 4 * b, &spread[b]));
-    if (gains) PetscCall(FindSpread(contact, b, acceleration, none, &contact->reach.acceleration[b]));
+    PetscCall(FindSpread(velocity, contact->dim, mean + 4 * b, &spread[b]));
+    if (gains) PetscCall(FindSpread(acceleration, contact->dim, none, &contact->reach.acceleration[b]));
   }
   if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, spread, (PetscMPIInt)(2 * n), MPIU_REAL, MPIU_MAX, comm));
   *reach = contact->reach.all = AHEAD * contact->step * TwoFastest(contact, gains);
