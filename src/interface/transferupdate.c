@@ -116,7 +116,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
     PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
     for (PetscInt row = 0; row < transfer->n; row++) /* the slip of rows that are kept is still counted from their own last build */
       if (!transfer->keep[row])
-        (void)TransferSplitRow(transfer, row, data[0]->positions, transfer->column_x, transfer->built_slip + 3 * row);
+        (void)TransferSplitRow(transfer, row, transfer->dirichlet->data.positions, transfer->column_x, transfer->built_slip + 3 * row);
   }
   transfer->built        = PETSC_TRUE;
   transfer->numbers.near = near;
