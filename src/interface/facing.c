@@ -6,8 +6,9 @@
 #define GROUPS (6 * CELLS * CELLS)
 /* Components of a normal that differ by less, relative, count as equal, so that round-off does not choose the side of the cube */
 #define EQUAL_COMPONENTS 1e-9
-/* Added to the overlap, relative to the extent of the larger surface: covers round-off */
-#define ROUND_OFF 1e-9
+/* Added to the bound of the overlap, relative to that bound and to the extent of the larger surface: covers round-off */
+#define OVERLAP_MARGIN 1e-6
+#define OVERLAP_FLOOR  1e-9
 
 /* The faces of all ranks whose normals are in one cell: bounds of their normals n, of their centroids x, and of n . (x - centre). All
    bounds are minima, so that one reduction finds them: an upper bound is kept with its sign changed. */
@@ -17,7 +18,7 @@ typedef struct {
 #define GROUP_VALUES 13
 
 typedef struct {
-  PetscReal centre[3];
+  PetscReal centre[3], extent;
   Group     groups[GROUPS];
 } Directions;
 
@@ -50,7 +51,11 @@ static PetscErrorCode GetDirections(MPI_Comm comm, Surface surface, Directions *
   PetscFunctionBegin;
   BoxFind(data->n_nodes, data->positions, box);
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPIU_MIN, comm));
-  for (PetscInt d = 0; d < 3; d++) directions->centre[d] = (box[d] - box[3 + d]) / 2;
+  directions->extent = 0;
+  for (PetscInt d = 0; d < 3; d++) {
+    directions->centre[d] = (box[d] - box[3 + d]) / 2;
+    directions->extent    = PetscMax(directions->extent, -box[3 + d] - box[d]);
+  }
   for (PetscInt i = 0; i < GROUPS * GROUP_VALUES; i++) ((PetscReal *)directions->groups)[i] = PETSC_MAX_REAL;
   for (PetscInt f = 0; f < data->n_faces; f++) {
     const PetscReal *normal = data->face_normals + 3 * f;
@@ -107,22 +112,98 @@ static PetscErrorCode SeesObstacle(Obstacle obstacle, const PetscReal x[], const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How deep two bodies are inside each other at any point, with some room for round-off [m]. Collective on a communicator that has both. */
-PetscErrorCode SurfacesGetOverlap(MPI_Comm comm, const Surface surfaces[2], PetscReal *overlap)
+/* How far the whole body of a surface reaches along each direction n: the largest n . x of all its nodes, displaced by u [m] */
+static PetscErrorCode GetSupport(MPI_Comm comm, Surface surface, Vec u, PetscInt n, const PetscReal directions[][3], PetscReal support[])
 {
-  SurfaceDepth *depths;
-  PetscReal     boxes[12], extent = 0;
-  PetscInt      n;
+  const PetscInt     dim = surface->data.dim;
+  PetscSection       coordinate_section, section;
+  const PetscScalar *x, *values = NULL;
+  PetscInt           vstart, vend;
+  Vec                coordinates, local = NULL;
 
   PetscFunctionBegin;
-  PetscCall(SurfacesFindDepths(comm, 2, surfaces, 0, NULL, &n, &depths));
-  for (PetscInt side = 0; side < 2; side++) BoxFind(surfaces[side]->data.n_nodes, surfaces[side]->data.positions, boxes + 6 * side);
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, boxes, 12, MPIU_REAL, MPIU_MIN, comm));
-  for (PetscInt k = 0; k < 6; k++) extent = PetscMax(extent, -boxes[6 * (k / 3) + k % 3] - boxes[6 * (k / 3) + 3 + k % 3]);
-  *overlap = 0;
-  for (PetscInt i = 0; i < n; i++) *overlap = PetscMax(*overlap, depths[i].depth);
-  *overlap += ROUND_OFF * extent;
-  PetscCall(PetscFree(depths));
+  PetscCall(DMGetCoordinateSection(surface->dm, &coordinate_section));
+  PetscCall(DMGetCoordinatesLocal(surface->dm, &coordinates));
+  PetscCall(DMGetLocalSection(surface->dm, &section));
+  PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
+  if (u && !surface->divided) PetscCall(VecGetArrayRead(u, &values)); /* its nodes are in the order of the section */
+  else if (u) {
+    PetscCall(DMGetLocalVector(surface->dm, &local));
+    PetscCall(DMGlobalToLocalBegin(surface->dm, u, INSERT_VALUES, local));
+    PetscCall(DMGlobalToLocalEnd(surface->dm, u, INSERT_VALUES, local));
+    PetscCall(VecGetArrayRead(local, &values));
+  }
+  PetscCall(VecGetArrayRead(coordinates, &x));
+  for (PetscInt i = 0; i < n; i++) support[i] = -PETSC_MAX_REAL;
+  for (PetscInt v = vstart; v < vend; v++) {
+    PetscReal position[3] = {0};
+    PetscInt  offset, at;
+
+    PetscCall(PetscSectionGetOffset(coordinate_section, v, &offset));
+    PetscCall(PetscSectionGetOffset(section, v, &at));
+    for (PetscInt d = 0; d < dim; d++) position[d] = PetscRealPart(x[offset + d]) + (u ? PetscRealPart(values[at + d]) : 0);
+    for (PetscInt i = 0; i < n; i++) support[i] = PetscMax(support[i], Dot(position, directions[i]));
+  }
+  PetscCall(VecRestoreArrayRead(coordinates, &x));
+  if (u && !surface->divided) PetscCall(VecRestoreArrayRead(u, &values));
+  else if (u) {
+    PetscCall(VecRestoreArrayRead(local, &values));
+    PetscCall(DMRestoreLocalVector(surface->dm, &local));
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, support, (PetscMPIInt)n, MPIU_REAL, MPIU_MAX, comm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, PetscReal list[][3])
+{
+  for (PetscInt g = 0; g < GROUPS; g++) {
+    Group *group = &directions->groups[g];
+
+    if (group->support == PETSC_MAX_REAL) continue;
+    for (PetscInt d = 0; d < 3; d++) list[*n][d] = sign * (group->normal[0][d] - group->normal[1][d]) / 2;
+    if (Normalize(list[*n]) > 0) (*n)++;
+  }
+}
+
+/* An upper bound of the depth by which the convex hulls of two bodies overlap [m]: the least of the depths along the mean normals of the
+   groups and along the axes. If the depth along any direction is negative, the bodies are apart (theorem of separating axes). */
+static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b,
+                                     PetscReal *overlap)
+{
+  PetscReal *support[2];
+  PetscReal(*list)[3];
+  PetscInt n = 0;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc3(2 * GROUPS + 6, &list, 2 * GROUPS + 6, &support[0], 2 * GROUPS + 6, &support[1]));
+  for (PetscInt side = 0; side < 2 * a->data.dim; side++, n++)
+    for (PetscInt d = 0; d < 3; d++) list[n][d] = d == side / 2 ? (side % 2 ? 1 : -1) : 0;
+  AddDirections(of_a, 1, &n, list);
+  AddDirections(of_b, -1, &n, list);
+  PetscCall(GetSupport(comm, a, u_a, n, (const PetscReal(*)[3])list, support[0]));
+  for (PetscInt i = 0; i < n; i++)
+    for (PetscInt d = 0; d < 3; d++) list[i][d] = -list[i][d];
+  PetscCall(GetSupport(comm, b, u_b, n, (const PetscReal(*)[3])list, support[1]));
+  *overlap = PETSC_MAX_REAL;
+  for (PetscInt i = 0; i < n; i++) *overlap = PetscMin(*overlap, support[0][i] + support[1][i]);
+  *overlap = PetscMax(*overlap, 0) * (1 + OVERLAP_MARGIN) + OVERLAP_FLOOR * PetscMax(of_a->extent, of_b->extent);
+  PetscCall(PetscFree3(list, support[0], support[1]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An upper bound of the depth by which two bodies overlap under displacements u, collective on a communicator that has all of both, and
+   what of it is for round-off [m] */
+PetscErrorCode SurfaceComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap, PetscReal *round_off)
+{
+  Directions *directions;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(2, &directions));
+  PetscCall(GetDirections(comm, a, &directions[0]));
+  PetscCall(GetDirections(comm, b, &directions[1]));
+  PetscCall(ComputeOverlap(comm, a, u_a, b, u_b, &directions[0], &directions[1], overlap));
+  *round_off = OVERLAP_FLOOR * PetscMax(directions[0].extent, directions[1].extent);
+  PetscCall(PetscFree(directions));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -146,7 +227,7 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
     PetscCall(PetscMalloc1(2, &directions));
     for (PetscInt side = 0; side < 2; side++)
       PetscCall(GetDirections(PetscObjectComm((PetscObject)surfaces[side]->dm), surfaces[side], &directions[side]));
-    PetscCall(SurfacesGetOverlap(PetscObjectComm((PetscObject)a->dm), surfaces, &depth));
+    PetscCall(ComputeOverlap(PetscObjectComm((PetscObject)a->dm), a, NULL, b, NULL, &directions[0], &directions[1], &depth));
   }
   for (PetscInt side = 0; side < 2; side++) {
     if (!surfaces[side] || !wanted[side]) continue;

@@ -299,21 +299,36 @@ static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], Petsc
   }
 }
 
-/* How far behind a node its partner may be: as far as the bodies overlap anywhere [m] */
-static PetscErrorCode GetDepth(Transfer transfer, const Vec u[2], PetscReal *behind)
+/* How deep the bodies are inside each other at any point [m] */
+static PetscErrorCode FindDeepest(Transfer transfer, const Vec u[2], PetscReal *deepest)
 {
-  const Surface surfaces[2] = {transfer->dirichlet, transfer->neumann};
-  Surface      *boundaries  = transfer->boundaries;
+  SurfaceDepth *depths;
+  PetscInt      n;
 
   PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) {
-    if (!boundaries[side]) PetscCall(SurfaceCreate(surfaces[side]->dm, NULL, &boundaries[side]));
-    PetscCall(SurfaceUpdate(boundaries[side], u[side]));
-  }
-  PetscCall(SurfacesGetOverlap(transfer->comm, boundaries, behind));
+  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceUpdate(transfer->boundaries[side], u[side]));
+  PetscCall(SurfacesFindDepths(transfer->comm, 2, transfer->boundaries, 0, NULL, &n, &depths));
+  *deepest = 0;
+  for (PetscInt i = 0; i < n; i++) *deepest = PetscMax(*deepest, depths[i].depth);
+  PetscCall(PetscFree(depths));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* How far behind a node its partner may be: as far as the bodies overlap [m]. Where their hulls do by more than a face, one may be in a
+   hollow of the other, and faces farther behind a node be on the far sides of both bodies. */
+static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal *behind)
+{
+  PetscReal least = transfer->built ? LEAST_DEPTH * transfer->numbers.smallest_size : 0, round_off, deepest = 0;
+
+  PetscFunctionBegin;
+  PetscCall(SurfaceComputeOverlap(transfer->comm, transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind, &round_off));
   if (transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   *behind *= OBLIQUE;
-  if (transfer->built) *behind = PetscMax(*behind, LEAST_DEPTH * transfer->numbers.smallest_size);
+  if (*behind > PetscMax(least, OBLIQUE * round_off) && transfer->boundaries[0]) {
+    PetscCall(FindDeepest(transfer, (const Vec[2]){u_dirichlet, u_neumann}, &deepest));
+    *behind = PetscMin(*behind, OBLIQUE * (deepest + round_off));
+  }
+  *behind = PetscMax(*behind, least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -328,7 +343,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   RowSet             set;
 
   PetscFunctionBegin;
-  PetscCall(GetDepth(transfer, (const Vec[2]){u_dirichlet, u_neumann}, &behind));
+  PetscCall(GetDepth(transfer, u_dirichlet, u_neumann, &behind));
   PetscCall(
       PetscMalloc4(dirichlet->n_nodes, &marks, dirichlet->n_nodes, &lumped, dirichlet->n_nodes, &ends, 3 * dirichlet->n_nodes, &seen));
   PetscCall(TransferIntegrate(transfer, near, behind, marks, lumped, ends, seen, &n_shares, &shares));

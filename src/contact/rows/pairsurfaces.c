@@ -326,7 +326,7 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
   }
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
   PetscCall(SetOwner(contact, pair));
-  if (!pair->obstacle) {
+  if (!pair->obstacle && contact->dim > 1) {
     Surface boundaries[2] = {NULL, NULL};
 
     for (PetscInt side = 0; side < 2; side++) PetscCall(ContactGetBoundary(contact, pair->body[side], &boundaries[side]));
