@@ -77,7 +77,7 @@ PETSC_EXTERN PetscBool      BodyChoosesMass(Body);
 PETSC_EXTERN PetscErrorCode BodyKeepMass(Body);
 PETSC_EXTERN PetscErrorCode BodyGetContactPart(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);
-PETSC_EXTERN PetscErrorCode BodyIsForcedAlone(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyAllRowsAre(Body, BodyCondition, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodySetNearRows(Body, PetscInt, const PetscInt[], PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyWriteStartRates(Body);
 PETSC_EXTERN PetscErrorCode BodyWriteStartTraces(Body);

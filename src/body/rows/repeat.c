@@ -116,8 +116,8 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CompareInputs(body, &any));
   PetscCall(TakeInputs(body));
-  /* where rows of other ranks count, their inputs may have changed; to repeat without a change would move a nonlinear layer by round-off */
-  if (body->rows.size > 1 && !(BodyStepsAlone(body) && body->rows.at_home)) PetscCall(BodyAnyRank(body, &any));
+  /* where rows of other ranks count, their inputs may have changed */
+  if (body->rows.size > 1 && !(BodyStepsAlone(body) && body->rows.at_home)) any = PETSC_TRUE;
   /* Without a change a state in balance stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and
      acceleration, which others feel through a mass matrix that is not diagonal alone. */
   if (any || (body->rows.have_mass && body->mass.matrix)) {

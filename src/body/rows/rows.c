@@ -192,26 +192,29 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 }
 
 /*@
-  BodyIsForcedAlone - whether all rows are forced ones
+  BodyAllRowsAre - whether all rows have one condition
 
   Not Collective
 
-  Input Parameter:
-. body - the `Body`, set up
+  Input Parameters:
++ body      - the `Body`, set up
+- condition - `BODY_FREE` or `BODY_FORCED`
 
   Output Parameter:
-. forced - if so, the same on every rank
+. are - if so, the same on every rank
 
   Level: developer
 
 .seealso: `Body`, `BodySetConditions()`
 @*/
-PetscErrorCode BodyIsForcedAlone(Body body, PetscBool *forced)
+PetscErrorCode BodyAllRowsAre(Body body, BodyCondition condition, PetscBool *are)
 {
+  const BodyRows *rows = &body->rows;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(forced, 2);
-  *forced = (PetscBool)(body->rows.n_forced == body->rows.global && !body->rows.n_robin);
+  PetscAssertPointer(are, 3);
+  *are = (PetscBool)(rows->n_forced == (condition == BODY_FREE ? 0 : rows->global) && !rows->n_robin && !rows->n_prescribed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -23,10 +23,11 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
 /* Tells the bodies what their rows mean, but those that are left out; NULL: none is, or the same of them on every rank */
 PetscErrorCode ContactSetSomeConditions(Contact contact, ContactConditions conditions, const PetscBool left_out[])
 {
-  PetscBool same = (PetscBool)(conditions == CONDITIONS_FORCES);
+  const BodyCondition all  = conditions == CONDITIONS_FREE ? BODY_FREE : BODY_FORCED;
+  PetscBool           same = (PetscBool)(conditions == CONDITIONS_FORCES || conditions == CONDITIONS_FREE);
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies && same; b++) PetscCall(BodyIsForcedAlone(contact->bodies[b], &same));
+  for (PetscInt b = 0; b < contact->n_bodies && same; b++) PetscCall(BodyAllRowsAre(contact->bodies[b], all, &same));
   for (PetscInt b = 0; b < contact->n_bodies && !same; b++) {
     if (left_out && left_out[b]) continue;
     ContactGetConditions(contact, conditions, b, contact->work.conditions);

@@ -202,6 +202,15 @@ static PetscErrorCode TakeForces(StartBalance *start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether squares of what rows read are finite. The energies of other states are not, of which the controller tells with their cause. */
+static PetscBool IsFinite(const LawProblem *problem)
+{
+  PetscBool finite = PETSC_TRUE;
+
+  for (PetscInt k = 0; k < problem->n; k++) finite = (PetscBool)(finite && !PetscIsInfOrNanScalar(PetscSqr(problem->read[k])));
+  return finite;
+}
+
 /* Forces of all rows */
 static PetscErrorCode SolveRows(StartBalance *start)
 {
@@ -209,7 +218,7 @@ static PetscErrorCode SolveRows(StartBalance *start)
 
   PetscFunctionBegin;
   PetscCall(TakeRows(start));
-  if (problem->n) {
+  if (problem->n && IsFinite(problem)) {
     PetscCall(TakeS(start));
     PetscCall(LawProblemSolve(problem));
     PetscCheck(problem->solved, PetscObjectComm((PetscObject)start->contact), PETSC_ERR_NOT_CONVERGED,
