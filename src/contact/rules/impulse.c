@@ -14,39 +14,15 @@
 #define DEEP   0.25
 #define GRAZES 1e-3
 
-/* end = u + step v of some nodes. Loops over `dim`, known where this is called, are unrolled. */
-static inline void MoveNodes(PetscInt dim, PetscInt n, const PetscInt dofs[], const PetscScalar *restrict u, PetscReal step,
-                             const PetscScalar *restrict v, PetscScalar *restrict end)
-{
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt d = 0; d < dim; d++) end[dofs[i] + d] = u[dofs[i] + d] + step * v[dofs[i] + d];
-}
-
-/* Where the boundary of a body will be in the middle of the step, if its nodes keep their velocities */
+/* Where a body will be in the middle of the step, if its nodes keep their velocities */
 static PetscErrorCode Place(Contact contact, PetscInt b)
 {
-  const PetscReal    half = 0.5 * contact->step;
-  Surface            boundary;
-  const SurfaceData *data;
-  const PetscScalar *u, *v;
-  PetscScalar       *end;
-  PetscInt           start;
-  Vec                displacement, velocity;
+  Vec u, v;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetSolution(contact->bodies[b], &displacement, &velocity, NULL));
-  if (!contact->ends[b]) PetscCall(VecDuplicate(displacement, &contact->ends[b]));
-  PetscCall(ContactGetBoundary(contact, b, &boundary));
-  PetscCall(SurfaceGetData(boundary, &data));
-  PetscCall(VecGetOwnershipRange(displacement, &start, NULL));
-  PetscCall(VecGetArrayRead(displacement, &u));
-  PetscCall(VecGetArrayRead(velocity, &v));
-  PetscCall(VecGetArray(contact->ends[b], &end));
-  if (contact->dim > 2) MoveNodes(3, data->n_owned, data->dofs, u - start, half, v - start, end - start);
-  else MoveNodes(contact->dim, data->n_owned, data->dofs, u - start, half, v - start, end - start);
-  PetscCall(VecRestoreArray(contact->ends[b], &end));
-  PetscCall(VecRestoreArrayRead(velocity, &v));
-  PetscCall(VecRestoreArrayRead(displacement, &u));
+  PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
+  if (!contact->ends[b]) PetscCall(VecDuplicate(u, &contact->ends[b]));
+  PetscCall(VecWAXPY(contact->ends[b], 0.5 * contact->step, v, u));
   contact->at_end[b] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
