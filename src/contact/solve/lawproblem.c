@@ -206,6 +206,23 @@ PetscErrorCode LawProblemHolds(LawProblem *problem, PetscBool *holds)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Takes off the forces of nodes that have gone farther away than `gap` [m]: those within the tolerances would stay for ever */
+PetscErrorCode LawProblemLetGo(LawProblem *problem, PetscReal gap)
+{
+  PetscScalar *y = problem->work, *f = problem->work + problem->n, *force = problem->force;
+
+  PetscFunctionBegin;
+  PetscCall(Miss(problem, force, f));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
+    PetscBool      away = (PetscBool)(PetscRealPart(y[first]) > gap);
+
+    for (PetscInt i = first; i < end; i++) away = (PetscBool)(away && f[i] == force[i]); /* the law has none */
+    for (PetscInt i = first; i < end && away; i++) force[i] = 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* y += a S_.i, which is a row of S too */
 static void AddColumn(const LawProblem *problem, LawPattern of_S, const PetscScalar S[], PetscInt i, PetscScalar a, PetscScalar y[])
 {

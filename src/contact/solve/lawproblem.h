@@ -75,6 +75,7 @@ static inline PetscBool LawProblemSlides(const LawProblem *problem, PetscInt nod
 #define LAW_LAG_AFTER_NEXT (-2)  /* for PETSc: the preconditioner is made anew once, and then stays */
 PETSC_INTERN PetscErrorCode LawProblemRead(LawProblem *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemHolds(LawProblem *, PetscBool *);
+PETSC_INTERN PetscErrorCode LawProblemLetGo(LawProblem *, PetscReal);
 PETSC_INTERN void           LawProblemFindWeights(LawProblem *);
 PETSC_INTERN void           LawProblemGetTrial(const LawProblem *, PetscInt, const PetscScalar[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscBool      LawProblemIsLagged(const LawProblem *);

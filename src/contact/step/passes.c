@@ -285,6 +285,12 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
   PetscCall(ContactMonitorStep(contact, stepper, reason));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   if (reason > 0) {
+    PetscCall(LawProblemLetGo(&stepper->problem, CONTACT_POSITION_TOLERANCE * contact->scale.length));
+    for (PetscInt place = 0; place < stepper->problem.n; place++) {
+      const PetscInt i = stepper->rows[place] - contact->rows.begin;
+
+      if (i >= 0 && i < contact->rows.n && stepper->problem.force[place] == 0) contact->end.force[i] = 0;
+    }
     PetscCall(CheckSprings(contact, stepper));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
