@@ -105,6 +105,26 @@ static PetscErrorCode SolveLaw(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Bodies may be deformed by forces of a pass as nothing can be, without a word of their own: of that step there is nothing to be had */
+static PetscErrorCode CheckReadings(Contact contact, const ContactStepper *stepper)
+{
+  const LawProblem *problem = &stepper->problem;
+  PetscReal         time;
+  PetscInt          i = 0;
+
+  PetscFunctionBegin;
+  while (i < problem->n && !PetscIsInfOrNanScalar(problem->read[i])) i++;
+  if (i == problem->n) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactGetTime(contact, &time));
+  PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
+                           "Contact rows of %s read what is not a number in pass %" PetscInt_FMT
+                           " of the step that ends at time %.9g s: the forces of that pass deform elements beyond all measure, as those of "
+                           "a massless contact layer that yields; choose a smaller -time_step, or let contact nodes keep their mass with "
+                           "-<body>_mass_redistribute false",
+                           contact->pairs[contact->ranks.row_pair[stepper->rows[i]]].name, stepper->passes + 1, (double)time));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The forces that the law has for what rows read under those in X, less these: one pass */
 static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
 {
@@ -124,12 +144,16 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   PetscCall(ContactStepperGather(contact, stepper, contact->end.force, problem->base));
   PetscCall(ContactStepperTurn(contact, stepper));
   PetscCall(ContactStepperAdvance(contact, stepper));
+  if (!ContactFailed(contact)) {
+    for (PetscInt k = 0; k < n_acting; k++)
+      stepper->mine[acting[k]] = stepper->touches[acting[k]] ? Reading(contact, stepper, acting[k]) : 0;
+    PetscCall(ContactStepperGather(contact, stepper, stepper->mine, problem->read));
+    PetscCall(CheckReadings(contact, stepper));
+  }
   if (ContactFailed(contact)) {
     PetscCall(ContactRejectResidual(F));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt k = 0; k < n_acting; k++) stepper->mine[acting[k]] = stepper->touches[acting[k]] ? Reading(contact, stepper, acting[k]) : 0;
-  PetscCall(ContactStepperGather(contact, stepper, stepper->mine, problem->read));
   ContactStepperReadSprings(stepper);
   PetscCall(ContactStepperCorrectS(contact, stepper));
   PetscCall(SolveLaw(contact, stepper));

@@ -47,6 +47,12 @@ def test_refused(case, ranks, impakt):
     check_message(impakt(joined(TWO, options), ranks, expect_failure=True), words)
 
 
+def test_a_massless_layer_flows_away(impakt):
+    """Copper meets a wall at 227 m/s: under a trial force its massless layer of rings yields without end. The error told of the law's solver before."""
+    options = "-options_file options/taylor-bar-axisymmetric-wall.opts -rod_mass_redistribute true -time_end 1e-6 -output_history none -output_summary none"
+    check_message(impakt(options, expect_failure=True), ["rod.ymin:wall", "not a number", "time 5e-09 s", "-<body>_mass_redistribute false", "cut in halves 4 times"])
+
+
 # What the alternation alone has chooses it, and what is no more has no effect: both say so
 LEFT = {
     "-contact_constraint gap_rate": "-contact_constraint goes with -contact_type alternation, which is taken",
