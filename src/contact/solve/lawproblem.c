@@ -249,16 +249,19 @@ static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
 
-    for (PetscInt it = 0; it < (rows > 1 ? NODE_ITERATIONS : 1); it++) {
+    for (PetscInt it = 0, moves = 1; moves && it < (rows > 1 ? NODE_ITERATIONS : 1); it++) {
       PetscReal p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
       LawProblemGetTrial(problem, node, x, y, p);
       (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, force, derivative);
+      moves = 0;
       for (PetscInt k = 0; k < rows; k++) {
         const PetscScalar change = force[k] - x[first + k];
 
-        x[first + k] += change;
-        if (change != 0) AddColumn(problem, of_S, S, first + k, change, y);
+        if (change == 0) continue;
+        x[first + k] = force[k];
+        moves        = 1;
+        AddColumn(problem, of_S, S, first + k, change, y);
       }
     }
   }
@@ -373,6 +376,32 @@ PetscErrorCode LawProblemSetUp(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether rows of different nodes do not move each other, and S is regular by its large diagonal: then a sweep or two node by node are the
+   solution, as with lumped masses on an obstacle */
+static PetscErrorCode FindAlone(LawProblem *problem)
+{
+  const PetscScalar *S;
+  LawPattern         of_S;
+
+  PetscFunctionBegin;
+  problem->alone = (PetscBool)(problem->sparse && !LawProblemHasProducts(problem));
+  if (!problem->alone) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LawProblemGetS(problem, &of_S, &S));
+  for (PetscInt node = 0; node < problem->n_nodes && problem->alone; node++)
+    for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++) {
+      PetscReal others = 0;
+
+      for (PetscInt e = of_S.begin[i]; e < of_S.begin[i + 1]; e++) {
+        if (of_S.columns[e] != i) others += PetscAbsScalar(S[e]);
+        if (S[e] != 0 && (of_S.columns[e] < problem->begin[node] || of_S.columns[e] >= problem->begin[node + 1]))
+          problem->alone = PETSC_FALSE;
+      }
+      if (!(others < problem->diagonal[i])) problem->alone = PETSC_FALSE;
+    }
+  PetscCall(LawProblemRestoreS(problem, &of_S, &S));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* S of the rows there are, which the equations own from now on: the one that they have with other values, or another; solvers are those of
    its size and kind. `near`: (NULL where S has entries) a sparse matrix for S that is only multiplied with. `begin` is known. */
 PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
@@ -403,6 +432,7 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
   PetscCall(VecGetArrayRead(problem->out, &diagonal));
   for (PetscInt i = 0; i < problem->n; i++) problem->diagonal[i] = PetscRealPart(diagonal[i]);
   PetscCall(VecRestoreArrayRead(problem->out, &diagonal));
+  PetscCall(FindAlone(problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

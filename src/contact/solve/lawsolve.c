@@ -50,8 +50,8 @@ static PetscErrorCode SolveBySecants(LawProblem *problem, PetscInt iterations, S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By Newton's method; where it goes round in a circle, from where a few sweeps node by node lead, or secants of glue that softens, more of
-   them each time */
+/* By Newton's method, or node by node where these stand alone; where Newton's goes round in a circle, from where a few sweeps lead, or
+   secants of glue that softens, more of them each time */
 static PetscErrorCode SolveOnce(LawProblem *problem)
 {
   SNESConvergedReason reason = SNES_CONVERGED_ITERATING;
@@ -72,7 +72,11 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscCall(KSPSetTolerances(ksp, PETSC_CURRENT, enough, PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(PetscArraycpy(start, problem->force, problem->n));
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
-  PetscCall(SolveBy(problem, problem->newton, &reason));
+  if (problem->alone) {
+    PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
+    PetscCall(SolveBy(problem, problem->nodes, &reason));
+  }
+  if (reason <= 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, &reason));
   for (; reason < 0 && sweeps <= (LawProblemHasProducts(problem) ? PetscMin(most, MOST_NEAR) : most); sweeps *= 4) {
     PetscCall(PetscInfo(
         problem->newton, "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps %s\n",
@@ -130,7 +134,7 @@ static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
    method, or so large that the term does not vanish, which is where the stiffnesses of bodies are far apart, there are others. */
 PetscErrorCode LawProblemSolve(LawProblem *problem)
 {
-  const PetscReal proximal[] = {problem->regular ? 0 : 1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
+  const PetscReal proximal[] = {problem->regular || problem->alone ? 0 : 1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
   PetscBool       slow       = PETSC_TRUE;
 
   PetscFunctionBegin;
