@@ -69,10 +69,9 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
     for (PetscInt i = first; i < first + pair->components; i++) {
       const PetscReal way = half * (i == first ? PetscMin(stepper->rate[i], 0) : stepper->rate[i]);
 
-      stepper->touches[i]   = touches;
-      stepper->joins[i]     = (PetscBool)(touches && !carried);
-      stepper->lets[i]      = carried ? 0 : way;
-      contact->end.force[i] = carried && !stepper->joined[i] ? contact->start.force[i] : 0;
+      stepper->touches[i] = touches;
+      stepper->joins[i]   = (PetscBool)(touches && !carried);
+      stepper->lets[i]    = carried ? 0 : way;
       if (tied && stepper->joined[i] && ContactStepperLaw(contact, stepper, i)->reads == ROW_LAW_READS_END)
         Bond(contact, i, half * stepper->rate[i]);
     }

@@ -17,10 +17,9 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
     const PetscBool touches = (PetscBool)(carried || (contact->rows.opposite[first] && end <= -contact->options.tolerance));
 
     for (PetscInt i = first; i < first + pair->components; i++) {
-      stepper->touches[i]   = touches;
-      stepper->joins[i]     = (PetscBool)(touches && !carried);
-      stepper->lets[i]      = i == first ? -(1 - keeps) * contact->start.gap[i] : 0;
-      contact->end.force[i] = touches ? contact->start.force[i] : 0;
+      stepper->touches[i] = touches;
+      stepper->joins[i]   = (PetscBool)(touches && !carried);
+      stepper->lets[i]    = i == first ? -(1 - keeps) * contact->start.gap[i] : 0;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

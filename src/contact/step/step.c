@@ -176,6 +176,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
   PetscCall(ContactStepperComputeRates(contact, stepper->rate));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
+  PetscCall(ContactStepperGuess(contact, stepper));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   PetscCall(ContactStepperBeginSecants(contact, stepper));
   PetscCall(ContactStepperBeginTurns(contact, stepper));

@@ -11,7 +11,7 @@ typedef struct {
   const char *name;
   const char *takes; /* (NULL) what closed rows take of the energy, which they bring none of, and what makes that less */
   PetscErrorCode (*place)(Contact, PetscInt);                              /* (NULL) where rows of a body are to be laid, before they are */
-  PetscErrorCode (*begin)(Contact, ContactStepper *, const ContactPair *); /* which rows may touch, the guess, what closed rows may move */
+  PetscErrorCode (*begin)(Contact, ContactStepper *, const ContactPair *); /* which rows may touch, what closed rows may move */
   PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);             /* the forces `contact->end.force` on the rows of a body */
   BodyForceShape shape;                                                    /* of forces in the step */
   /* (NULL) after the first solution of the law: the way of a closed row along the normal [m], by that which its force alone makes [m] */
@@ -177,6 +177,7 @@ PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
 PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactStepperGuess(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperPack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);

@@ -1,0 +1,25 @@
+/*
+   The forces with which the first pass of a step begins: of rows that touch those at the end of the last step. Under a force that is
+   constant in the step, the first step in contact is a blow, which tells nothing of the steps after it: then none.
+
+   Another guess is another body of this function: the law of rows is solved whatever it is, and passes tell how good it was
+   (-contact_monitor). It takes what the step begins with, contact->start, and writes contact->end.
+*/
+#include "stepimpl.h"
+
+PetscErrorCode ContactStepperGuess(Contact contact, ContactStepper *stepper)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair     = &contact->pairs[p];
+    const PetscBool    constant = (PetscBool)(ContactStepperRule(stepper, pair)->shape == BODY_FORCE_CONSTANT);
+
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+      const PetscInt  i     = contact->rows.near[k];
+      const PetscBool known = (PetscBool)(stepper->touches[i] && !stepper->joins[i] && !(constant && stepper->joined[i]));
+
+      contact->end.force[i] = known ? contact->start.force[i] : 0;
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
