@@ -131,17 +131,19 @@ static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
 }
 
 /* The forces of all rows, from `force` on, and whether they have been found. Where a weight of the proximal term is too small for Newton's
-   method, or so large that the term does not vanish, which is where the stiffnesses of bodies are far apart, there are others. */
+   method, or so large that the term does not vanish, which is where the stiffnesses of bodies are far apart, there are others. A sparse S,
+   whose linear solver needs no factors, is tried without the term first: that is one solution where the term takes two. */
 PetscErrorCode LawProblemSolve(LawProblem *problem)
 {
-  const PetscReal proximal[] = {problem->regular || problem->alone ? 0 : 1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
+  const PetscReal proximal[] = {0, 1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
+  const PetscBool none       = (PetscBool)(problem->regular || (problem->sparse && !LawProblemHasProducts(problem)));
   PetscBool       slow       = PETSC_TRUE;
 
   PetscFunctionBegin;
   problem->iterations = 0;
   problem->by_nodes = problem->solved = PETSC_FALSE;
   LawProblemFindWeights(problem);
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(proximal) && !problem->solved; k++) {
+  for (size_t k = !none; k < PETSC_STATIC_ARRAY_LENGTH(proximal) && !problem->solved; k++) {
     const PetscReal part = LawProblemHasProducts(problem) ? LESS : 1;
 
     if (problem->proximal != part * proximal[k]) problem->jacobian_of = -1; /* it has this weight in it */
