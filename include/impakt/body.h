@@ -113,7 +113,6 @@ typedef struct {
 } BodyStepBounds;
 
 PETSC_EXTERN PetscErrorCode BodyInitializePackage(void);
-PETSC_EXTERN PetscErrorCode BodyFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode BodyCreate(MPI_Comm, const char[], Body *);
 PETSC_EXTERN PetscErrorCode BodySetDM(Body, DM);
 PETSC_EXTERN PetscErrorCode BodySetRanks(Body, PetscInt, const PetscMPIInt[]);

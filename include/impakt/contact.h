@@ -152,9 +152,7 @@ S*/
 typedef struct _n_ContactFields *ContactFields;
 
 PETSC_EXTERN PetscErrorCode ContactInitializePackage(void);
-PETSC_EXTERN PetscErrorCode ContactFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ContactRegister(const char[], PetscErrorCode (*)(Contact));
-PETSC_EXTERN PetscErrorCode ContactRegisterAll(void);
 PETSC_EXTERN PetscErrorCode ContactCreate(MPI_Comm, Contact *);
 PETSC_EXTERN PetscErrorCode ContactSetBodies(Contact, PetscInt, const Body[]);
 PETSC_EXTERN PetscErrorCode ContactAddObstacle(Contact, Obstacle);

@@ -122,7 +122,6 @@ S*/
 typedef PetscErrorCode ControllerAfterStepFn(Controller, PetscInt, void *, PetscBool *);
 
 PETSC_EXTERN PetscErrorCode ControllerInitializePackage(void);
-PETSC_EXTERN PetscErrorCode ControllerFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ControllerCreate(MPI_Comm, Controller *);
 PETSC_EXTERN PetscErrorCode ControllerAddBody(Controller, Body);
 PETSC_EXTERN PetscErrorCode ControllerSetTimes(Controller, PetscReal, PetscReal, PetscReal);

@@ -27,10 +27,8 @@ typedef struct _p_Element *Element;
 PETSC_EXTERN PetscClassId ELEMENT_CLASSID;
 
 PETSC_EXTERN PetscErrorCode ElementInitializePackage(void);
-PETSC_EXTERN PetscErrorCode ElementFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ElementRegister(DMPolytopeType, PetscErrorCode (*)(Element));
 PETSC_EXTERN PetscErrorCode ElementRegisterFormulation(DMPolytopeType, const char[], PetscErrorCode (*)(Element));
-PETSC_EXTERN PetscErrorCode ElementRegisterAll(void);
 
 PETSC_EXTERN PetscErrorCode ElementCreate(MPI_Comm, Element *);
 PETSC_EXTERN PetscErrorCode ElementSetOptionsPrefix(Element, const char[]);

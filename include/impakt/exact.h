@@ -80,7 +80,6 @@ typedef struct {
 } ExactErrors;
 
 PETSC_EXTERN PetscErrorCode      ExactInitializePackage(void);
-PETSC_EXTERN PetscErrorCode      ExactFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode      ExactCreate(Controller, ExactType, Exact *);
 PETSC_EXTERN PetscErrorCode      ExactGetType(Exact, ExactType *);
 PETSC_EXTERN PetscErrorCode      ExactEvaluate(Exact, PetscInt, PetscReal, ExactSolution *);

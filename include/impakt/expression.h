@@ -21,7 +21,6 @@ typedef struct {
 } ExpressionPoint;
 
 PETSC_EXTERN PetscErrorCode ExpressionInitializePackage(void);
-PETSC_EXTERN PetscErrorCode ExpressionFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ExpressionCreate(MPI_Comm, const char[], const char[], Expression *);
 PETSC_EXTERN PetscErrorCode ExpressionEvaluate(Expression, const ExpressionPoint *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ExpressionEvaluateRates(Expression, const ExpressionPoint *, PetscReal, PetscReal, PetscReal[]);

@@ -34,7 +34,6 @@ PETSC_EXTERN const char *const OutputPrecisions[];
 #define IMPAKT_STOPPED 75
 
 PETSC_EXTERN PetscErrorCode OutputInitializePackage(void);
-PETSC_EXTERN PetscErrorCode OutputFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode OutputCreate(Controller, Output *);
 PETSC_EXTERN PetscErrorCode OutputSetExact(Output, ExactType);
 PETSC_EXTERN PetscErrorCode OutputGetExact(Output, Exact *);

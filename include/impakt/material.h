@@ -79,9 +79,7 @@ typedef struct {
 PETSC_EXTERN PetscClassId MATERIAL_CLASSID;
 
 PETSC_EXTERN PetscErrorCode MaterialInitializePackage(void);
-PETSC_EXTERN PetscErrorCode MaterialFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode MaterialRegister(const char[], PetscErrorCode (*)(Material));
-PETSC_EXTERN PetscErrorCode MaterialRegisterAll(void);
 
 PETSC_EXTERN PetscErrorCode MaterialCreate(MPI_Comm, Material *);
 PETSC_EXTERN PetscErrorCode MaterialSetOptionsPrefix(Material, const char[]);

@@ -29,7 +29,6 @@ typedef enum { OBSTACLE_PLANE, OBSTACLE_SPHERE, OBSTACLE_CYLINDER } ObstacleType
 PETSC_EXTERN const char *const ObstacleTypes[];
 
 PETSC_EXTERN PetscErrorCode ObstacleInitializePackage(void);
-PETSC_EXTERN PetscErrorCode ObstacleFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode ObstacleCreate(MPI_Comm, const char[], Obstacle *);
 PETSC_EXTERN PetscErrorCode ObstacleCreateFromOptions(MPI_Comm, const char[], Obstacle *);
 PETSC_EXTERN PetscErrorCode ObstacleSetPlane(Obstacle, const PetscReal[], const PetscReal[]);

@@ -14,8 +14,6 @@ PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDiff
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS, Vec);
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceLeaveVelocity(TS);
 PETSC_EXTERN PetscErrorCode TSRigidSetAdvance(TS, TSRigidFn *, void *);
-PETSC_EXTERN PetscErrorCode TSSecondOrderInitializePackage(void);
-PETSC_EXTERN PetscErrorCode TSSecondOrderFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderRegisterAll(void);
 PETSC_EXTERN PetscErrorCode TSSecondOrderSetState(TS, PetscReal, PetscReal, PetscInt);
 PETSC_EXTERN PetscErrorCode TSAlpha2SetStep(TS, TSAlpha2StepFn *);

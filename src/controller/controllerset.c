@@ -9,40 +9,10 @@
 
 PetscClassId CONTROLLER_CLASSID = 0;
 
-static PetscBool ControllerPackageInitialized = PETSC_FALSE;
-
-/*@
-  ControllerInitializePackage - registers the class; `ControllerCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ControllerFinalizePackage()`, `ImpaktInitialize()`
-@*/
 PetscErrorCode ControllerInitializePackage(void)
 {
   PetscFunctionBegin;
-  if (ControllerPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  ControllerPackageInitialized = PETSC_TRUE;
-  PetscCall(PetscClassIdRegister("Controller", &CONTROLLER_CLASSID));
-  PetscCall(ImpaktFinishPackage("controller", CONTROLLER_CLASSID, ControllerFinalizePackage));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ControllerFinalizePackage - ends the package; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ControllerInitializePackage()`
-@*/
-PetscErrorCode ControllerFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  ControllerPackageInitialized = PETSC_FALSE;
+  PetscCall(ImpaktRegisterClass("Controller", &CONTROLLER_CLASSID, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

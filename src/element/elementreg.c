@@ -6,8 +6,6 @@ PetscClassId ELEMENT_CLASSID = 0;
 
 PetscFunctionList ElementList = NULL, ElementFormulationList = NULL;
 
-static PetscBool ElementPackageInitialized = PETSC_FALSE;
-
 /*@C
   ElementRegister - adds the element for a shape of mesh cell to the registry
 
@@ -32,16 +30,8 @@ PetscErrorCode ElementRegister(DMPolytopeType cell_type, PetscErrorCode (*create
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementRegisterAll - registers all elements that Impakt brings
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ElementRegister()`, `ElementInitializePackage()`
-@*/
-PetscErrorCode ElementRegisterAll(void)
+/* All that Impakt brings */
+static PetscErrorCode RegisterAll(void)
 {
   PetscFunctionBegin;
   PetscCall(ElementRegister(DM_POLYTOPE_SEGMENT, ElementCreate_Bar2));
@@ -64,40 +54,17 @@ PetscErrorCode ElementRegisterAll(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementInitializePackage - registers the class and all elements that Impakt brings; `ElementCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ElementFinalizePackage()`, `ImpaktInitialize()`
-@*/
-PetscErrorCode ElementInitializePackage(void)
-{
-  PetscFunctionBegin;
-  if (ElementPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  ElementPackageInitialized = PETSC_TRUE;
-  PetscCall(PetscClassIdRegister("Element", &ELEMENT_CLASSID));
-  PetscCall(ElementRegisterAll());
-  PetscCall(ImpaktFinishPackage("element", ELEMENT_CLASSID, ElementFinalizePackage));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ElementFinalizePackage - empties the registry; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ElementInitializePackage()`
-@*/
-PetscErrorCode ElementFinalizePackage(void)
+static PetscErrorCode Empty(void)
 {
   PetscFunctionBegin;
   PetscCall(PetscFunctionListDestroy(&ElementList));
   PetscCall(PetscFunctionListDestroy(&ElementFormulationList));
-  ElementPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ElementInitializePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(ImpaktRegisterClass("Element", &ELEMENT_CLASSID, RegisterAll, Empty));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,8 +8,6 @@
 
 PetscClassId EXACT_CLASSID = 0;
 
-static PetscBool ExactPackageInitialized = PETSC_FALSE;
-
 static const struct {
   ExactType type;
   PetscErrorCode (*create)(Controller, Exact);
@@ -18,38 +16,10 @@ static const struct {
     {EXACT_CHARACTERISTICS, ExactCreate_Characteristics},
 };
 
-/*@
-  ExactInitializePackage - registers the class; `ExactCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ExactFinalizePackage()`, `ImpaktInitialize()`
-@*/
 PetscErrorCode ExactInitializePackage(void)
 {
   PetscFunctionBegin;
-  if (ExactPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  ExactPackageInitialized = PETSC_TRUE;
-  PetscCall(PetscClassIdRegister("Exact", &EXACT_CLASSID));
-  PetscCall(ImpaktFinishPackage("exact", EXACT_CLASSID, ExactFinalizePackage));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ExactFinalizePackage - ends the package; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ExactInitializePackage()`
-@*/
-PetscErrorCode ExactFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  ExactPackageInitialized = PETSC_FALSE;
+  PetscCall(ImpaktRegisterClass("Exact", &EXACT_CLASSID, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

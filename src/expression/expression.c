@@ -4,40 +4,10 @@
 
 PetscClassId EXPRESSION_CLASSID = 0;
 
-static PetscBool ExpressionPackageInitialized = PETSC_FALSE;
-
-/*@
-  ExpressionInitializePackage - registers the class; `ExpressionCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ExpressionFinalizePackage()`, `ImpaktInitialize()`
-@*/
 PetscErrorCode ExpressionInitializePackage(void)
 {
   PetscFunctionBegin;
-  if (ExpressionPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  ExpressionPackageInitialized = PETSC_TRUE;
-  PetscCall(PetscClassIdRegister("Expression", &EXPRESSION_CLASSID));
-  PetscCall(ImpaktFinishPackage("expression", EXPRESSION_CLASSID, ExpressionFinalizePackage));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ExpressionFinalizePackage - ends the package; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ExpressionInitializePackage()`
-@*/
-PetscErrorCode ExpressionFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  ExpressionPackageInitialized = PETSC_FALSE;
+  PetscCall(ImpaktRegisterClass("Expression", &EXPRESSION_CLASSID, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

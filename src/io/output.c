@@ -9,40 +9,10 @@
 
 PetscClassId OUTPUT_CLASSID = 0;
 
-static PetscBool OutputPackageInitialized = PETSC_FALSE;
-
-/*@
-  OutputInitializePackage - registers the class; `OutputCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `OutputFinalizePackage()`, `ImpaktInitialize()`
-@*/
 PetscErrorCode OutputInitializePackage(void)
 {
   PetscFunctionBegin;
-  if (OutputPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  OutputPackageInitialized = PETSC_TRUE;
-  PetscCall(PetscClassIdRegister("Output", &OUTPUT_CLASSID));
-  PetscCall(ImpaktFinishPackage("output", OUTPUT_CLASSID, OutputFinalizePackage));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  OutputFinalizePackage - ends the package; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `OutputInitializePackage()`
-@*/
-PetscErrorCode OutputFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  OutputPackageInitialized = PETSC_FALSE;
+  PetscCall(ImpaktRegisterClass("Output", &OUTPUT_CLASSID, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

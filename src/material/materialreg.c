@@ -6,8 +6,6 @@ PetscClassId MATERIAL_CLASSID = 0;
 
 PetscFunctionList MaterialList = NULL;
 
-static PetscBool MaterialPackageInitialized = PETSC_FALSE;
-
 /*@C
   MaterialRegister - adds a constitutive model to the registry
 
@@ -33,16 +31,8 @@ PetscErrorCode MaterialRegister(const char name[], PetscErrorCode (*create)(Mate
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialRegisterAll - registers all models that Impakt brings
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `MaterialRegister()`, `MaterialInitializePackage()`
-@*/
-PetscErrorCode MaterialRegisterAll(void)
+/* All that Impakt brings */
+static PetscErrorCode RegisterAll(void)
 {
   PetscFunctionBegin;
   PetscCall(MaterialRegister(MATERIAL_LINEAR_ELASTIC, MaterialCreate_LinearElastic));
@@ -55,39 +45,16 @@ PetscErrorCode MaterialRegisterAll(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialInitializePackage - registers the class and all models that Impakt brings; `MaterialCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `MaterialFinalizePackage()`, `ImpaktInitialize()`
-@*/
-PetscErrorCode MaterialInitializePackage(void)
-{
-  PetscFunctionBegin;
-  if (MaterialPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  MaterialPackageInitialized = PETSC_TRUE;
-  PetscCall(PetscClassIdRegister("Material", &MATERIAL_CLASSID));
-  PetscCall(MaterialRegisterAll());
-  PetscCall(ImpaktFinishPackage("material", MATERIAL_CLASSID, MaterialFinalizePackage));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  MaterialFinalizePackage - empties the registry; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `MaterialInitializePackage()`
-@*/
-PetscErrorCode MaterialFinalizePackage(void)
+static PetscErrorCode Empty(void)
 {
   PetscFunctionBegin;
   PetscCall(PetscFunctionListDestroy(&MaterialList));
-  MaterialPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode MaterialInitializePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(ImpaktRegisterClass("Material", &MATERIAL_CLASSID, RegisterAll, Empty));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -27,12 +27,11 @@ static struct {
   Every class registers itself when it is first used; `ImpaktInitialize()` calls this so that the order of classes and events, and with
   it that of `-log_view`, does not hang on what a program does first.
 
-.seealso: `ImpaktInitialize()`, `BodyInitializePackage()`, `ContactInitializePackage()`
+.seealso: `ImpaktInitialize()`
 @*/
 PetscErrorCode ImpaktRegisterAll(void)
 {
   PetscFunctionBegin;
-  PetscCall(TSSecondOrderInitializePackage());
   PetscCall(BodyInitializePackage());
   PetscCall(MaterialInitializePackage());
   PetscCall(ElementInitializePackage());

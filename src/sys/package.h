@@ -1,5 +1,5 @@
-/* What the packages of all classes end their registration with. Private to src. */
+/* The packages of all classes. Private to src. */
 #pragma once
 #include <petscsys.h>
 
-PETSC_INTERN PetscErrorCode ImpaktFinishPackage(const char[], PetscClassId, PetscErrorCode (*)(void));
+PETSC_INTERN PetscErrorCode ImpaktRegisterClass(const char[], PetscClassId *, PetscErrorCode (*)(void), PetscErrorCode (*)(void));

@@ -67,44 +67,6 @@ PetscErrorCode TSSecondOrderRegisterAll(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* PETSc forgets all integrators with PetscFinalize() */
-static PetscBool TSSecondOrderPackageInitialized = PETSC_FALSE;
-
-/*@
-  TSSecondOrderInitializePackage - registers Impakt's time integrators with `TS`, once
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `TSSecondOrderRegisterAll()`, `TSSecondOrderFinalizePackage()`, `ImpaktInitialize()`
-@*/
-PetscErrorCode TSSecondOrderInitializePackage(void)
-{
-  PetscFunctionBegin;
-  if (TSSecondOrderPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  TSSecondOrderPackageInitialized = PETSC_TRUE;
-  PetscCall(TSSecondOrderRegisterAll());
-  PetscCall(PetscRegisterFinalize(TSSecondOrderFinalizePackage));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  TSSecondOrderFinalizePackage - ends the package; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `TSSecondOrderInitializePackage()`
-@*/
-PetscErrorCode TSSecondOrderFinalizePackage(void)
-{
-  PetscFunctionBegin;
-  TSSecondOrderPackageInitialized = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   TSSecondOrderSetState - puts an integrator at a time, to go on from the vectors of `TS2SetSolution()` as they are now
 

@@ -46,7 +46,6 @@ typedef struct {
 } SurfaceDepth;
 
 PETSC_EXTERN PetscErrorCode SurfaceInitializePackage(void);
-PETSC_EXTERN PetscErrorCode SurfaceFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode SurfaceCreate(DM, const char[], Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceKeepFacing(Surface, Surface, Obstacle, PetscBool, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceSetRound(Surface, PetscBool);

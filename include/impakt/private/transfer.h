@@ -52,7 +52,6 @@ typedef struct {
 #define TRANSFER_LARGEST 3
 
 PETSC_EXTERN PetscErrorCode TransferInitializePackage(void);
-PETSC_EXTERN PetscErrorCode TransferFinalizePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
 PETSC_EXTERN PetscErrorCode TransferGetDrift(Transfer, Vec, Vec, PetscReal[], PetscReal[]);

@@ -5,24 +5,11 @@
 PetscClassId  BODY_CLASSID = 0;
 PetscLogEvent BODY_Integrate, BODY_Compliance, BODY_InternalForce, BODY_LayerForce, BODY_Tangent;
 
-static PetscBool BodyPackageInitialized = PETSC_FALSE;
-
-/*@
-  BodyInitializePackage - registers the class, with the integrators, materials and elements that bodies need; `BodyCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `BodyFinalizePackage()`, `ImpaktInitialize()`
-@*/
-PetscErrorCode BodyInitializePackage(void)
+/* Events; and the integrators, materials and elements that bodies need */
+static PetscErrorCode RegisterAll(void)
 {
   PetscFunctionBegin;
-  if (BodyPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  BodyPackageInitialized = PETSC_TRUE;
-  PetscCall(TSSecondOrderInitializePackage());
-  PetscCall(PetscClassIdRegister("Body", &BODY_CLASSID));
+  PetscCall(TSSecondOrderRegisterAll());
   PetscCall(PetscLogEventRegister("BodyIntegrate", BODY_CLASSID, &BODY_Integrate));
   PetscCall(PetscLogEventRegister("BodyCompliance", BODY_CLASSID, &BODY_Compliance));
   PetscCall(PetscLogEventRegister("BodyForce", BODY_CLASSID, &BODY_InternalForce));
@@ -30,22 +17,12 @@ PetscErrorCode BodyInitializePackage(void)
   PetscCall(PetscLogEventRegister("BodyTangent", BODY_CLASSID, &BODY_Tangent));
   PetscCall(MaterialInitializePackage());
   PetscCall(ElementInitializePackage());
-  PetscCall(ImpaktFinishPackage("body", BODY_CLASSID, BodyFinalizePackage));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyFinalizePackage - ends the package; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `BodyInitializePackage()`
-@*/
-PetscErrorCode BodyFinalizePackage(void)
+PetscErrorCode BodyInitializePackage(void)
 {
   PetscFunctionBegin;
-  BodyPackageInitialized = PETSC_FALSE;
+  PetscCall(ImpaktRegisterClass("Body", &BODY_CLASSID, RegisterAll, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

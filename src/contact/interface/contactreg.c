@@ -5,8 +5,6 @@
 
 PetscFunctionList ContactList = NULL;
 
-static PetscBool ContactPackageInitialized = PETSC_FALSE;
-
 /*@C
   ContactRegister - adds a contact method to the registry
 
@@ -32,18 +30,14 @@ PetscErrorCode ContactRegister(const char name[], PetscErrorCode (*create)(Conta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactRegisterAll - registers all methods and friction laws that Impakt brings
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ContactRegister()`, `ContactInitializePackage()`
-@*/
-PetscErrorCode ContactRegisterAll(void)
+/* Events, and all methods and laws that Impakt brings */
+static PetscErrorCode RegisterAll(void)
 {
   PetscFunctionBegin;
+  PetscCall(PetscLogEventRegister("ContactStep", CONTACT_CLASSID, &CONTACT_Step));
+  PetscCall(PetscLogEventRegister("ContactSweep", CONTACT_CLASSID, &CONTACT_Sweep));
+  PetscCall(PetscLogEventRegister("ContactUpdate", CONTACT_CLASSID, &CONTACT_Update));
+  PetscCall(PetscLogEventRegister("ContactFactor", CONTACT_CLASSID, &CONTACT_Factor));
   PetscCall(ContactRegister(CONTACT_SCHWARZ, ContactCreate_Schwarz));
   PetscCall(ContactRegister(CONTACT_ALTERNATION, ContactCreate_Alternation));
   PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
@@ -54,45 +48,18 @@ PetscErrorCode ContactRegisterAll(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactInitializePackage - registers the class and all methods that Impakt brings; `ContactCreate()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ContactFinalizePackage()`, `ImpaktInitialize()`
-@*/
-PetscErrorCode ContactInitializePackage(void)
-{
-  PetscFunctionBegin;
-  if (ContactPackageInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  ContactPackageInitialized = PETSC_TRUE;
-  PetscCall(PetscClassIdRegister("Contact", &CONTACT_CLASSID));
-  PetscCall(PetscLogEventRegister("ContactStep", CONTACT_CLASSID, &CONTACT_Step));
-  PetscCall(PetscLogEventRegister("ContactSweep", CONTACT_CLASSID, &CONTACT_Sweep));
-  PetscCall(PetscLogEventRegister("ContactUpdate", CONTACT_CLASSID, &CONTACT_Update));
-  PetscCall(PetscLogEventRegister("ContactFactor", CONTACT_CLASSID, &CONTACT_Factor));
-  PetscCall(ContactRegisterAll());
-  PetscCall(ImpaktFinishPackage("contact", CONTACT_CLASSID, ContactFinalizePackage));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactFinalizePackage - empties the registry; `PetscFinalize()` calls it
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `ContactInitializePackage()`
-@*/
-PetscErrorCode ContactFinalizePackage(void)
+static PetscErrorCode Empty(void)
 {
   PetscFunctionBegin;
   PetscCall(PetscFunctionListDestroy(&ContactList));
   PetscCall(PetscFunctionListDestroy(&ContactLawList));
   PetscCall(RowLawDestroyList());
-  ContactPackageInitialized = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode ContactInitializePackage(void)
+{
+  PetscFunctionBegin;
+  PetscCall(ImpaktRegisterClass("Contact", &CONTACT_CLASSID, RegisterAll, Empty));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
