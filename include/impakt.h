@@ -8,9 +8,7 @@
 #include <impakt/expression.h>
 #include <impakt/io.h>
 #include <impakt/material.h>
-#include <impakt/mesh.h>
 #include <impakt/stepreason.h>
-#include <impakt/trace.h>
 #include <impakt/tssecondorder.h>
 #include <impakt/version.h>
 

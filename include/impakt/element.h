@@ -13,11 +13,11 @@
    `ElementRegister()`. What such an element has to do is in `<impakt/private/elementimpl.h>`; solid elements with a few shape functions
    are easier to write with the loops in `<impakt/private/solidloops.h>`.
 
-.seealso: `ElementCreate()`, `ElementRegister()`, `BodySetThickness()`, `Material`
+.seealso: `ElementRegister()`, `BodySetThickness()`, `Material`
 S*/
 typedef struct _p_Element *Element;
 
-/* Formulations that Impakt brings, for ElementSetFormulation() */
+/* Formulations that Impakt brings, for -<body>_element_formulation */
 #define ELEMENT_FULL            "full"
 #define ELEMENT_MEAN_DILATATION "mean_dilatation"
 #define ELEMENT_ENHANCED        "enhanced"
@@ -26,23 +26,5 @@ typedef struct _p_Element *Element;
 
 PETSC_EXTERN PetscClassId ELEMENT_CLASSID;
 
-PETSC_EXTERN PetscErrorCode ElementInitializePackage(void);
 PETSC_EXTERN PetscErrorCode ElementRegister(DMPolytopeType, PetscErrorCode (*)(Element));
 PETSC_EXTERN PetscErrorCode ElementRegisterFormulation(DMPolytopeType, const char[], PetscErrorCode (*)(Element));
-
-PETSC_EXTERN PetscErrorCode ElementCreate(MPI_Comm, Element *);
-PETSC_EXTERN PetscErrorCode ElementSetOptionsPrefix(Element, const char[]);
-PETSC_EXTERN PetscErrorCode ElementSetCellType(Element, DMPolytopeType);
-PETSC_EXTERN PetscErrorCode ElementSetMaterial(Element, Material);
-PETSC_EXTERN PetscErrorCode ElementSetCrossSection(Element, PetscReal);
-PETSC_EXTERN PetscErrorCode ElementSetThickness(Element, PetscReal);
-PETSC_EXTERN PetscErrorCode ElementSetPlaneStress(Element, PetscBool);
-PETSC_EXTERN PetscErrorCode ElementSetAxisymmetric(Element, PetscBool);
-PETSC_EXTERN PetscErrorCode ElementGetAxisymmetric(Element, PetscBool *);
-PETSC_EXTERN PetscErrorCode ElementSetFormulation(Element, const char[]);
-PETSC_EXTERN PetscErrorCode ElementGetFormulation(Element, const char *[]);
-PETSC_EXTERN PetscErrorCode ElementSetFromOptions(Element);
-PETSC_EXTERN PetscErrorCode ElementSetUp(Element, PetscInt, const PetscInt[], const PetscReal[]);
-PETSC_EXTERN PetscErrorCode ElementView(Element, PetscViewer);
-PETSC_EXTERN PetscErrorCode ElementViewFromOptions(Element, PetscObject, const char[]);
-PETSC_EXTERN PetscErrorCode ElementDestroy(Element *);

@@ -2,17 +2,9 @@
 #pragma once
 #include <impakt/controller.h>
 
-/*S
-   Exact - the exact solution for two elastic bars that hit each other, and a run's distance from it
-
-   Level: intermediate
-
-   Note:
-   Everything is told along the outward normal of the contact face on the Dirichlet side of the contact pair: that of the left bar of
-   Hoy, Tezaur, Mota, section 4.2. The bars may move along together, lie anywhere, and point in any direction.
-
-.seealso: `ExactCreate()`, `ExactEvaluate()`, `ExactMonitor()`, `ExactType`
-S*/
+/* The exact solution for two elastic bars that hit each other, and a run's distance from it. All is along the outward normal of the contact
+   face on the Dirichlet side of the contact pair: that of the left bar of Hoy, Tezaur, Mota, section 4.2. The bars may move along together,
+   lie anywhere, and point in any direction. */
 typedef struct _p_Exact *Exact;
 
 PETSC_EXTERN PetscClassId EXACT_CLASSID;
@@ -29,19 +21,13 @@ PETSC_EXTERN PetscClassId EXACT_CLASSID;
 
    Level: intermediate
 
-.seealso: `Exact`, `ExactCreate()`
+.seealso: `OutputSetExact()`
 J*/
 typedef const char *ExactType;
 #define EXACT_IMPACT          "impact"
 #define EXACT_CHARACTERISTICS "characteristics"
 
-/*S
-   ExactSolution - the state of one bar at one time
-
-   Level: intermediate
-
-.seealso: `ExactEvaluate()`
-S*/
+/* The state of one bar at one time */
 typedef struct {
   PetscReal contact_position; /* of the contact face along the normal [m] */
   PetscReal contact_velocity; /* [m/s] */
@@ -57,22 +43,11 @@ typedef struct {
   PetscReal kinetic_max, potential_max;
 } ExactBodyErrors;
 
-/*S
-   ExactErrors - how far a run is from the exact solution; not-a-number where the run does not tell
-
-   Level: intermediate
-
-   Notes:
-   Of the bar on the Dirichlet side, but for `bodies`. The first six are relative L2 norms in time over all controller steps,
-   sqrt(sum (x - x_exact)^2 / sum x_exact^2). The contact position is measured from the point of impact, which moves with the
-   centre of mass of both bars: the origin of the coordinates has no say.
-
-   `peak_potential` = (peak - exact peak) / exact peak. `release_time` = (release - t_release) / (t_release - t_impact), release
-   being the end of the last controller step in contact, and t_release that of the last contact force: faces may go on
-   touching without one.
-
-.seealso: `ExactGetErrors()`
-S*/
+/* How far a run is from the exact solution; not-a-number where the run does not tell. Of the bar on the Dirichlet side, but for `bodies`.
+   The first six are relative L2 norms in time over all controller steps, sqrt(sum (x - x_exact)^2 / sum x_exact^2); the contact position is
+   measured from the point of impact, which moves with the centre of mass of both bars. `peak_potential` = (peak - exact peak) / exact peak;
+   `release_time` = (release - t_release) / (t_release - t_impact), release being the end of the last controller step in contact, and
+   t_release that of the last contact force. */
 typedef struct {
   PetscReal       contact_position, contact_velocity, contact_force, kinetic, potential, mean_velocity;
   PetscReal       peak_potential, release_time;
@@ -81,7 +56,6 @@ typedef struct {
 
 PETSC_EXTERN PetscErrorCode      ExactInitializePackage(void);
 PETSC_EXTERN PetscErrorCode      ExactCreate(Controller, ExactType, Exact *);
-PETSC_EXTERN PetscErrorCode      ExactGetType(Exact, ExactType *);
 PETSC_EXTERN PetscErrorCode      ExactEvaluate(Exact, PetscInt, PetscReal, ExactSolution *);
 PETSC_EXTERN PetscErrorCode      ExactGetTimes(Exact, PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode      ExactGetForce(Exact, PetscReal *);
@@ -90,5 +64,4 @@ PETSC_EXTERN PetscErrorCode      ExactGetBodies(Exact, const char *[]);
 PETSC_EXTERN ControllerMonitorFn ExactMonitor;
 PETSC_EXTERN PetscErrorCode      ExactGetErrors(Exact, ExactErrors *);
 PETSC_EXTERN PetscErrorCode      ExactView(Exact, PetscViewer);
-PETSC_EXTERN PetscErrorCode      ExactViewFromOptions(Exact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode      ExactDestroy(Exact *);

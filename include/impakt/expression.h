@@ -2,13 +2,7 @@
 #pragma once
 #include <petscviewer.h>
 
-/*S
-   Expression - a formula in x, y, z, t (and, on surfaces, the outward unit normal nx, ny, nz), or a table in t
-
-   Level: intermediate
-
-.seealso: `ExpressionCreate()`, `ExpressionEvaluate()`
-S*/
+/* A formula in x, y, z, t (and, on surfaces, the outward unit normal nx, ny, nz), or a table in t */
 typedef struct _p_Expression *Expression;
 
 PETSC_EXTERN PetscClassId EXPRESSION_CLASSID;

@@ -36,7 +36,6 @@ PETSC_EXTERN const char *const OutputPrecisions[];
 PETSC_EXTERN PetscErrorCode OutputInitializePackage(void);
 PETSC_EXTERN PetscErrorCode OutputCreate(Controller, Output *);
 PETSC_EXTERN PetscErrorCode OutputSetExact(Output, ExactType);
-PETSC_EXTERN PetscErrorCode OutputGetExact(Output, Exact *);
 PETSC_EXTERN PetscErrorCode OutputSetExactDisplacement(Output, Body, const char[]);
 PETSC_EXTERN PetscErrorCode OutputSetSummary(Output, const char[]);
 PETSC_EXTERN PetscErrorCode OutputSetHistory(Output, const char[]);

@@ -53,7 +53,7 @@ as it is. stress(), energy() and tangent() are those of the virgin material as i
    Every function returns NaN for a point at which the material is not defined: for nonlinear models an inverted one, det(I + H) <= 0, and
    in plane stress one at which no stretch across the plane leaves it free of stress. Linear elasticity is defined everywhere.
 
-.seealso: `MaterialGetKernels()`
+.seealso: `Material`
 S*/
 typedef struct {
   const void *data; /* to be handed to the functions; owned by the material */

@@ -1,19 +1,7 @@
-/* Time integrators for second-order systems beside PETSc's own TSALPHA2, and what is needed to drive either in sweeps. */
+/* Names of time integrators for second-order systems beside PETSc's own TSALPHA2, for BodySetTSType(). */
 #pragma once
 #include <petscts.h>
 
 #define TSCENTRALDIFFERENCE "centraldifference"
 #define TSSTATIC            "static"
 #define TSRIGID             "rigid"
-
-typedef PetscErrorCode TSCentralDifferenceFn(TS, PetscReal, Vec, Vec, Vec, void *);
-typedef PetscErrorCode TSAlpha2StepFn(TS);
-typedef PetscErrorCode TSRigidFn(TS, PetscReal, PetscReal, Vec, Vec, void *);
-
-PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDifferenceFn *, void *);
-PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS, Vec);
-PETSC_EXTERN PetscErrorCode TSCentralDifferenceLeaveVelocity(TS);
-PETSC_EXTERN PetscErrorCode TSRigidSetAdvance(TS, TSRigidFn *, void *);
-PETSC_EXTERN PetscErrorCode TSSecondOrderRegisterAll(void);
-PETSC_EXTERN PetscErrorCode TSSecondOrderSetState(TS, PetscReal, PetscReal, PetscInt);
-PETSC_EXTERN PetscErrorCode TSAlpha2SetStep(TS, TSAlpha2StepFn *);

@@ -4,7 +4,7 @@
    value to the stream or, while a checkpoint is loaded, overwrites it.
 */
 #pragma once
-#include <impakt/trace.h>
+#include <impakt/private/trace.h>
 #include <petscmat.h>
 
 typedef struct _n_Checkpoint *Checkpoint;

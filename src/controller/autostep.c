@@ -75,21 +75,8 @@ PetscErrorCode ControllerChooseStep(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ControllerGetResolvedStep - the largest step that resolves contact, which -time_step auto takes
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`, set up
-
-  Output Parameter:
-. step - [s]; infinity where no bodies with inertia can come into contact
-
-  Level: intermediate
-
-.seealso: `Controller`, `ControllerGetTimes()`, `ControllerSetTimes()`
-@*/
+/* The largest step that resolves contact, which -time_step auto takes. `step`: [s]; infinity where no bodies with inertia can come into
+   contact */
 PetscErrorCode ControllerGetResolvedStep(Controller controller, PetscReal *step)
 {
   PetscFunctionBegin;

@@ -251,23 +251,8 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ControllerGetTimings - what the run cost
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`, solved
-
-  Output Parameters:
-+ setup - wall time of the set-up, from the meshes on [s]
-. wall  - wall time of the time loop [s]
-- cpu   - CPU time of this process in the time loop [s]
-
-  Level: intermediate
-
-.seealso: `Controller`
-@*/
+/* What the run cost. `setup`: wall time of the set-up, from the meshes on [s]; `wall`: wall time of the time loop [s]; `cpu`: CPU time of
+   this process in the time loop [s] */
 PetscErrorCode ControllerGetTimings(Controller controller, PetscLogDouble *setup, PetscLogDouble *wall, PetscLogDouble *cpu)
 {
   PetscFunctionBegin;
@@ -278,21 +263,8 @@ PetscErrorCode ControllerGetTimings(Controller controller, PetscLogDouble *setup
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ControllerGetStartMemory - what the process needs by itself
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`
-
-  Output Parameter:
-. bytes - most memory that this process had when the controller was created, before there were bodies [B]
-
-  Level: advanced
-
-.seealso: `Controller`, `ControllerGetTimings()`
-@*/
+/* What the process needs by itself. `bytes`: most memory that this process had when the controller was created, before there were bodies
+   [B] */
 PetscErrorCode ControllerGetStartMemory(Controller controller, PetscLogDouble *bytes)
 {
   PetscFunctionBegin;

@@ -25,7 +25,7 @@
   displacements, at the end of each controller step. There is no guard where nothing can touch, nor where a body is static: what its contact
   forces have done is known up to their lag behind it by a step.
 
-.seealso: `Controller`, `ControllerGetEnergyGuard()`, `ContactGetEnergyCap()`
+.seealso: `Controller`, `ContactGetEnergyCap()`
 @*/
 PetscErrorCode ControllerSetEnergyGuard(Controller controller, PetscReal part)
 {
@@ -36,30 +36,6 @@ PetscErrorCode ControllerSetEnergyGuard(Controller controller, PetscReal part)
   PetscCheck(part >= 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE, "The energy guard %g must not be negative",
              (double)part);
   controller->guard.part = part;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ControllerGetEnergyGuard - how much energy a run may gain before it ends with an error
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`
-
-  Output Parameter:
-. part - of the energy; 0: no guard
-
-  Level: intermediate
-
-.seealso: `Controller`, `ControllerSetEnergyGuard()`
-@*/
-PetscErrorCode ControllerGetEnergyGuard(Controller controller, PetscReal *part)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscAssertPointer(part, 2);
-  *part = controller->guard.part;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

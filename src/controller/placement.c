@@ -5,8 +5,8 @@
    both sides, until there is a part for each rank (recursive coordinate bisection, as in src/mesh/bisection.c).
 */
 #include "controllerimpl.h"
-#include <impakt/mesh.h>
-#include <impakt/tssecondorder.h>
+#include <impakt/private/mesh.h>
+#include <impakt/private/tssecondorder.h>
 
 /* Cells up to which a body is small: the elements of one with more take as long as some reductions. Static bodies are not asked: all ranks
    take part in each of their steps, wherever their meshes are. */

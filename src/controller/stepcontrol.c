@@ -40,7 +40,7 @@ energy is accepted, and counted: `ControllerGetCuts()`.
 
   Forward-increment Lagrange multipliers and the contact-stabilised method change the start of their steps, which are never cut.
 
-.seealso: `Controller`, `ControllerGetStepCuts()`, `ControllerGetCuts()`, `ContactGetEnergyTolerance()`, `StepConvergedReason`
+.seealso: `Controller`, `ControllerGetCuts()`, `ContactGetEnergyTolerance()`, `StepConvergedReason`
 @*/
 PetscErrorCode ControllerSetStepCuts(Controller controller, PetscInt cuts)
 {
@@ -50,30 +50,6 @@ PetscErrorCode ControllerSetStepCuts(Controller controller, PetscInt cuts)
   PetscCheck(cuts >= 0 && cuts <= STEP_MAX_CUTS, PetscObjectComm((PetscObject)controller), PETSC_ERR_ARG_OUTOFRANGE,
              "A controller step can be cut in halves 0 to %d times, not %" PetscInt_FMT, STEP_MAX_CUTS, cuts);
   controller->most_cuts = cuts;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ControllerGetStepCuts - how often a controller step that fails may be cut in halves
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`
-
-  Output Parameter:
-. cuts - the number; `PETSC_DECIDE` before `ControllerSetUp()` where nobody has said
-
-  Level: intermediate
-
-.seealso: `Controller`, `ControllerSetStepCuts()`
-@*/
-PetscErrorCode ControllerGetStepCuts(Controller controller, PetscInt *cuts)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscAssertPointer(cuts, 2);
-  *cuts = controller->most_cuts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

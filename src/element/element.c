@@ -4,21 +4,7 @@
 #include <sys/names.h>
 #include <sys/units.h>
 
-/*@
-  ElementCreate - creates elements without a shape
-
-  Collective
-
-  Input Parameter:
-. comm - communicator
-
-  Output Parameter:
-. element - the `Element`
-
-  Level: developer
-
-.seealso: `Element`, `ElementSetCellType()`, `ElementSetMaterial()`, `ElementSetFromOptions()`, `ElementSetUp()`
-@*/
+/* Creates elements without a shape. Collective */
 PetscErrorCode ElementCreate(MPI_Comm comm, Element *element)
 {
   PetscFunctionBegin;
@@ -31,19 +17,7 @@ PetscErrorCode ElementCreate(MPI_Comm comm, Element *element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetOptionsPrefix - sets the prefix of the elements' options
-
-  Logically Collective
-
-  Input Parameters:
-+ element - the `Element`
-- prefix  - the prefix, for example `left_`
-
-  Level: developer
-
-.seealso: `Element`, `ElementSetFromOptions()`
-@*/
+/* Sets the prefix of the elements' options */
 PetscErrorCode ElementSetOptionsPrefix(Element element, const char prefix[])
 {
   PetscFunctionBegin;
@@ -57,19 +31,7 @@ static const char *Prefix(Element element)
   return ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "";
 }
 
-/*@
-  ElementSetCellType - chooses the element by the shape of the mesh cells
-
-  Collective
-
-  Input Parameters:
-+ element   - the `Element`
-- cell_type - shape of all cells
-
-  Level: developer
-
-.seealso: `Element`, `ElementRegister()`
-@*/
+/* Chooses the element by the shape of the mesh cells. Collective */
 PetscErrorCode ElementSetCellType(Element element, DMPolytopeType cell_type)
 {
   PetscErrorCode (*create)(Element);
@@ -97,19 +59,7 @@ PetscErrorCode ElementSetCellType(Element element, DMPolytopeType cell_type)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetMaterial - sets the material of all elements
-
-  Logically Collective
-
-  Input Parameters:
-+ element  - the `Element`
-- material - its `Material`, complete
-
-  Level: developer
-
-.seealso: `Element`, `Material`
-@*/
+/* Sets the material of all elements */
 PetscErrorCode ElementSetMaterial(Element element, Material material)
 {
   PetscFunctionBegin;
@@ -143,25 +93,7 @@ static PetscErrorCode CheckAxisymmetric(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetFromOptions - reads what the elements of a shape take from the options
-
-  Collective
-
-  Input Parameter:
-. element - the `Element`, after `ElementSetCellType()`
-
-  Options Database Keys:
-+ -<body>_cross_section A           - of bars [m^2], default 1
-. -<body>_thickness h               - of plane elements [m], default 1
-. -<body>_plane_stress (true|false) - of plane elements, default false
-. -<body>_axisymmetric (true|false) - of plane elements, default false
-- -<body>_element_formulation (full|mean_dilatation|enhanced|reduced|composite) - see `ElementSetFormulation()`
-
-  Level: developer
-
-.seealso: `Element`, `ElementSetCrossSection()`, `ElementSetThickness()`, `ElementSetPlaneStress()`
-@*/
+/* Reads what the elements of a shape take from the options. Collective */
 PetscErrorCode ElementSetFromOptions(Element element)
 {
   char      formulation[128];
@@ -184,22 +116,8 @@ PetscErrorCode ElementSetFromOptions(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetUp - gives the elements their cells
-
-  Not Collective
-
-  Input Parameters:
-+ element      - the `Element`, with shape and material
-. count        - number of cells of this rank
-. connectivity - numbers of their nodes among the rank's, in the usual order (VTK's), `count` times the nodes of one cell; kept by
-                 reference
-- coordinates  - of the rank's nodes, as many for each as there are dimensions [m]; kept by reference
-
-  Level: developer
-
-.seealso: `Element`, `ElementSetCellType()`, `ElementSetMaterial()`
-@*/
+/* Gives the elements their cells. `connectivity`: `count` times the nodes of one cell, numbers among the rank's, in VTK's order;
+   `coordinates`: of the rank's nodes [m]; both kept by reference */
 PetscErrorCode ElementSetUp(Element element, PetscInt count, const PetscInt connectivity[], const PetscReal coordinates[])
 {
   PetscFunctionBegin;
@@ -244,19 +162,7 @@ PetscErrorCode ElementDuplicateOn(Element element, MPI_Comm comm, Material mater
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementView - prints the elements
-
-  Collective
-
-  Input Parameters:
-+ element - the `Element`
-- viewer  - an ASCII viewer, `NULL` for standard output
-
-  Level: developer
-
-.seealso: `Element`, `ElementViewFromOptions()`
-@*/
+/* Prints the elements. `viewer`: an ASCII viewer, `NULL` for standard output. Collective */
 PetscErrorCode ElementView(Element element, PetscViewer viewer)
 {
   const char *unit;
@@ -280,31 +186,6 @@ PetscErrorCode ElementView(Element element, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementViewFromOptions - prints the elements where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ element - the `Element`
-. object  - has the prefix of the option, `NULL` for the element
-- name    - the option
-
-  Options Database Key:
-. -<body>_element_view - print the elements of a body at its set-up
-
-  Level: developer
-
-.seealso: `Element`, `ElementView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode ElementViewFromOptions(Element element, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)element, object, name));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ElementCountWanted - the elements in batches that internalforce() does not leave out */
 PetscInt ElementCountWanted(Element element)
 {
@@ -315,18 +196,7 @@ PetscInt ElementCountWanted(Element element)
   return wanted;
 }
 
-/*@
-  ElementDestroy - frees the elements
-
-  Collective
-
-  Input Parameter:
-. element - the `Element`, set to `NULL`
-
-  Level: developer
-
-.seealso: `Element`, `ElementCreate()`
-@*/
+/* Frees the elements. Collective */
 PetscErrorCode ElementDestroy(Element *element)
 {
   PetscFunctionBegin;

@@ -20,7 +20,7 @@ PetscFunctionList ElementList = NULL, ElementFormulationList = NULL;
   Note:
   An element that is registered later takes the place of an earlier one of the same shape.
 
-.seealso: `Element`, `ElementSetCellType()`, `MaterialRegister()`
+.seealso: `Element`, `MaterialRegister()`
 @*/
 PetscErrorCode ElementRegister(DMPolytopeType cell_type, PetscErrorCode (*create)(Element))
 {

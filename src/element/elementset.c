@@ -12,22 +12,7 @@ static PetscErrorCode SetCrossSection(Element element, PetscInt dim, PetscReal v
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetCrossSection - sets the cross-sectional area of bars
-
-  Logically Collective
-
-  Input Parameters:
-+ element - the `Element`
-- area    - [m^2], 1 by default
-
-  Options Database Key:
-. -<body>_cross_section A - the area
-
-  Level: intermediate
-
-.seealso: `Element`, `ElementSetThickness()`
-@*/
+/* Sets the cross-sectional area of bars. `area`: [m^2], 1 by default */
 PetscErrorCode ElementSetCrossSection(Element element, PetscReal area)
 {
   PetscFunctionBegin;
@@ -37,22 +22,7 @@ PetscErrorCode ElementSetCrossSection(Element element, PetscReal area)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetThickness - sets the thickness of plane elements
-
-  Logically Collective
-
-  Input Parameters:
-+ element   - the `Element`
-- thickness - [m], 1 by default
-
-  Options Database Key:
-. -<body>_thickness h - the thickness
-
-  Level: intermediate
-
-.seealso: `Element`, `ElementSetCrossSection()`, `ElementSetPlaneStress()`
-@*/
+/* Sets the thickness of plane elements. `thickness`: [m], 1 by default */
 PetscErrorCode ElementSetThickness(Element element, PetscReal thickness)
 {
   PetscFunctionBegin;
@@ -62,22 +32,8 @@ PetscErrorCode ElementSetThickness(Element element, PetscReal thickness)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetPlaneStress - whether plane elements are free of stress across their plane, or of strain
-
-  Logically Collective
-
-  Input Parameters:
-+ element      - the `Element`
-- plane_stress - `PETSC_TRUE` for plane stress, `PETSC_FALSE` (default) for plane strain
-
-  Options Database Key:
-. -<body>_plane_stress (true|false) - plane stress
-
-  Level: intermediate
-
-.seealso: `Element`, `ElementSetThickness()`, `MaterialSetPlaneStress()`
-@*/
+/* Whether plane elements are free of stress across their plane, or of strain. `plane_stress`: `PETSC_TRUE` for plane stress,
+   `PETSC_FALSE` (default) for plane strain */
 PetscErrorCode ElementSetPlaneStress(Element element, PetscBool plane_stress)
 {
   PetscFunctionBegin;
@@ -88,28 +44,8 @@ PetscErrorCode ElementSetPlaneStress(Element element, PetscBool plane_stress)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetAxisymmetric - whether plane elements are rings about the axis x = 0
-
-  Logically Collective
-
-  Input Parameters:
-+ element      - the `Element`
-- axisymmetric - `PETSC_TRUE` for rings: x is the distance from the axis, y goes along it; `PETSC_FALSE` by default
-
-  Options Database Key:
-. -<body>_axisymmetric (true|false) - rings
-
-  Level: intermediate
-
-  Notes:
-  Forces, masses and energies are those of whole rings. Triangles have the formulation `ELEMENT_FULL`, quadrilaterals
-`ELEMENT_MEAN_DILATATION` too. Rings have no thickness, and are not in plane stress.
-
-  A single triangle has a motion without strain at its centroid that is not rigid; two that have an edge in common do not.
-
-.seealso: `Element`, `BodySetAxisymmetric()`, `ElementGetAxisymmetric()`, `ElementSetFormulation()`
-@*/
+/* Whether plane elements are rings about the axis x = 0: x is the distance from it, y goes along it; forces, masses and energies are those
+   of whole rings. Rings have no thickness, and are not in plane stress. */
 PetscErrorCode ElementSetAxisymmetric(Element element, PetscBool axisymmetric)
 {
   PetscFunctionBegin;
@@ -120,21 +56,7 @@ PetscErrorCode ElementSetAxisymmetric(Element element, PetscBool axisymmetric)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementGetAxisymmetric - whether plane elements are rings about the axis x = 0
-
-  Not Collective
-
-  Input Parameter:
-. element - the `Element`
-
-  Output Parameter:
-. axisymmetric - `PETSC_TRUE` if so
-
-  Level: intermediate
-
-.seealso: `Element`, `ElementSetAxisymmetric()`
-@*/
+/* Whether plane elements are rings about the axis x = 0 */
 PetscErrorCode ElementGetAxisymmetric(Element element, PetscBool *axisymmetric)
 {
   PetscFunctionBegin;

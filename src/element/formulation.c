@@ -33,7 +33,7 @@ static PetscErrorCode GetKey(DMPolytopeType cell_type, PetscBool axisymmetric, c
 
   Level: developer
 
-.seealso: `Element`, `ElementSetFormulation()`, `ElementRegister()`
+.seealso: `Element`, `BodySetElementFormulation()`, `ElementRegister()`
 @*/
 PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
 {
@@ -59,40 +59,8 @@ PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementSetFormulation - chooses what the elements do against locking
-
-  Logically Collective
-
-  Input Parameters:
-+ element     - the `Element`, before its set-up
-- formulation - one of the names below, or one of `ElementRegisterFormulation()`; `NULL`: the default
-
-  Options Database Key:
-. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced|composite) - the formulation
-
-  Level: intermediate
-
-  Notes:
-  `ELEMENT_FULL` integrates the energy of the displacements as they are; all shapes have it, and it is their default.
-
-  `ELEMENT_MEAN_DILATATION` gives all points of an element the mean change of its volume, so that nearly incompressible materials do not
-  lock. Quadrilaterals, not in plane stress, and hexahedra have it. It is their default where Poisson's ratio is larger than 0.4
-  and where the material flows.
-
-  `ELEMENT_ENHANCED` adds modes that bend to the displacements of each element, and eliminates them there. Quadrilaterals and hexahedra
-  have it. Of materials that flow, two elements through the thickness of a thin body bear the moment of a beam, one 15 % more.
-
-  `ELEMENT_REDUCED` has one point of integration, for explicit bodies: more than twice as fast as the full hexahedron. What that point does
-  not see is held by the stiffness of linear elasticity; `hourglass_energy` of history and summary is what it stores, which should be small
-  against the potential energy where elements do not bend. Quadrilaterals and hexahedra have it.
-
-  `ELEMENT_COMPOSITE` makes one element of six or ten nodes of 4 triangles or 8 tetrahedra into which a cell has been divided, with
-  gradients that are linear over it and one mean change of volume. It does not lock. Meshes of such elements, which `MeshCreateComposite()`
-and files of six-node triangles or ten-node tetrahedra make, have it by default.
-
-.seealso: `Element`, `ElementGetFormulation()`, `BodySetElementFormulation()`, `ElementRegisterFormulation()`
-@*/
+/* Chooses what the elements do against locking, before their set-up: one of the names that README.md explains, or one of
+   ElementRegisterFormulation(); NULL: the default */
 PetscErrorCode ElementSetFormulation(Element element, const char formulation[])
 {
   PetscFunctionBegin;
@@ -103,21 +71,7 @@ PetscErrorCode ElementSetFormulation(Element element, const char formulation[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ElementGetFormulation - the formulation of the elements
-
-  Not Collective
-
-  Input Parameter:
-. element - the `Element`
-
-  Output Parameter:
-. formulation - its name; `NULL` before the set-up, unless one has been set
-
-  Level: intermediate
-
-.seealso: `Element`, `ElementSetFormulation()`
-@*/
+/* The formulation of the elements. `formulation`: its name; `NULL` before the set-up, unless one has been set */
 PetscErrorCode ElementGetFormulation(Element element, const char *formulation[])
 {
   PetscFunctionBegin;

@@ -23,20 +23,7 @@ static void AddToDistance(ExactDistance *distance, PetscReal exact, PetscReal co
   distance->worst   = PetscMax(distance->worst, PetscAbsReal(error));
 }
 
-/*@
-  ExactMonitor - compares the state at the end of a controller step with the solution
-
-  Logically Collective
-
-  Input Parameters:
-+ controller - the `Controller`
-. frame      - the state of everything
-- context    - the `Exact`
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactGetErrors()`, `ControllerMonitorSet()`
-@*/
+/* Compares the state at the end of a controller step with the solution */
 PetscErrorCode ExactMonitor(Controller controller, const ControllerFrame *frame, void *context)
 {
   Exact           exact  = (Exact)context;
@@ -77,24 +64,8 @@ static PetscReal RelativeMaximum(const ExactDistance *distance)
   return distance->largest > 0 ? distance->worst / distance->largest : NAN;
 }
 
-/*@
-  ExactGetErrors - the distance between the run and the solution
-
-  Not Collective
-
-  Input Parameter:
-. exact - the `Exact`, told of every step by `ExactMonitor()`
-
-  Output Parameter:
-. errors - see `ExactErrors`
-
-  Level: intermediate
-
-  Note:
-  The error of the peak of the potential energy is not-a-number if the run ends before the peak; that of the release if it ends in contact.
-
-.seealso: `Exact`, `ExactMonitor()`
-@*/
+/* The distance between the run and the solution. The error of the peak of the potential energy is not-a-number if the run ends before the
+   peak; that of the release if it ends in contact */
 PetscErrorCode ExactGetErrors(Exact exact, ExactErrors *errors)
 {
   const ExactDistance *distance = exact->distance[0];

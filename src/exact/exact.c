@@ -23,29 +23,8 @@ PetscErrorCode ExactInitializePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExactCreate - an exact solution for the bodies of a controller, in their initial state
-
-  Collective
-
-  Input Parameters:
-+ controller - the `Controller`, set up, before its first step
-- type       - its name, see `ExactType`
-
-  Output Parameter:
-. exact - the solution
-
-  Options Database Key:
-. -exact (none|impact|characteristics) - compare the run with it
-
-  Level: intermediate
-
-  Note:
-  Ends with an error that gives the reason if it is not the solution for these bodies: if there are more than two, if they do not approach
-  each other or are deformed at the start, or if they do not meet what the type demands.
-
-.seealso: `Exact`, `ExactEvaluate()`, `ExactMonitor()`
-@*/
+/* An exact solution for the bodies of a controller that is set up, in their initial state. An error gives the reason where it is not the
+   solution for these bodies. Collective */
 PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
 {
   MPI_Comm       comm       = PetscObjectComm((PetscObject)controller);
@@ -80,47 +59,7 @@ PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExactGetType - the kind of exact solution
-
-  Not Collective
-
-  Input Parameter:
-. exact - the `Exact`
-
-  Output Parameter:
-. type - its name
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactType`
-@*/
-PetscErrorCode ExactGetType(Exact exact, ExactType *type)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
-  PetscAssertPointer(type, 2);
-  *type = exact->type;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ExactEvaluate - the exact solution at one time
-
-  Not Collective
-
-  Input Parameters:
-+ exact - the `Exact`
-. side  - 0 for the bar on the Dirichlet side, 1 for its partner
-- time  - any time of the run [s]; at a jump, or within round-off of one, the value before it is given
-
-  Output Parameter:
-. solution - see `ExactSolution`
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactGetTimes()`
-@*/
+/* The exact solution at one time. `time`: any time of the run [s]; at a jump, or within round-off of one, the value before it is given */
 PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSolution *solution)
 {
   PetscFunctionBegin;
@@ -130,22 +69,8 @@ PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExactGetTimes - when the bars push each other
-
-  Not Collective
-
-  Input Parameter:
-. exact - the `Exact`
-
-  Output Parameters:
-+ impact  - first contact [s]
-- release - end of the last contact force [s]; not-a-number where the run does not last until then
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactGetForce()`
-@*/
+/* When the bars push each other. `impact`: first contact [s]; `release`: end of the last contact force [s]; not-a-number where the run
+   does not last until then */
 PetscErrorCode ExactGetTimes(Exact exact, PetscReal *impact, PetscReal *release)
 {
   PetscFunctionBegin;
@@ -157,21 +82,7 @@ PetscErrorCode ExactGetTimes(Exact exact, PetscReal *impact, PetscReal *release)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExactGetForce - the mean of the contact force over the middle three fifths from first contact to release
-
-  Not Collective
-
-  Input Parameter:
-. exact - the `Exact`
-
-  Output Parameter:
-. force - compression positive [N]
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactGetTimes()`, `ExactGetImpulse()`
-@*/
+/* The mean of the contact force over the middle three fifths from first contact to release. `force`: compression positive [N] */
 PetscErrorCode ExactGetForce(Exact exact, PetscReal *force)
 {
   PetscFunctionBegin;
@@ -181,21 +92,7 @@ PetscErrorCode ExactGetForce(Exact exact, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExactGetImpulse - the contact force integrated over time
-
-  Not Collective
-
-  Input Parameter:
-. exact - the `Exact`
-
-  Output Parameter:
-. impulse - [N s]
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactGetForce()`
-@*/
+/* The contact force integrated over time. `impulse`: [N s] */
 PetscErrorCode ExactGetImpulse(Exact exact, PetscReal *impulse)
 {
   PetscFunctionBegin;
@@ -205,21 +102,7 @@ PetscErrorCode ExactGetImpulse(Exact exact, PetscReal *impulse)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  ExactGetBodies - names of the two bars
-
-  Not Collective
-
-  Input Parameter:
-. exact - the `Exact`
-
-  Output Parameter:
-. names - two: of the bar on the Dirichlet side, and of its partner; owned by the bodies
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactGetErrors()`
-@*/
+/* Names of the two bars. `names`: two: of the bar on the Dirichlet side, and of its partner; owned by the bodies */
 PetscErrorCode ExactGetBodies(Exact exact, const char *names[])
 {
   PetscFunctionBegin;
@@ -229,19 +112,7 @@ PetscErrorCode ExactGetBodies(Exact exact, const char *names[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExactView - prints the exact solution in short
-
-  Collective
-
-  Input Parameters:
-+ exact  - the `Exact`
-- viewer - an ASCII viewer, `NULL` for standard output
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactViewFromOptions()`
-@*/
+/* Prints the exact solution in short. `viewer`: an ASCII viewer, `NULL` for standard output. Collective */
 PetscErrorCode ExactView(Exact exact, PetscViewer viewer)
 {
   PetscBool ascii;
@@ -259,43 +130,7 @@ PetscErrorCode ExactView(Exact exact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExactViewFromOptions - prints the exact solution where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ exact  - the `Exact`
-. object - has the prefix of the option, `NULL` for the solution
-- name   - the option
-
-  Options Database Key:
-. -exact_view - print the solution that a run is compared with
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode ExactViewFromOptions(Exact exact, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)exact, object, name));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ExactDestroy - frees the solution
-
-  Collective
-
-  Input Parameter:
-. exact - the `Exact`, set to `NULL`
-
-  Level: intermediate
-
-.seealso: `Exact`, `ExactCreate()`
-@*/
+/* Frees the solution. Collective */
 PetscErrorCode ExactDestroy(Exact *exact)
 {
   PetscFunctionBegin;

@@ -35,31 +35,9 @@ static PetscErrorCode Fill(Expression expression, MPI_Comm comm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  ExpressionCreate - a function of place and time from what a user has written
-
-  Collective
-
-  Input Parameters:
-+ comm   - communicator; the text is the same on all its ranks
-. option - where the text comes from, without the first `-`; for messages only
-- text   - a formula, or `table:` and the name of a file
-
-  Output Parameter:
-. expression - the `Expression`
-
-  Level: intermediate
-
-  Notes:
-  A formula is written in the variables x, y, z (reference position [m]), t (time [s]) and, on surfaces, nx, ny, nz (outward unit
-  normal), with the constants pi and e and the operators and functions of muParser: + - * / ^, comparisons, && and ||, c ? a : b,
-  sin, cos, tan, exp, ln, sqrt, abs, sign, min, max and so on.
-
-  A table is a file with two numbers a line, a time [s] and a value, separated by blanks or a comma, times ascending; what follows
-  a # is a comment. Values are interpolated linearly, and constant before the first and after the last line.
-
-.seealso: `Expression`, `ExpressionListCreate()`, `ExpressionEvaluate()`, `ExpressionDestroy()`
-@*/
+/* A function of place and time from what a user has written: a formula of muParser in x, y, z, t and, on surfaces, nx, ny, nz, with the
+   constants pi and e; or `table:` and a file with a time and a value a line, times ascending, between which values are interpolated
+   linearly, and constant before and after. `option`: where the text comes from, without its dash, for messages. Collective */
 PetscErrorCode ExpressionCreate(MPI_Comm comm, const char option[], const char text[], Expression *expression)
 {
   PetscErrorCode error;
@@ -79,22 +57,7 @@ PetscErrorCode ExpressionCreate(MPI_Comm comm, const char option[], const char t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExpressionEvaluate - the value at one place and time
-
-  Not Collective
-
-  Input Parameters:
-+ expression - the `Expression`
-- point      - place, normal and time
-
-  Output Parameter:
-. value - a finite number; if the expression has none there, the call ends with an error
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionEvaluateRates()`
-@*/
+/* The value at one place and time */
 PetscErrorCode ExpressionEvaluate(Expression expression, const ExpressionPoint *point, PetscReal *value)
 {
   PetscFunctionBegin;
@@ -112,22 +75,7 @@ PetscErrorCode ExpressionEvaluate(Expression expression, const ExpressionPoint *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExpressionIsConstant - whether an expression has the same value everywhere and at all times
-
-  Not Collective
-
-  Input Parameter:
-. expression - the `Expression`
-
-  Output Parameters:
-+ constant - whether it uses no variable
-- value    - if so, that number; may be `NULL`
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionIsSteady()`, `ExpressionIsUniform()`
-@*/
+/* Whether an expression has the same value everywhere and at all times. `value`: if so, that number; may be `NULL` */
 PetscErrorCode ExpressionIsConstant(Expression expression, PetscBool *constant, PetscReal *value)
 {
   PetscFunctionBegin;
@@ -138,21 +86,7 @@ PetscErrorCode ExpressionIsConstant(Expression expression, PetscBool *constant, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExpressionIsSteady - whether an expression does not depend on time
-
-  Not Collective
-
-  Input Parameter:
-. expression - the `Expression`
-
-  Output Parameter:
-. steady - whether it does not use t
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionIsUniform()`
-@*/
+/* Whether an expression does not depend on time */
 PetscErrorCode ExpressionIsSteady(Expression expression, PetscBool *steady)
 {
   PetscFunctionBegin;
@@ -162,21 +96,7 @@ PetscErrorCode ExpressionIsSteady(Expression expression, PetscBool *steady)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExpressionIsUniform - whether an expression has the same value everywhere
-
-  Not Collective
-
-  Input Parameter:
-. expression - the `Expression`
-
-  Output Parameter:
-. uniform - whether it uses neither the position nor the normal
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionIsSteady()`
-@*/
+/* Whether an expression has the same value everywhere */
 PetscErrorCode ExpressionIsUniform(Expression expression, PetscBool *uniform)
 {
   PetscFunctionBegin;
@@ -186,21 +106,7 @@ PetscErrorCode ExpressionIsUniform(Expression expression, PetscBool *uniform)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExpressionUsesNormal - whether an expression depends on the normal, and so has a meaning on surfaces only
-
-  Not Collective
-
-  Input Parameter:
-. expression - the `Expression`
-
-  Output Parameter:
-. normal - whether it uses nx, ny or nz
-
-  Level: intermediate
-
-.seealso: `Expression`
-@*/
+/* Whether an expression depends on the normal, and so has a meaning on surfaces only */
 PetscErrorCode ExpressionUsesNormal(Expression expression, PetscBool *normal)
 {
   PetscFunctionBegin;
@@ -210,21 +116,7 @@ PetscErrorCode ExpressionUsesNormal(Expression expression, PetscBool *normal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  ExpressionGetText - what the user has written
-
-  Not Collective
-
-  Input Parameter:
-. expression - the `Expression`
-
-  Output Parameter:
-. text - a formula, or `table:` and the name of a file; owned by the expression
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionCreate()`
-@*/
+/* What the user has written. `text`: a formula, or `table:` and the name of a file; owned by the expression */
 PetscErrorCode ExpressionGetText(Expression expression, const char *text[])
 {
   PetscFunctionBegin;
@@ -234,21 +126,7 @@ PetscErrorCode ExpressionGetText(Expression expression, const char *text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  ExpressionGetOption - the option that the expression comes from
-
-  Not Collective
-
-  Input Parameter:
-. expression - the `Expression`
-
-  Output Parameter:
-. option - without its dash; owned by the expression
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionCreate()`
-@*/
+/* The option that the expression comes from. `option`: without its dash; owned by the expression */
 PetscErrorCode ExpressionGetOption(Expression expression, const char *option[])
 {
   PetscFunctionBegin;
@@ -258,19 +136,7 @@ PetscErrorCode ExpressionGetOption(Expression expression, const char *option[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExpressionView - prints an expression
-
-  Collective
-
-  Input Parameters:
-+ expression - the `Expression`
-- viewer     - an ASCII viewer, `NULL` for standard output
-
-  Level: developer
-
-.seealso: `Expression`
-@*/
+/* Prints an expression. `viewer`: an ASCII viewer, `NULL` for standard output. Collective */
 PetscErrorCode ExpressionView(Expression expression, PetscViewer viewer)
 {
   PetscBool ascii;
@@ -284,18 +150,7 @@ PetscErrorCode ExpressionView(Expression expression, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ExpressionDestroy - frees an expression
-
-  Not Collective
-
-  Input Parameter:
-. expression - the `Expression`, set to `NULL`; it may be `NULL`
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionCreate()`
-@*/
+/* Frees an expression. `expression`: the `Expression`, set to `NULL`; it may be `NULL` */
 PetscErrorCode ExpressionDestroy(Expression *expression)
 {
   PetscFunctionBegin;

@@ -15,21 +15,7 @@ static size_t FindComma(const char text[])
   return i;
 }
 
-/*@C
-  ExpressionListCount - how many components a text has
-
-  Not Collective
-
-  Input Parameter:
-. text - components with commas between them
-
-  Output Parameter:
-. n - their number
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionListCreate()`
-@*/
+/* How many components a text has */
 PetscErrorCode ExpressionListCount(const char text[], PetscInt *n)
 {
   const char *c = text + FindComma(text);
@@ -63,25 +49,8 @@ static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  ExpressionListCreate - the components of a vector, separated by commas
-
-  Collective
-
-  Input Parameters:
-+ comm       - communicator; the text is the same on all its ranks
-. option     - where the text comes from, without the first `-`; for messages only
-. text       - expressions as for `ExpressionCreate()`, with commas between them; commas in parentheses are those of functions
-. n          - how many there must be
-- allow_free - whether a component may be the word `free`
-
-  Output Parameter:
-. list - n expressions, `NULL` for components that are free; after an error all are freed
-
-  Level: intermediate
-
-.seealso: `Expression`, `ExpressionCreate()`
-@*/
+/* The components of a vector, separated by commas. `list`: n expressions, `NULL` for components that are free; after an error all are
+   freed. Collective */
 PetscErrorCode ExpressionListCreate(MPI_Comm comm, const char option[], const char text[], PetscInt n, PetscBool allow_free,
                                     Expression list[])
 {

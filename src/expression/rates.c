@@ -31,32 +31,11 @@ static void FindWeights(PetscReal x, PetscReal weights[3][RATE_POINTS])
   }
 }
 
-/*@
-  ExpressionEvaluateRates - the value at one place and time, with its first and second derivative in time
-
-  Not Collective
-
-  Input Parameters:
-+ expression - the `Expression`
-. point      - place, normal and time
-. start      - the earliest time at which the expression may be evaluated [s]
-- step       - a time that resolves how the expression varies, such as the substep of a body [s]
-
-  Output Parameter:
-. values - 3 numbers: the value, its first [1/s times its unit] and its second derivative [1/s^2 times its unit]
-
-  Level: intermediate
-
-  Notes:
-  Differences over seven points a quarter of the step apart, centred, of sixth order, or shifted so as not to begin before `start`.
-  With an angular frequency w and s = w step / 4, the relative errors are s^6 / 140 and s^6 / 560, and those of round-off in units
-  of the machine's epsilon about 2 / s and 6 / s^2: w step between 1e-3 and 0.5 leaves 3e-8, at the start 6e-7 for the first and
-  3e-5 for the second derivative. A formula has to be defined until 3/4 of a step after the point, 3/2 steps after the start.
-
-  The second derivative of a table is zero: the velocity of a piecewise linear function jumps.
-
-.seealso: `Expression`, `ExpressionEvaluate()`
-@*/
+/* The value at one place and time, with its first and second derivative in time: 3 numbers. `start`: the earliest time at which the
+   expression may be evaluated; `step`: a time that resolves how it varies. Differences over seven points a quarter of the step apart,
+   centred, of sixth order, or shifted so as not to begin before `start`. With an angular frequency w and s = w step / 4, the relative
+   errors are s^6 / 140 and s^6 / 560, and those of round-off in units of the machine's epsilon about 2 / s and 6 / s^2. A formula has to
+   be defined until 3/4 of a step after the point, 3/2 steps after the start. The second derivative of a table is zero. */
 PetscErrorCode ExpressionEvaluateRates(Expression expression, const ExpressionPoint *point, PetscReal start, PetscReal step,
                                        PetscReal values[])
 {

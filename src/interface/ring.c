@@ -1,6 +1,6 @@
 /* Surfaces of bodies that are rings about the axis x = 0; surfaces that lose faces. */
 #include "interfaceimpl.h"
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 
 /* Forgets all other faces of this rank */
 PetscErrorCode SurfaceKeepFaces(Surface surface, const PetscBool keep[])

@@ -1,6 +1,6 @@
 /* Faces of a body's boundary and their nodes, on the ranks that have them. */
 #include "interfaceimpl.h"
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 
 /* The vertices of a boundary face, or of a cell, and their number */
 static PetscErrorCode GetVertices(DM dm, PetscInt point, PetscInt *n, PetscInt vertices[])

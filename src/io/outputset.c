@@ -31,7 +31,7 @@ PetscErrorCode OutputCheckPaths(MPI_Comm comm, const char summary[], const char 
 
   Level: beginner
 
-.seealso: `Output`, `OutputGetExact()`, `ExactCreate()`
+.seealso: `Output`, `ExactType`
 @*/
 PetscErrorCode OutputSetExact(Output output, ExactType type)
 {
@@ -41,31 +41,7 @@ PetscErrorCode OutputSetExact(Output output, ExactType type)
   PetscCheck(!output->exact, PetscObjectComm((PetscObject)output), PETSC_ERR_ARG_WRONGSTATE, "The run is compared with a solution already");
   PetscCall(ExactCreate(output->controller, type, &output->exact));
   PetscCall(ControllerMonitorSet(output->controller, ExactMonitor, output->exact, NULL));
-  PetscCall(ExactViewFromOptions(output->exact, (PetscObject)output, "-exact_view"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  OutputGetExact - the exact solution that the run is compared with
-
-  Not Collective
-
-  Input Parameter:
-. output - the `Output`
-
-  Output Parameter:
-. exact - the `Exact`, owned by the output; `NULL`: there is none
-
-  Level: intermediate
-
-.seealso: `Output`, `OutputSetExact()`, `ExactGetErrors()`
-@*/
-PetscErrorCode OutputGetExact(Output output, Exact *exact)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
-  PetscAssertPointer(exact, 2);
-  *exact = output->exact;
+  PetscCall(PetscObjectViewFromOptions((PetscObject)output->exact, (PetscObject)output, "-exact_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,7 +60,7 @@ PetscErrorCode OutputGetExact(Output output, Exact *exact)
 
   Level: intermediate
 
-.seealso: `Output`, `ExpressionCreate()`
+.seealso: `Output`, `OutputSetExact()`
 @*/
 PetscErrorCode OutputSetExactDisplacement(Output output, Body body, const char components[])
 {

@@ -1,24 +1,8 @@
 /* The linear elastic material that another one is at zero strain. */
 #include <impakt/private/isotropic.h>
 
-/*@
-  MaterialLinearize - makes the linear elastic material with the density and the elastic constants of an isotropic one at zero strain
-
-  Collective
-
-  Input Parameter:
-. material - the `Material`, with its options read
-
-  Output Parameter:
-. linearized - of type `MATERIAL_LINEAR_ELASTIC`, in plane stress where the material is
-
-  Level: developer
-
-  Note:
-  Reads no options. Lame's constants come from the tangent of the material, so any isotropic model will do.
-
-.seealso: `Material`, `MaterialGetKernels()`, `BodyPrepareLinearized()`
-@*/
+/* Makes the linear elastic material with the density and the elastic constants of an isotropic one at zero strain. Reads no options.
+   Lame's constants come from the tangent of the material, so any isotropic model will do. Collective */
 PetscErrorCode MaterialLinearize(Material material, Material *linearized)
 {
   const PetscReal undeformed[9] = {0};

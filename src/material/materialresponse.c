@@ -1,21 +1,7 @@
 /* What a material answers: stress, energy, tangent and moduli. */
 #include <impakt/private/materialimpl.h>
 
-/*@
-  MaterialGetUniaxialModulus - tangent of uniaxial stress against uniaxial strain, at zero strain (Young's modulus)
-
-  Not Collective
-
-  Input Parameter:
-. material - the `Material`
-
-  Output Parameter:
-. modulus - [Pa]
-
-  Level: developer
-
-.seealso: `Material`, `MaterialComputeUniaxial()`
-@*/
+/* Tangent of uniaxial stress against uniaxial strain, at zero strain (Young's modulus). `modulus`: [Pa] */
 PetscErrorCode MaterialGetUniaxialModulus(Material material, PetscReal *modulus)
 {
   PetscFunctionBegin;
@@ -25,21 +11,7 @@ PetscErrorCode MaterialGetUniaxialModulus(Material material, PetscReal *modulus)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialIsLinear - whether stress is proportional to strain, so that stiffness matrices are constant
-
-  Not Collective
-
-  Input Parameter:
-. material - the `Material`
-
-  Output Parameter:
-. linear - `PETSC_TRUE` if so
-
-  Level: developer
-
-.seealso: `Material`
-@*/
+/* Whether stress is proportional to strain, so that stiffness matrices are constant */
 PetscErrorCode MaterialIsLinear(Material material, PetscBool *linear)
 {
   PetscFunctionBegin;
@@ -49,21 +21,8 @@ PetscErrorCode MaterialIsLinear(Material material, PetscBool *linear)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialGetWaveModulus - the modulus M of the fastest wave at zero strain, of speed sqrt(M / density)
-
-  Not Collective
-
-  Input Parameter:
-. material - the `Material`
-
-  Output Parameter:
-. modulus - lambda + 2 mu; in plane stress E / (1 - nu^2) [Pa]
-
-  Level: developer
-
-.seealso: `Material`, `MaterialSetPlaneStress()`, `MaterialGetUniaxialModulus()`
-@*/
+/* The modulus M of the fastest wave at zero strain, of speed sqrt(M / density). `modulus`: lambda + 2 mu; in plane stress E / (1 - nu^2)
+   [Pa] */
 PetscErrorCode MaterialGetWaveModulus(Material material, PetscReal *modulus)
 {
   PetscFunctionBegin;
@@ -73,19 +32,7 @@ PetscErrorCode MaterialGetWaveModulus(Material material, PetscReal *modulus)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialSetPlaneStress - whether the body is a thin plate in its plane, free of stress across it
-
-  Logically Collective
-
-  Input Parameters:
-+ material     - the `Material`
-- plane_stress - `PETSC_TRUE` if so; else the displacement gradient is taken as given (plane strain where its third row and column vanish)
-
-  Level: developer
-
-.seealso: `Material`, `MaterialGetKernels()`
-@*/
+/* Whether the body is a thin plate in its plane, free of stress across it */
 PetscErrorCode MaterialSetPlaneStress(Material material, PetscBool plane_stress)
 {
   PetscFunctionBegin;
@@ -95,24 +42,8 @@ PetscErrorCode MaterialSetPlaneStress(Material material, PetscBool plane_stress)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MaterialGetKernels - the functions that element loops call
-
-  Not Collective
-
-  Input Parameter:
-. material - the `Material`, its constants set
-
-  Output Parameter:
-. kernels - stress, energy and tangent; their data is the material's own and lives until it is destroyed or changes its type
-
-  Level: developer
-
-  Note:
-  In plane stress or not, as `MaterialSetPlaneStress()` said before.
-
-.seealso: `Material`, `MaterialKernels`, `MaterialSetPlaneStress()`
-@*/
+/* The functions that element loops call. `kernels`: stress, energy and tangent; their data is the material's own and lives until it is
+   destroyed or changes its type. In plane stress or not, as `MaterialSetPlaneStress()` said before */
 PetscErrorCode MaterialGetKernels(Material material, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
@@ -122,27 +53,10 @@ PetscErrorCode MaterialGetKernels(Material material, MaterialKernels *kernels)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialComputeUniaxial - nominal stress of bars with free sides, for a batch of strains
-
-  Not Collective
-
-  Input Parameters:
-+ material - the `Material`
-. n        - number of points
-- strain   - engineering strains: stretch less 1, n of them
-
-  Output Parameter:
-. stress - stresses: force over reference cross-section [Pa], n of them; NaN where the material is not defined
-
-  Level: developer
-
-  Note:
-  Nonlinear models are not defined at strains of -1 and below; nor is Saint-Venant-Kirchhoff's where the sides would have no width left,
-  2 nu (e + e^2/2) >= 1, and the neo-Hookean one where they have no equilibrium (large stretches with a negative Poisson's ratio).
-
-.seealso: `Material`, `MaterialComputeUniaxialTangent()`, `MaterialComputeUniaxialEnergy()`
-@*/
+/* Nominal stress of bars with free sides, for a batch of strains. `stress`: stresses: force over reference cross-section [Pa], n of them;
+   NaN where the material is not defined. Nonlinear models are not defined at strains of -1 and below; nor is Saint-Venant-Kirchhoff's
+   where the sides would have no width left, 2 nu (e + e^2/2) >= 1, and the neo-Hookean one where they have no equilibrium (large
+   stretches with a negative Poisson's ratio) */
 PetscErrorCode MaterialComputeUniaxial(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
 {
   PetscFunctionBegin;
@@ -151,23 +65,8 @@ PetscErrorCode MaterialComputeUniaxial(Material material, PetscInt n, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialComputeUniaxialTangent - derivative of the nominal stress of bars with free sides by the strain, for a batch of strains
-
-  Not Collective
-
-  Input Parameters:
-+ material - the `Material`
-. n        - number of points
-- strain   - engineering strains: stretch less 1, n of them
-
-  Output Parameter:
-. tangent - derivatives [Pa], n of them; NaN where the material is not defined
-
-  Level: developer
-
-.seealso: `Material`, `MaterialComputeUniaxial()`, `MaterialComputeUniaxialEnergy()`
-@*/
+/* Derivative of the nominal stress of bars with free sides by the strain, for a batch of strains. `tangent`: derivatives [Pa], n of them;
+   NaN where the material is not defined */
 PetscErrorCode MaterialComputeUniaxialTangent(Material material, PetscInt n, const PetscReal strain[], PetscReal tangent[])
 {
   PetscFunctionBegin;
@@ -176,23 +75,8 @@ PetscErrorCode MaterialComputeUniaxialTangent(Material material, PetscInt n, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialComputeUniaxialEnergy - stored energy of bars with free sides, for a batch of strains
-
-  Not Collective
-
-  Input Parameters:
-+ material - the `Material`
-. n        - number of points
-- strain   - engineering strains: stretch less 1, n of them
-
-  Output Parameter:
-. energy - energies per reference volume [J/m^3], n of them; NaN where the material is not defined
-
-  Level: developer
-
-.seealso: `Material`, `MaterialComputeUniaxial()`, `MaterialComputeUniaxialTangent()`
-@*/
+/* Stored energy of bars with free sides, for a batch of strains. `energy`: energies per reference volume [J/m^3], n of them; NaN where
+   the material is not defined */
 PetscErrorCode MaterialComputeUniaxialEnergy(Material material, PetscInt n, const PetscReal strain[], PetscReal energy[])
 {
   PetscFunctionBegin;

@@ -1,28 +1,12 @@
 /* Meshes of bodies that are rings about the axis x = 0. */
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 #include <sys/units.h>
 
 /* Nodes that are nearer to the axis, in parts of the largest distance from it, lie on it */
 #define ON_AXIS 1e-9
 
-/*@
-  MeshGetAxisTolerance - how near to the axis x = 0 nodes of a mesh lie on it
-
-  Collective
-
-  Input Parameter:
-. dm - a plane `DMPLEX`
-
-  Output Parameter:
-. tolerance - largest distance from the axis at which a node counts as being on it [m]
-
-  Level: developer
-
-  Note:
-  An error where the mesh reaches across the axis by more than that: distances from an axis are not negative.
-
-.seealso: `BodySetAxisymmetric()`, `SurfaceSetAxisymmetric()`
-@*/
+/* How near to the axis x = 0 nodes of a mesh lie on it. `tolerance`: largest distance from the axis at which a node counts as being on it
+   [m]. An error where the mesh reaches across the axis by more than that: distances from an axis are not negative. Collective */
 PetscErrorCode MeshGetAxisTolerance(DM dm, PetscReal *tolerance)
 {
   PetscReal   lower[3], upper[3];

@@ -33,22 +33,7 @@ static PetscErrorCode AnyCells(DM dm, PetscInt n, PetscBool *any)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshListBlocks - the names and numbers of the blocks of a mesh, for messages
-
-  Collective
-
-  Input Parameters:
-+ dm   - the `DMPLEX`
-- size - of the text
-
-  Output Parameter:
-. list - names, then numbers, with commas between them; empty where there are no blocks
-
-  Level: developer
-
-.seealso: `MeshGetBlock()`
-@*/
+/* The names and numbers of the blocks of a mesh, for messages. Collective */
 PetscErrorCode MeshListBlocks(DM dm, char list[], size_t size)
 {
   PetscInt cstart, cend;
@@ -87,22 +72,7 @@ static PetscErrorCode FindBlock(DM dm, const char name[], PetscInt *n, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshHasBlock - whether a mesh has a block
-
-  Collective
-
-  Input Parameters:
-+ dm   - the `DMPLEX`
-- name - of the block, or its number
-
-  Output Parameter:
-. has - `PETSC_TRUE` if any rank has a cell of it
-
-  Level: developer
-
-.seealso: `MeshGetBlock()`
-@*/
+/* Whether a mesh has a block. Collective */
 PetscErrorCode MeshHasBlock(DM dm, const char name[], PetscBool *has)
 {
   PetscInt n, *cells;
@@ -115,26 +85,8 @@ PetscErrorCode MeshHasBlock(DM dm, const char name[], PetscBool *has)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshGetBlock - the cells of a block of a mesh
-
-  Collective
-
-  Input Parameters:
-+ dm   - the `DMPLEX`
-- name - of a physical volume of a Gmsh file (surface or curve in fewer dimensions), of an element block of an Exodus II file; or its number
-
-  Output Parameters:
-+ n     - number of cells on this rank
-- cells - points of the `DMPLEX`, ascending; free with `PetscFree()`
-
-  Level: developer
-
-  Note:
-  An error lists the blocks that there are.
-
-.seealso: `MeshCreate()`, `MeshGetSurface()`
-@*/
+/* The cells of a block of a mesh. `cells`: points of the `DMPLEX`, ascending; free with `PetscFree()`. An error lists the blocks that
+   there are. Collective */
 PetscErrorCode MeshGetBlock(DM dm, const char name[], PetscInt *n, PetscInt *cells[])
 {
   PetscBool found;

@@ -211,25 +211,9 @@ PetscErrorCode MeshMakeComposite(DM *dm, const char prefix[], const char name[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MeshCreateComposite - a mesh of composite elements: each cell of a mesh of triangles or tetrahedra divided into 4 or 8
-
-  Collective
-
-  Input Parameter:
-. dm - a `DMPLEX` of triangles or tetrahedra with faces and edges, distributed already
-
-  Output Parameter:
-. composite - the divided mesh, with the labels of the other; edges remain straight
-
-  Level: intermediate
-
-  Note:
-  A `Body` with such a mesh has elements of six or ten nodes, unless another formulation has been set. `MeshCreate()` divides meshes by
-  itself where options or files ask for such elements.
-
-.seealso: `MeshIsComposite()`, `MeshCreate()`, `BodySetDM()`, `BodySetElementFormulation()`
-@*/
+/* A mesh of composite elements: each cell of a mesh of triangles or tetrahedra divided into 4 or 8. A `Body` with such a mesh has
+   elements of six or ten nodes, unless another formulation has been set. `MeshCreate()` divides meshes by itself where options or files
+   ask for such elements. Collective */
 PetscErrorCode MeshCreateComposite(DM dm, DM *composite)
 {
   PetscFunctionBegin;
@@ -240,21 +224,7 @@ PetscErrorCode MeshCreateComposite(DM dm, DM *composite)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MeshIsComposite - whether a mesh is one of composite elements
-
-  Not Collective
-
-  Input Parameter:
-. dm - the `DMPLEX`
-
-  Output Parameter:
-. composite - `PETSC_TRUE` if `MeshCreateComposite()` has made it
-
-  Level: developer
-
-.seealso: `MeshCreateComposite()`
-@*/
+/* Whether a mesh is one of composite elements */
 PetscErrorCode MeshIsComposite(DM dm, PetscBool *composite)
 {
   PetscFunctionBegin;

@@ -233,28 +233,10 @@ PetscErrorCode MeshHasSurface(DM dm, const char name[], PetscBool *has)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshGetSurface - faces of a mesh's boundary by the name of a surface
-
-  Collective
-
-  Input Parameters:
-+ dm   - a `DMPLEX` with faces, named as the body is
-- name - a label of the mesh (a group of its file), a number in its "Face Sets", a side of its bounding box (xmin, xmax, ymin,
-         ...), looked for in this order; `NULL` or empty for the whole boundary
-
-  Output Parameters:
-+ n_faces - number of faces of this rank
-- faces   - points of the mesh, ascending; free with `PetscFree()`
-
-  Level: developer
-
-  Note:
-  Each face is on one rank, unless the mesh was distributed with an overlap. A name that the mesh does not have, and a surface
-  without any face of the boundary, end with an error that lists the surfaces there are.
-
-.seealso: `MeshCreate()`, `MeshGetNodeSet()`
-@*/
+/* Faces of a mesh's boundary by the name of a surface: a label of the mesh, a number in its "Face Sets", or a side of its bounding box
+   (xmin, xmax, ...), in this order of precedence; NULL or empty: the whole boundary. `faces`: points of the mesh, ascending, to be freed.
+   Each face is on one rank, unless the mesh was distributed with an overlap. A name that the mesh does not have, and a surface without any
+   face of the boundary, end with an error that lists the surfaces. Collective */
 PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, PetscInt *faces[])
 {
   Selection selection = {.side = -1};
@@ -369,24 +351,8 @@ static PetscErrorCode MarkVerticesOfFaces(DM dm, PetscInt n, const PetscInt face
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshGetNodeSet - vertices of a mesh by the name of a node set, or of a surface
-
-  Collective
-
-  Input Parameters:
-+ dm   - a `DMPLEX` with faces, named as the body is
-- name - a label of the mesh that has vertices (a node set of its file), a number in its "Vertex Sets", or what
-         `MeshGetSurface()` takes, looked for in this order
-
-  Output Parameters:
-+ n_vertices - number of vertices of this rank
-- vertices   - points of the mesh, ascending, owned ones and ghosts; free with `PetscFree()`
-
-  Level: developer
-
-.seealso: `MeshCreate()`, `MeshGetSurface()`
-@*/
+/* Vertices of a mesh by the name of a node set, or of a surface. `vertices`: points of the mesh, ascending, owned ones and ghosts; free
+   with `PetscFree()`. Collective */
 PetscErrorCode MeshGetNodeSet(DM dm, const char name[], PetscInt *n_vertices, PetscInt *vertices[])
 {
   Selection selection = {.side = -1};

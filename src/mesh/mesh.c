@@ -95,81 +95,11 @@ static PetscErrorCode SetPrefix(DM dm, const char prefix[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshCreate - the mesh of a body from options, distributed over the ranks
-
-  Collective
-
-  Input Parameters:
-+ comm   - the communicator
-. prefix - of its options, such as "left_"
-- name   - of the body, for messages; becomes that of the mesh
-
-  Output Parameter:
-. dm - a `DMPLEX` with faces and edges, on each rank its own part; after an error it is `NULL`, or to be destroyed
-
-  Options Database Keys:
-+ -<body>_dm_plex_filename f                          - Gmsh (.msh, version 2.2 or 4.1) or Exodus II (.g, .e, .exo, .ex2)
-. -<body>_mesh_blocks a,b                             - blocks of the file that make this body, by name or number; default all
-. -<body>_dm_plex_dim d                               - dimension of a box or ball; of a file it is checked
-. -<body>_dm_plex_box_faces n,n,n                     - elements of a box along each axis
-. -<body>_dm_plex_box_lower x,y,z                     - its lower corner [m]
-. -<body>_dm_plex_box_upper x,y,z                     - its upper corner [m]
-. -<body>_dm_plex_simplex (true|false)                - of triangles or tetrahedra, or of quadrilaterals or hexahedra (default)
-. -<body>_mesh_division (bricks|graph|whole)          - each rank makes its own brick of a box; or a graph is divided; or one rank has all
-. -<body>_mesh_bricks n,n,n                           - bricks of a box along each axis, their product the number of ranks with a part
-. -<body>_mesh_contact_surfaces a,b                   - surfaces that may touch another body, whose faces are spread over the ranks; default
-                                                        those that -contact_pairs names
-. -<body>_mesh_contact_cost c                         - work for a face of these, in units of that for an element, default 15
-. -<body>_dm_plex_shape ball                          - a disc or a ball instead, in blocks around a central one
-. -<body>_ball_radius r                               - its radius [m], default 1
-. -<body>_ball_centre x,y,z                           - its centre [m], default the origin
-. -<body>_ball_divisions n                            - elements along an edge of the central block, default 4
-. -<body>_ball_layers m                               - elements around it, from its faces to the sphere, default n/2
-. -<body>_ball_grading g                              - largest by smallest size of elements, default 1
-. -<body>_ball_pole x,y,z                             - direction from the centre to where they are small, default down the last axis
-. -<body>_ball_part (full|half|quarter)               - all of it, x >= centre, or in 3-D also y >= centre
-. -<body>_dm_plex_shape rod                           - a rod along z from 0 instead, of hexahedra: a disc drawn out
-. -<body>_rod_radius r                                - its radius [m], default 1
-. -<body>_rod_length l                                - its length [m], default 1
-. -<body>_rod_divisions n                             - elements along an edge of the central block of a section, default 4
-. -<body>_rod_layers m                                - elements around it, default n/2
-. -<body>_rod_elements k                              - elements along the axis, default 10
-. -<body>_rod_part (full|half|quarter)                - all of it, x >= 0, or also y >= 0
-. -<body>_rod_keep_volume (true|false)                - nodes move outward until a section has the area of the disc, default true
-. -<body>_scale s                                     - factor for all coordinates, 0.001 for a file in millimetres
-. -<body>_rotate (degrees|ax,ay,az,degrees)           - turns it: in 2-D, or in 3-D about an axis through the origin
-. -<body>_rotate_centre x,y,z                         - about another point [m], after scaling
-- -<body>_translate x,y,z                             - shifts it [m], last
-
-  Level: developer
-
-  Notes:
-  Groups of a file (Gmsh's physical groups; Exodus' blocks, side sets and node sets) become labels: their numbers in "Cell
-  Sets", "Face Sets" and "Vertex Sets", their names as labels with the value 1. The sides of a box have labels xmin, xmax, ...
-  which a rotation takes along. Those of a ball are surface (the sphere), back (faces of it that
-  are not on the pole's side of the centre), and cut_x and cut_y of its parts.
-
-  Without grading the elements at the surface of a ball have the size h = pi R / (2 n). With grading they have the size h / sqrt(g) at the
-  pole, and sqrt(g) h opposite to it. If that is not small beside the radius, the ball is a coarse polyhedron there.
-
-  Composite elements (`-<body>_element_formulation composite`) of balls and rods are curved: nodes in the middle of edges lie where those of
-  a mesh of twice as many divisions and layers do, of which every second node is a corner. Surface and volume are those of that mesh.
-
-  A box of bars, quadrilaterals or hexahedra is cut in two across its longest edge, again and again, until each rank has a brick, which it
-  makes itself. Edges along the normals of surfaces that may touch another body are cut less often, as far as the most elements, contact
-  faces and shared faces of a brick together cost less by that. If the largest brick would have more than 1.1 times the mean number of
-elements, or an option asks for what PETSc alone does (`-<body>_petscpartitioner_type`, `-<body>_dm_distribute`, `-<body>_dm_plex_box_bd`,
-...), the first rank makes the box, and PETSc divides it.
-
-  Any other mesh is on the first rank, and divided as a graph. Where a surface may touch another body, its cells are halved across their
-  extents instead if that makes a step cheaper, that along the normal of the surface less often.
-
-  The dimension of space is that of the elements; coordinates beyond it must be zero in the file. Nodes that belong to no element of the
-  body are left out. The file is read by the first rank.
-
-.seealso: `MeshGetSurface()`, `MeshGetNodeSet()`, `BodySetFromOptions()`
-@*/
+/* The mesh of a body from options, distributed over the ranks: a DMPLEX with faces and edges, on each rank its own part. Groups of a file
+   become labels: their numbers in "Cell Sets", "Face Sets" and "Vertex Sets", their names as labels with the value 1; the sides of a box
+   have labels xmin, xmax, ... which a rotation takes along. The dimension of space is that of the elements: coordinates beyond it must be
+   zero in the file. Nodes that belong to no element of the body are left out. After an error the mesh is NULL, or to be destroyed.
+   Collective */
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
   PetscFunctionBegin;
@@ -200,29 +130,9 @@ static PetscErrorCode Begin(MPI_Comm comm, const char prefix[], const char name[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshCreateOnRanks - the mesh of a body from options, as `MeshCreate()` makes it, divided among some ranks; others have nothing of it
-
-  Collective
-
-  Input Parameters:
-+ comm   - the communicator, on which the mesh is all the same
-. prefix - of its options, such as "left_"
-. name   - of the body, for messages; becomes that of the mesh
-. n      - number of ranks that have a part; 0: all
-- list   - these ranks, ascending
-
-  Output Parameter:
-. dm - a `DMPLEX` with faces and edges; after an error it is `NULL`, or to be destroyed
-
-  Level: developer
-
-  Note:
-  Each of them makes its brick of a box. Other meshes are made on the first rank of the communicator, divided there into `n` parts, and
-  sent; discs, balls and rods of one rank are made there.
-
-.seealso: `MeshCreate()`, `BodySetRanks()`
-@*/
+/* The same, divided among `n` ranks of an ascending list, all with n = 0; others have nothing of it. Each of them makes its brick of a box.
+   Other meshes are made on the first rank of the communicator, divided there into `n` parts, and sent; discs, balls and rods of one rank
+   are made there. The parts are the same whichever ranks these are. Collective */
 PetscErrorCode MeshCreateOnRanks(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt n, const PetscMPIInt list[], DM *dm)
 {
   MeshRanks   ranks   = {n, list};

@@ -1,6 +1,6 @@
 /* What the readers of mesh files share with the making of a DMPlex. Private to src/mesh. */
 #pragma once
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 
 #define MESH_NAME_LENGTH 256
 /* The label of meshes of composite elements; it has no points */

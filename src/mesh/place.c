@@ -158,24 +158,9 @@ PetscErrorCode MeshPlace(DM dm, const char prefix[], const char name[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshGetPlaceOption - the option by which a user moves the mesh of a body, for messages
-
-  Not Collective
-
-  Input Parameter:
-. prefix - of the body's options, such as "left_"
-
-  Output Parameters:
-+ option - without dash and prefix: `translate` of a mesh from a file, of a rod, and of any mesh that has been scaled, rotated or
-           translated; `ball_centre` of a ball; `dm_plex_box_lower` of a box; or `NULL`
-- keeps  - of a ball or a rod whose nodes lie outside its radius, so that its mesh has its volume: the option that has it so; else `NULL`;
-           or `NULL`
-
-  Level: developer
-
-.seealso: `MeshCreate()`
-@*/
+/* The option, without dash and prefix, by which a user moves the mesh of a body, for messages: `translate` of a mesh from a file, of a
+   rod, and of any mesh that has been scaled, rotated or translated; `ball_centre` of a ball; `dm_plex_box_lower` of a box; or NULL.
+   `keeps`: the option by which nodes of a ball or a rod lie outside its radius, so that its mesh has its volume; or NULL */
 PetscErrorCode MeshGetPlaceOption(const char prefix[], const char *option[], const char *keeps[])
 {
   const char *const placed[]  = {"-dm_plex_filename", "-scale", "-rotate", "-translate"}, *volume;

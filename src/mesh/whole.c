@@ -42,25 +42,9 @@ static PetscErrorCode EstimateBox(const char prefix[], PetscInt dim, PetscInt *c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshEstimate - how many cells a mesh will have, and where it will be, as its options tell before it is made
-
-  Not Collective
-
-  Input Parameter:
-. prefix - of its options, such as "left_"
-
-  Output Parameters:
-+ cells  - their number; 0 where the options do not tell, as with a file
-- centre - about where its middle is, three numbers [m]
-
-  Level: developer
-
-  Note:
-  To choose the rank on which a mesh is to lie whole: rotations and parts of balls do not count, and nothing is an error.
-
-.seealso: `MeshMayBeWhole()`
-@*/
+/* How many cells a mesh will have, and where it will be, as its options tell before it is made. `centre`: about where its middle is,
+   three numbers [m]. To choose the rank on which a mesh is to lie whole: rotations and parts of balls do not count, and nothing is an
+   error */
 PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal centre[3])
 {
   PetscReal shift[3] = {0, 0, 0}, scale = 1;
@@ -99,23 +83,7 @@ PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal cent
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  MeshMayBeWhole - whether options leave it open how a mesh is divided among ranks, or ask for it to be whole
-
-  Logically Collective
-
-  Input Parameters:
-+ comm   - communicator
-- prefix - of its options, such as "left_"
-
-  Output Parameters:
-+ may  - no option asks for a division, or says which ranks have the mesh
-- asks - `-<body>_mesh_division whole`, and no option says which rank has it
-
-  Level: developer
-
-.seealso: `MeshEstimate()`
-@*/
+/* Whether options leave it open how a mesh is divided among ranks, or ask for it to be whole */
 PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may, PetscBool *asks)
 {
   static const char *const options[]   = {"-petscpartitioner_type", "-dm_distribute", "-dm_distribute_overlap", "-mesh_contact_surfaces",

@@ -5,6 +5,7 @@
 #include <stdlib.h>
 #include "errors.h"
 #include "petsccompat.h"
+#include <impakt/private/elementimpl.h>
 #include <impakt/private/transfer.h>
 #include <sys/stages.h>
 

@@ -1,5 +1,5 @@
 /* Waveforms: values of rows at equally spaced times of a controller step. */
-#include <impakt/trace.h>
+#include <impakt/private/trace.h>
 #include <petsc/private/petscimpl.h>
 
 struct _n_Trace {
@@ -7,22 +7,7 @@ struct _n_Trace {
   PetscScalar *values; /* (levels + 1) x size, level by level */
 };
 
-/*@
-  TraceCreate - creates a waveform of zeros
-
-  Not Collective
-
-  Input Parameters:
-+ size   - how many numbers each level holds (contact rows of this rank)
-- levels - number of equal intervals of the controller step, at least 1
-
-  Output Parameter:
-. trace - the waveform
-
-  Level: developer
-
-.seealso: `Trace`, `TraceDestroy()`
-@*/
+/* Creates a waveform of zeros. `levels`: number of equal intervals of the controller step, at least 1 */
 PetscErrorCode TraceCreate(PetscInt size, PetscInt levels, Trace *trace)
 {
   PetscFunctionBegin;
@@ -35,18 +20,7 @@ PetscErrorCode TraceCreate(PetscInt size, PetscInt levels, Trace *trace)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TraceDestroy - frees a waveform
-
-  Not Collective
-
-  Input Parameter:
-. trace - the waveform, set to `NULL`
-
-  Level: developer
-
-.seealso: `Trace`, `TraceCreate()`
-@*/
+/* Frees a waveform */
 PetscErrorCode TraceDestroy(Trace *trace)
 {
   PetscFunctionBegin;
@@ -56,22 +30,8 @@ PetscErrorCode TraceDestroy(Trace *trace)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TraceGetSizes - how many numbers a level holds, and how many intervals the controller step has
-
-  Not Collective
-
-  Input Parameter:
-. trace - the waveform
-
-  Output Parameters:
-+ size   - numbers in a level, or `NULL`
-- levels - number of intervals, or `NULL`
-
-  Level: developer
-
-.seealso: `Trace`
-@*/
+/* How many numbers a level holds, and how many intervals the controller step has. `size`: numbers in a level, or `NULL`; `levels`: number
+   of intervals, or `NULL` */
 PetscErrorCode TraceGetSizes(Trace trace, PetscInt *size, PetscInt *levels)
 {
   PetscFunctionBegin;
@@ -81,42 +41,7 @@ PetscErrorCode TraceGetSizes(Trace trace, PetscInt *size, PetscInt *levels)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TraceZero - sets all levels to zero
-
-  Not Collective
-
-  Input Parameter:
-. trace - the waveform
-
-  Level: developer
-
-.seealso: `Trace`
-@*/
-PetscErrorCode TraceZero(Trace trace)
-{
-  PetscFunctionBegin;
-  PetscAssertPointer(trace, 1);
-  PetscCall(PetscArrayzero(trace->values, (trace->levels + 1) * trace->size));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  TraceGetLevel - the values at one level, to read or write
-
-  Not Collective
-
-  Input Parameters:
-+ trace - the waveform
-- level - 0 (start of the controller step) to `levels` (its end)
-
-  Output Parameter:
-. values - `size` numbers, owned by the trace
-
-  Level: developer
-
-.seealso: `Trace`, `TraceInterpolate()`
-@*/
+/* The values at one level, to read or write. `values`: `size` numbers, owned by the trace */
 PetscErrorCode TraceGetLevel(Trace trace, PetscInt level, PetscScalar **values)
 {
   PetscFunctionBegin;
@@ -147,24 +72,7 @@ static void Interpolate(Trace trace, PetscReal time, PetscInt begin, PetscInt n,
   for (PetscInt i = 0; i < n; i++) values[i] = weight == 1 ? upper[i] : lower[i] + weight * (upper[i] - lower[i]);
 }
 
-/*@
-  TraceInterpolate - the values of some rows at any time of the controller step
-
-  Not Collective
-
-  Input Parameters:
-+ trace - the waveform
-. time  - 0 (start of the controller step) to 1 (its end)
-. begin - first row
-- n     - number of rows
-
-  Output Parameter:
-. values - `n` numbers
-
-  Level: developer
-
-.seealso: `Trace`, `TraceResample()`
-@*/
+/* The values of some rows at any time of the controller step */
 PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, PetscInt n, PetscScalar values[])
 {
   PetscFunctionBegin;
@@ -174,23 +82,7 @@ PetscErrorCode TraceInterpolate(Trace trace, PetscReal time, PetscInt begin, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TraceResample - evaluates some rows of a waveform at the levels of another one, scaled
-
-  Not Collective
-
-  Input Parameters:
-+ from     - the waveform to evaluate
-. begin    - first row of it
-. n        - number of rows
-. scale    - factor on the values
-. to       - waveform whose rows `to_begin` to `to_begin` + `n` - 1 are set at all its levels
-- to_begin - first row of that
-
-  Level: developer
-
-.seealso: `Trace`, `TraceInterpolate()`
-@*/
+/* Evaluates `n` rows of a waveform, from `begin` on, at all levels of another one, where they begin at `to_begin`; scaled */
 PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt n, PetscScalar scale, Trace to, PetscInt to_begin)
 {
   PetscFunctionBegin;
@@ -199,34 +91,14 @@ PetscErrorCode TraceResample(Trace from, PetscInt begin, PetscInt n, PetscScalar
   for (PetscInt level = 0; level <= to->levels; level++) {
     PetscScalar *values = to->values + level * to->size + to_begin;
 
-    if (from->levels == to->levels) {
-      const PetscScalar *source = from->values + level * from->size + begin;
-
-      for (PetscInt i = 0; i < n; i++) values[i] = source[i];
-    } else Interpolate(from, (PetscReal)level / to->levels, begin, n, values);
-    if (scale != 1)
-      for (PetscInt i = 0; i < n; i++) values[i] *= scale;
+    if (from->levels == to->levels) PetscCall(PetscArraycpy(values, from->values + level * from->size + begin, n));
+    else Interpolate(from, (PetscReal)level / to->levels, begin, n, values);
+    for (PetscInt i = 0; i < n; i++) values[i] *= scale;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TraceResampleConstant - as `TraceResample()`, of a waveform that is constant between its levels, with the value at the end of the interval
-
-  Not Collective
-
-  Input Parameters:
-+ from     - the waveform to evaluate
-. begin    - first row of it
-. n        - number of rows
-. scale    - factor on the values
-. to       - waveform whose rows `to_begin` to `to_begin` + `n` - 1 are set at all its levels
-- to_begin - first row of that
-
-  Level: developer
-
-.seealso: `Trace`, `TraceResample()`
-@*/
+/* The same of a waveform that is constant between its levels, with the value at the end of the interval */
 PetscErrorCode TraceResampleConstant(Trace from, PetscInt begin, PetscInt n, PetscScalar scale, Trace to, PetscInt to_begin)
 {
   PetscFunctionBegin;

@@ -3,7 +3,7 @@
 
      v_{n+1/2} = v_n + dt/2 a_n,   u_{n+1} = u_n + dt v_{n+1/2},   a_{n+1} = a(t_{n+1}, u_{n+1}),   v_{n+1} = v_{n+1/2} + dt/2 a_{n+1}
 */
-#include <impakt/tssecondorder.h>
+#include <impakt/private/tssecondorder.h>
 #include "constructors.h"
 #include <petsc/private/tsimpl.h>
 
@@ -122,21 +122,8 @@ static PetscErrorCode TSCentralDifferenceLeaveVelocity_CentralDifference(TS ts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  TSCentralDifferenceSetAcceleration - sets the function that gives the acceleration for a displacement
-
-  Logically Collective
-
-  Input Parameters:
-+ ts           - the `TSCENTRALDIFFERENCE`
-. acceleration - function (ts, t, U, V, A, ctx): computes A = M^{-1} f(t, U) [m/s^2]. It may correct U (prescribed and massless
-                 nodes) and V (the velocity at mid-step) before it does
-- ctx          - its context
-
-  Level: developer
-
-.seealso: `TSCENTRALDIFFERENCE`, `TSCentralDifferenceSetAccelerationVec()`
-@*/
+/* Sets the function that gives the acceleration for a displacement. `acceleration`: function (ts, t, U, V, A, ctx): computes A = M^{-1}
+   f(t, U) [m/s^2]. It may correct U (prescribed and massless nodes) and V (the velocity at mid-step) before it does */
 PetscErrorCode TSCentralDifferenceSetAcceleration(TS ts, TSCentralDifferenceFn *acceleration, void *ctx)
 {
   PetscFunctionBegin;
@@ -145,19 +132,8 @@ PetscErrorCode TSCentralDifferenceSetAcceleration(TS ts, TSCentralDifferenceFn *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TSCentralDifferenceSetAccelerationVec - sets the vector that holds the acceleration between steps
-
-  Logically Collective
-
-  Input Parameters:
-+ ts - the `TSCENTRALDIFFERENCE`
-- A  - acceleration at the current time [m/s^2]; the caller fills it at the start, and to restore an earlier state
-
-  Level: developer
-
-.seealso: `TSCENTRALDIFFERENCE`, `TSCentralDifferenceSetAcceleration()`, `TS2SetSolution()`
-@*/
+/* Sets the vector that holds the acceleration between steps. `A`: acceleration at the current time [m/s^2]; the caller fills it at the
+   start, and to restore an earlier state */
 PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS ts, Vec A)
 {
   PetscFunctionBegin;
@@ -167,22 +143,8 @@ PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS ts, Vec A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TSCentralDifferenceLeaveVelocity - leaves the velocity at mid-step in this step
-
-  Not Collective
-
-  Input Parameter:
-. ts - the `TSCENTRALDIFFERENCE`
-
-  Level: developer
-
-  Note:
-  For the function of `TSCentralDifferenceSetAcceleration()`, where it has not computed the acceleration: who does that later adds half a
-  step of it to the velocity.
-
-.seealso: `TSCENTRALDIFFERENCE`, `TSCentralDifferenceSetAcceleration()`
-@*/
+/* Leaves the velocity at mid-step in this step. For the function of `TSCentralDifferenceSetAcceleration()`, where it has not computed the
+   acceleration: who does that later adds half a step of it to the velocity */
 PetscErrorCode TSCentralDifferenceLeaveVelocity(TS ts)
 {
   PetscFunctionBegin;
@@ -201,7 +163,7 @@ PetscErrorCode TSCentralDifferenceLeaveVelocity(TS ts)
    One evaluation of the acceleration in a step. It conserves the staggered energy 1/2 v'Mv - dt^2/8 a'Ma + potential. `TSRollBack()` is
    refused: whoever wants to undo a step keeps displacement, velocity and acceleration, and calls `TSSecondOrderSetState()`.
 
-.seealso: `TSALPHA2`, `TSCentralDifferenceSetAcceleration()`
+.seealso: `TSALPHA2`
 M*/
 PetscErrorCode TSCreate_CentralDifference(TS ts)
 {

@@ -1,5 +1,5 @@
 /* Rigid motions: a step is a function of the caller, who knows what moves as one. */
-#include <impakt/tssecondorder.h>
+#include <impakt/private/tssecondorder.h>
 #include "constructors.h"
 #include <petsc/private/tsimpl.h>
 
@@ -53,20 +53,8 @@ static PetscErrorCode TSRigidSetAdvance_Rigid(TS ts, TSRigidFn *advance, void *c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  TSRigidSetAdvance - sets the function that makes a step
-
-  Logically Collective
-
-  Input Parameters:
-+ ts      - the `TSRIGID`
-. advance - function (ts, t, dt, U, V, ctx): takes displacement U [m] and velocity V [m/s] at time t to those at t + dt
-- ctx     - its context
-
-  Level: developer
-
-.seealso: `TSRIGID`, `TS2SetSolution()`
-@*/
+/* Sets the function that makes a step. `advance`: function (ts, t, dt, U, V, ctx): takes displacement U [m] and velocity V [m/s] at time
+   t to those at t + dt */
 PetscErrorCode TSRigidSetAdvance(TS ts, TSRigidFn *advance, void *ctx)
 {
   PetscFunctionBegin;
@@ -84,7 +72,7 @@ PetscErrorCode TSRigidSetAdvance(TS ts, TSRigidFn *advance, void *ctx)
    Note:
    `TSRollBack()` is refused: whoever wants to undo a step keeps displacement and velocity, and calls `TSSecondOrderSetState()`.
 
-.seealso: `TSALPHA2`, `TSRigidSetAdvance()`, `BodySetRigid()`
+.seealso: `TSALPHA2`, `BodySetRigid()`
 M*/
 PetscErrorCode TSCreate_Rigid(TS ts)
 {

@@ -1,5 +1,5 @@
 /* What time integrators of second order share: registration, and what driving them in sweeps takes, beside `TSALPHA2` as a static one. */
-#include <impakt/tssecondorder.h>
+#include <impakt/private/tssecondorder.h>
 #include "constructors.h"
 #include <petsc/private/tsimpl.h>
 
@@ -49,15 +49,7 @@ PetscErrorCode TSSecondOrderCheckSolution(TS ts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TSSecondOrderRegisterAll - registers Impakt's time integrators with `TS`
-
-  Not Collective
-
-  Level: developer
-
-.seealso: `TSCENTRALDIFFERENCE`, `ImpaktInitialize()`
-@*/
+/* Registers Impakt's time integrators with `TS` */
 PetscErrorCode TSSecondOrderRegisterAll(void)
 {
   PetscFunctionBegin;
@@ -67,27 +59,9 @@ PetscErrorCode TSSecondOrderRegisterAll(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  TSSecondOrderSetState - puts an integrator at a time, to go on from the vectors of `TS2SetSolution()` as they are now
-
-  Logically Collective
-
-  Input Parameters:
-+ ts        - a `TSALPHA2` or `TSCENTRALDIFFERENCE`
-. time      - current time [s]
-. time_step - step from here on [s]
-- step      - number of steps taken so far
-
-  Level: developer
-
-  Note:
-  Also switches off the restart of `TSALPHA2`, which would make two half steps with another matrix before the next step to estimate an
-  acceleration. Impakt always knows the acceleration.
-
-  An integrator whose last step has failed goes on as any other.
-
-.seealso: `TSALPHA2`, `TSCENTRALDIFFERENCE`
-@*/
+/* Puts an integrator at a time, to go on from the vectors of `TS2SetSolution()` as they are now. `time`: current time [s]; `time_step`:
+   step from here on [s]. Also switches off the restart of `TSALPHA2`, which would make two half steps with another matrix before the next
+   step to estimate an acceleration. Impakt always knows the acceleration. An integrator whose last step has failed goes on as any other */
 PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step, PetscInt step)
 {
   PetscFunctionBegin;
@@ -100,24 +74,10 @@ PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  TSAlpha2SetStep - has a function make the steps of a `TSALPHA2`, in place of its nonlinear solver
-
-  Logically Collective
-
-  Input Parameters:
-+ ts   - a `TSALPHA2`, not yet set up
-- step - function (ts): takes the vectors of `TS2SetSolution()` to the end of the step, and the time with `TSSetTime()`
-
-  Level: developer
-
-  Note:
-  For linear equations, which need one solution and no Newton's method: its `SNES`, and the nine vectors that it works with, are not made.
-  What the function is to know comes with `TSGetI2Function()` and `TSAlpha2GetParams()`. `TSRollBack()` is refused, and other vectors may
-  be set with `TS2SetSolution()` before the first step alone.
-
-.seealso: `TSALPHA2`, `TSSecondOrderSetState()`
-@*/
+/* Has a function make the steps of a `TSALPHA2`, in place of its nonlinear solver. For linear equations, which need one solution and no
+   Newton's method: its `SNES`, and the nine vectors that it works with, are not made. What the function is to know comes with
+   `TSGetI2Function()` and `TSAlpha2GetParams()`. `TSRollBack()` is refused, and other vectors may be set with `TS2SetSolution()` before
+   the first step alone */
 PetscErrorCode TSAlpha2SetStep(TS ts, TSAlpha2StepFn *step)
 {
   PetscFunctionBegin;

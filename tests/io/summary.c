@@ -316,8 +316,7 @@ static void drop(const char path[])
 static void files_are_written(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
-  ExactErrors errors;
-  Exact       exact;
+  json_t     *summary;
   Output      output;
 
   AddCollision(8, 8, 0);
@@ -330,10 +329,10 @@ static void files_are_written(void **state)
   ok(OutputSetExactDisplacement(output, simulation->bodies[0], "0.1*t"));
   ok(ControllerSolve(simulation->controller));
   ok(OutputReport(output));
-  ok(OutputGetExact(output, &exact));
-  ok(ExactGetErrors(exact, &errors));
-  between(errors.mean_velocity, 1e-8, 0.1); /* of two coarse bars */
   ok(OutputDestroy(&output));
+  summary = json_load_file("setters.json", 0, NULL);
+  between(json_real_value(json_object_get(json_object_get(summary, "errors"), "mean_velocity")), 1e-8, 0.1); /* of two coarse bars */
+  json_decref(summary);
   assert_true(exists("setters.h5") && exists("setters.json") && exists("setters-fields.h5") && exists("setters-fields.xdmf"));
   drop("setters.h5");
   drop("setters.json");

@@ -1,7 +1,7 @@
 /* What the tests of meshes share: what a mesh is like, and small mesh files. */
 #pragma once
 #include "support.h"
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 #include <netcdf.h>
 #include <petscsf.h>
 

@@ -1,7 +1,7 @@
 /* Bodies in two and three dimensions, their contact nodes, rows at single nodes, and sums over their nodes. */
 #pragma once
 #include "support.h"
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 #include <body/layout/bodyimpl.h>
 
 /* Quadrilaterals, triangles, hexahedra, tetrahedra */

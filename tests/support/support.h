@@ -7,6 +7,7 @@
 #include <cmocka.h>
 #include <impakt.h>
 #include <impakt/private/bodyrows.h>
+#include <impakt/private/elementimpl.h>
 
 /* ok(call): the test fails where the call returns an error, which Impakt has printed by then */
 #define ok(...) succeed((__VA_ARGS__), __FILE__, __LINE__)

@@ -253,8 +253,6 @@ static void bars_and_output(void **state)
 {
   Simulation *simulation = (Simulation *)*state;
   Output      output;
-  Exact       exact;
-  ExactType   type;
 
   AddCollision(4, 4, 0);
   AddOptions("-exact impact -exact_view ascii:exact.txt -output_history views-history.h5 -output_view ascii:output.txt "
@@ -262,12 +260,7 @@ static void bars_and_output(void **state)
   ok(SimulationCreate(simulation));
   expect_file("bar.txt", "left_|segment|cross-section 1. m^2");
   ok(OutputCreate(simulation->controller, &output));
-  ok(OutputGetExact(output, &exact));
-  assert_null(exact);
   ok(OutputSetFromOptions(output));
-  ok(OutputGetExact(output, &exact));
-  ok(ExactGetType(exact, &type));
-  assert_string_equal(type, EXACT_IMPACT);
   expect_file("exact.txt", "exact solution (impact): contact of left and right from 0.01 to");
   expect_file("output.txt", "files|history|views-history.h5");
   ok(OutputDestroy(&output));

@@ -30,12 +30,6 @@ static void begins_with_zeros(void **state)
   for (PetscInt k = 0; k <= 4; k++) {
     ok(TraceGetLevel(trace, k, &level));
     for (PetscInt i = 0; i < 3; i++) assert_true(level[i] == 0);
-    level[1] = 7;
-  }
-  ok(TraceZero(trace));
-  for (PetscInt k = 0; k <= 4; k++) {
-    ok(TraceGetLevel(trace, k, &level));
-    assert_true(level[1] == 0);
   }
   ok(TraceDestroy(&trace));
   assert_null(trace);

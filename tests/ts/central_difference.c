@@ -3,6 +3,7 @@
    Modes (1, 1) and (1, -1) with omega^2 = 1/m = 2 and 3/m = 6 rad^2/s^2; stable for dt < 2/sqrt(6) = 0.816 s.
 */
 #include "support.h"
+#include <impakt/private/tssecondorder.h>
 
 #define MASS 0.5
 

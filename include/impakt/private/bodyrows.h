@@ -5,7 +5,7 @@
 #pragma once
 #include <impakt/body.h>
 #include <impakt/private/stepfailure.h>
-#include <impakt/trace.h>
+#include <impakt/private/trace.h>
 
 /*E
    BodyCondition - what a row of the interface means to a body in this controller step

@@ -85,6 +85,23 @@ struct _p_Element {
   PetscInt         inverted;     /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
 };
 
+PETSC_EXTERN PetscErrorCode ElementInitializePackage(void);
+PETSC_EXTERN PetscErrorCode ElementCreate(MPI_Comm, Element *);
+PETSC_EXTERN PetscErrorCode ElementSetOptionsPrefix(Element, const char[]);
+PETSC_EXTERN PetscErrorCode ElementSetCellType(Element, DMPolytopeType);
+PETSC_EXTERN PetscErrorCode ElementSetMaterial(Element, Material);
+PETSC_EXTERN PetscErrorCode ElementSetCrossSection(Element, PetscReal);
+PETSC_EXTERN PetscErrorCode ElementSetThickness(Element, PetscReal);
+PETSC_EXTERN PetscErrorCode ElementSetPlaneStress(Element, PetscBool);
+PETSC_EXTERN PetscErrorCode ElementSetAxisymmetric(Element, PetscBool);
+PETSC_EXTERN PetscErrorCode ElementGetAxisymmetric(Element, PetscBool *);
+PETSC_EXTERN PetscErrorCode ElementSetFormulation(Element, const char[]);
+PETSC_EXTERN PetscErrorCode ElementGetFormulation(Element, const char *[]);
+PETSC_EXTERN PetscErrorCode ElementSetFromOptions(Element);
+PETSC_EXTERN PetscErrorCode ElementSetUp(Element, PetscInt, const PetscInt[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode ElementView(Element, PetscViewer);
+PETSC_EXTERN PetscErrorCode ElementDestroy(Element *);
+
 PETSC_INTERN PetscFunctionList ElementList, ElementFormulationList;
 
 PETSC_INTERN PetscErrorCode ElementCreate_Bar2(Element);

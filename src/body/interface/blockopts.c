@@ -1,6 +1,6 @@
 /* Materials of blocks from options, -<body>_<block>_density and others. */
 #include <body/layout/bodyimpl.h>
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>

@@ -1,6 +1,6 @@
 /* Materials of blocks: parts of a body, named in its mesh, that have materials of their own. */
 #include <body/layout/bodyimpl.h>
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 #include <sys/names.h>
 #include <sys/units.h>
 

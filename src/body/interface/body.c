@@ -332,7 +332,7 @@ PetscErrorCode BodySetUp(Body body)
   if (!body->model.blocks.n) PetscCall(MaterialViewFromOptions(body->model.material, (PetscObject)body, "-material_view"));
   for (PetscInt k = 0; k < body->model.blocks.n; k++)
     PetscCall(MaterialViewFromOptions(body->model.blocks.materials[k], (PetscObject)body, "-material_view"));
-  PetscCall(ElementViewFromOptions(body->model.element, (PetscObject)body, "-element_view"));
+  PetscCall(PetscObjectViewFromOptions((PetscObject)body->model.element, (PetscObject)body, "-element_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
   PetscCall(BodyViewFromOptions(body, NULL, "-body_view"));

@@ -1,6 +1,6 @@
 /* A body from its options, and its initial state. */
 #include <body/layout/bodyimpl.h>
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 #include <sys/optionvalues.h>
 #include "bodysetup.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 #include <impakt/private/bodyrows.h>
 #include <impakt/private/stepfailure.h>
-#include <impakt/tssecondorder.h>
+#include <impakt/private/tssecondorder.h>
 #include <petsc/private/petscimpl.h>
 #include <impakt/private/elementimpl.h>
 #include <solver/constrainedsolver.h>

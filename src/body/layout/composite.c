@@ -1,7 +1,7 @@
 /* Composite elements: which cells of the mesh make one, and its nodes. */
 #include "bodyimpl.h"
 #include "cells.h"
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 
 enum { MOST_CELLS = 8, MOST_CORNERS = 4 };
 

@@ -1,6 +1,6 @@
 /* Faces of elements on a surface: nodes, outward normals, and points with which loads are integrated over them. */
 #include "faces.h"
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 
 /* Gauss's rule with two points in each direction */
 static const PetscReal gauss = 0.57735026918962576451;

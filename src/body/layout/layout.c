@@ -1,7 +1,7 @@
 /* Mesh and numbering: what the element loops and vectors of a body run over. */
 #include "bodyimpl.h"
 #include "cells.h"
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 #include <petscblaslapack.h>
 
 /* One node at each vertex, `dim` displacements at each node */

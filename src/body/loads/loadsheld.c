@@ -1,6 +1,6 @@
 /* Displacements prescribed on surfaces. */
 #include "loadsimpl.h"
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 
 /* The i-th prescription puts its mark on the rank's dofs, over those of earlier ones */
 static PetscErrorCode MarkHeld(Body body, PetscInt i, const char surface[], Vec local)

@@ -1,6 +1,6 @@
 /* Bodies that are inside each other, or inside obstacles. */
 #include <contact/parts.h>
-#include <impakt/mesh.h>
+#include <impakt/private/mesh.h>
 #include <sys/units.h>
 
 /* Rows at the start are at most this deep where bodies have the state of another run, in contact there [parts of a contact element] */

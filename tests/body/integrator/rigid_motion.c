@@ -3,6 +3,7 @@
 #include "support.h"
 #include <body/integrator/rigidmotion.h>
 #include <impakt/private/bodyrows.h>
+#include <impakt/private/tssecondorder.h>
 
 static void is_a_rotation(const PetscReal R[9])
 {

@@ -1,5 +1,6 @@
 /* Contact pairs and their sides, obstacles, settings, their errors, and what all contact methods share. */
 #include "simulation.h"
+#include <controller/controllerimpl.h>
 #include <impakt/private/contactimpl.h>
 
 /* Bodies that are names only, for the parsing of pairs */
@@ -188,8 +189,6 @@ static void bad_values_are_refused(void **state)
 static void of_the_controller(void **state)
 {
   Controller controller;
-  PetscReal  part;
-  PetscInt   cuts;
 
   (void)state;
   ok(ControllerCreate(PETSC_COMM_WORLD, &controller));
@@ -199,10 +198,8 @@ static void of_the_controller(void **state)
   refused(PETSC_ERR_ARG_OUTOFRANGE, "in halves 0 to|not -1", ControllerSetStepCuts(controller, -1));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "in halves 0 to|not 1000", ControllerSetStepCuts(controller, 1000));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "interval of 0 steps", ControllerSetMonitorInterval(controller, 0));
-  ok(ControllerGetEnergyGuard(controller, &part));
-  ok(ControllerGetStepCuts(controller, &cuts));
-  near(part, 0.125, 0);
-  assert_int_equal(cuts, 3);
+  near(controller->guard.part, 0.125, 0);
+  assert_int_equal(controller->most_cuts, 3);
   ok(ControllerDestroy(&controller));
 }
 
