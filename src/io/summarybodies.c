@@ -64,7 +64,7 @@ static PetscErrorCode AddBlocks(json_t *object, Body body)
   for (PetscInt k = 0; k < n; k++) {
     MaterialType type;
 
-    PetscCall(MaterialGetType(materials[k], &type));
+    PetscCall(PetscObjectGetType((PetscObject)materials[k], &type));
     PetscCall(SummarySetObject(blocks, names[k][0] ? names[k] : "(rest)", &block));
     PetscCall(SummarySetMember(block, "material", json_string(type)));
     PetscCall(SummarySetReal(block, "mass", mass[k]));

@@ -93,30 +93,6 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
 }
 
 /*@
-  MaterialGetType - the constitutive model
-
-  Not Collective
-
-  Input Parameter:
-. material - the `Material`
-
-  Output Parameter:
-. type - its name; `NULL` until it has been chosen
-
-  Level: beginner
-
-.seealso: `Material`, `MaterialSetType()`
-@*/
-PetscErrorCode MaterialGetType(Material material, MaterialType *type)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  PetscAssertPointer(type, 2);
-  *type = ((PetscObject)material)->type_name;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   MaterialSetFromOptions - reads type and constants from the options
 
   Collective

@@ -289,54 +289,18 @@ static PetscErrorCode MaterialUniaxialEnergy_MooneyRivlin(Material material, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialSetMooneyRivlinShare_MooneyRivlin(Material material, PetscReal share)
-{
-  PetscFunctionBegin;
-  PetscCheck(share >= 0 && share <= 1, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE,
-             "The share of c01 in c10 + c01 is %g; it must lie between 0 and 1 (-%smooney_rivlin_share)", (double)share,
-             ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "");
-  ((MooneyRivlin *)material->data)->share = share;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  MaterialSetMooneyRivlinShare - sets the share of the second invariant in the shear modulus of `MATERIAL_MOONEY_RIVLIN`
-
-  Logically Collective
-
-  Input Parameters:
-+ material - the `Material`, of that type
-- share    - c01 / (c10 + c01), between 0 and 1; 0, the default, is the isochoric neo-Hookean model
-
-  Options Database Key:
-. -<body>_mooney_rivlin_share m - the share
-
-  Level: beginner
-
-  Note:
-  The shear modulus 2 (c10 + c01) and the bulk modulus are those of Young's modulus and Poisson's ratio.
-
-.seealso: `Material`, `MaterialSetYoungsModulus()`, `MaterialSetPoissonsRatio()`
-@*/
-PetscErrorCode MaterialSetMooneyRivlinShare(Material material, PetscReal share)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(material, share, 2);
-  PetscUseMethod(material, "MaterialSetMooneyRivlinShare_C", (Material, PetscReal), (material, share));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode MaterialSetFromOptions_MooneyRivlin(Material material)
 {
-  PetscReal share = ((MooneyRivlin *)material->data)->share;
+  PetscReal *share = &((MooneyRivlin *)material->data)->share;
 
   PetscFunctionBegin;
   PetscCall(MaterialSetFromOptions_Isotropic(material));
   PetscObjectOptionsBegin((PetscObject)material);
-  PetscCall(PetscOptionsReal("-mooney_rivlin_share", "Share of c01 in c10 + c01", "MaterialSetMooneyRivlinShare", share, &share, NULL));
+  PetscCall(PetscOptionsReal("-mooney_rivlin_share", "Share of c01 in c10 + c01", "MaterialSetFromOptions", *share, share, NULL));
   PetscOptionsEnd();
-  PetscCall(MaterialSetMooneyRivlinShare_MooneyRivlin(material, share));
+  PetscCheck(*share >= 0 && *share <= 1, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
+             "-%smooney_rivlin_share: the share of c01 in c10 + c01 is %g; it must lie between 0 and 1",
+             ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "", (double)*share);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -348,14 +312,6 @@ static PetscErrorCode MaterialView_MooneyRivlin(Material material, PetscViewer v
   PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g, share of c01 %g\n",
                                    (double)model->constants.youngs_modulus, UnitsOf((PetscObject)material, UNIT_STRESS),
                                    (double)model->constants.poissons_ratio, (double)model->share));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialDestroy_MooneyRivlin(Material material)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetMooneyRivlinShare_C", NULL));
-  PetscCall(MaterialDestroy_Isotropic(material));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -371,11 +327,9 @@ PetscErrorCode MaterialCreate_MooneyRivlin(Material material)
   material->data                 = model;
   material->ops->setfromoptions  = MaterialSetFromOptions_MooneyRivlin;
   material->ops->view            = MaterialView_MooneyRivlin;
-  material->ops->destroy         = MaterialDestroy_MooneyRivlin;
   material->ops->kernels         = MaterialKernels_MooneyRivlin;
   material->ops->uniaxial        = MaterialUniaxial_MooneyRivlin;
   material->ops->uniaxialtangent = MaterialUniaxialTangent_MooneyRivlin;
   material->ops->uniaxialenergy  = MaterialUniaxialEnergy_MooneyRivlin;
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetMooneyRivlinShare_C", MaterialSetMooneyRivlinShare_MooneyRivlin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -66,113 +66,9 @@ static PetscErrorCode CheckTable(Material material, PetscInt n, const PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialSetHardeningTable_Plastic(Material material, PetscInt n, const PetscReal strain[], const PetscReal stress[])
-{
-  Plastic *plastic = GetPlastic(material);
-
-  PetscFunctionBegin;
-  PetscCall(CheckTable(material, n, strain, stress));
-  PetscCall(PetscFree2(plastic->strain, plastic->stress));
-  PetscCall(PetscMalloc2(n, &plastic->strain, n, &plastic->stress));
-  PetscCall(PetscArraycpy(plastic->strain, strain, n));
-  PetscCall(PetscArraycpy(plastic->stress, stress, n));
-  plastic->n_table   = n;
-  plastic->yield     = stress[0];
-  plastic->hardening = HARDENING_TABLE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialSetYieldStress_Plastic(Material material, PetscReal yield)
-{
-  PetscFunctionBegin;
-  PetscCheck(yield > 0 && isfinite(yield), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%syield_stress is %g%s; it must be positive", GetPrefix(material), (double)yield,
-             UnitsOf((PetscObject)material, UNIT_STRESS));
-  GetPlastic(material)->yield = yield;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialSetHardeningModulus_Plastic(Material material, PetscReal modulus)
-{
-  PetscFunctionBegin;
-  PetscCheck(modulus >= 0 && isfinite(modulus), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%shardening_modulus is %g%s; it must not be negative", GetPrefix(material), (double)modulus,
-             UnitsOf((PetscObject)material, UNIT_STRESS));
-  GetPlastic(material)->modulus = modulus;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialSetKinematicModulus_Plastic(Material material, PetscReal modulus)
-{
-  PetscFunctionBegin;
-  PetscCheck(modulus >= 0 && isfinite(modulus), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%skinematic_modulus is %g%s; it must not be negative", GetPrefix(material), (double)modulus,
-             UnitsOf((PetscObject)material, UNIT_STRESS));
-  GetPlastic(material)->kinematic = modulus;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialSetVoceHardening_Plastic(Material material, PetscReal saturation, PetscReal rate)
-{
-  PetscFunctionBegin;
-  PetscCheck(saturation > 0 && isfinite(saturation), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%ssaturation_stress is %g%s; it must be positive, and not below -%syield_stress", GetPrefix(material), (double)saturation,
-             UnitsOf((PetscObject)material, UNIT_STRESS), GetPrefix(material));
-  PetscCheck(rate > 0 && isfinite(rate), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
-             "-%ssaturation_rate is %g; it must be positive", GetPrefix(material), (double)rate);
-  GetPlastic(material)->saturation  = saturation;
-  GetPlastic(material)->saturate_at = rate;
-  GetPlastic(material)->hardening   = HARDENING_VOCE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialSetJohnsonCook_Plastic(Material material, PetscReal exponent, PetscReal rate, PetscReal reference_rate)
-{
-  Plastic *plastic = GetPlastic(material);
-  MPI_Comm comm    = PetscObjectComm((PetscObject)material);
-
-  PetscFunctionBegin;
-  PetscCheck(exponent > 0 && isfinite(exponent), comm, PETSC_ERR_USER_INPUT, "-%shardening_exponent is %g; it must be positive",
-             GetPrefix(material), (double)exponent);
-  PetscCheck(rate >= 0 && isfinite(rate), comm, PETSC_ERR_USER_INPUT, "-%srate_coefficient is %g; it must not be negative",
-             GetPrefix(material), (double)rate);
-  PetscCheck(reference_rate > 0 && isfinite(reference_rate), comm, PETSC_ERR_USER_INPUT, "-%sreference_rate is %g 1/s; it must be positive",
-             GetPrefix(material), (double)reference_rate);
-  plastic->exponent       = exponent;
-  plastic->rate           = rate;
-  plastic->reference_rate = reference_rate;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialSetJohnsonCookHeat_Plastic(Material material, PetscReal softening, PetscReal initial, PetscReal room,
-                                                         PetscReal melting, PetscReal heat_fraction, PetscReal specific_heat)
-{
-  Plastic *plastic = GetPlastic(material);
-  MPI_Comm comm    = PetscObjectComm((PetscObject)material);
-
-  PetscFunctionBegin;
-  PetscCheck(softening > 0 && isfinite(softening), comm, PETSC_ERR_USER_INPUT, "-%ssoftening_exponent is %g; it must be positive",
-             GetPrefix(material), (double)softening);
-  PetscCheck(melting > room, comm, PETSC_ERR_USER_INPUT, "-%smelting_temperature %g K must be above -%sroom_temperature %g K",
-             GetPrefix(material), (double)melting, GetPrefix(material), (double)room);
-  PetscCheck(initial >= 0 && initial < melting, comm, PETSC_ERR_USER_INPUT,
-             "-%sinitial_temperature is %g K; it must not be negative, and lie below -%smelting_temperature %g K", GetPrefix(material),
-             (double)initial, GetPrefix(material), (double)melting);
-  PetscCheck(heat_fraction >= 0 && heat_fraction <= 1, comm, PETSC_ERR_USER_INPUT, "-%sheat_fraction is %g; it must lie between 0 and 1",
-             GetPrefix(material), (double)heat_fraction);
-  PetscCheck(specific_heat > 0 && isfinite(specific_heat), comm, PETSC_ERR_USER_INPUT, "-%sspecific_heat is %g%s; it must be positive",
-             GetPrefix(material), (double)specific_heat, UnitsOf((PetscObject)material, UNIT_SPECIFIC_HEAT));
-  plastic->softening     = softening;
-  plastic->initial       = initial;
-  plastic->room          = room;
-  plastic->melting       = melting;
-  plastic->heat_fraction = heat_fraction;
-  plastic->specific_heat = specific_heat;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ReadTable(Material material)
 {
+  Plastic  *plastic = GetPlastic(material);
   PetscReal numbers[2 * MAX_TABLE], strain[MAX_TABLE], stress[MAX_TABLE];
   PetscInt  n = 2 * MAX_TABLE;
   PetscBool set;
@@ -180,7 +76,7 @@ static PetscErrorCode ReadTable(Material material)
   PetscFunctionBegin;
   PetscCall(
       PetscOptionsGetRealArray(((PetscObject)material)->options, ((PetscObject)material)->prefix, "-hardening_table", numbers, &n, &set));
-  if (!set && GetPlastic(material)->n_table) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!set && plastic->n_table) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(set && n % 2 == 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
              "-%shardening_table has %" PetscInt_FMT
              " numbers; give pairs of plastic strain and strength [Pa], for example 0,400e6,0.1,450e6,1,500e6",
@@ -189,85 +85,104 @@ static PetscErrorCode ReadTable(Material material)
     strain[i] = numbers[2 * i];
     stress[i] = numbers[2 * i + 1];
   }
-  PetscCall(MaterialSetHardeningTable(material, n / 2, strain, stress));
+  PetscCall(CheckTable(material, n / 2, strain, stress));
+  PetscCall(PetscFree2(plastic->strain, plastic->stress));
+  PetscCall(PetscMalloc2(n / 2, &plastic->strain, n / 2, &plastic->stress));
+  PetscCall(PetscArraycpy(plastic->strain, strain, n / 2));
+  PetscCall(PetscArraycpy(plastic->stress, stress, n / 2));
+  plastic->n_table = n / 2;
+  plastic->yield   = stress[0];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An error unless a constant is positive, or, where it `may_vanish`, not negative */
+static PetscErrorCode CheckConstant(Material material, const char option[], PetscReal value, PetscBool may_vanish, const char unit[])
+{
+  PetscFunctionBegin;
+  PetscCheck((value > 0 || (may_vanish && value == 0)) && isfinite(value), PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
+             "-%s%s is %g%s; it must %s", GetPrefix(material), option, (double)value, unit, may_vanish ? "not be negative" : "be positive");
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ReadHardening(Material material)
 {
-  Plastic  *plastic    = GetPlastic(material);
-  PetscReal saturation = plastic->saturation, rate = plastic->saturate_at, kinematic = plastic->kinematic;
-  PetscEnum law = (PetscEnum)plastic->hardening;
+  Plastic    *p      = GetPlastic(material);
+  PetscEnum   law    = (PetscEnum)p->hardening;
+  const char *setter = "MaterialSetFromOptions", *unit = UnitsOf((PetscObject)material, UNIT_STRESS);
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)material);
-  PetscCall(PetscOptionsEnum("-hardening", "How strength grows with plastic strain", "MaterialSetHardeningTable", laws, law, &law, NULL));
-  PetscCall(PetscOptionsReal("-kinematic_modulus", "Modulus of kinematic hardening [Pa]", "MaterialSetKinematicModulus", kinematic,
-                             &kinematic, NULL));
-  if ((Hardening)law == HARDENING_VOCE) {
-    PetscCall(PetscOptionsReal("-saturation_stress", "Strength that Voce's law tends to [Pa]", "MaterialSetVoceHardening", saturation,
-                               &saturation, NULL));
-    PetscCall(PetscOptionsReal("-saturation_rate", "How fast it does", "MaterialSetVoceHardening", rate, &rate, NULL));
+  PetscCall(PetscOptionsEnum("-hardening", "How strength grows with plastic strain", setter, laws, law, &law, NULL));
+  PetscCall(PetscOptionsReal("-kinematic_modulus", "Modulus of kinematic hardening [Pa]", setter, p->kinematic, &p->kinematic, NULL));
+  p->hardening = (Hardening)law;
+  if (p->hardening == HARDENING_VOCE) {
+    PetscCall(
+        PetscOptionsReal("-saturation_stress", "Strength that Voce's law tends to [Pa]", setter, p->saturation, &p->saturation, NULL));
+    PetscCall(PetscOptionsReal("-saturation_rate", "How fast it does", setter, p->saturate_at, &p->saturate_at, NULL));
   }
   PetscOptionsEnd();
-  plastic->hardening = (Hardening)law;
-  PetscCall(MaterialSetKinematicModulus(material, kinematic));
-  if (plastic->hardening == HARDENING_VOCE) PetscCall(MaterialSetVoceHardening(material, saturation, rate));
-  if (plastic->hardening == HARDENING_TABLE) PetscCall(ReadTable(material));
+  PetscCall(CheckConstant(material, "kinematic_modulus", p->kinematic, PETSC_TRUE, unit));
+  if (p->hardening == HARDENING_VOCE) {
+    PetscCall(CheckConstant(material, "saturation_stress", p->saturation, PETSC_FALSE, unit));
+    PetscCall(CheckConstant(material, "saturation_rate", p->saturate_at, PETSC_FALSE, ""));
+  }
+  if (p->hardening == HARDENING_TABLE) PetscCall(ReadTable(material));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ReadJohnsonCook(Material material)
 {
-  const Plastic *plastic  = GetPlastic(material);
-  PetscReal      exponent = plastic->exponent, rate = plastic->rate, reference = plastic->reference_rate, softening = plastic->softening;
-  PetscReal      initial = plastic->initial, room = plastic->room, melting = plastic->melting, fraction = plastic->heat_fraction;
-  PetscReal      heat = plastic->specific_heat;
+  Plastic    *p      = GetPlastic(material);
+  MPI_Comm    comm   = PetscObjectComm((PetscObject)material);
+  const char *setter = "MaterialSetFromOptions", *prefix = GetPrefix(material);
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)material);
-  PetscCall(PetscOptionsReal("-hardening_exponent", "n of Johnson and Cook", "MaterialSetJohnsonCook", exponent, &exponent, NULL));
-  PetscCall(PetscOptionsReal("-rate_coefficient", "C of Johnson and Cook", "MaterialSetJohnsonCook", rate, &rate, NULL));
-  PetscCall(PetscOptionsReal("-reference_rate", "Plastic strain rate below which strength does not depend on it [1/s]",
-                             "MaterialSetJohnsonCook", reference, &reference, NULL));
-  PetscCall(PetscOptionsReal("-softening_exponent", "m of Johnson and Cook", "MaterialSetJohnsonCookHeat", softening, &softening, NULL));
-  PetscCall(
-      PetscOptionsReal("-initial_temperature", "Temperature at the start [K]", "MaterialSetJohnsonCookHeat", initial, &initial, NULL));
-  PetscCall(
-      PetscOptionsReal("-room_temperature", "Temperature of the strength as given [K]", "MaterialSetJohnsonCookHeat", room, &room, NULL));
-  PetscCall(
-      PetscOptionsReal("-melting_temperature", "Temperature without strength [K]", "MaterialSetJohnsonCookHeat", melting, &melting, NULL));
-  PetscCall(
-      PetscOptionsReal("-heat_fraction", "Of plastic work that becomes heat", "MaterialSetJohnsonCookHeat", fraction, &fraction, NULL));
-  PetscCall(PetscOptionsReal("-specific_heat", "Specific heat [J/(kg K)]", "MaterialSetJohnsonCookHeat", heat, &heat, NULL));
+  PetscCall(PetscOptionsReal("-hardening_exponent", "n of Johnson and Cook", setter, p->exponent, &p->exponent, NULL));
+  PetscCall(PetscOptionsReal("-rate_coefficient", "C of Johnson and Cook", setter, p->rate, &p->rate, NULL));
+  PetscCall(PetscOptionsReal("-reference_rate", "Plastic strain rate below which strength does not depend on it [1/s]", setter,
+                             p->reference_rate, &p->reference_rate, NULL));
+  PetscCall(PetscOptionsReal("-softening_exponent", "m of Johnson and Cook", setter, p->softening, &p->softening, NULL));
+  PetscCall(PetscOptionsReal("-initial_temperature", "Temperature at the start [K]", setter, p->initial, &p->initial, NULL));
+  PetscCall(PetscOptionsReal("-room_temperature", "Temperature of the strength as given [K]", setter, p->room, &p->room, NULL));
+  PetscCall(PetscOptionsReal("-melting_temperature", "Temperature without strength [K]", setter, p->melting, &p->melting, NULL));
+  PetscCall(PetscOptionsReal("-heat_fraction", "Of plastic work that becomes heat", setter, p->heat_fraction, &p->heat_fraction, NULL));
+  PetscCall(PetscOptionsReal("-specific_heat", "Specific heat [J/(kg K)]", setter, p->specific_heat, &p->specific_heat, NULL));
   PetscOptionsEnd();
-  PetscCall(MaterialSetJohnsonCook(material, exponent, rate, reference));
-  PetscCall(MaterialSetJohnsonCookHeat(material, softening, initial, room, melting, fraction, heat));
+  PetscCall(CheckConstant(material, "hardening_exponent", p->exponent, PETSC_FALSE, ""));
+  PetscCall(CheckConstant(material, "rate_coefficient", p->rate, PETSC_TRUE, ""));
+  PetscCall(CheckConstant(material, "reference_rate", p->reference_rate, PETSC_FALSE, " 1/s"));
+  PetscCall(CheckConstant(material, "softening_exponent", p->softening, PETSC_FALSE, ""));
+  PetscCheck(p->melting > p->room, comm, PETSC_ERR_USER_INPUT, "-%smelting_temperature %g K must be above -%sroom_temperature %g K", prefix,
+             (double)p->melting, prefix, (double)p->room);
+  PetscCheck(p->initial >= 0 && p->initial < p->melting, comm, PETSC_ERR_USER_INPUT,
+             "-%sinitial_temperature is %g K; it must not be negative, and lie below -%smelting_temperature %g K", prefix,
+             (double)p->initial, prefix, (double)p->melting);
+  PetscCheck(p->heat_fraction >= 0 && p->heat_fraction <= 1, comm, PETSC_ERR_USER_INPUT,
+             "-%sheat_fraction is %g; it must lie between 0 and 1", prefix, (double)p->heat_fraction);
+  PetscCall(CheckConstant(material, "specific_heat", p->specific_heat, PETSC_FALSE, UnitsOf((PetscObject)material, UNIT_SPECIFIC_HEAT)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode SetFromOptions(Material material)
 {
-  Plastic  *plastic = GetPlastic(material);
-  PetscReal yield = plastic->yield, modulus = plastic->modulus;
-  PetscErrorCode (*elastic)(Material);
+  Plastic    *p    = GetPlastic(material);
+  const char *unit = UnitsOf((PetscObject)material, UNIT_STRESS), *setter = "MaterialSetFromOptions";
 
   PetscFunctionBegin;
-  PetscCall(PetscObjectQueryFunction((PetscObject)material, "MaterialSetFromOptionsElastic_C", &elastic));
-  PetscCall((*elastic)(material));
+  PetscCall(MaterialSetFromOptions_Isotropic(material));
   PetscObjectOptionsBegin((PetscObject)material);
-  PetscCall(PetscOptionsReal("-yield_stress", "Strength of the virgin material [Pa]", "MaterialSetYieldStress", yield, &yield, NULL));
-  PetscCall(
-      PetscOptionsReal("-hardening_modulus", "Its growth per plastic strain [Pa]", "MaterialSetHardeningModulus", modulus, &modulus, NULL));
+  PetscCall(PetscOptionsReal("-yield_stress", "Strength of the virgin material [Pa]", setter, p->yield, &p->yield, NULL));
+  PetscCall(PetscOptionsReal("-hardening_modulus", "Its growth per plastic strain [Pa]", setter, p->modulus, &p->modulus, NULL));
   PetscOptionsEnd();
-  PetscCall(MaterialSetHardeningModulus(material, modulus));
-  if (plastic->hardening == HARDENING_JOHNSON_COOK) PetscCall(ReadJohnsonCook(material));
+  PetscCall(CheckConstant(material, "hardening_modulus", p->modulus, PETSC_TRUE, unit));
+  if (p->hardening == HARDENING_JOHNSON_COOK) PetscCall(ReadJohnsonCook(material));
   else PetscCall(ReadHardening(material));
-  if (plastic->hardening == HARDENING_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(yield != 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
+  if (p->hardening == HARDENING_TABLE) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(p->yield != 0, PetscObjectComm((PetscObject)material), PETSC_ERR_USER_INPUT,
              "-%syield_stress is missing; give the strength at which the material begins to yield%s%s", GetPrefix(material),
-             *UnitsOf((PetscObject)material, UNIT_STRESS) ? " in" : "", UnitsOf((PetscObject)material, UNIT_STRESS));
-  PetscCall(MaterialSetYieldStress(material, yield));
+             *unit ? " in" : "", unit);
+  PetscCall(CheckConstant(material, "yield_stress", p->yield, PETSC_FALSE, unit));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -281,8 +196,7 @@ static PetscErrorCode SetUp(Material material)
              "The material of type %s has no Young's modulus: call MaterialSetYoungsModulus() or MaterialSetFromOptions()",
              ((PetscObject)material)->type_name);
   PetscCheck(plastic->yield > 0, comm, PETSC_ERR_ARG_WRONGSTATE,
-             "The material of type %s has no yield stress: call MaterialSetYieldStress() or MaterialSetFromOptions()",
-             ((PetscObject)material)->type_name);
+             "The material of type %s has no yield stress: call MaterialSetFromOptions()", ((PetscObject)material)->type_name);
   PetscCheck(plastic->hardening != HARDENING_VOCE || plastic->saturation >= plastic->yield, comm, PETSC_ERR_USER_INPUT,
              "-%ssaturation_stress %g%s lies below -%syield_stress %g%s", GetPrefix(material), (double)plastic->saturation,
              UnitsOf((PetscObject)material, UNIT_STRESS), GetPrefix(material), (double)plastic->yield,
@@ -318,36 +232,23 @@ static PetscErrorCode View(Material material, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static const char *const setters[] = {"MaterialSetYieldStress_C",    "MaterialSetHardeningModulus_C", "MaterialSetKinematicModulus_C",
-                                      "MaterialSetVoceHardening_C",  "MaterialSetHardeningTable_C",   "MaterialSetJohnsonCook_C",
-                                      "MaterialSetJohnsonCookHeat_C"};
-
 static PetscErrorCode Destroy(Material material)
 {
   Plastic *plastic = GetPlastic(material);
-  PetscErrorCode (*elastic)(Material);
 
   PetscFunctionBegin;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(setters); i++)
-    PetscCall(PetscObjectComposeFunction((PetscObject)material, setters[i], NULL));
-  PetscCall(PetscObjectQueryFunction((PetscObject)material, "MaterialDestroyElastic_C", &elastic));
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialDestroyElastic_C", NULL));
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetFromOptionsElastic_C", NULL));
   PetscCall(PetscFree2(plastic->strain, plastic->stress));
-  PetscCall((*elastic)(material));
+  PetscCall(MaterialDestroy_Isotropic(material));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The constants of an isotropic elastic material, with those of plasticity behind them */
-static PetscErrorCode Create(Material material, Hardening hardening)
+static PetscErrorCode Create(Material material, Hardening hardening, PetscErrorCode (*kernels)(Material, PetscBool, MaterialKernels *))
 {
-  Plastic    *plastic;
-  PetscObject object = (PetscObject)material;
+  Plastic *plastic;
 
   PetscFunctionBegin;
   PetscCall(MaterialCreate_Isotropic(material));
-  PetscCall(PetscObjectComposeFunction(object, "MaterialDestroyElastic_C", material->ops->destroy));
-  PetscCall(PetscObjectComposeFunction(object, "MaterialSetFromOptionsElastic_C", material->ops->setfromoptions));
   PetscCall(PetscFree(material->data));
   PetscCall(PetscNew(&plastic));
   material->data                = plastic;
@@ -364,39 +265,27 @@ static PetscErrorCode Create(Material material, Hardening hardening)
   material->ops->setup          = SetUp;
   material->ops->view           = View;
   material->ops->destroy        = Destroy;
-  PetscCall(PetscObjectComposeFunction(object, setters[0], MaterialSetYieldStress_Plastic));
-  PetscCall(PetscObjectComposeFunction(object, setters[1], MaterialSetHardeningModulus_Plastic));
-  if (hardening == HARDENING_JOHNSON_COOK) {
-    PetscCall(PetscObjectComposeFunction(object, setters[5], MaterialSetJohnsonCook_Plastic));
-    PetscCall(PetscObjectComposeFunction(object, setters[6], MaterialSetJohnsonCookHeat_Plastic));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(PetscObjectComposeFunction(object, setters[2], MaterialSetKinematicModulus_Plastic));
-  PetscCall(PetscObjectComposeFunction(object, setters[3], MaterialSetVoceHardening_Plastic));
-  PetscCall(PetscObjectComposeFunction(object, setters[4], MaterialSetHardeningTable_Plastic));
+  material->ops->kernels        = kernels;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode MaterialCreate_J2(Material material)
 {
   PetscFunctionBegin;
-  PetscCall(Create(material, HARDENING_LINEAR));
-  material->ops->kernels = PlasticKernels_Finite;
+  PetscCall(Create(material, HARDENING_LINEAR, PlasticKernels_Finite));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode MaterialCreate_J2Small(Material material)
 {
   PetscFunctionBegin;
-  PetscCall(Create(material, HARDENING_LINEAR));
-  material->ops->kernels = PlasticKernels_Small;
+  PetscCall(Create(material, HARDENING_LINEAR, PlasticKernels_Small));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode MaterialCreate_JohnsonCook(Material material)
 {
   PetscFunctionBegin;
-  PetscCall(Create(material, HARDENING_JOHNSON_COOK));
-  material->ops->kernels = PlasticKernels_Finite;
+  PetscCall(Create(material, HARDENING_JOHNSON_COOK, PlasticKernels_Finite));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
