@@ -141,7 +141,7 @@ static void AddGeometricPart(PetscInt n, const Point *point, PetscReal theta, Pe
 }
 
 /* `viscous`: of the stress F C : dE/dt by the velocity */
-static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
+static PetscErrorCode ElementTangent_Axisymmetric(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Solid    *solid    = (const Solid *)element->data;
   const PetscInt  n_points = solid->shape->n_points, n = 2 * element->nodes;
@@ -168,26 +168,11 @@ static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool visc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementStiffness_Axisymmetric(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
-{
-  PetscFunctionBegin;
-  PetscCall(ComputeTangent(element, e, PETSC_FALSE, u, K));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementViscosity_Axisymmetric(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
-{
-  PetscFunctionBegin;
-  PetscCall(ComputeTangent(element, e, PETSC_TRUE, u, C));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* All but the loops over all elements */
 PetscErrorCode ElementCreate_Solid_Axisymmetric(Element element, PetscBool mean_dilatation)
 {
   PetscFunctionBegin;
   ((Solid *)element->data)->mean_dilatation = mean_dilatation;
-  element->ops->stiffness                   = ElementStiffness_Axisymmetric;
-  element->ops->viscosity                   = ElementViscosity_Axisymmetric;
+  element->ops->tangent                     = ElementTangent_Axisymmetric;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

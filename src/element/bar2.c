@@ -192,7 +192,7 @@ static PetscErrorCode ElementEnergy_Bar2(Element element, const PetscScalar u[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementStiffness_Bar2(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+static PetscErrorCode ElementTangent_Bar2(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Bar2     *bar    = (const Bar2 *)element->data;
   const PetscReal strain = GetStrain(bar, element->connectivity, e, u);
@@ -200,7 +200,7 @@ static PetscErrorCode ElementStiffness_Bar2(Element element, PetscInt e, const P
 
   PetscFunctionBegin;
   PetscCall(MaterialComputeUniaxialTangent(element->material, 1, &strain, &modulus));
-  k    = modulus * element->cross_section * PetscAbsReal(bar->inverse_length[e]);
+  k    = modulus * element->cross_section * PetscAbsReal(bar->inverse_length[e]) * (viscous ? PetscSqr(1 + strain) : 1);
   K[0] = K[3] = k;
   K[1] = K[2] = -k;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -221,16 +221,6 @@ static PetscErrorCode ElementViscousForce_Bar2(Element element, const PetscScala
     f[nodes[2 * e]] -= pull;
     f[nodes[2 * e + 1]] += pull;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementViscosity_Bar2(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
-{
-  const PetscReal stretch = 1 + GetStrain((const Bar2 *)element->data, element->connectivity, e, u);
-
-  PetscFunctionBegin;
-  PetscCall(ElementStiffness_Bar2(element, e, u, C));
-  for (PetscInt i = 0; i < 4; i++) C[i] *= PetscSqr(stretch);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -339,10 +329,9 @@ PetscErrorCode ElementCreate_Bar2(Element element)
   element->ops->energy         = ElementEnergy_Bar2;
   element->ops->stress         = ElementStress_Bar2;
   element->ops->points         = ElementPoints_Bar2;
-  element->ops->stiffness      = ElementStiffness_Bar2;
+  element->ops->tangent        = ElementTangent_Bar2;
   element->ops->nearest        = ElementNearest_Bar2;
   element->ops->viscousforce   = ElementViscousForce_Bar2;
-  element->ops->viscosity      = ElementViscosity_Bar2;
   element->ops->mass           = ElementMass_Bar2;
   element->ops->destroy        = ElementDestroy_Bar2;
   PetscFunctionReturn(PETSC_SUCCESS);

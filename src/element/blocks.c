@@ -31,18 +31,7 @@ PetscInt ElementHistorySlot(Element element, PetscInt e)
   return blocks ? blocks->first_slot[blocks->block[e]] + blocks->local[e] : e;
 }
 
-/*
-  ElementSetBlocks - gives elements several materials, before ElementSetUp()
-
-  Logically Collective
-
-  Input Parameters:
-+ element   - the `Element`
-. n         - number of blocks
-. materials - of each
-. count     - number of elements of this rank that ElementSetUp() will be given
-- block     - of each of them
-*/
+/* Gives elements several materials, before ElementSetUp() */
 PetscErrorCode ElementSetBlocks(Element element, PetscInt n, const Material materials[], PetscInt count, const PetscInt block[])
 {
   ElementBlocks blocks;
@@ -169,21 +158,12 @@ static PetscErrorCode ElementViscousForce_Blocks(Element element, const PetscSca
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementStiffness_Blocks(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+static PetscErrorCode ElementTangent_Blocks(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Element part = OpenPart(element, element->blocks->block[e]);
 
   PetscFunctionBegin;
-  PetscCall((*part->ops->stiffness)(part, element->blocks->local[e], u, K));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementViscosity_Blocks(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
-{
-  const Element part = OpenPart(element, element->blocks->block[e]);
-
-  PetscFunctionBegin;
-  PetscCall((*part->ops->viscosity)(part, element->blocks->local[e], u, C));
+  PetscCall((*part->ops->tangent)(part, element->blocks->local[e], viscous, u, K));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -268,16 +248,15 @@ static void SetOps(Element element)
     const struct _ElementOps *ops = element->blocks->parts[k]->ops;
 
     hourglass = (PetscBool)(hourglass && ops->hourglass);
-    viscous   = (PetscBool)(viscous && ops->viscousforce && ops->viscosity);
+    viscous   = (PetscBool)(viscous && ops->viscousforce);
     nearest   = (PetscBool)(nearest && ops->nearest);
     plastic   = (PetscBool)(plastic || ops->plastic);
   }
   element->ops->internalforce = ElementInternalForce_Blocks;
   element->ops->energy        = ElementEnergy_Blocks;
   element->ops->hourglass     = hourglass ? ElementHourglass_Blocks : NULL;
-  element->ops->stiffness     = ElementStiffness_Blocks;
+  element->ops->tangent       = ElementTangent_Blocks;
   element->ops->viscousforce  = viscous ? ElementViscousForce_Blocks : NULL;
-  element->ops->viscosity     = viscous ? ElementViscosity_Blocks : NULL;
   element->ops->mass          = ElementMass_Blocks;
   element->ops->stress        = ElementStress_Blocks;
   element->ops->plastic       = plastic ? ElementPlastic_Blocks : NULL;
@@ -360,22 +339,8 @@ PetscErrorCode ElementWarnOfLockingBlocks(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ElementCreateSelection - some of the elements of another set, with nodes of their own, on this rank alone
-
-  Not Collective
-
-  Input Parameters:
-+ element      - the `Element`, set up
-. linearized   - they have the linear elastic materials of MaterialLinearize()
-. count        - how many
-. elements     - their numbers there; `NULL`: the first ones
-. connectivity - numbers of their nodes; kept by reference
-- coordinates  - of the nodes [m]; kept by reference
-
-  Output Parameter:
-. selection - the new `Element`, set up
-*/
+/* Some of the elements of another set, with nodes of their own, on this rank alone. `elements`: their numbers there; `NULL`: the first
+   ones; `connectivity`: numbers of their nodes; kept by reference; `coordinates`: of the nodes [m]; kept by reference */
 PetscErrorCode ElementCreateSelection(Element element, PetscBool linearized, PetscInt count, const PetscInt elements[],
                                       const PetscInt connectivity[], const PetscReal coordinates[], Element *selection)
 {

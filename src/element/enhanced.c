@@ -85,7 +85,9 @@ static PetscErrorCode Condense(const Enhanced *enhanced, const PetscReal whole[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementStiffness_Enhanced(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+/* `viscous`: with the displacement gradients of the nodes alone, and rates of the modes that leave them without viscous force: objective,
+   and never negative */
+static PetscErrorCode ElementTangent_Enhanced(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Solid *solid = (const Solid *)element->data;
   Enhanced     enhanced;
@@ -93,41 +95,10 @@ static PetscErrorCode ElementStiffness_Enhanced(Element element, PetscInt e, con
 
   PetscFunctionBegin;
   EnhancedPrepare(element, e, u, &enhanced);
-  PetscCall(EnhancedBalance(solid, &enhanced, forces));
-  EnhancedGetMatrix(solid, &enhanced, PETSC_FALSE, 0, whole);
+  if (viscous) EnhancedGetGradients(&enhanced);
+  else PetscCall(EnhancedBalance(solid, &enhanced, forces));
+  EnhancedGetMatrix(solid, &enhanced, viscous, 0, whole);
   PetscCall(Condense(&enhanced, whole, K));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* With the displacement gradients of the nodes alone, and rates of the modes that leave them without viscous force: objective, and never
-   negative */
-static PetscErrorCode ElementViscosity_Enhanced(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
-{
-  const Solid *solid = (const Solid *)element->data;
-  Enhanced     enhanced;
-  PetscReal    whole[MAX_UNKNOWNS * MAX_UNKNOWNS];
-
-  PetscFunctionBegin;
-  EnhancedPrepare(element, e, u, &enhanced);
-  EnhancedGetGradients(&enhanced);
-  EnhancedGetMatrix(solid, &enhanced, PETSC_TRUE, 0, whole);
-  PetscCall(Condense(&enhanced, whole, C));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementViscousForce_Enhanced(Element element, const PetscScalar u[], const PetscScalar v[], PetscScalar f[])
-{
-  const PetscInt dim = element->dim, n = element->nodes * dim;
-  PetscScalar    C[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS] = {0};
-
-  PetscFunctionBegin;
-  for (PetscInt e = 0; e < element->count; e++) {
-    const PetscInt *nodes = element->connectivity + e * element->nodes;
-
-    PetscCall(ElementViscosity_Enhanced(element, e, u, C));
-    for (PetscInt i = 0; i < n; i++)
-      for (PetscInt j = 0; j < n; j++) f[dim * nodes[i / dim] + i % dim] += C[i * n + j] * v[dim * nodes[j / dim] + j % dim];
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -186,9 +157,8 @@ PetscErrorCode ElementCreate_Enhanced(Element element)
   solid->own_history          = EnhancedAmplitudesPerPoint(element->dim * element->dim, solid->shape->n_points);
   element->ops->internalforce = ElementInternalForce_Enhanced;
   element->ops->energy        = ElementEnergy_Enhanced;
-  element->ops->stiffness     = ElementStiffness_Enhanced;
-  element->ops->viscousforce  = ElementViscousForce_Enhanced;
-  element->ops->viscosity     = ElementViscosity_Enhanced;
+  element->ops->tangent       = ElementTangent_Enhanced;
+  element->ops->viscousforce  = SolidViscousForce;
   element->ops->stress        = ElementStress_Enhanced;
   element->ops->plastic       = ElementPlastic_Enhanced;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -33,7 +33,7 @@ static PetscErrorCode GetKey(DMPolytopeType cell_type, PetscBool axisymmetric, c
 
   Level: developer
 
-.seealso: `Element`, `BodySetElementFormulation()`, `ElementRegister()`
+.seealso: `Element`, `ElementRegister()`
 @*/
 PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
 {

@@ -147,7 +147,7 @@ static void AddGeometricPart(Element element, const Point *point, PetscReal thet
 }
 
 /* `viscous`: of the stress F' C : dE'/dt by the velocity */
-static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
+static PetscErrorCode ElementTangent_MeanDilatation(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Solid    *solid    = (const Solid *)element->data;
   const PetscInt  n_points = solid->shape->n_points, n = element->nodes * element->dim;
@@ -174,20 +174,6 @@ static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool visc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementStiffness_MeanDilatation(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
-{
-  PetscFunctionBegin;
-  PetscCall(ComputeTangent(element, e, PETSC_FALSE, u, K));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementViscosity_MeanDilatation(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
-{
-  PetscFunctionBegin;
-  PetscCall(ComputeTangent(element, e, PETSC_TRUE, u, C));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* All but the loops over all elements */
 PetscErrorCode ElementCreate_Solid_MeanDilatation(Element element)
 {
@@ -197,7 +183,6 @@ PetscErrorCode ElementCreate_Solid_MeanDilatation(Element element)
              "does not lock; use full or enhanced",
              ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "");
   ((Solid *)element->data)->mean_share = 1;
-  element->ops->stiffness              = ElementStiffness_MeanDilatation;
-  element->ops->viscosity              = ElementViscosity_MeanDilatation;
+  element->ops->tangent                = ElementTangent_MeanDilatation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -146,7 +146,7 @@ static void AddHourglasses(const Hourglass *constants, const Reduced *reduced, P
 }
 
 /* `viscous`: of the stress F C : dE/dt by the velocity, and of hourglasses that are damped as they are held */
-static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
+static PetscErrorCode ElementTangent_Reduced(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Solid    *solid = (const Solid *)element->data;
   const PetscInt  dim = element->dim, n = element->nodes * dim;
@@ -167,37 +167,6 @@ static PetscErrorCode ComputeTangent(Element element, PetscInt e, PetscBool visc
           K[row * n + column] += scale * reduced.gradient[row / dim][j] * tangent[9 * (3 * (row % dim) + j) + 3 * (column % dim) + l] *
                                  reduced.gradient[column / dim][l];
   AddHourglasses((const Hourglass *)solid->own, &reduced, element->cross_section, finite, (PetscBool)(finite && !viscous), K);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementStiffness_Reduced(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
-{
-  PetscFunctionBegin;
-  PetscCall(ComputeTangent(element, e, PETSC_FALSE, u, K));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementViscosity_Reduced(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
-{
-  PetscFunctionBegin;
-  PetscCall(ComputeTangent(element, e, PETSC_TRUE, u, C));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Element by element: damped nonlinear bodies lose what makes one point quick */
-static PetscErrorCode ElementViscousForce_Reduced(Element element, const PetscScalar u[], const PetscScalar v[], PetscScalar f[])
-{
-  const PetscInt dim = element->dim, n = element->nodes * dim;
-  PetscScalar    C[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
-
-  PetscFunctionBegin;
-  for (PetscInt e = 0; e < element->count; e++) {
-    const PetscInt *nodes = element->connectivity + e * element->nodes;
-
-    PetscCall(ComputeTangent(element, e, PETSC_TRUE, u, C));
-    for (PetscInt i = 0; i < n; i++)
-      for (PetscInt j = 0; j < n; j++) f[dim * nodes[i / dim] + i % dim] += C[i * n + j] * v[dim * nodes[j / dim] + j % dim];
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,9 +213,8 @@ PetscErrorCode ElementCreate_Solid_Reduced(Element element)
   solid->reduced.n_points    = 1;
   solid->reduced.points      = middle;
   solid->shape               = &solid->reduced;
-  element->ops->stiffness    = ElementStiffness_Reduced;
-  element->ops->viscousforce = ElementViscousForce_Reduced;
-  element->ops->viscosity    = ElementViscosity_Reduced;
+  element->ops->tangent      = ElementTangent_Reduced;
+  element->ops->viscousforce = SolidViscousForce;
   element->ops->destroy      = ElementDestroy_Reduced;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

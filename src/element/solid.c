@@ -249,7 +249,7 @@ static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gra
 }
 
 /* K_(a i)(b k) = sum over the points of w dN_a/dX_j (dP_ij/dH_kl) dN_b/dX_l; `viscous`: of the stress F C : dE/dt, by the velocity */
-static PetscErrorCode ComputeStiffness(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
+static PetscErrorCode ElementTangent_Solid(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Solid      *solid = (const Solid *)element->data;
   const SolidShape *shape = solid->shape;
@@ -284,17 +284,20 @@ static PetscErrorCode ComputeStiffness(Element element, PetscInt e, PetscBool vi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementStiffness_Solid(Element element, PetscInt e, const PetscScalar u[], PetscScalar K[])
+/* The viscous force of formulations that have no loop of their own for it: element by element, by the tangent */
+PetscErrorCode SolidViscousForce(Element element, const PetscScalar u[], const PetscScalar v[], PetscScalar f[])
 {
-  PetscFunctionBegin;
-  PetscCall(ComputeStiffness(element, e, PETSC_FALSE, u, K));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  const PetscInt dim = element->dim, n = element->nodes * dim;
+  PetscScalar    C[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
-static PetscErrorCode ElementViscosity_Solid(Element element, PetscInt e, const PetscScalar u[], PetscScalar C[])
-{
   PetscFunctionBegin;
-  PetscCall(ComputeStiffness(element, e, PETSC_TRUE, u, C));
+  for (PetscInt e = 0; e < element->count; e++) {
+    const PetscInt *nodes = element->connectivity + e * element->nodes;
+
+    PetscUseTypeMethod(element, tangent, e, PETSC_TRUE, u, C);
+    for (PetscInt i = 0; i < n; i++)
+      for (PetscInt j = 0; j < n; j++) f[dim * nodes[i / dim] + i % dim] += C[i * n + j] * v[dim * nodes[j / dim] + j % dim];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -373,9 +376,8 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   element->shape               = solid->load_shape;
   element->ops->setfromoptions = ElementSetFromOptions_Solid;
   element->ops->setup          = ElementSetUp_Solid;
-  element->ops->stiffness      = ElementStiffness_Solid;
+  element->ops->tangent        = ElementTangent_Solid;
   element->ops->nearest        = ElementNearest_Solid;
-  element->ops->viscosity      = ElementViscosity_Solid;
   element->ops->mass           = ElementMass_Solid;
   element->ops->points         = ElementPoints_Solid;
   element->ops->destroy        = ElementDestroy_Solid;

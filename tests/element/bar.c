@@ -42,7 +42,7 @@ static void has_stiffness_and_mass_found_by_hand(void **state)
   assert_int_equal(element->nodes, 2);
   assert_int_equal(element->count, 2);
   for (PetscInt e = 0; e < 2; e++) {
-    ok((*element->ops->stiffness)(element, e, zero, K));
+    ok((*element->ops->tangent)(element, e, PETSC_FALSE, zero, K));
     ok((*element->ops->mass)(element, e, M));
     assert_true(K[0] == stiffness[e] && K[3] == stiffness[e] && K[1] == -stiffness[e] && K[2] == -stiffness[e]);
     near(M[0], mass[e] / 3, 1e-15);
@@ -147,7 +147,7 @@ static void energy_force_and_tangent_agree(void **state)
     for (PetscInt e = 0; e < 3; e++) {
       PetscReal k[4];
 
-      ok((*solid.element->ops->stiffness)(solid.element, e, u, k));
+      ok((*solid.element->ops->tangent)(solid.element, e, PETSC_FALSE, u, k));
       for (PetscInt a = 0; a < 4; a++) K[mesh.connectivity[2 * e + a / 2]][mesh.connectivity[2 * e + a % 2]] += k[a];
     }
     for (PetscInt i = 0; i < 4; i++) {

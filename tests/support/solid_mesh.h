@@ -190,7 +190,7 @@ static inline void check_tangent(const Solid *solid, const Mesh *mesh, PetscReal
   const PetscInt n = mesh->dim * mesh->nodes;
   PetscReal      above[MAX_DOFS], below[MAX_DOFS], K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS];
 
-  ok((*solid->element->ops->stiffness)(solid->element, 0, u, K));
+  ok((*solid->element->ops->tangent)(solid->element, 0, PETSC_FALSE, u, K));
   for (PetscInt b = 0; b < n; b++) {
     const PetscInt  dof   = mesh->dim * mesh->connectivity[b / mesh->dim] + b % mesh->dim;
     const PetscReal start = u[dof];
@@ -271,7 +271,7 @@ static inline void check_viscosity(const Solid *solid, const Mesh *mesh, const P
     f[i] = 0;
   }
   ok((*solid->element->ops->viscousforce)(solid->element, u, v, f));
-  ok((*solid->element->ops->viscosity)(solid->element, 0, u, C));
+  ok((*solid->element->ops->tangent)(solid->element, 0, PETSC_TRUE, u, C));
   for (PetscInt a = 0; a < n; a++) {
     const PetscInt at  = mesh->dim * mesh->connectivity[a / mesh->dim] + a % mesh->dim;
     PetscReal      sum = 0;

@@ -21,14 +21,12 @@ struct _ElementOps {
   PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);          /* stored by all elements of this rank [J] */
   PetscErrorCode (*hourglass)(Element, const PetscScalar[], PetscReal *); /* part of that which holds modes that the points do not see; may
                                                                              be missing */
-  PetscErrorCode (*stiffness)(Element, PetscInt, const PetscScalar[],
-                              PetscScalar[]); /* tangent of one element at the displacement of the rank's nodes, row by row [N/m] */
-  /* For Rayleigh damping of nonlinear bodies, of elements with a linear material; they may be missing. Adds to the third the forces of the
-     stress S = C : dE/dt at the displacement that is first and the velocity that is second, with the rate of Green and Lagrange's strain
-     and the material's C [N/s] */
+  /* tangent of one element at the displacement of the rank's nodes, row by row [N/m]. `viscous`, of elements with viscousforce(): the
+     derivative of that by the velocity. That is for Rayleigh damping of nonlinear bodies, with a linear material, and may be missing: it
+     adds to the third the forces of the stress S = C : dE/dt at the displacement that is first and the velocity that is second, with the
+     rate of Green and Lagrange's strain and the material's C [N/s] */
+  PetscErrorCode (*tangent)(Element, PetscInt, PetscBool, const PetscScalar[], PetscScalar[]);
   PetscErrorCode (*viscousforce)(Element, const PetscScalar[], const PetscScalar[], PetscScalar[]);
-  PetscErrorCode (*viscosity)(Element, PetscInt, const PetscScalar[],
-                              PetscScalar[]);               /* its derivative by the velocity, of one element, row by row [N/m] */
   PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]); /* consistent mass of one element, nodes x nodes: all components have it [kg] */
   PetscErrorCode (*stress)(Element, const PetscScalar[],
                            PetscReal[]); /* Cauchy stress, mean of each element: xx yy zz xy yz xz, 6 x count [Pa] */

@@ -88,6 +88,7 @@ SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, con
 
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid_MeanDilatation(Element);
+PETSC_INTERN PetscErrorCode SolidViscousForce(Element, const PetscScalar[], const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode SolidSetUpMaterial(Element, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ElementCreate_Solid_Axisymmetric(Element, PetscBool);
 PETSC_EXTERN PetscReal      SolidGetShape(Element, PetscInt, const PetscReal xi[], PetscReal N[], PetscReal gradient[]);

@@ -249,8 +249,7 @@ PetscErrorCode BodyAddDampingMatrix(Body body, Vec u, PetscReal scale, Mat A)
     at = zero;
   }
   for (PetscInt e = 0; e < damping->element->count; e++) {
-    if (u) PetscCall((*damping->element->ops->viscosity)(damping->element, e, at, part));
-    else PetscCall((*damping->element->ops->stiffness)(damping->element, e, at, part));
+    PetscCall((*damping->element->ops->tangent)(damping->element, e, u ? PETSC_TRUE : PETSC_FALSE, at, part));
     for (PetscInt i = 0; i < n * n; i++) part[i] *= scale * damping->stiffness;
     PetscCall(BodyGetElementDofs(body, damping->numbers[e], dofs));
     PetscCall(MatSetValues(A, n, dofs, n, dofs, part, ADD_VALUES));

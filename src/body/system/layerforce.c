@@ -327,7 +327,7 @@ PetscErrorCode BodyAssembleLayer(Body body, Vec near, const PetscReal history[],
 
     for (PetscInt i = 0; i < n; i++)
       dofs[i] = layer->numbers[layer->connectivity[e * nodes + i / body->mesh.dim] * body->mesh.dim + i % body->mesh.dim];
-    PetscCall((*layer->element->ops->stiffness)(layer->element, e, at, element));
+    PetscCall((*layer->element->ops->tangent)(layer->element, e, PETSC_FALSE, at, element));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, element, ADD_VALUES)); /* leaves negative numbers out */
   }
   PetscCall(VecRestoreArrayRead(near, &at));

@@ -52,7 +52,7 @@ PetscErrorCode BodyGetElementEigenvalue(Body body, PetscInt e, const PetscScalar
 
   PetscFunctionBegin;
   *largest = 0;
-  PetscCall((*body->model.element->ops->stiffness)(body->model.element, e, u, K));
+  PetscCall((*body->model.element->ops->tangent)(body->model.element, e, PETSC_FALSE, u, K));
   PetscCall(BodyGetElementMass(body, e, of_nodes));
   for (PetscInt i = 0; i < n; i++) {
     const PetscBool moves = (PetscBool)(body->mass.extrapolation && IsMassless(body, nodes[i / dim]));

@@ -198,7 +198,7 @@ PetscErrorCode BodyAssembleTangent(Body body, Vec u, const PetscBool marked[], M
   }
   for (PetscInt e = 0; e < body->model.element->count; e++) {
     if (marked && !marked[e]) continue;
-    PetscCall((*element->ops->stiffness)(element, e, array, tangent));
+    PetscCall((*element->ops->tangent)(element, e, PETSC_FALSE, array, tangent));
     PetscCall(BodyGetElementDofs(body, e, dofs));
     PetscCall(MatSetValues(K, n, dofs, n, dofs, tangent, ADD_VALUES));
   }

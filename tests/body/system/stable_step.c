@@ -76,7 +76,7 @@ static PetscReal compute_stable_step_of_elements(Body body)
     PetscReal    eigenvalues[ELEMENT_MAX_DOFS];
     PetscBLASInt one = 1, size, lwork = 8 * ELEMENT_MAX_DOFS, info;
 
-    ok((*body->model.element->ops->stiffness)(body->model.element, e, zero, K));
+    ok((*body->model.element->ops->tangent)(body->model.element, e, PETSC_FALSE, zero, K));
     ok(BodyGetElementMass(body, e, of_nodes));
     for (PetscInt i = 0; i < n; i++)
       for (PetscInt j = 0; j < n; j++) M[i * n + j] = i % dim == j % dim ? of_nodes[i / dim * nodes + j / dim] : 0;
