@@ -2,13 +2,14 @@
    only with a generator of tetrahedra. */
 #include "ballimpl.h"
 
-PetscErrorCode MeshIsBall(const char prefix[], PetscBool *ball)
+/* Whether -dm_plex_shape is this one */
+PetscErrorCode MeshHasShape(const char prefix[], const char shape[], PetscBool *has)
 {
-  char shape[64] = "";
+  char given[64] = "";
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", shape, sizeof(shape), NULL));
-  PetscCall(PetscStrcasecmp(shape, "ball", ball));
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", given, sizeof(given), NULL));
+  PetscCall(PetscStrcasecmp(given, shape, has));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,42 +120,52 @@ static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillBall(void *ctx)
+static PetscErrorCode Fill(void *ctx)
 {
   PetscFunctionBegin;
   PetscCall(MeshFillBall((BallGrid *)ctx));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A disc or a ball from options, all of it on a rank; `PETSC_DECIDE`: on the first one. And where the nodes in the middle of its edges are,
-   if it has some */
-PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm, MeshMiddles *middles)
+/* What lies whole on a rank, `PETSC_DECIDE`: on the first one; and how much of its volume is missing [parts of it] */
+PetscErrorCode BallCreate(MPI_Comm comm, Ball *ball, const char where[], PetscMPIInt rank, DM *dm, MeshMiddles *middles, PetscReal *missing)
 {
-  Ball           ball;
   MeshFile       file;
-  BallGrid       grid = {.file = &file, .ball = &ball};
-  char           where[256];
+  BallGrid       grid = {.file = &file, .ball = ball};
   PetscErrorCode error;
 
   PetscFunctionBegin;
-  PetscCall(ReadBall(comm, prefix, &ball));
   PetscCall(MeshFileInitialize(&file, NULL));
   file.rank = PetscMax(rank, 0);
-  PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape ball", name, prefix));
-  error = MeshOnRank(comm, file.rank, FillBall, &grid, where);
+  error     = MeshOnRank(comm, file.rank, Fill, &grid, where);
   PetscCallMPI(MPI_Bcast(&grid.missing, 1, MPIU_REAL, file.rank, comm));
-  if (!error && grid.missing > 0 && ball.keep_volume)
-    PetscCall(
-        PetscFPrintf(comm, stderr,
-                     "impakt: warning: body '%s' has %.2g %% less volume than the ball of its radius: elements opposite to the pole are "
-                     "too large to be moved outward; take more -%sball_divisions, or a weaker -%sball_grading\n",
-                     name, (double)(100 * grid.missing), prefix, prefix));
-  if (!error && grid.missing > 0 && !ball.keep_volume)
-    PetscCall(PetscPrintf(comm, "body '%s' has %.2g %% less volume than the ball of its radius (-%sball_keep_volume false)\n", name,
-                          (double)(100 * grid.missing), prefix));
+  *missing = grid.missing;
   if (!error) error = MeshBuild(comm, &file, where, dm, middles);
   PetscCall(PetscFree(grid.rim));
   PetscCall(MeshFileDestroy(&file));
   PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A disc or a ball from options, and where the nodes in the middle of its edges are, if it has some */
+PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm, MeshMiddles *middles)
+{
+  Ball      ball;
+  PetscReal missing;
+  char      where[256];
+
+  PetscFunctionBegin;
+  PetscCall(ReadBall(comm, prefix, &ball));
+  PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape ball", name, prefix));
+  PetscCall(BallCreate(comm, &ball, where, rank, dm, middles, &missing));
+  if (missing > 0 && ball.keep_volume)
+    PetscCall(
+        PetscFPrintf(comm, stderr,
+                     "impakt: warning: body '%s' has %.2g %% less volume than the ball of its radius: elements opposite to the pole are "
+                     "too large to be moved outward; take more -%sball_divisions, or a weaker -%sball_grading\n",
+                     name, (double)(100 * missing), prefix, prefix));
+  else if (missing > 0)
+    PetscCall(PetscPrintf(comm, "body '%s' has %.2g %% less volume than the ball of its radius (-%sball_keep_volume false)\n", name,
+                          (double)(100 * missing), prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

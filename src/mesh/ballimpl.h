@@ -33,6 +33,7 @@ typedef struct {
   PetscReal   missing;   /* part of the ball's volume that the mesh lacks */
 } BallGrid;
 
+PETSC_INTERN PetscErrorCode BallCreate(MPI_Comm, Ball *, const char[], PetscMPIInt, DM *, MeshMiddles *, PetscReal *);
 PETSC_INTERN PetscErrorCode MeshFillBall(BallGrid *);
 PETSC_INTERN PetscErrorCode BallChooseOrder(const char[], Ball *);
 PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);

@@ -241,15 +241,7 @@ static PetscErrorCode Tell(const MeshFile *file, const char where[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  MeshFileDoubt - warns of elements that overlap, and of a mesh in pieces; in one dimension these are errors
-
-  Not Collective; the first rank calls it
-
-  Input Parameters:
-+ file  - the file, of which the body's cells have been selected
-- where - body and file, for the message
-*/
+/* Warns of elements that overlap, and of a mesh in pieces; in one dimension these are errors */
 PetscErrorCode MeshFileDoubt(const MeshFile *file, const char where[])
 {
   PetscInt   n, overlaps, pair[2] = {0}, pieces, doubles, corners = 0;

@@ -120,8 +120,8 @@ static PetscErrorCode Begin(MPI_Comm comm, const char prefix[], const char name[
   PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_blocks", &blocks));
   PetscCheck(from_file || !blocks, comm, PETSC_ERR_USER_INPUT, "-%smesh_blocks needs a mesh file: give -%sdm_plex_filename", prefix,
              prefix);
-  if (!from_file) PetscCall(MeshIsBall(prefix, &ball));
-  if (!from_file) PetscCall(MeshIsRod(prefix, &rod));
+  if (!from_file) PetscCall(MeshHasShape(prefix, "ball", &ball));
+  if (!from_file) PetscCall(MeshHasShape(prefix, "rod", &rod));
   if (from_file) PetscCall(MeshCreateFromFile(comm, prefix, name, path, dm, middles));
   else if (rod) PetscCall(MeshCreateRod(comm, prefix, name, rank, dm, middles));
   else if (ball) PetscCall(MeshCreateBall(comm, prefix, name, rank, dm, middles));

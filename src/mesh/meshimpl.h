@@ -143,9 +143,8 @@ PETSC_INTERN PetscErrorCode MeshSpreadContact(DM, const MeshRanks *, const char[
 PETSC_INTERN PetscErrorCode MeshBoxMarkContact(MPI_Comm, const char[], const char[], MeshBox *);
 PETSC_INTERN PetscErrorCode MeshBricksChoose(MeshBox *, PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBricks(MPI_Comm, const MeshBox *, DM *);
-PETSC_INTERN PetscErrorCode MeshIsRod(const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateRod(MPI_Comm, const char[], const char[], PetscMPIInt, DM *, MeshMiddles *);
-PETSC_INTERN PetscErrorCode MeshIsBall(const char[], PetscBool *);
+PETSC_INTERN PetscErrorCode MeshHasShape(const char[], const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCreateBall(MPI_Comm, const char[], const char[], PetscMPIInt, DM *, MeshMiddles *);
 PETSC_INTERN PetscErrorCode MeshReadNumbers(MPI_Comm, const char[], const char[], PetscInt, const char[], PetscReal[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshBuild(MPI_Comm, MeshFile *, const char[], DM *, MeshMiddles *);

@@ -170,8 +170,8 @@ PetscErrorCode MeshGetPlaceOption(const char prefix[], const char *option[], con
   PetscFunctionBegin;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(placed) && !is_placed; i++)
     PetscCall(PetscOptionsHasName(NULL, prefix, placed[i], &is_placed));
-  PetscCall(MeshIsRod(prefix, &is_rod));
-  PetscCall(MeshIsBall(prefix, &is_ball));
+  PetscCall(MeshHasShape(prefix, "rod", &is_rod));
+  PetscCall(MeshHasShape(prefix, "ball", &is_ball));
   if (option) *option = is_placed || is_rod ? "translate" : is_ball ? "ball_centre" : "dm_plex_box_lower";
   if (!keeps) PetscFunctionReturn(PETSC_SUCCESS);
   volume = is_rod ? "rod_keep_volume" : "ball_keep_volume";

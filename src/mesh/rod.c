@@ -1,16 +1,6 @@
 /* Rods from options: a disc, or a half or a quarter of it, drawn out along z. */
 #include "ballimpl.h"
 
-PetscErrorCode MeshIsRod(const char prefix[], PetscBool *rod)
-{
-  char shape[64] = "";
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", shape, sizeof(shape), NULL));
-  PetscCall(PetscStrcasecmp(shape, "rod", rod));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ReadLength(MPI_Comm comm, const char prefix[], const char option[], PetscReal *value)
 {
   PetscReal values[4];
@@ -97,32 +87,16 @@ PetscErrorCode BallDrawOut(BallGrid *grid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FillRod(void *ctx)
-{
-  PetscFunctionBegin;
-  PetscCall(MeshFillBall((BallGrid *)ctx));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A rod from options, along z from 0, all of it on a rank; `PETSC_DECIDE`: on the first one. And where the nodes in the middle of its edges
-   are, if it has some */
+/* A rod from options, along z from 0, and where the nodes in the middle of its edges are, if it has some */
 PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm, MeshMiddles *middles)
 {
-  Ball           disc;
-  MeshFile       file;
-  BallGrid       grid = {.file = &file, .ball = &disc};
-  char           where[256];
-  PetscErrorCode error;
+  Ball      disc;
+  PetscReal missing;
+  char      where[256];
 
   PetscFunctionBegin;
   PetscCall(ReadRod(comm, prefix, &disc));
-  PetscCall(MeshFileInitialize(&file, NULL));
-  file.rank = PetscMax(rank, 0);
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', -%sdm_plex_shape rod", name, prefix));
-  error = MeshOnRank(comm, file.rank, FillRod, &grid, where);
-  if (!error) error = MeshBuild(comm, &file, where, dm, middles);
-  PetscCall(PetscFree(grid.rim));
-  PetscCall(MeshFileDestroy(&file));
-  PetscCall(error);
+  PetscCall(BallCreate(comm, &disc, where, rank, dm, middles, &missing));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

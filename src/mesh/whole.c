@@ -57,8 +57,8 @@ PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal cent
   *cells = 0;
   for (PetscInt d = 0; d < 3; d++) centre[d] = 0;
   PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_filename", &file));
-  PetscCall(MeshIsBall(prefix, &ball));
-  PetscCall(MeshIsRod(prefix, &rod));
+  PetscCall(MeshHasShape(prefix, "ball", &ball));
+  PetscCall(MeshHasShape(prefix, "rod", &rod));
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &dim, NULL));
   dim = PetscMin(PetscMax(dim, 1), 3);
   if (ball) {
@@ -96,8 +96,8 @@ PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may
   PetscAssertPointer(may, 3);
   PetscAssertPointer(asks, 4);
   PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_filename", &file));
-  PetscCall(MeshIsBall(prefix, &ball));
-  PetscCall(MeshIsRod(prefix, &rod));
+  PetscCall(MeshHasShape(prefix, "ball", &ball));
+  PetscCall(MeshHasShape(prefix, "rod", &rod));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-petscpartitioner_type", &has));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !has; i++) PetscCall(PetscOptionsHasName(NULL, prefix, options[i], &has));
   if (!has && !file && !ball && !rod) PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_bricks", &has));
