@@ -37,6 +37,11 @@ typedef struct {
   PetscReal mean_velocity;    /* mass-averaged [m/s] */
 } ExactSolution;
 
+/* Of the solution, see ExactGetFigures() */
+typedef struct {
+  PetscReal impact, release, force, impulse;
+} ExactFigures;
+
 /* Of one bar: relative L2 norms in time, as in ExactErrors, and largest error in time / largest exact value in time */
 typedef struct {
   PetscReal kinetic, potential, mean_velocity;
@@ -57,9 +62,7 @@ typedef struct {
 PETSC_EXTERN PetscErrorCode      ExactInitializePackage(void);
 PETSC_EXTERN PetscErrorCode      ExactCreate(Controller, ExactType, Exact *);
 PETSC_EXTERN PetscErrorCode      ExactEvaluate(Exact, PetscInt, PetscReal, ExactSolution *);
-PETSC_EXTERN PetscErrorCode      ExactGetTimes(Exact, PetscReal *, PetscReal *);
-PETSC_EXTERN PetscErrorCode      ExactGetForce(Exact, PetscReal *);
-PETSC_EXTERN PetscErrorCode      ExactGetImpulse(Exact, PetscReal *);
+PETSC_EXTERN PetscErrorCode      ExactGetFigures(Exact, ExactFigures *);
 PETSC_EXTERN PetscErrorCode      ExactGetBodies(Exact, const char *[]);
 PETSC_EXTERN ControllerMonitorFn ExactMonitor;
 PETSC_EXTERN PetscErrorCode      ExactGetErrors(Exact, ExactErrors *);

@@ -69,36 +69,14 @@ PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* When the bars push each other. `impact`: first contact [s]; `release`: end of the last contact force [s]; not-a-number where the run
-   does not last until then */
-PetscErrorCode ExactGetTimes(Exact exact, PetscReal *impact, PetscReal *release)
+/* First contact and end of the last contact force [s], the latter not-a-number where the run does not last until then; the mean of the
+   force over the middle three fifths of that time, compression positive [N]; and the force integrated over time [N s] */
+PetscErrorCode ExactGetFigures(Exact exact, ExactFigures *figures)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
-  PetscAssertPointer(impact, 2);
-  PetscAssertPointer(release, 3);
-  *impact  = exact->impact;
-  *release = exact->release;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The mean of the contact force over the middle three fifths from first contact to release. `force`: compression positive [N] */
-PetscErrorCode ExactGetForce(Exact exact, PetscReal *force)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
-  PetscAssertPointer(force, 2);
-  *force = exact->force;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The contact force integrated over time. `impulse`: [N s] */
-PetscErrorCode ExactGetImpulse(Exact exact, PetscReal *impulse)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
-  PetscAssertPointer(impulse, 2);
-  *impulse = exact->impulse;
+  PetscAssertPointer(figures, 2);
+  *figures = (ExactFigures){exact->impact, exact->release, exact->force, exact->impulse};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

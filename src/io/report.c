@@ -21,6 +21,7 @@ typedef struct {
   const StatisticsResults *results;
   ControllerStatics        statics;
   Units                    units;
+  ExactFigures             exact; /* not-a-number: the run is compared with none */
 } Report;
 
 /* Prints a line with a value and, if there is one, the exact value beside it */
@@ -57,44 +58,39 @@ static PetscErrorCode PrintCount(const Report *report, const char name[], PetscI
 }
 
 /* When bodies touched. In statics, time only counts loads: bodies that touch in all load steps have the number of these alone. */
-static PetscErrorCode ViewTimes(const Report *report, Exact exact)
+static PetscErrorCode ViewTimes(const Report *report)
 {
   const ContactStatistics *c      = &report->results->contact;
   const PetscBool          always = (PetscBool)(report->statics.all && c->steps_in_contact == report->results->steps);
-  PetscReal                onset = c->times.onset, impact = NAN, release = NAN;
+  PetscReal                onset = c->times.onset, impact = report->exact.impact;
 
   PetscFunctionBegin;
-  if (exact) {
-    PetscCall(ExactGetTimes(exact, &impact, &release));
-    if (PetscAbsReal(impact) < ROUND_OFF * (release - impact)) impact = 0;
-  }
+  if (PetscAbsReal(impact) < ROUND_OFF * (report->exact.release - impact)) impact = 0;
   if (PetscAbsReal(onset) < ROUND_OFF * (c->release_time - onset)) onset = 0;
   if (!always) PetscCall(PrintValue(report, "first contact", onset, UNIT_TIME, impact));
   if (!always && c->times.in_contact_at_end) PetscCall(PetscViewerASCIIPrintf(report->viewer, "  %-32s still in contact\n", "release"));
-  else if (!always) PetscCall(PrintValue(report, "release", c->times.separation, UNIT_TIME, release));
+  else if (!always) PetscCall(PrintValue(report, "release", c->times.separation, UNIT_TIME, report->exact.release));
   if (!always) PetscCall(PrintCount(report, "onsets", c->onsets, -1));
   PetscCall(PrintCount(report, "steps in contact", c->steps_in_contact, report->results->steps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ViewContact(const Report *report, Contact contact, Exact exact)
+static PetscErrorCode ViewContact(const Report *report, Contact contact)
 {
-  const ContactStatistics *c       = &report->results->contact;
-  PetscReal                impulse = NAN;
+  const ContactStatistics *c = &report->results->contact;
   ContactType              type;
   PetscBool                pulls = PETSC_FALSE, friction, breaks;
   ContactCounts            counts;
 
   PetscFunctionBegin;
-  if (exact) PetscCall(ExactGetImpulse(exact, &impulse));
   PetscCall(ContactGetType(contact, &type));
   for (ContactLaw law = CONTACT_LAW_TIED; law <= CONTACT_LAW_FRICTION && !pulls; law = (ContactLaw)(law + 1))
     PetscCall(ContactHasLaw(contact, law, &pulls));
   PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
   PetscCall(PetscViewerASCIIPrintf(report->viewer, "contact (%s)\n", type));
-  PetscCall(ViewTimes(report, exact));
+  PetscCall(ViewTimes(report));
   if (pulls) PetscCall(PrintValue(report, "tension of a node, peak", c->tension_max, UNIT_FORCE, NAN));
-  if (!report->statics.all) PetscCall(PrintValue(report, "impulse along the normals", c->impulse, UNIT_IMPULSE, impulse));
+  if (!report->statics.all) PetscCall(PrintValue(report, "impulse along the normals", c->impulse, UNIT_IMPULSE, report->exact.impulse));
   PetscCall(PrintValue(report, "largest penetration", PetscMax(0, -c->gap_min), UNIT_LENGTH, NAN));
   if (friction) PetscCall(PrintValue(report, "energy taken by friction", c->friction_loss, UNIT_ENERGY, NAN));
   PetscCall(ContactGlueBreaks(contact, &breaks));
@@ -138,14 +134,12 @@ static PetscErrorCode ViewPairForces(const Report *report, const char name[], co
 }
 
 /* Forces of the pairs that touched */
-static PetscErrorCode ViewForces(const Report *report, Contact contact, Exact exact)
+static PetscErrorCode ViewForces(const Report *report, Contact contact)
 {
   const char *name;
-  PetscReal   force   = NAN;
   PetscInt    touched = 0;
 
   PetscFunctionBegin;
-  if (exact) PetscCall(ExactGetForce(exact, &force));
   for (PetscInt p = 0; p < report->results->n_pairs; p++) {
     const ContactStatistics *pair = &report->results->pairs[p];
 
@@ -153,7 +147,7 @@ static PetscErrorCode ViewForces(const Report *report, Contact contact, Exact ex
     if (!touched) PetscCall(PetscViewerASCIIPrintf(report->viewer, "contact forces %33s %16s\n", "sum along normals", "resultant"));
     if (touched++ >= MOST_PAIRS) continue;
     PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
-    PetscCall(ViewPairForces(report, name, pair, p ? NAN : force));
+    PetscCall(ViewPairForces(report, name, pair, p ? NAN : report->exact.force));
   }
   if (touched > MOST_PAIRS)
     PetscCall(
@@ -271,18 +265,7 @@ static PetscErrorCode ViewErrors(const Report *report, Exact exact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ReportView - prints the results table
-
-  Collective on the viewer
-
-  Input Parameters:
-+ controller - the `Controller`, at its end
-. results    - figures of the run
-. exact      - what it was compared with, or `NULL`
-. verdict    - what is amiss with it
-- viewer     - an ASCII viewer
-*/
+/* Prints the results table. `exact`: what it was compared with, or `NULL`. Collective on the viewer */
 PetscErrorCode ReportView(Controller controller, const StatisticsResults *results, Exact exact, const Verdict *verdict, PetscViewer viewer)
 {
   Contact        contact;
@@ -290,9 +273,10 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscInt       n;
   PetscLogDouble setup, wall, cpu;
   RanksSummary   ranks;
-  Report         report = {.viewer = viewer, .results = results};
+  Report         report = {.viewer = viewer, .results = results, .exact = {NAN, NAN, NAN, NAN}};
 
   PetscFunctionBegin;
+  if (exact) PetscCall(ExactGetFigures(exact, &report.exact));
   PetscCall(UnitsGet((PetscObject)controller, &report.units));
   PetscCall(ControllerGetStatics(controller, &report.statics));
   PetscCall(ControllerGetBodies(controller, &n, &bodies));
@@ -301,8 +285,8 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(RanksGather(controller, &ranks));
   PetscCall(VerdictView(controller, results, verdict, viewer));
   if (results->n_pairs) {
-    PetscCall(ViewContact(&report, contact, exact));
-    PetscCall(ViewForces(&report, contact, exact));
+    PetscCall(ViewContact(&report, contact));
+    PetscCall(ViewForces(&report, contact));
     PetscCall(ViewSweeps(&report, controller, contact));
   }
   PetscCall(ViewEnergies(&report, bodies));

@@ -28,18 +28,17 @@ static void CheckSolution(Exact exact, PetscReal time, const PetscReal expected[
 
 static void times_and_force(void **state)
 {
-  Simulation *simulation = (Simulation *)*state;
-  Exact       exact;
-  PetscReal   impact, release, force;
+  Simulation  *simulation = (Simulation *)*state;
+  Exact        exact;
+  ExactFigures figures;
 
   AddPaperBars(0);
   ok(SimulationCreate(simulation));
   ok(ExactCreate(simulation->controller, EXACT_IMPACT, &exact));
-  ok(ExactGetTimes(exact, &impact, &release));
-  ok(ExactGetForce(exact, &force));
-  near(impact, 0, 1e-18);
-  near(release, 5e-4, 1e-17);
-  near(force, 100, 1e-11);
+  ok(ExactGetFigures(exact, &figures));
+  near(figures.impact, 0, 1e-18);
+  near(figures.release, 5e-4, 1e-17);
+  near(figures.force, 100, 1e-11);
   ok(ExactDestroy(&exact));
   assert_null(exact);
 }
@@ -188,7 +187,8 @@ static void March(Simulation *simulation, PetscInt points, PetscReal impedance, 
 {
   const PetscReal step    = 1e-6;
   Grid            bars[2] = {{.n = 250, .impedance = 1}, {.n = points, .impedance = impedance}};
-  PetscReal       gap = 0.04, impulse = 0, expected, times[2];
+  PetscReal       gap = 0.04, impulse = 0;
+  ExactFigures    figures;
   Exact           exact;
 
   for (PetscInt i = 0; i < 500; i++) {
@@ -218,11 +218,10 @@ static void March(Simulation *simulation, PetscInt points, PetscReal impedance, 
       near(force, solution.contact_force, 1e-9); /* of 100 N */
     }
   }
-  ok(ExactGetTimes(exact, &times[0], &times[1]));
-  ok(ExactGetImpulse(exact, &expected));
-  near(times[0], 0, 1e-15);
-  near(times[1], release, 1e-15);
-  near(impulse, expected, 1e-12); /* of 0.05 N s */
+  ok(ExactGetFigures(exact, &figures));
+  near(figures.impact, 0, 1e-15);
+  near(figures.release, release, 1e-15);
+  near(impulse, figures.impulse, 1e-12); /* of 0.05 N s */
   ok(ExactDestroy(&exact));
 }
 
@@ -250,17 +249,16 @@ static void characteristics_of_grazing(void **state)
   Simulation   *simulation = (Simulation *)*state;
   Exact         exact;
   ExactSolution bars[2];
-  PetscReal     impact, release, impulse;
+  ExactFigures  figures;
 
   AddPaperBars(0);
   AddOptions("-right_dm_plex_box_upper 0.52 -time_end 1.1e-3");
   ok(SimulationCreate(simulation));
   ok(ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
-  ok(ExactGetTimes(exact, &impact, &release));
-  ok(ExactGetImpulse(exact, &impulse));
-  near(impact, 0, 1e-18);
-  near(release, 5e-4, 1e-15);
-  near(impulse, 0.05, 1e-14);
+  ok(ExactGetFigures(exact, &figures));
+  near(figures.impact, 0, 1e-18);
+  near(figures.release, 5e-4, 1e-15);
+  near(figures.impulse, 0.05, 1e-14);
   for (PetscInt k = 1; k <= 50; k++) {
     for (PetscInt side = 0; side < 2; side++) ok(ExactEvaluate(exact, side, 5e-4 + k * 1e-5, &bars[side]));
     near(bars[0].contact_force, 0, 0);
@@ -283,17 +281,16 @@ static void characteristics_from_touching(void **state)
   Simulation   *simulation = (Simulation *)*state;
   Exact         exact;
   ExactSolution solution;
-  PetscReal     impact, release, force;
+  ExactFigures  figures;
 
   AddBar("left", -0.25, 0, 4, 1);
   AddBar("right", 0, 0.5, 4, -1);
   AddOptions("-bodies left,right -time_step 0.01 -time_end 0.3");
   ok(SimulationCreate(simulation));
   ok(ExactCreate(simulation->controller, EXACT_CHARACTERISTICS, &exact));
-  ok(ExactGetTimes(exact, &impact, &release));
-  ok(ExactGetForce(exact, &force));
-  near(impact, 0, 0);
-  assert_true(PetscIsNanReal(release) && PetscIsNanReal(force));
+  ok(ExactGetFigures(exact, &figures));
+  near(figures.impact, 0, 0);
+  assert_true(PetscIsNanReal(figures.release) && PetscIsNanReal(figures.force));
   /* all of the left bar is at rest and compressed after 0.25 s; then, from the free end, 0.05 m of it fly back */
   ok(ExactEvaluate(exact, 0, 0.3, &solution));
   near(solution.contact_force, 1, 1e-14);
