@@ -18,23 +18,89 @@
 #define FLUSH_INTERVAL 2.0
 #define FLUSH_SHARE    50.0
 
+/* Who has a quantity in a frame */
+typedef enum { OF_RUN, OF_PAIR, OF_BODY, OF_CONTACT_POSITION, OF_CONTACT_VELOCITY, OF_SUPPORT, OF_PROBE } Owner;
+
+/* What the owner needs to have a quantity */
+enum { SPRINGS = 1, BREAKS = 2, TAKES = 4, FRICTION = 8, IN_PLANE = 16, DAMPED = 32, PLASTIC = 64, HOURGLASSES = 128, RIGID = 256 };
+
+typedef struct {
+  const char   *name; /* behind that of its owner */
+  UnitDimension dimension;
+  PetscInt      components; /* 0: as many as the space of the body has dimensions */
+  Owner         owner;
+  size_t        offset; /* of the number or numbers in what the owner has in a frame */
+  int           needs;
+} Quantity;
+
+/* What the history has, in the order of a record */
+static const Quantity of_run[] = {
+    {"/time", UNIT_TIME, 1, OF_RUN, offsetof(ControllerFrame, time), 0},
+    {"/schwarz/iterations", UNIT_ONE, 1, OF_RUN, offsetof(ControllerFrame, sweeps), 0},
+    {"/energy/change", UNIT_ENERGY, 1, OF_RUN, offsetof(ControllerFrame, energy_change), 0},
+    {"/energy/scale", UNIT_ENERGY, 1, OF_RUN, offsetof(ControllerFrame, energy_scale), 0},
+    {"/penalty_energy", UNIT_ENERGY, 1, OF_RUN, offsetof(ControllerFrame, penalty_energy), SPRINGS},
+    {"/glue_loss", UNIT_ENERGY, 1, OF_RUN, offsetof(ControllerFrame, glue_loss), BREAKS},
+    {"/contact_loss", UNIT_ENERGY, 1, OF_RUN, offsetof(ControllerFrame, contact_loss), TAKES},
+};
+static const Quantity of_pair[] = {
+    {"/force", UNIT_FORCE, 1, OF_PAIR, offsetof(ContactPairState, force), 0},
+    {"/gap", UNIT_LENGTH, 1, OF_PAIR, offsetof(ContactPairState, gap), 0},
+    {"/active", UNIT_ONE, 1, OF_PAIR, offsetof(ContactPairState, active), 0},
+    {"/area", UNIT_AREA, 1, OF_PAIR, offsetof(ContactPairState, area), 0},
+    {"/force_vector", UNIT_FORCE, 3, OF_PAIR, offsetof(ContactPairState, force_vector), 0},
+    {"/moment", UNIT_MOMENT, 3, OF_PAIR, offsetof(ContactPairState, moment), 0},
+    {"/impulse", UNIT_IMPULSE, 3, OF_PAIR, offsetof(ContactPairState, impulse), 0},
+    {"/friction_loss", UNIT_ENERGY, 1, OF_PAIR, offsetof(ContactPairState, friction_loss), FRICTION},
+    {"/obstacle_work", UNIT_ENERGY, 1, OF_PAIR, offsetof(ContactPairState, obstacle_work), FRICTION},
+    {"/sliding", UNIT_ONE, 1, OF_PAIR, offsetof(ContactPairState, sliding), FRICTION},
+};
+static const Quantity of_body[] = {
+    {"/kinetic", UNIT_ENERGY, 1, OF_BODY, offsetof(BodyMeasures, kinetic), 0},
+    {"/potential", UNIT_ENERGY, 1, OF_BODY, offsetof(BodyMeasures, potential), 0},
+    {"/contact_position", UNIT_LENGTH, 0, OF_CONTACT_POSITION, 0, 0},
+    {"/contact_velocity", UNIT_VELOCITY, 0, OF_CONTACT_VELOCITY, 0, 0},
+    {"/mean_velocity", UNIT_VELOCITY, 0, OF_BODY, offsetof(BodyMeasures, mean_velocity), 0},
+    {"/external_work", UNIT_ENERGY, 1, OF_BODY, offsetof(BodyMeasures, external_work), 0},
+    {"/momentum", UNIT_MOMENTUM, 0, OF_BODY, offsetof(BodyMeasures, momentum), 0},
+    {"/angular_momentum", UNIT_ANGULAR_MOMENTUM, 3, OF_BODY, offsetof(BodyMeasures, angular_momentum), IN_PLANE},
+    {"/damping_work", UNIT_ENERGY, 1, OF_BODY, offsetof(BodyMeasures, damping_work), DAMPED},
+    {"/plastic_work", UNIT_ENERGY, 1, OF_BODY, offsetof(BodyMeasures, plastic_work), PLASTIC},
+    {"/hourglass_energy", UNIT_ENERGY, 1, OF_BODY, offsetof(BodyMeasures, hourglass_energy), HOURGLASSES},
+    {"/centre", UNIT_LENGTH, 0, OF_BODY, offsetof(BodyMeasures, place), RIGID},
+    {"/rotation", UNIT_ANGLE, 3, OF_BODY, offsetof(BodyMeasures, orientation), RIGID | IN_PLANE},
+    {"/angular_velocity", UNIT_ANGULAR_VELOCITY, 3, OF_BODY, offsetof(BodyMeasures, angular_velocity), RIGID | IN_PLANE},
+};
+static const Quantity of_support[] = {
+    {"/force", UNIT_FORCE, 3, OF_SUPPORT, offsetof(ControllerSupport, force), 0},
+    {"/moment", UNIT_MOMENT, 3, OF_SUPPORT, offsetof(ControllerSupport, moment), 0},
+};
+static const Quantity of_probe[] = {
+    {"/position", UNIT_LENGTH, 0, OF_PROBE, offsetof(ControllerProbe, position), 0},
+    {"/displacement", UNIT_LENGTH, 0, OF_PROBE, offsetof(ControllerProbe, displacement), 0},
+    {"/velocity", UNIT_VELOCITY, 0, OF_PROBE, offsetof(ControllerProbe, velocity), 0},
+    {"/stress", UNIT_STRESS, 6, OF_PROBE, offsetof(ControllerProbe, stress), 0},
+};
+
+#define COUNT(quantities) ((PetscInt)PETSC_STATIC_ARRAY_LENGTH(quantities))
+
+/* Where a frame has the numbers of a series; apart from their names, since all are looked at in each step */
+typedef struct {
+  Owner     owner;
+  PetscInt  index, components; /* of the owner; of the series */
+  size_t    offset;
+  PetscBool integer;
+} Source;
+
 struct _n_History {
   char           path[PETSC_MAX_PATH_LEN];
   PetscBool      writes; /* this is rank 0; the members below are used there alone */
   PetscBool      failed; /* the file could not be written, and is as it was before */
   char          *options;
-  PetscInt       n_bodies, *dims; /* space dimension of each body */
-  PetscBool     *damped;          /* per body: it has Rayleigh damping */
-  PetscBool      friction;        /* contact has friction */
-  PetscBool      springs;         /* contact has penalty springs, or glue */
-  PetscBool      breaks;          /* glue that may break */
-  PetscBool      takes;           /* contact takes energy by its rule */
-  PetscBool     *plastic;         /* per body: its material flows */
-  PetscBool     *hourglasses;     /* per body: its elements have one point */
-  PetscBool     *rigid;           /* per body */
   Units          units;
   PetscInt       n_series, width;
   Series        *series;
+  Source        *sources; /* of each series */
   PetscInt       n_records, capacity;
   PetscReal     *records;                /* those that are not in the file yet, `width` numbers each */
   PetscInt64     written;                /* records in the file */
@@ -43,133 +109,111 @@ struct _n_History {
   PetscLogDouble flushed, flush_seconds; /* when the last flush ended, and how long it took [s] */
 };
 
-/* Adds a series, whose numbers come behind those of the others in a record; its name is "<group><of>/<what>" */
-static PetscErrorCode AddSeries(History history, const char group[], const char of[], const char what[], UnitDimension dimension,
-                                PetscInt components)
+/* Adds those of n quantities that an owner has, behind one another in a record */
+static PetscErrorCode AddSeries(History history, const char owner[], PetscInt n, const Quantity quantities[], PetscInt index, PetscInt dim,
+                                int has)
 {
-  Series *series = &history->series[history->n_series++];
-
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(series->name, sizeof(series->name), "%s%s%s%s", group, of, what[0] ? "/" : "", what));
-  series->units      = UnitsLabel(history->units, dimension);
-  series->column     = history->width;
-  series->components = components;
-  series->integer    = (PetscBool)(dimension == UNIT_ONE); /* what has no dimension is a count */
-  history->width += components;
+  for (PetscInt i = 0; i < n; i++) {
+    const Quantity *quantity = &quantities[i];
+    Series         *series   = &history->series[history->n_series];
+
+    if ((quantity->needs & has) != quantity->needs) continue;
+    PetscCall(PetscSNPrintf(series->name, sizeof(series->name), "%s%s", owner, quantity->name));
+    series->units      = UnitsLabel(history->units, quantity->dimension);
+    series->column     = history->width;
+    series->components = quantity->components ? quantity->components : dim;
+    series->integer    = (PetscBool)(quantity->dimension == UNIT_ONE); /* what has no dimension is a count */
+    history->width += series->components;
+    history->sources[history->n_series++] = (Source){quantity->owner, index, series->components, quantity->offset, series->integer};
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The series of a run, in the order in which HistoryMonitor() fills a record */
+/* What contact has of the quantities that not every run has */
+static PetscErrorCode FindContactNeeds(Contact contact, int *has)
+{
+  const char *reason;
+  PetscBool   friction, springs, breaks;
+
+  PetscFunctionBegin;
+  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &springs));
+  if (!springs) PetscCall(ContactHasLaw(contact, CONTACT_LAW_GLUE, &springs));
+  PetscCall(ContactGlueBreaks(contact, &breaks));
+  PetscCall(ContactGetLossReason(contact, &reason));
+  *has = (friction ? FRICTION : 0) | (springs ? SPRINGS : 0) | (breaks ? BREAKS : 0) | (reason ? TAKES : 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same of a body, and its dimensions */
+static PetscErrorCode FindBodyNeeds(Body body, PetscInt *dim, int *has)
+{
+  PetscReal mass, stiffness;
+  PetscBool plastic, hourglasses, rigid;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDimension(body, dim));
+  PetscCall(BodyGetDamping(body, &mass, &stiffness));
+  PetscCall(BodyHasHistory(body, &plastic));
+  PetscCall(BodyHasHourglasses(body, &hourglasses));
+  PetscCall(BodyIsRigid(body, &rigid));
+  *has = (*dim > 1 ? IN_PLANE : 0) | (mass > 0 || stiffness > 0 ? DAMPED : 0) | (plastic ? PLASTIC : 0) | (hourglasses ? HOURGLASSES : 0) |
+         (rigid ? RIGID : 0);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode AddAllSeries(History history, Controller controller)
 {
   const Body              *bodies;
-  const char              *name, *reason;
+  const char              *name;
+  char                     owner[192];
   Contact                  contact;
-  PetscInt                 n_pairs, n_supports, n_probes;
+  PetscInt                 n_bodies, n_pairs, n_supports, n_probes, most, dim;
   const ControllerSupport *supports;
   const ControllerProbe   *probes;
+  int                      has = 0;
 
   PetscFunctionBegin;
-  PetscCall(ControllerGetBodies(controller, &history->n_bodies, &bodies));
+  PetscCall(ControllerGetBodies(controller, &n_bodies, &bodies));
   PetscCall(ControllerGetSupports(controller, &n_supports, &supports));
   PetscCall(ControllerGetProbes(controller, &n_probes, &probes));
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCall(PetscMalloc5(history->n_bodies, &history->dims, history->n_bodies, &history->damped, history->n_bodies, &history->plastic,
-                         history->n_bodies, &history->hourglasses, history->n_bodies, &history->rigid));
-  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &history->friction));
-  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &history->springs));
-  if (!history->springs) PetscCall(ContactHasLaw(contact, CONTACT_LAW_GLUE, &history->springs));
-  PetscCall(ContactGlueBreaks(contact, &history->breaks));
-  PetscCall(ContactGetLossReason(contact, &reason));
-  history->takes = (PetscBool)(reason != NULL);
-  PetscCall(PetscCalloc1(7 + 10 * n_pairs + 14 * history->n_bodies + 2 * n_supports + 4 * n_probes, &history->series));
-  PetscCall(AddSeries(history, "/time", "", "", UNIT_TIME, 1));
-  PetscCall(AddSeries(history, "/schwarz", "", "iterations", UNIT_ONE, 1));
-  PetscCall(AddSeries(history, "/energy", "", "change", UNIT_ENERGY, 1));
-  PetscCall(AddSeries(history, "/energy", "", "scale", UNIT_ENERGY, 1));
-  if (history->springs) PetscCall(AddSeries(history, "/penalty_energy", "", "", UNIT_ENERGY, 1));
-  if (history->breaks) PetscCall(AddSeries(history, "/glue_loss", "", "", UNIT_ENERGY, 1));
-  if (history->takes) PetscCall(AddSeries(history, "/contact_loss", "", "", UNIT_ENERGY, 1));
+  most = COUNT(of_run) + COUNT(of_pair) * n_pairs + COUNT(of_body) * n_bodies + COUNT(of_support) * n_supports + COUNT(of_probe) * n_probes;
+  PetscCall(PetscCalloc2(most, &history->series, most, &history->sources));
+  PetscCall(FindContactNeeds(contact, &has));
+  PetscCall(AddSeries(history, "", COUNT(of_run), of_run, 0, 1, has));
   for (PetscInt i = 0; i < n_pairs; i++) {
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
-    PetscCall(AddSeries(history, "/contact/", name, "force", UNIT_FORCE, 1));
-    PetscCall(AddSeries(history, "/contact/", name, "gap", UNIT_LENGTH, 1));
-    PetscCall(AddSeries(history, "/contact/", name, "active", UNIT_ONE, 1));
-    PetscCall(AddSeries(history, "/contact/", name, "area", UNIT_AREA, 1));
-    PetscCall(AddSeries(history, "/contact/", name, "force_vector", UNIT_FORCE, 3));
-    PetscCall(AddSeries(history, "/contact/", name, "moment", UNIT_MOMENT, 3));
-    PetscCall(AddSeries(history, "/contact/", name, "impulse", UNIT_IMPULSE, 3));
-    if (!history->friction) continue;
-    PetscCall(AddSeries(history, "/contact/", name, "friction_loss", UNIT_ENERGY, 1));
-    PetscCall(AddSeries(history, "/contact/", name, "obstacle_work", UNIT_ENERGY, 1));
-    PetscCall(AddSeries(history, "/contact/", name, "sliding", UNIT_ONE, 1));
+    PetscCall(PetscSNPrintf(owner, sizeof(owner), "/contact/%s", name));
+    PetscCall(AddSeries(history, owner, COUNT(of_pair), of_pair, i, 3, has));
   }
-  for (PetscInt i = 0; i < history->n_bodies; i++) {
-    PetscInt *dim = &history->dims[i];
-    PetscReal mass, stiffness;
-
+  for (PetscInt i = 0; i < n_bodies; i++) {
+    PetscCall(FindBodyNeeds(bodies[i], &dim, &has));
     PetscCall(PetscObjectGetName((PetscObject)bodies[i], &name));
-    PetscCall(BodyGetDimension(bodies[i], dim));
-    PetscCall(AddSeries(history, "/body/", name, "kinetic", UNIT_ENERGY, 1));
-    PetscCall(AddSeries(history, "/body/", name, "potential", UNIT_ENERGY, 1));
-    PetscCall(AddSeries(history, "/body/", name, "contact_position", UNIT_LENGTH, *dim));
-    PetscCall(AddSeries(history, "/body/", name, "contact_velocity", UNIT_VELOCITY, *dim));
-    PetscCall(AddSeries(history, "/body/", name, "mean_velocity", UNIT_VELOCITY, *dim));
-    PetscCall(AddSeries(history, "/body/", name, "external_work", UNIT_ENERGY, 1));
-    PetscCall(AddSeries(history, "/body/", name, "momentum", UNIT_MOMENTUM, *dim));
-    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_momentum", UNIT_ANGULAR_MOMENTUM, 3));
-    PetscCall(BodyGetDamping(bodies[i], &mass, &stiffness));
-    history->damped[i] = (PetscBool)(mass > 0 || stiffness > 0);
-    if (history->damped[i]) PetscCall(AddSeries(history, "/body/", name, "damping_work", UNIT_ENERGY, 1));
-    PetscCall(BodyHasHistory(bodies[i], &history->plastic[i]));
-    if (history->plastic[i]) PetscCall(AddSeries(history, "/body/", name, "plastic_work", UNIT_ENERGY, 1));
-    PetscCall(BodyHasHourglasses(bodies[i], &history->hourglasses[i]));
-    if (history->hourglasses[i]) PetscCall(AddSeries(history, "/body/", name, "hourglass_energy", UNIT_ENERGY, 1));
-    PetscCall(BodyIsRigid(bodies[i], &history->rigid[i]));
-    if (!history->rigid[i]) continue;
-    PetscCall(AddSeries(history, "/body/", name, "centre", UNIT_LENGTH, *dim));
-    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "rotation", UNIT_ANGLE, 3));
-    if (*dim > 1) PetscCall(AddSeries(history, "/body/", name, "angular_velocity", UNIT_ANGULAR_VELOCITY, 3));
+    PetscCall(PetscSNPrintf(owner, sizeof(owner), "/body/%s", name));
+    PetscCall(AddSeries(history, owner, COUNT(of_body), of_body, i, dim, has));
   }
   for (PetscInt i = 0; i < n_supports; i++) {
     const ControllerSupport *support = &supports[i];
-    char                     group[128];
 
     if (support->body >= 0) {
       PetscCall(PetscObjectGetName((PetscObject)bodies[support->body], &name));
-      PetscCall(PetscSNPrintf(group, sizeof(group), "/body/%s/reaction/", name));
-    } else PetscCall(PetscSNPrintf(group, sizeof(group), "/obstacle/"));
-    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "force" : "reaction/force", UNIT_FORCE, 3));
-    PetscCall(AddSeries(history, group, support->name, support->body >= 0 ? "moment" : "reaction/moment", UNIT_MOMENT, 3));
+      PetscCall(PetscSNPrintf(owner, sizeof(owner), "/body/%s/reaction/%s", name, support->name));
+    } else PetscCall(PetscSNPrintf(owner, sizeof(owner), "/obstacle/%s/reaction", support->name));
+    PetscCall(AddSeries(history, owner, COUNT(of_support), of_support, i, 3, 0));
   }
   for (PetscInt i = 0; i < n_probes; i++) {
-    const PetscInt dim = history->dims[probes[i].body];
-    char           group[128], number[16];
-
+    PetscCall(BodyGetDimension(bodies[probes[i].body], &dim));
     PetscCall(PetscObjectGetName((PetscObject)bodies[probes[i].body], &name));
-    PetscCall(PetscSNPrintf(group, sizeof(group), "/body/%s/probe/", name));
-    PetscCall(PetscSNPrintf(number, sizeof(number), "%" PetscInt_FMT, probes[i].number));
-    PetscCall(AddSeries(history, group, number, "position", UNIT_LENGTH, dim));
-    PetscCall(AddSeries(history, group, number, "displacement", UNIT_LENGTH, dim));
-    PetscCall(AddSeries(history, group, number, "velocity", UNIT_VELOCITY, dim));
-    PetscCall(AddSeries(history, group, number, "stress", UNIT_STRESS, 6));
+    PetscCall(PetscSNPrintf(owner, sizeof(owner), "/body/%s/probe/%" PetscInt_FMT, name, probes[i].number));
+    PetscCall(AddSeries(history, owner, COUNT(of_probe), of_probe, i, dim, 0));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  HistoryCreate - a history of a run, with all options of the run
-
-  Collective
-
-  Input Parameters:
-+ controller - the `Controller`, set up
-- path       - the file to write; an error if that cannot be done, on every rank
-
-  Output Parameter:
-. history - the `History`; HistoryMonitor() must be called with it after every step
-*/
+/* A history of a run, with all options of the run. Collective */
 PetscErrorCode HistoryCreate(Controller controller, const char path[], History *history)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)controller);
@@ -208,17 +252,8 @@ static PetscErrorCode WritePart(const char part[], void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  HistoryFlush - adds what was recorded since the last time to the file, and writes it again where somebody has taken it away
-
-  Not Collective
-
-  Input Parameter:
-. history - the `History`
-
-  Note:
-  At every moment the file is whole: it is the version before or after this call, never something in between.
-*/
+/* Adds what was recorded since the last time to the file, and writes it again where somebody has taken it away. At every moment the file
+   is whole: it is the version before or after this call, never something in between */
 PetscErrorCode HistoryFlush(History history)
 {
   PetscErrorCode error;
@@ -257,70 +292,31 @@ static PetscErrorCode MakeRoom(History history)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Fills a record, in the order of AddAllSeries() */
 static void FillRecord(const ControllerFrame *frame, History history, PetscReal *next)
 {
-  *next++ = frame->time;
-  *next++ = (PetscReal)frame->sweeps;
-  *next++ = frame->energy_change;
-  *next++ = frame->energy_scale;
-  if (history->springs) *next++ = frame->penalty_energy;
-  if (history->breaks) *next++ = frame->glue_loss;
-  if (history->takes) *next++ = frame->contact_loss;
-  for (PetscInt i = 0; i < frame->n_pairs; i++) {
-    *next++ = frame->pairs[i].force;
-    *next++ = frame->pairs[i].gap;
-    *next++ = (PetscReal)frame->pairs[i].active;
-    *next++ = frame->pairs[i].area;
-    for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].force_vector[d];
-    for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].moment[d];
-    for (PetscInt d = 0; d < 3; d++) *next++ = frame->pairs[i].impulse[d];
-    if (!history->friction) continue;
-    *next++ = frame->pairs[i].friction_loss;
-    *next++ = frame->pairs[i].obstacle_work;
-    *next++ = (PetscReal)frame->pairs[i].sliding;
-  }
-  for (PetscInt i = 0; i < frame->n_bodies; i++) {
-    *next++ = frame->bodies[i].kinetic;
-    *next++ = frame->bodies[i].potential;
-    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->contact_positions[3 * i + d];
-    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->contact_velocities[3 * i + d];
-    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->bodies[i].mean_velocity[d];
-    *next++ = frame->bodies[i].external_work;
-    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->bodies[i].momentum[d];
-    for (PetscInt d = 0; d < 3 && history->dims[i] > 1; d++) *next++ = frame->bodies[i].angular_momentum[d];
-    if (history->damped[i]) *next++ = frame->bodies[i].damping_work;
-    if (history->plastic[i]) *next++ = frame->bodies[i].plastic_work;
-    if (history->hourglasses[i]) *next++ = frame->bodies[i].hourglass_energy;
-    if (!history->rigid[i]) continue;
-    for (PetscInt d = 0; d < history->dims[i]; d++) *next++ = frame->bodies[i].place[d];
-    for (PetscInt d = 0; d < 3 && history->dims[i] > 1; d++) *next++ = frame->bodies[i].orientation[d];
-    for (PetscInt d = 0; d < 3 && history->dims[i] > 1; d++) *next++ = frame->bodies[i].angular_velocity[d];
-  }
-  for (PetscInt i = 0; i < frame->n_supports; i++) {
-    for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].force[d];
-    for (PetscInt d = 0; d < 3; d++) *next++ = frame->supports[i].moment[d];
-  }
-  for (PetscInt i = 0; i < frame->n_probes; i++) {
-    const ControllerProbe *probe = &frame->probes[i];
+  const struct {
+    const void *first;
+    size_t      size;
+  } owners[] = {
+      [OF_RUN]              = {frame, 0},
+      [OF_PAIR]             = {frame->pairs, sizeof(*frame->pairs)},
+      [OF_BODY]             = {frame->bodies, sizeof(*frame->bodies)},
+      [OF_CONTACT_POSITION] = {frame->contact_positions, 3 * sizeof(PetscReal)},
+      [OF_CONTACT_VELOCITY] = {frame->contact_velocities, 3 * sizeof(PetscReal)},
+      [OF_SUPPORT]          = {frame->supports, sizeof(*frame->supports)},
+      [OF_PROBE]            = {frame->probes, sizeof(*frame->probes)},
+  };
 
-    for (PetscInt d = 0; d < history->dims[probe->body]; d++) *next++ = probe->position[d];
-    for (PetscInt d = 0; d < history->dims[probe->body]; d++) *next++ = probe->displacement[d];
-    for (PetscInt d = 0; d < history->dims[probe->body]; d++) *next++ = probe->velocity[d];
-    for (PetscInt k = 0; k < 6; k++) *next++ = probe->stress[k];
+  for (PetscInt s = 0; s < history->n_series; s++) {
+    const Source *source = &history->sources[s];
+    const void   *values = (const char *)owners[source->owner].first + owners[source->owner].size * (size_t)source->index + source->offset;
+
+    for (PetscInt c = 0; c < source->components; c++)
+      *next++ = source->integer ? (PetscReal)((const PetscInt *)values)[c] : ((const PetscReal *)values)[c];
   }
 }
 
-/*
-  HistoryMonitor - records a controller step, and from time to time writes to the file
-
-  Logically Collective
-
-  Input Parameters:
-+ controller - the `Controller`
-. frame      - the state of everything
-- context    - the `History`
-*/
+/* Records a controller step, and from time to time writes to the file */
 PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *frame, void *context)
 {
   History        history = (History)context;
@@ -338,14 +334,7 @@ PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *fram
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  HistorySync - writes all that was recorded, through to the disk
-
-  Not Collective
-
-  Input Parameter:
-. history - the `History`
-*/
+/* Writes all that was recorded, through to the disk */
 PetscErrorCode HistorySync(History history)
 {
   PetscFunctionBegin;
@@ -365,17 +354,8 @@ static PetscErrorCode WriteCut(const char part[], void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  HistoryTakeUp - cuts the file of the run that is continued at its checkpoint, once all of that has been loaded
-
-  Not Collective
-
-  Input Parameter:
-. history - the `History`, after HistoryVisit(); `NULL`: there is none
-
-  Note:
-  Does nothing where the history begins with the run.
-*/
+/* Cuts the file of the run that is continued at its checkpoint, once all of that has been loaded. `history`: the `History`, after
+   HistoryVisit(); `NULL`: there is none. Does nothing where the history begins with the run */
 PetscErrorCode HistoryTakeUp(History history)
 {
   HDF5Silence silence;
@@ -394,18 +374,8 @@ PetscErrorCode HistoryTakeUp(History history)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  HistoryVisit - the place in the file, to or from a checkpoint; loading, HistoryTakeUp() is to follow
-
-  Not Collective
-
-  Input Parameters:
-+ history    - the `History`; writing, after HistorySync()
-- checkpoint - the `Checkpoint`
-
-  Note:
-  A history whose path is not that of the run that is continued begins with the restart.
-*/
+/* The place in the file, to or from a checkpoint; loading, HistoryTakeUp() is to follow. A history whose path is not that of the run that
+   is continued begins with the restart */
 PetscErrorCode HistoryVisit(History history, Checkpoint checkpoint)
 {
   PetscInt64 written = history ? history->written : 0;
@@ -435,8 +405,7 @@ PetscErrorCode HistoryDestroy(History *history)
   if (!*history) PetscFunctionReturn(PETSC_SUCCESS);
   if (!(*history)->failed) PetscCall(HistoryFlush(*history));
   PetscCall(PetscFree((*history)->options));
-  PetscCall(PetscFree5((*history)->dims, (*history)->damped, (*history)->plastic, (*history)->hourglasses, (*history)->rigid));
-  PetscCall(PetscFree((*history)->series));
+  PetscCall(PetscFree2((*history)->series, (*history)->sources));
   PetscCall(PetscFree((*history)->records));
   PetscCall(OutputFileRelease(&(*history)->held));
   PetscCall(PetscFree(*history));
