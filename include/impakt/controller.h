@@ -134,7 +134,6 @@ PETSC_EXTERN PetscErrorCode ControllerMonitorSet(Controller, ControllerMonitorFn
 PETSC_EXTERN PetscErrorCode ControllerSetAfterStep(Controller, ControllerAfterStepFn *, void *);
 PETSC_EXTERN PetscErrorCode ControllerGetStep(Controller, PetscInt *);
 PETSC_EXTERN PetscErrorCode ControllerSetMonitorInterval(Controller, PetscInt);
-PETSC_EXTERN PetscErrorCode ControllerSetProgress(Controller);
 PETSC_EXTERN PetscErrorCode ControllerCheck(Controller, PetscViewer);
 PETSC_EXTERN PetscErrorCode ControllerSolve(Controller);
 PETSC_EXTERN PetscErrorCode ControllerView(Controller, PetscViewer);

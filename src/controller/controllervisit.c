@@ -68,18 +68,8 @@ static PetscErrorCode CheckTimes(Controller controller, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ControllerVisit - what all ranks have of the state of a simulation after an accepted controller step, to or from a checkpoint
-
-  Collective
-
-  Input Parameters:
-+ controller - the `Controller`, set up; loading: in its first state
-- checkpoint - the `Checkpoint`
-
-  Note:
-  A run that has been loaded goes on with the next step: observers are not told of the step that it goes on from.
-*/
+/* What all ranks have of the state of a simulation after an accepted controller step, to or from a checkpoint. A run that has been loaded
+   goes on with the next step: observers are not told of the step that it goes on from. Collective */
 PetscErrorCode ControllerVisit(Controller controller, Checkpoint checkpoint)
 {
   PetscFunctionBegin;

@@ -2,21 +2,10 @@
 #include "energyscale.h"
 #include <impakt/private/bodyrows.h>
 
-/*
-  EnergyScaleAdd - takes note of the state at the end of a controller step; that of step 0 is the start
-
-  Collective
-
-  Input Parameters:
-+ scale      - zeros before the first call
-. controller - the `Controller`
-- frame      - the state of everything; takes the change of the energy and what it is relative to
-
-  Note:
-  The scale is the largest so far of kinetic energy, strain energy and work: of loads, held displacements and moving obstacles, or what
-  friction, damage of glue, damping and plastic flow have taken. The energy at the start alone says nothing of a body that hardly moves then
-and is driven afterwards, nor does the strain energy of a body that slides for long.
-*/
+/* Takes note of the state at the end of a controller step; that of step 0 is the start. `scale`: zeros before the first call. The scale
+   is the largest so far of kinetic energy, strain energy and work: of loads, held displacements and moving obstacles, or what friction,
+   damage of glue, damping and plastic flow have taken. The energy at the start alone says nothing of a body that hardly moves then and is
+   driven afterwards, nor does the strain energy of a body that slides for long. Collective */
 PetscErrorCode EnergyScaleAdd(EnergyScale *scale, Controller controller, ControllerFrame *frame)
 {
   const PetscReal glue  = frame->penalty_energy - frame->uncounted_energy;

@@ -97,18 +97,7 @@ static PetscErrorCode FindSizeOption(Body body, const char prefix[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodyDoubtUnits - which of a body's density, Young's modulus, gravity and size are implausible in the units of -units
-
-  Not Collective
-
-  Input Parameters:
-+ body - the `Body`, with its mesh and material
-- box  - see `BodyGetAllBoxes()`
-
-  Output Parameter:
-. text - names option, value and the unit that it would fit; empty where all is plausible
-*/
+/* Which of a body's density, Young's modulus, gravity and size are implausible in the units of -units */
 PetscErrorCode BodyDoubtUnits(Body body, const PetscReal box[6], char text[DOUBT_SIZE])
 {
   const Material *of_blocks;

@@ -95,7 +95,7 @@ static PetscErrorCode TellProgress(Controller controller, PetscBool bar)
   kinetic energy, strain energy and work (`ControllerFrame`). It is left out where it means nothing (`ControllerStatics`). The force is the
   sum over all pairs of forces along the normals. Units are those of `-units`.
 
-.seealso: `Controller`, `ControllerMonitorSet()`, `ControllerSetProgress()`
+.seealso: `Controller`, `ControllerMonitorSet()`
 @*/
 PetscErrorCode ControllerSetMonitorInterval(Controller controller, PetscInt interval)
 {
@@ -113,38 +113,6 @@ PetscErrorCode ControllerSetMonitorInterval(Controller controller, PetscInt inte
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ControllerSetProgress - shows a progress bar on standard error
-
-  Logically Collective
-
-  Input Parameter:
-. controller - the `Controller`, before its first step
-
-  Options Database Key:
-. -progress (true|false) - whether there is one; default: where standard error, or that of `mpiexec`, is a terminal. Else a line after one
-                           minute, two minutes, four minutes, ...
-
-  Level: beginner
-
-  Notes:
-  The first rank draws it, of runs that take more than a second, as wide as the terminal, from this call to the last step: call it before
-  `ControllerSetUp()`, or before meshes are made, to see what the set-up does. Messages that PETSc's functions print get lines of their own:
-  the bar comes back 0.05 s after a message, under `mpiexec`, which takes its time to pass messages on, 0.2 s after it, and so not at all
-  where messages come more often than that.
-
-  It is drawn by a thread, which calls neither MPI nor PETSc.
-
-.seealso: `Controller`, `ControllerMonitorSet()`, `ControllerSetMonitorInterval()`
-@*/
-PetscErrorCode ControllerSetProgress(Controller controller)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscCall(TellProgress(controller, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Reads -monitor_interval and -progress, and adds the observers they ask for */
 PetscErrorCode ControllerSetUpTerminal(Controller controller)
 {
@@ -155,7 +123,7 @@ PetscErrorCode ControllerSetUpTerminal(Controller controller)
   PetscObjectOptionsBegin((PetscObject)controller);
   PetscCall(PetscOptionsInt("-monitor_interval", "Steps from line to line on the terminal, 0 for none", "ControllerSetMonitorInterval",
                             interval, &interval, NULL));
-  PetscCall(PetscOptionsBool("-progress", "Progress bar on standard error", "ControllerSetProgress", bar, &bar, &set));
+  PetscCall(PetscOptionsBool("-progress", "Progress bar on standard error", "ControllerSetFromOptions", bar, &bar, &set));
   PetscOptionsEnd();
   PetscCheck(interval >= 0, PetscObjectComm((PetscObject)controller), PETSC_ERR_USER_INPUT,
              "-monitor_interval %" PetscInt_FMT " must not be negative", interval);
