@@ -6,6 +6,7 @@
 #include <petscts.h>
 #include <hdf5.h>
 #include <signal.h>
+#include <string.h>
 #include "help.h"
 #include "names.h"
 #include "optionwords.h"
@@ -154,45 +155,31 @@ static PetscErrorCode PrintOption(const KnownOption *option)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode PrintTopic(const OptionTopic *topic)
+/* In a table in Markdown | stands between columns */
+static PetscErrorCode PrintRow(const KnownOption *option)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "| `-%s%s` | `", PrintedPrefix(option->owner), option->name));
+  for (const char *c = option->value; *c; c++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, *c == '|' ? "\\|" : "%c", *c));
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "` | %s |\n", option->text));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode PrintTopic(const OptionTopic *topic, PetscBool markdown)
 {
   const KnownOption *options;
   size_t             n;
 
   PetscFunctionBegin;
   options = KnownOptionsGet(&n);
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "%s: %s\n\n", topic->name, topic->text));
-  for (size_t i = 0; i < n; i++) {
-    PetscBool same;
-
-    PetscCall(PetscStrcmp(options[i].topic, topic->name, &same));
-    if (same) PetscCall(PrintOption(&options[i]));
-  }
+  PetscCall(PetscPrintf(PETSC_COMM_WORLD, markdown ? "**%s**: %s\n\n| option | takes | meaning |\n| --- | --- | --- |\n" : "%s: %s\n\n",
+                        topic->name, topic->text));
+  for (size_t i = 0; i < n; i++)
+    if (!strcmp(options[i].topic, topic->name)) PetscCall(markdown ? PrintRow(&options[i]) : PrintOption(&options[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same as a table in Markdown, in which | stands between columns */
-static PetscErrorCode PrintMarkdown(const OptionTopic *topic)
-{
-  const KnownOption *options;
-  size_t             n;
-
-  PetscFunctionBegin;
-  options = KnownOptionsGet(&n);
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD, "**%s**: %s\n\n| option | takes | meaning |\n| --- | --- | --- |\n", topic->name, topic->text));
-  for (size_t i = 0; i < n; i++) {
-    PetscBool same;
-
-    PetscCall(PetscStrcmp(options[i].topic, topic->name, &same));
-    if (!same) continue;
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "| `-%s%s` | `", PrintedPrefix(options[i].owner), options[i].name));
-    for (const char *c = options[i].value; *c; c++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, *c == '|' ? "\\|" : "%c", *c));
-    PetscCall(PetscPrintf(PETSC_COMM_WORLD, "` | %s |\n", options[i].text));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PrintTopics(PetscErrorCode (*print)(const OptionTopic *))
+static PetscErrorCode PrintTopics(PetscBool markdown)
 {
   const OptionTopic *topics;
   size_t             n;
@@ -201,7 +188,7 @@ static PetscErrorCode PrintTopics(PetscErrorCode (*print)(const OptionTopic *))
   topics = OptionTopicsGet(&n);
   for (size_t t = 0; t < n; t++) {
     if (t) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "\n"));
-    PetscCall((*print)(&topics[t]));
+    PetscCall(PrintTopic(&topics[t], markdown));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -219,7 +206,7 @@ PetscErrorCode ImpaktPrintOptions(void)
 {
   PetscFunctionBegin;
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "Options of Impakt, in SI units; those of PETSc work too\n\n"));
-  PetscCall(PrintTopics(PrintTopic));
+  PetscCall(PrintTopics(PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -309,10 +296,10 @@ static PetscErrorCode Answer(Request request, const char topic[], PetscBool all)
     PetscCall(PetscFPrintf(PETSC_COMM_WORLD, stderr, "impakt: warning: -help_options is the old name of -help all\n"));
     PetscCall(ImpaktPrintOptions());
   } else if (all) PetscCall(PrintSolvers());
-  else if (markdown) PetscCall(PrintTopics(PrintMarkdown));
+  else if (markdown) PetscCall(PrintTopics(PETSC_TRUE));
   else {
     PetscCall(FindTopic(topic, &found, topics, sizeof(topics)));
-    if (found) PetscCall(PrintTopic(found));
+    if (found) PetscCall(PrintTopic(found, PETSC_FALSE));
     else PetscCall(PrintFound(topic, topics));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
