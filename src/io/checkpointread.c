@@ -8,20 +8,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/*
-  CheckpointFileFind - the last checkpoint there is
-
-  Collective
-
-  Input Parameters:
-+ comm - communicator
-. path - where checkpoints are written
-- size - length of found
-
-  Output Parameters:
-+ found  - that path or, where a run has been killed between two renames, that of the checkpoint before
-- exists - false where there is neither
-*/
+/* The last checkpoint there is. `found`: that path or, where a run has been killed between two renames, that of the checkpoint before.
+   Collective */
 PetscErrorCode CheckpointFileFind(MPI_Comm comm, const char path[], size_t size, char found[], PetscBool *exists)
 {
   PetscMPIInt rank;
@@ -146,19 +134,7 @@ static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointFileOpen - opens a checkpoint and makes sure that it is whole
-
-  Collective
-
-  Input Parameters:
-+ comm   - communicator
-. option - the option that names it, for messages; to outlive the file
-- path   - the file
-
-  Output Parameter:
-. checkpoint - close with CheckpointFileClose()
-*/
+/* Opens a checkpoint and makes sure that it is whole. Collective */
 PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char option[], const char path[], CheckpointFile *checkpoint)
 {
   PetscErrorCode error = PETSC_SUCCESS;
@@ -186,42 +162,43 @@ PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char option[], const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A dataset of bytes, on the first rank */
-static PetscErrorCode ReadStream(const CheckpointFile *checkpoint, const char name[], size_t *size, char **bytes)
+/* A dataset of rows by columns, or of one column, on the first rank. `values`: the address of a pointer to numbers of `each` bytes, to be
+   freed */
+static PetscErrorCode ReadDataset(const CheckpointFile *file, const char name[], hid_t type, size_t each, hsize_t length[2], void *values)
 {
-  hsize_t length[1] = {0};
-  hid_t   dataset, space;
+  hid_t dataset, space;
 
   PetscFunctionBegin;
-  dataset = H5Dopen2(checkpoint->file, name, H5P_DEFAULT);
-  PetscCall(HDF5Check(dataset, "open a state", checkpoint->path));
+  length[0] = 0;
+  length[1] = 1;
+  dataset   = H5Dopen2(file->file, name, H5P_DEFAULT);
+  PetscCall(HDF5Check(dataset, "open a dataset", file->path));
   space = H5Dget_space(dataset);
-  PetscCall(HDF5Check(H5Sget_simple_extent_dims(space, length, NULL), "read a state", checkpoint->path));
-  PetscCall(PetscMalloc1((size_t)length[0], bytes));
-  PetscCall(HDF5Check(H5Dread(dataset, H5T_NATIVE_UCHAR, H5S_ALL, H5S_ALL, H5P_DEFAULT, *bytes), "read a state", checkpoint->path));
-  PetscCall(HDF5Check(H5Sclose(space), "close a data space", checkpoint->path));
-  PetscCall(HDF5Check(H5Dclose(dataset), "read a state", checkpoint->path));
+  PetscCall(HDF5Check(H5Sget_simple_extent_dims(space, length, NULL), "read a dataset", file->path));
+  PetscCall(PetscMalloc((size_t)(length[0] * length[1]) * each, (void **)values));
+  if (length[0])
+    PetscCall(HDF5Check(H5Dread(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, *(void **)values), "read a dataset", file->path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", file->path));
+  PetscCall(HDF5Check(H5Dclose(dataset), "read a dataset", file->path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ReadStream(const CheckpointFile *file, const char name[], size_t *size, char **bytes)
+{
+  hsize_t length[2];
+
+  PetscFunctionBegin;
+  PetscCall(ReadDataset(file, name, H5T_NATIVE_UCHAR, 1, length, bytes));
   *size = (size_t)length[0];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointFileRead - the stream of each rank, of a checkpoint of as many ranks
-
-  Collective
-
-  Input Parameters:
-+ comm - communicator
-- file - the file
-
-  Output Parameter:
-. checkpoint - to be visited
-*/
+/* The stream of each rank, of a checkpoint of as many ranks. Collective */
 PetscErrorCode CheckpointFileRead(MPI_Comm comm, const CheckpointFile *file, Checkpoint *checkpoint)
 {
   PetscMPIInt rank;
-  size_t      size, own_size = 0;
-  char       *bytes, *own    = NULL;
+  size_t      size = 0, own_size = 0;
+  char       *bytes, *own        = NULL;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
@@ -261,24 +238,13 @@ PetscErrorCode CheckpointFileReadShared(MPI_Comm comm, const CheckpointFile *fil
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A dataset of rows by columns, on the first rank */
 PetscErrorCode CheckpointReadArray(const CheckpointFile *file, const char name[], PetscInt size[2], PetscReal **values)
 {
-  hsize_t length[2] = {0, 0};
-  hid_t   dataset, space;
+  hsize_t length[2];
 
   PetscFunctionBegin;
-  dataset = H5Dopen2(file->file, name, H5P_DEFAULT);
-  PetscCall(HDF5Check(dataset, "open a dataset", file->path));
-  space = H5Dget_space(dataset);
-  PetscCall(HDF5Check(H5Sget_simple_extent_dims(space, length, NULL), "read a dataset", file->path));
-  PetscCall(PetscMalloc1((size_t)(length[0] * length[1]), values));
-  if (length[0])
-    PetscCall(HDF5Check(H5Dread(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, *values), "read a dataset", file->path));
-  PetscCall(HDF5Check(H5Sclose(space), "close a data space", file->path));
-  PetscCall(HDF5Check(H5Dclose(dataset), "read a dataset", file->path));
-  size[0] = (PetscInt)length[0];
-  size[1] = (PetscInt)length[1];
+  PetscCall(ReadDataset(file, name, H5T_NATIVE_DOUBLE, sizeof(**values), length, values));
+  for (PetscInt d = 0; d < 2; d++) size[d] = (PetscInt)length[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
