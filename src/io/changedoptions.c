@@ -61,17 +61,7 @@ static PetscErrorCode AddDifferences(PetscInt n, const Setting from[], PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputCompareOptions - an error that names the options of this run which differ from those of the run that it continues
-
-  Collective
-
-  Input Parameters:
-+ comm   - communicator
-. before - all options of that run, as PetscOptionsGetAll() gives them
-. allow  - a warning in place of the error
-- path   - the checkpoint, for the message
-*/
+/* An error that names the options of this run which differ from those of the run that it continues. Collective */
 PetscErrorCode OutputCompareOptions(MPI_Comm comm, const char before[], PetscBool allow, const char path[])
 {
   char    *texts[2], differences[2048] = "";

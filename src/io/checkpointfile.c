@@ -285,17 +285,7 @@ static PetscErrorCode WriteShared(hid_t file, const CheckpointContents *contents
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  CheckpointFileWrite - writes a checkpoint, and keeps the one before
-
-  Collective
-
-  Input Parameters:
-+ comm     - communicator
-. path     - where
-. info     - what it says of its run
-- contents - what it has in it
-*/
+/* Writes a checkpoint, and keeps the one before. Collective */
 PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const CheckpointInfo *info, const CheckpointContents *contents)
 {
   PetscErrorCode error = PETSC_SUCCESS;

@@ -22,16 +22,7 @@ PetscErrorCode DeviationCreate(Controller controller, Deviation *deviation)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  DeviationSet - the exact displacement of a body
-
-  Collective
-
-  Input Parameters:
-+ deviation - the `Deviation`
-. body      - one of its bodies
-- text      - a function of x, y, z, t for each component, with commas between them [m]
-*/
+/* The exact displacement of a body. `text`: a function of x, y, z, t for each component, with commas between them [m]. Collective */
 PetscErrorCode DeviationSet(Deviation deviation, Body body, const char text[])
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)body);
@@ -50,17 +41,8 @@ PetscErrorCode DeviationSet(Deviation deviation, Body body, const char text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  DeviationCompute - relative L2 error of the displacement of each body at its current time
-
-  Collective
-
-  Input Parameter:
-. deviation - the `Deviation`
-
-  Output Parameter:
-. errors - one for each body; not-a-number if no exact displacement is given; absolute [m] if that is zero
-*/
+/* Relative L2 error of the displacement of each body at its current time. `errors`: one for each body; not-a-number if no exact
+   displacement is given; absolute [m] if that is zero. Collective */
 PetscErrorCode DeviationCompute(Deviation deviation, PetscReal errors[])
 {
   PetscFunctionBegin;

@@ -76,20 +76,8 @@ static PetscErrorCode CreateBuffers(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsCreate - fields of a run, in an HDF5 file with an XDMF file beside it
-
-  Collective
-
-  Input Parameters:
-+ controller - the `Controller`, set up
-. path       - the HDF5 file to write; an error if that cannot be done, on every rank
-. interval   - a frame every so many controller steps, and at the end; 0: at most 100 frames
-- precision  - of the numbers in the frames
-
-  Output Parameter:
-. fields - the `Fields`; FieldsMonitor() must be called with it after every step
-*/
+/* Fields of a run, in an HDF5 file with an XDMF file beside it. `interval`: a frame every so many controller steps, and at the end; 0: at
+   most 100 frames. Collective */
 PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt interval, OutputPrecision precision, Fields *fields)
 {
   const Body *bodies;
@@ -198,16 +186,7 @@ static PetscErrorCode WriteFrame(Fields fields, PetscReal time)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsMonitor - writes a frame at every interval and at the end
-
-  Collective
-
-  Input Parameters:
-+ controller - the `Controller`
-. frame      - the state of everything
-- context    - the `Fields`
-*/
+/* Writes a frame at every interval and at the end. Collective */
 PetscErrorCode FieldsMonitor(Controller controller, const ControllerFrame *frame, void *context)
 {
   Fields         fields = (Fields)context;
@@ -226,14 +205,7 @@ PetscErrorCode FieldsMonitor(Controller controller, const ControllerFrame *frame
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsFinish - closes the file after the last frame, with all frames listed in the XDMF file
-
-  Collective
-
-  Input Parameter:
-. fields - the `Fields`; FieldsMonitor() must not be called with it any more
-*/
+/* Closes the file after the last frame, with all frames listed in the XDMF file. Collective */
 PetscErrorCode FieldsFinish(Fields fields)
 {
   PetscErrorCode error;
@@ -267,17 +239,9 @@ PetscErrorCode FieldsSync(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsTakeUp - takes up the file of the run that is continued, with the frames before its checkpoint, once all of that has been loaded
-
-  Collective
-
-  Input Parameter:
-. fields - the `Fields`, after FieldsVisit(); `NULL`: there are none
-
-  Note:
-  Other frames become such that are not there yet. Does nothing where fields begin with the run.
-*/
+/* Takes up the file of the run that is continued, with the frames before its checkpoint, once all of that has been loaded. `fields`: the
+   `Fields`, after FieldsVisit(); `NULL`: there are none. Other frames become such that are not there yet. Does nothing where fields begin
+   with the run. Collective */
 PetscErrorCode FieldsTakeUp(Fields fields)
 {
   const PetscInt written = fields ? fields->goes_on : 0;
@@ -301,20 +265,9 @@ PetscErrorCode FieldsTakeUp(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsVisit - the place in the file, to or from a checkpoint; loading, FieldsTakeUp() is to follow
-
-  Collective
-
-  Input Parameters:
-+ fields     - the `Fields`; `NULL`: there are none
-. comm       - communicator of the run
-. same_ranks - it is continued on as many ranks as before, by which the numbers in the file are ordered
-- checkpoint - the `Checkpoint`
-
-  Note:
-  Fields whose path is not that of the run that is continued begin with the restart.
-*/
+/* The place in the file, to or from a checkpoint; loading, FieldsTakeUp() is to follow. `fields`: the `Fields`; `NULL`: there are none;
+   `same_ranks`: it is continued on as many ranks as before, by which the numbers in the file are ordered. Fields whose path is not that
+   of the run that is continued begin with the restart. Collective */
 PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, PetscBool same_ranks, Checkpoint checkpoint)
 {
   PetscInt  numbers[3] = {fields ? fields->written : 0, fields ? fields->n_frames : 0, fields ? fields->interval : 0};
@@ -359,18 +312,8 @@ PetscErrorCode FieldsGetPaths(Fields fields, const char *path[], const char *xdm
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsDestroy - frees the fields
-
-  Not Collective
-
-  Input Parameter:
-. fields - the `Fields`, set to `NULL`
-
-  Note:
-  After an error, which may be one of this rank alone, FieldsFinish() is not called, and the file is left as it is. The frames in it can
-  be read, and the XDMF file lists them.
-*/
+/* Frees the fields. After an error, which may be one of this rank alone, FieldsFinish() is not called, and the file is left as it is. The
+   frames in it can be read, and the XDMF file lists them */
 PetscErrorCode FieldsDestroy(Fields *fields)
 {
   Fields         f = *fields;

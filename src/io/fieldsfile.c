@@ -27,17 +27,7 @@ const FieldsField fields_of_a_frame[FIELDS_PER_FRAME] = {
 
 const char *const OutputPrecisions[] = {"single", "double", "OutputPrecision", "OUTPUT_", NULL};
 
-/*
-  FieldsFileGetSize - bytes of all frames and of the mesh, without HDF5's own few
-
-  Not Collective
-
-  Input Parameters:
-+ mesh      - the mesh
-. set       - the fields of each frame
-. n_frames  - number of frames
-- precision - of their numbers
-*/
+/* Bytes of all frames and of the mesh, without HDF5's own few */
 PetscInt64 FieldsFileGetSize(const FieldsMesh *mesh, FieldsSet set, PetscInt n_frames, OutputPrecision precision)
 {
   hsize_t numbers = 0;
@@ -179,19 +169,7 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, Units units
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsFileCreate - makes a file with a place for everything
-
-  Not Collective; one rank calls it
-
-  Input Parameters:
-+ path      - where, replacing what is there
-. mesh      - the mesh
-. set       - the fields of each frame
-. n_frames  - number of frames
-. precision - of their numbers
-- options   - all options of the run, as `PetscOptionsGetAll()` gives them: they become attributes of the root, beside `version`
-*/
+/* Makes a file with a place for everything */
 PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, FieldsSet set, PetscInt n_frames, OutputPrecision precision,
                                 const char options[])
 {
@@ -221,17 +199,7 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Field
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsFileCount - how many frames a file has places for
-
-  Not Collective; one rank calls it
-
-  Input Parameter:
-. path - the file
-
-  Output Parameter:
-. n_frames - 0 where there is no file of fields
-*/
+/* How many frames a file has places for */
 PetscErrorCode FieldsFileCount(const char path[], PetscInt *n_frames)
 {
   HDF5Silence silence;
@@ -252,19 +220,8 @@ PetscErrorCode FieldsFileCount(const char path[], PetscInt *n_frames)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsFileCut - leaves the first frames of a file, and has the others count as not there yet
-
-  Not Collective; one rank calls it
-
-  Input Parameters:
-+ path     - the file
-. n_frames - frames that it has places for
-- written  - how many are to stay; an error if there are fewer
-
-  Output Parameter:
-. times - their times, and not-a-number for the others [s]; n_frames numbers
-*/
+/* Leaves the first frames of a file, and has the others count as not there yet. `times`: their times, and not-a-number for the others
+   [s]; n_frames numbers */
 PetscErrorCode FieldsFileCut(const char path[], PetscInt n_frames, PetscInt written, PetscReal times[])
 {
   hsize_t  has = 0;
@@ -292,18 +249,7 @@ PetscErrorCode FieldsFileCut(const char path[], PetscInt n_frames, PetscInt writ
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsFileOpen - opens a file for writing by all ranks
-
-  Collective
-
-  Input Parameters:
-+ comm - communicator
-- path - the file
-
-  Output Parameter:
-. file - the file; close with H5Fclose()
-*/
+/* Opens a file for writing by all ranks. Collective */
 PetscErrorCode FieldsFileOpen(MPI_Comm comm, const char path[], hid_t *file)
 {
   int   opened;
@@ -351,20 +297,7 @@ static herr_t WriteRows(hid_t file, const char name[], const FieldsRows *rows, P
   return result;
 }
 
-/*
-  FieldsFileWrite - writes this rank's rows of a dataset
-
-  Collective; an error on any rank becomes an error on all
-
-  Input Parameters:
-+ comm       - communicator
-. file       - the file
-. name       - the dataset
-. rows       - which rows
-. components - numbers in a row
-. type       - of the numbers in memory, which must be that in the file: otherwise HDF5 would convert them, and write rank by rank
-- values     - the rows of this rank, one after the other
-*/
+/* Writes this rank's rows of a dataset. Collective; an error on any rank becomes an error on all */
 PetscErrorCode FieldsFileWrite(MPI_Comm comm, hid_t file, const char name[], const FieldsRows *rows, PetscInt components, hid_t type,
                                const void *values)
 {

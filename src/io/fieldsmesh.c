@@ -109,18 +109,7 @@ static PetscErrorCode CountTopology(FieldsMesh *mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsMeshCreate - where nodes and cells of the bodies lie in files
-
-  Collective
-
-  Input Parameters:
-+ n      - number of bodies
-- bodies - the bodies, set up; they must outlive the mesh
-
-  Output Parameter:
-. mesh - the mesh
-*/
+/* Where nodes and cells of the bodies lie in files. Collective */
 PetscErrorCode FieldsMeshCreate(PetscInt n, const Body bodies[], FieldsMesh *mesh)
 {
   PetscFunctionBegin;
@@ -138,17 +127,7 @@ PetscErrorCode FieldsMeshCreate(PetscInt n, const Body bodies[], FieldsMesh *mes
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsMeshGetTopology - this rank's rows of the topology
-
-  Not Collective
-
-  Input Parameter:
-. mesh - the mesh
-
-  Output Parameter:
-. entries - nodes of the cells; if there are several shapes, the number of its shape, and maybe of its nodes, precedes those of each cell
-*/
+/* This rank's rows of the topology */
 PetscErrorCode FieldsMeshGetTopology(const FieldsMesh *mesh, int entries[])
 {
   hsize_t first = 0; /* number of the body's first node */
@@ -176,17 +155,7 @@ PetscErrorCode FieldsMeshGetTopology(const FieldsMesh *mesh, int entries[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsMeshGetNodes - reference positions of this rank's nodes
-
-  Not Collective
-
-  Input Parameter:
-. mesh - the mesh
-
-  Output Parameter:
-. x - three coordinates for each node, 0 beyond the dimension of its body [m]
-*/
+/* Reference positions of this rank's nodes. `x`: three coordinates for each node, 0 beyond the dimension of its body [m] */
 PetscErrorCode FieldsMeshGetNodes(const FieldsMesh *mesh, PetscReal x[])
 {
   PetscFunctionBegin;

@@ -167,20 +167,7 @@ PetscErrorCode FieldsObstaclesCheckPath(Contact contact, const char fields[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  FieldsObstaclesFind - surfaces of all obstacles that can be seen in the space of the bodies
-
-  Collective
-
-  Input Parameters:
-+ contact  - has the obstacles, and must outlive the grids
-. n_bodies - number of bodies
-- bodies   - planes and cylinders are shown where these are now
-
-  Output Parameters:
-+ n     - number of grids
-- grids - to be freed
-*/
+/* Surfaces of all obstacles that can be seen in the space of the bodies. Collective */
 PetscErrorCode FieldsObstaclesFind(Contact contact, PetscInt n_bodies, const Body bodies[], PetscInt *n, ObstacleGrid *grids[])
 {
   PetscReal centre[3], diagonal = 0;

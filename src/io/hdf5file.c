@@ -4,16 +4,7 @@
 #include <sys/optionstext.h>
 #include <sys/units.h>
 
-/*
-  HDF5Check - ends with an error if HDF5 could not do something
-
-  Not Collective
-
-  Input Parameters:
-+ result - what HDF5 returned
-. what   - what it was to do
-- path   - the file
-*/
+/* Ends with an error if HDF5 could not do something */
 PetscErrorCode HDF5Check(hid_t result, const char what[], const char path[])
 {
   PetscFunctionBegin;
@@ -22,21 +13,9 @@ PetscErrorCode HDF5Check(hid_t result, const char what[], const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  HDF5Create - creates a file, replacing what is there
-
-  Not Collective
-
-  Input Parameter:
-. path - where
-
-  Output Parameter:
-. file - to be closed with `H5Fclose()`
-
-  Note:
-  In the format of HDF5 1.8 and newer: the older one looks through all attributes of an object for each that is added, and those of the root
-  are the options of the run. A history of 2560 bodies, of 31 000 options, took minutes to create.
-*/
+/* Creates a file, replacing what is there. In the format of HDF5 1.8 and newer: the older one looks through all attributes of an object
+   for each that is added, and those of the root are the options of the run. A history of 2560 bodies, of 31 000 options, took minutes to
+   create */
 PetscErrorCode HDF5Create(const char path[], hid_t *file)
 {
   hid_t access;
@@ -51,17 +30,7 @@ PetscErrorCode HDF5Create(const char path[], hid_t *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  HDF5WriteText - adds an attribute: a string of variable length, which may be empty
-
-  Not Collective
-
-  Input Parameters:
-+ object - the file, group or dataset
-. name   - of the attribute
-. value  - the string
-- path   - the file
-*/
+/* Adds an attribute: a string of variable length, which may be empty */
 PetscErrorCode HDF5WriteText(hid_t object, const char name[], const char value[], const char path[])
 {
   hid_t type, space, attribute;
@@ -81,16 +50,7 @@ PetscErrorCode HDF5WriteText(hid_t object, const char name[], const char value[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  HDF5WriteRun - writes the options, the version and the units of a run as attributes, so that a file tells how it was made
-
-  Not Collective
-
-  Input Parameters:
-+ file    - the file
-. options - all options of the run, "-name value -name -name value ", as `PetscOptionsGetAll()` lists them; each becomes an attribute
-- path    - of the file
-*/
+/* Writes the options, the version and the units of a run as attributes, so that a file tells how it was made */
 PetscErrorCode HDF5WriteRun(hid_t file, const char options[], const char path[])
 {
   const char *name, *value;

@@ -69,16 +69,7 @@ static PetscErrorCode CheckElements(Body body, const ControllerFrame *frame, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  LinearLimitsCheck - notes and tells what is too much for the linear materials of bodies
-
-  Collective
-
-  Input Parameters:
-+ controller - the `Controller`
-. frame      - the state of everything
-- statistics - of each body, which take the figures
-*/
+/* Notes and tells what is too much for the linear materials of bodies. Collective */
 PetscErrorCode LinearLimitsCheck(Controller controller, const ControllerFrame *frame, BodyStatistics statistics[])
 {
   const Body *bodies;

@@ -45,18 +45,7 @@ static int TryToWrite(const char path[], const char part[])
   return 0;
 }
 
-/*
-  OutputFileGetPart - the name under which a file is written until it is whole
-
-  Not Collective; one rank calls it, since it follows symbolic links on the disk
-
-  Input Parameters:
-+ path - where the file will be
-- size - length of part
-
-  Output Parameter:
-. part - `<path>.part`; beside the file itself where the path is a symbolic link
-*/
+/* The name under which a file is written until it is whole */
 PetscErrorCode OutputFileGetPart(const char path[], size_t size, char part[])
 {
   char   resolved[PETSC_MAX_PATH_LEN];
@@ -74,16 +63,7 @@ PetscErrorCode OutputFileGetPart(const char path[], size_t size, char part[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFileCheck - makes sure, before anything is computed, that a file can be written; makes the directories it is to be in
-
-  Collective
-
-  Input Parameters:
-+ comm   - communicator; rank 0 writes
-. option - the option that gave the path, for the message
-- path   - where the file will be; what is there now stays
-*/
+/* Makes sure, before anything is computed, that a file can be written; makes the directories it is to be in. Collective */
 PetscErrorCode OutputFileCheck(MPI_Comm comm, const char option[], const char path[])
 {
   char        part[PETSC_MAX_PATH_LEN];
@@ -118,14 +98,7 @@ static int CopyBytes(int from, int to, size_t size, char buffer[])
   }
 }
 
-/*
-  OutputFileMakeParents - makes the folders that a file is to be in, where they are gone or never were
-
-  Not Collective
-
-  Input Parameter:
-. path - of the file
-*/
+/* Makes the folders that a file is to be in, where they are gone or never were */
 PetscErrorCode OutputFileMakeParents(const char path[])
 {
   const int error = MakeParents(path);
@@ -144,15 +117,7 @@ PetscErrorCode OutputFileRelease(int *held)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFileCopy - copies a file that is held
-
-  Not Collective
-
-  Input Parameters:
-+ held - from OutputFilePlace()
-- part - the copy, replaced if it exists
-*/
+/* Copies a file that is held */
 PetscErrorCode OutputFileCopy(int held, const char part[])
 {
   char *buffer;
@@ -178,23 +143,8 @@ PetscErrorCode OutputFileHold(const char path[], int *held)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFilePlace - puts a whole file in its place, in one step, and keeps its contents at hand even if somebody moves or deletes it then
-
-  Not Collective
-
-  Input Parameters:
-+ part - the file, whole
-. path - its final name; a file with that name is replaced
-- held - what was held before, or -1; `NULL`: nothing is to be held
-
-  Output Parameters:
-+ held   - the file, open
-- placed - whether it is there: not if somebody has taken `part` away
-
-  Note:
-  End with OutputFileRelease().
-*/
+/* Puts a whole file in its place, in one step, and keeps its contents at hand even if somebody moves or deletes it then. `held`: what was
+   held before, or -1; `NULL`: nothing is to be held. End with OutputFileRelease() */
 PetscErrorCode OutputFilePlace(const char part[], const char path[], int *held, PetscBool *placed)
 {
   char resolved[PETSC_MAX_PATH_LEN];
@@ -221,23 +171,8 @@ PetscErrorCode OutputFilePlace(const char part[], const char path[], int *held, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFileWrite - writes a whole file, and puts it in its place; again where somebody takes it or its folder away meanwhile
-
-  Not Collective
-
-  Input Parameters:
-+ path  - where the file will be; its folder is made where it is missing
-. write - writes the file under the name that it is given
-. ctx   - for `write`
-- held  - what was held before, or -1; `NULL`: nothing is to be held
-
-  Output Parameter:
-. held - the file, see OutputFilePlace()
-
-  Note:
-  A `write` that finds that its file has vanished may return before it is done.
-*/
+/* Writes a whole file, and puts it in its place; again where somebody takes it or its folder away meanwhile. `held`: what was held
+   before, or -1; `NULL`: nothing is to be held. A `write` that finds that its file has vanished may return before it is done */
 PetscErrorCode OutputFileWrite(const char path[], OutputWriteFn *write, void *ctx, int *held)
 {
   char      part[PETSC_MAX_PATH_LEN];
@@ -267,15 +202,7 @@ static PetscErrorCode WriteCopy(const char part[], void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFileRestore - writes a file again if it is not any more where it was put
-
-  Not Collective
-
-  Input Parameters:
-+ held - from OutputFilePlace(), whole
-- path - where the file belongs
-*/
+/* Writes a file again if it is not any more where it was put */
 PetscErrorCode OutputFileRestore(int held, const char path[])
 {
   struct stat own, there;
@@ -287,15 +214,7 @@ PetscErrorCode OutputFileRestore(int held, const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFileSync - has the contents of a file written through to the disk
-
-  Not Collective
-
-  Input Parameters:
-+ file - an open file; -1: none
-- path - its name, for the message
-*/
+/* Has the contents of a file written through to the disk */
 PetscErrorCode OutputFileSync(int file, const char path[])
 {
   PetscFunctionBegin;
@@ -305,14 +224,7 @@ PetscErrorCode OutputFileSync(int file, const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFileSyncFolder - has the names in the folder of a file written through to the disk, where the file system can
-
-  Not Collective
-
-  Input Parameter:
-. path - of the file
-*/
+/* Has the names in the folder of a file written through to the disk, where the file system can */
 PetscErrorCode OutputFileSyncFolder(const char path[])
 {
   char  folder[PETSC_MAX_PATH_LEN];
@@ -331,18 +243,7 @@ PetscErrorCode OutputFileSyncFolder(const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputFileShareError - makes an error of the first rank, which has printed it, an error of all ranks
-
-  Collective
-
-  Input Parameters:
-+ comm   - communicator
-. error  - of the first rank, or `PETSC_SUCCESS`
-. option - the option that gave the path, for the message
-. path   - the file
-- what   - what the first rank was to do with it
-*/
+/* Makes an error of the first rank, which has printed it, an error of all ranks. Collective */
 PetscErrorCode OutputFileShareError(MPI_Comm comm, PetscErrorCode error, const char option[], const char path[], const char what[])
 {
   PetscMPIInt rank, code = (PetscMPIInt)error;

@@ -51,20 +51,7 @@ static void ReadHolder(int file, size_t size, char holder[])
   holder[strcspn(holder, "\n")] = 0;
 }
 
-/*
-  OutputLocksTake - keeps other runs from writing to a path; an error if one does now
-
-  Collective
-
-  Input Parameters:
-+ comm   - communicator; rank 0 locks
-. locks  - the locks of this run
-. option - the option that gave the path, for the message
-- path   - the output
-
-  Note:
-  Where the file system has no locks, none is taken.
-*/
+/* Keeps other runs from writing to a path; an error if one does now. Where the file system has no locks, none is taken. Collective */
 PetscErrorCode OutputLocksTake(MPI_Comm comm, OutputLocks *locks, const char option[], const char path[])
 {
   char        holder[64] = "", resolved[PETSC_MAX_PATH_LEN];

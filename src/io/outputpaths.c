@@ -18,18 +18,7 @@ static size_t FolderLength(const char path[])
   return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/*
-  OutputPathResolve - the path of the file itself where a path is a symbolic link: what is written goes through the link
-
-  Not Collective; one rank calls it, so that not all of them ask the file system
-
-  Input Parameters:
-+ path - as given
-- size - length of resolved
-
-  Output Parameter:
-. resolved - the path of the file, which need not be there
-*/
+/* The path of the file itself where a path is a symbolic link: what is written goes through the link */
 PetscErrorCode OutputPathResolve(const char path[], size_t size, char resolved[])
 {
   char target[PETSC_MAX_PATH_LEN];
@@ -163,17 +152,7 @@ PetscErrorCode OutputPathDrop(char path[], PetscBool *given)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputPathsCheck - stops with an error if two outputs are one file, or an output is one that the run reads
-
-  Collective
-
-  Input Parameters:
-+ comm    - communicator; rank 0 looks
-. n       - number of outputs
-. options - the options that gave the paths, for the message
-- paths   - the paths; empty: no such output
-*/
+/* Stops with an error if two outputs are one file, or an output is one that the run reads. Collective */
 PetscErrorCode OutputPathsCheck(MPI_Comm comm, PetscInt n, const char *const options[], const char *const paths[])
 {
   char        error[3 * PETSC_MAX_PATH_LEN] = "";
@@ -187,19 +166,7 @@ PetscErrorCode OutputPathsCheck(MPI_Comm comm, PetscInt n, const char *const opt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputPathVisit - which file a path stands for, to or from a checkpoint
-
-  Not Collective
-
-  Input Parameters:
-+ path       - the path; `NULL`: there is no such output
-. name       - of the record
-- checkpoint - the `Checkpoint`
-
-  Output Parameter:
-. same - loading, whether the run that is continued has written this file
-*/
+/* Which file a path stands for, to or from a checkpoint. `path`: the path; `NULL`: there is no such output */
 PetscErrorCode OutputPathVisit(const char path[], const char name[], Checkpoint checkpoint, PetscBool *same)
 {
   char own[PETSC_MAX_PATH_LEN] = "", there[PETSC_MAX_PATH_LEN] = "";

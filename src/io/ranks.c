@@ -81,17 +81,7 @@ static PetscReal WorkFor(const PetscReal counts[])
   return counts[RANKS_ELEMENTS] + WORK_FOR_FACET * counts[RANKS_FACETS] + WORK_FOR_ROW * counts[RANKS_ROWS];
 }
 
-/*
-  RanksGather - the most that one rank has, and the mean over all ranks
-
-  Collective
-
-  Input Parameter:
-. controller - the `Controller`, after its set-up
-
-  Output Parameter:
-. summary - the same on all ranks
-*/
+/* The most that one rank has, and the mean over all ranks. Collective */
 PetscErrorCode RanksGather(Controller controller, RanksSummary *summary)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)controller);
@@ -116,15 +106,7 @@ static PetscReal Imbalance(const RanksSummary *summary, RanksCount count)
   return summary->mean[count] > 0 ? summary->largest[count] / summary->mean[count] : 1;
 }
 
-/*
-  RanksView - prints how work and memory lie on several ranks
-
-  Collective on the viewer
-
-  Input Parameters:
-+ summary - what `RanksGather()` found
-- viewer  - an ASCII viewer
-*/
+/* Prints how work and memory lie on several ranks. Collective on the viewer */
 PetscErrorCode RanksView(const RanksSummary *summary, PetscViewer viewer)
 {
   const PetscReal megabyte = 1e6;

@@ -52,17 +52,7 @@ static PetscErrorCode CreateDataset(hid_t file, const Series *series, hsize_t re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  SeriesFileCreate - creates a file of empty series
-
-  Not Collective
-
-  Input Parameters:
-+ path     - where, replacing what is there
-. n_series - number of series
-. series   - the series
-- options  - all options of the run, as `PetscOptionsGetAll()` gives them: they become attributes of the root, beside `version`
-*/
+/* Creates a file of empty series */
 PetscErrorCode SeriesFileCreate(const char path[], PetscInt n_series, const Series series[], const char options[])
 {
   const hsize_t records = ChunkRecords(n_series, series);
@@ -116,20 +106,7 @@ static PetscErrorCode AppendToDataset(hid_t file, const Series *series, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  SeriesFileAppend - appends records to all series of a file
-
-  Not Collective
-
-  Input Parameters:
-+ path     - the file
-. n_series - number of series
-. series   - the series that it was created with
-. length   - how many records it has
-. n        - how many to append
-. width    - length of a record
-- records  - n records
-*/
+/* Appends records to all series of a file */
 PetscErrorCode SeriesFileAppend(const char path[], PetscInt n_series, const Series series[], PetscInt64 length, PetscInt n, PetscInt width,
                                 const PetscReal records[])
 {
@@ -166,17 +143,7 @@ static PetscErrorCode CutDataset(hid_t file, const Series *series, PetscInt64 le
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  SeriesFileCut - cuts off what the series of a file have beyond so many records
-
-  Not Collective
-
-  Input Parameters:
-+ path     - the file
-. n_series - number of series
-. series   - the series that it was created with
-- length   - how many records are to stay; an error if there are fewer
-*/
+/* Cuts off what the series of a file have beyond so many records */
 PetscErrorCode SeriesFileCut(const char path[], PetscInt n_series, const Series series[], PetscInt64 length)
 {
   hid_t file;

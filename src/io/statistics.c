@@ -27,17 +27,7 @@ static PetscErrorCode GetGyration(Body body, PetscReal *radius)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  StatisticsCreate - gathers figures about a run
-
-  Not Collective
-
-  Input Parameter:
-. controller - the `Controller`, set up
-
-  Output Parameter:
-. statistics - the `Statistics`; StatisticsMonitor() must be called with it after every step
-*/
+/* Gathers figures about a run */
 PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
 {
   const Body              *bodies;
@@ -242,16 +232,7 @@ PetscErrorCode StatisticsAddOverlaps(Statistics s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  StatisticsMonitor - takes note of a controller step
-
-  Logically Collective
-
-  Input Parameters:
-+ controller - the `Controller`
-. frame      - the state of everything; that of step 0 is what energies and momenta are compared with
-- context    - the `Statistics`
-*/
+/* Takes note of a controller step */
 PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *frame, void *context)
 {
   Statistics s = (Statistics)context;
@@ -269,15 +250,7 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  StatisticsSetDeviation - takes note of how far bodies are from exact displacements now
-
-  Collective
-
-  Input Parameters:
-+ statistics - the `Statistics`
-- deviation  - the `Deviation`
-*/
+/* Takes note of how far bodies are from exact displacements now. Collective */
 PetscErrorCode StatisticsSetDeviation(Statistics statistics, Deviation deviation)
 {
   PetscReal *errors;
@@ -290,17 +263,7 @@ PetscErrorCode StatisticsSetDeviation(Statistics statistics, Deviation deviation
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  StatisticsGetResults - the figures of all steps so far
-
-  Not Collective
-
-  Input Parameter:
-. statistics - the `Statistics`
-
-  Output Parameter:
-. results - owned by the statistics
-*/
+/* The figures of all steps so far. `results`: owned by the statistics */
 PetscErrorCode StatisticsGetResults(Statistics statistics, const StatisticsResults **results)
 {
   StatisticsResults *r = &statistics->results;

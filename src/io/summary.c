@@ -297,18 +297,7 @@ static PetscErrorCode WriteObject(const char part[], void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  SummaryWrite - writes the summary of a run
-
-  Collective; rank 0 writes
-
-  Input Parameters:
-+ controller - the `Controller`, at its end
-. results    - figures of the run
-. exact      - what it was compared with, or `NULL`
-. verdict    - what is amiss with it
-- path       - the file
-*/
+/* Writes the summary of a run; `exact`: what it was compared with, or NULL. Collective; the first rank writes */
 PetscErrorCode SummaryWrite(Controller controller, const StatisticsResults *results, Exact exact, const Verdict *verdict, const char path[])
 {
   PetscErrorCode error;

@@ -315,18 +315,7 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  VerdictMake - what is amiss with a run
-
-  Collective
-
-  Input Parameters:
-+ controller - the `Controller`, at its end
-- results    - figures of the run
-
-  Output Parameter:
-. verdict - sentences, none where all is well
-*/
+/* What is amiss with a run. Collective */
 PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *results, Verdict *verdict)
 {
   Contact           contact;

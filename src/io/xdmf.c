@@ -22,18 +22,7 @@ static PetscBool EndsWith(const char text[], const char end[])
   return (PetscBool)(n > m && !strcmp(text + n - m, end));
 }
 
-/*
-  XdmfGetPath - where the XDMF file of an HDF5 file is
-
-  Not Collective
-
-  Input Parameters:
-+ fields - path of the HDF5 file
-- size   - length of path
-
-  Output Parameter:
-. path - its .h5 or .hdf5 replaced by .xdmf, or .xdmf added
-*/
+/* Where the XDMF file of an HDF5 file is */
 PetscErrorCode XdmfGetPath(const char fields[], size_t size, char path[])
 {
   size_t length = strlen(fields);
@@ -183,19 +172,7 @@ static PetscErrorCode WriteList(const char part[], void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  XdmfWrite - writes the XDMF file of an HDF5 file of fields, replacing what is there as a whole
-
-  Not Collective; one rank calls it
-
-  Input Parameters:
-+ fields    - path of the HDF5 file
-. mesh      - the mesh
-. set       - the fields of each frame
-. precision - of the numbers in the frames
-. n_frames  - how many frames to list
-- times     - their times [s]
-*/
+/* Writes the XDMF file of an HDF5 file of fields, replacing what is there as a whole. `times`: their times [s] */
 PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, FieldsSet set, OutputPrecision precision, PetscInt n_frames,
                          const PetscReal times[])
 {
@@ -245,17 +222,8 @@ static PetscErrorCode WriteObstacles(const char part[], void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  XdmfWriteObstacles - writes the XDMF file of the obstacles, replacing what is there as a whole
-
-  Not Collective; one rank calls it
-
-  Input Parameters:
-+ fields - path of the HDF5 file
-. n      - number of grids; nothing is written if there are none
-. grids  - surfaces of the obstacles, as FieldsObstaclesWrite() has added them to the HDF5 file
-- time   - of the first frame: readers want one, and another would be a frame of its own in ParaView [s]
-*/
+/* Writes the XDMF file of the obstacles, replacing what is there as a whole. `time`: of the first frame: readers want one, and another
+   would be a frame of its own in ParaView [s] */
 PetscErrorCode XdmfWriteObstacles(const char fields[], PetscInt n, const ObstacleGrid grids[], PetscReal time)
 {
   ObstacleList list = {FileName(fields), n, grids, time};

@@ -325,22 +325,8 @@ PetscErrorCode OptionsFindNeed(const char option[], char need[], size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OptionsSuggest - what an option that nobody has read may have been meant to be
-
-  Input Parameters:
-+ name   - the option, without its dash
-. n      - number of bodies
-. bodies - their names
-- size   - room in `text`
-
-  Output Parameters:
-+ known - an option of that name exists, and nothing is suggested
-- text  - one or several with "or" between them, with what they need beside
-
-  Note:
-  A slip of the pen first, up to two letters; then what the words mean; then the nearest by letters.
-*/
+/* What an option that nobody has read may have been meant to be. A slip of the pen first, up to two letters; then what the words mean;
+   then the nearest by letters */
 PetscErrorCode OptionsSuggest(const char name[], PetscInt n, const char *const bodies[], PetscBool *known, char text[], size_t size)
 {
   Unknown unknown = {.name = name, .rest = name, .owner = OPTION_OF_RUN, .distance = 1000};

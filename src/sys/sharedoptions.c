@@ -178,16 +178,8 @@ static PetscErrorCode Expand(const Sharers *sharers, PetscInt b, const char opti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OptionsExpandShared - gives bodies the options of all bodies, and of their materials
-
-  Collective
-
-  Input Parameters:
-+ comm   - communicator
-. n      - number of bodies
-- bodies - their names, before anything has read their options
-*/
+/* Gives bodies the options of all bodies, and of their materials. `bodies`: their names, before anything has read their options.
+   Collective */
 PetscErrorCode OptionsExpandShared(MPI_Comm comm, PetscInt n, char *const bodies[])
 {
   Sharers      sharers;
@@ -233,17 +225,7 @@ static PetscErrorCode HasSameValue(const char option[], const char value[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OptionsFindShared - the shared option by which a body has an option
-
-  Input Parameters:
-+ option - without its dash
-. value  - its value, or `NULL`
-- size   - room in `shared`
-
-  Output Parameter:
-. shared - without its dash; nothing: the option is no body's, or stands in a file or on the command line itself
-*/
+/* The shared option by which a body has an option. `value`: its value, or `NULL` */
 PetscErrorCode OptionsFindShared(const char option[], const char value[], char shared[], size_t size)
 {
   Sharers  sharers;

@@ -215,14 +215,7 @@ static PetscErrorCode StartThread(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  StatusLineBegin - begins to tell how far the run is, on standard error
-
-  Not Collective; one rank calls it
-
-  Input Parameter:
-. bar - a line that is drawn over and over, for terminals; or lines of a log, after one minute, two minutes, four minutes, ...
-*/
+/* Begins to tell how far the run is, on standard error */
 PetscErrorCode StatusLineBegin(PetscBool bar)
 {
   PetscFunctionBegin;

@@ -34,20 +34,8 @@ static const char *const labels[UNIT_DIMENSIONS][2] = {
     [UNIT_ONE]               = {" 1", " 1"},
 };
 
-/*
-  UnitsGet - the set of units that -units names
-
-  Not Collective
-
-  Input Parameter:
-. object - whose options; `NULL`: those of all
-
-  Output Parameter:
-. units - `UNITS_SI` where nothing is said
-
-  Note:
-  Reads the options, so it is for set-ups, tables and warnings, not for every step. ControllerSetFromOptions() reports a wrong value.
-*/
+/* The set of units that -units names. `object`: whose options; `NULL`: those of all. Reads the options, so it is for set-ups, tables and
+   warnings, not for every step. ControllerSetFromOptions() reports a wrong value */
 PetscErrorCode UnitsGet(PetscObject object, Units *units)
 {
   PetscEnum    value   = (PetscEnum)UNITS_SI;
