@@ -6,6 +6,18 @@ typedef struct {
   const MeshBox *box;
 } Division;
 
+static PetscErrorCode ReadCorner(MPI_Comm comm, const char prefix[], const char option[], PetscInt dim, PetscReal corner[3])
+{
+  PetscInt  n = 3;
+  PetscBool set;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetRealArray(NULL, prefix, option, corner, &n, &set));
+  PetscCheck(!set || n == dim, comm, PETSC_ERR_USER_INPUT, "-%s%s has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT,
+             prefix, option + 1, n, prefix, dim);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Reads and checks DMPLEX's options for boxes. Defaults are DMPLEX's, but that cells are quadrilaterals and hexahedra. */
 static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], MeshBox *box)
 {
@@ -26,14 +38,8 @@ static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], MeshBox *box)
   PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-dm_plex_box_faces", box->faces, &n, &set));
   PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT,
              "-%sdm_plex_box_faces has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
-  n = 3;
-  PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-dm_plex_box_lower", box->lower, &n, &set));
-  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT,
-             "-%sdm_plex_box_lower has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
-  n = 3;
-  PetscCall(PetscOptionsGetRealArray(NULL, prefix, "-dm_plex_box_upper", box->upper, &n, &set));
-  PetscCheck(!set || n == box->dim, comm, PETSC_ERR_USER_INPUT,
-             "-%sdm_plex_box_upper has %" PetscInt_FMT " numbers; -%sdm_plex_dim asks for %" PetscInt_FMT, prefix, n, prefix, box->dim);
+  PetscCall(ReadCorner(comm, prefix, "-dm_plex_box_lower", box->dim, box->lower));
+  PetscCall(ReadCorner(comm, prefix, "-dm_plex_box_upper", box->dim, box->upper));
   for (PetscInt d = 0; d < box->dim; d++) {
     PetscCheck(box->faces[d] > 0, comm, PETSC_ERR_USER_INPUT,
                "-%sdm_plex_box_faces: %" PetscInt_FMT " along axis %" PetscInt_FMT " must be positive", prefix, box->faces[d], d + 1);

@@ -70,46 +70,35 @@ PetscErrorCode GmshReadNodes41(Gmsh *gmsh)
 /* Second-order elements have a node in the middle of each edge */
 static PetscErrorCode FindShape(Gmsh *gmsh, PetscInt64 type, PetscInt64 element, DMPolytopeType *shape, PetscBool *second_order)
 {
+  static const struct {
+    PetscInt64     type;
+    DMPolytopeType shape;
+    PetscBool      second_order;
+  } types[] = {
+      {1, DM_POLYTOPE_SEGMENT, PETSC_FALSE},     {8, DM_POLYTOPE_SEGMENT, PETSC_TRUE},        {2, DM_POLYTOPE_TRIANGLE, PETSC_FALSE},
+      {9, DM_POLYTOPE_TRIANGLE, PETSC_TRUE},     {3, DM_POLYTOPE_QUADRILATERAL, PETSC_FALSE}, {4, DM_POLYTOPE_TETRAHEDRON, PETSC_FALSE},
+      {11, DM_POLYTOPE_TETRAHEDRON, PETSC_TRUE}, {5, DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE},    {15, DM_POLYTOPE_POINT, PETSC_FALSE}};
+
   PetscFunctionBegin;
-  *second_order = (PetscBool)(type == 8 || type == 9 || type == 11);
-  switch (type) {
-  case 1:
-  case 8:
-    *shape = DM_POLYTOPE_SEGMENT;
-    break;
-  case 2:
-  case 9:
-    *shape = DM_POLYTOPE_TRIANGLE;
-    break;
-  case 3:
-    *shape = DM_POLYTOPE_QUADRILATERAL;
-    break;
-  case 4:
-  case 11:
-    *shape = DM_POLYTOPE_TETRAHEDRON;
-    break;
-  case 5:
-    *shape = DM_POLYTOPE_HEXAHEDRON;
-    break;
-  case 15:
-    *shape = DM_POLYTOPE_POINT;
-    break;
-  case 6:
-  case 7:
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-            "element %" PetscInt64_FMT " is a %s (Gmsh's type %" PetscInt64_FMT
-            "), which is not supported; supported: lines, triangles, quadrilaterals, tetrahedra, hexahedra, one shape in a body",
-            element, type == 6 ? "prism" : "pyramid", type);
-  default:
-    GmshCheck(gmsh, type > 0 && type <= 140, "element %" PetscInt64_FMT " has type %" PetscInt64_FMT ", which Gmsh does not have", element,
-              type);
-    SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-            "element %" PetscInt64_FMT " has Gmsh's type %" PetscInt64_FMT
-            ", which is not supported; supported are first-order elements: lines, triangles, quadrilaterals, tetrahedra, hexahedra (gmsh "
-            "-order 1), and triangles and tetrahedra of second order (gmsh -order 2)",
-            element, type);
+  *shape        = DM_POLYTOPE_UNKNOWN;
+  *second_order = PETSC_FALSE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(types); i++) {
+    if (types[i].type != type) continue;
+    *shape        = types[i].shape;
+    *second_order = types[i].second_order;
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(type != 6 && type != 7, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "element %" PetscInt64_FMT " is a %s (Gmsh's type %" PetscInt64_FMT
+             "), which is not supported; supported: lines, triangles, quadrilaterals, tetrahedra, hexahedra, one shape in a body",
+             element, type == 6 ? "prism" : "pyramid", type);
+  GmshCheck(gmsh, type > 0 && type <= 140, "element %" PetscInt64_FMT " has type %" PetscInt64_FMT ", which Gmsh does not have", element,
+            type);
+  SETERRQ(PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+          "element %" PetscInt64_FMT " has Gmsh's type %" PetscInt64_FMT
+          ", which is not supported; supported are first-order elements: lines, triangles, quadrilaterals, tetrahedra, hexahedra (gmsh "
+          "-order 1), and triangles and tetrahedra of second order (gmsh -order 2)",
+          element, type);
 }
 
 static PetscInt CountNodes(DMPolytopeType shape, PetscBool second_order)
