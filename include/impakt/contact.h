@@ -105,30 +105,35 @@ typedef struct {
 } ContactOverlap;
 
 /*S
-   ContactCounts - how much work the steps so far took
+   ContactCounts - how much work the steps so far took, and what contact has done to energy in them
 
    Level: intermediate
 
 .seealso: `ContactGetCounts()`
 S*/
 typedef struct {
-  PetscInt       sweeps; /* of the last step: each body integrated once; 0 without contact */
-  PetscInt64     total_sweeps;
-  PetscInt       unconverged_steps; /* accepted by -schwarz_unconverged accept */
-  PetscInt       set_changes;       /* rounds of the active set beyond the first, all steps */
-  PetscInt       set_cycles;        /* steps in which a set came up twice and a rule ended the alternation */
-  PetscInt       limited_steps;     /* made again since contact would have gained energy in them */
-  PetscInt       unlimited_steps;   /* of these, in which it gained energy all the same */
-  PetscInt64     energy_attempts;   /* how often these were made again */
-  PetscInt64     inner_iterations;  /* of conjugate gradients on the interface, with friction of GMRES */
-  PetscReal      friction_least;    /* least energy that friction has taken on a row in a step, by the forces at its ends; 0 or less [J] */
-  PetscInt       ambiguous_steps;   /* in which friction may have had more than one solution */
-  PetscReal      friction_tilt;     /* most by which normal forces were off along surfaces, in parts of what friction can bear; statics */
-  PetscReal      friction_residual; /* most by which a step has missed the law of friction, de Saxce's residual [m] */
-  PetscReal      contact_loss;      /* energy that contact has taken, friction apart, where `ContactGetLossReason()` has one [J] */
-  PetscReal      glue_loss;         /* energy that damage of glue has taken, see `ContactGlueBreaks()` [J] */
-  PetscInt       rebuilds;          /* of the operators between contact surfaces, beyond the first */
-  PetscLogDouble seconds;           /* in sweeps */
+  PetscInt   sweeps; /* of the last step: each body integrated once; 0 without contact */
+  PetscInt64 total_sweeps;
+  PetscInt   unconverged_steps; /* accepted by -schwarz_unconverged accept */
+  PetscInt   set_changes;       /* rounds of the active set beyond the first, all steps */
+  PetscInt   set_cycles;        /* steps in which a set came up twice and a rule ended the alternation */
+  PetscInt   limited_steps;     /* made again since contact would have gained energy in them */
+  PetscInt   unlimited_steps;   /* of these, in which it gained energy all the same */
+  PetscInt64 energy_attempts;   /* how often these were made again */
+  PetscInt64 inner_iterations;  /* of conjugate gradients on the interface, with friction of GMRES */
+  PetscReal  friction_least;    /* least energy that friction has taken on a row in a step, by the forces at its ends; 0 or less [J] */
+  PetscInt   ambiguous_steps;   /* in which friction may have had more than one solution */
+  PetscReal  friction_tilt;     /* most by which normal forces were off along surfaces, in parts of what friction can bear; statics */
+  PetscReal  friction_residual; /* most by which a step has missed the law of friction, de Saxce's residual [m] */
+  PetscReal  contact_loss;      /* energy that contact has taken, friction apart, where `ContactGetLossReason()` has one [J] */
+  PetscReal  glue_loss;         /* energy that damage of glue has taken, see `ContactGlueBreaks()` [J] */
+  PetscReal  spring_energy;     /* stored in springs between surfaces, of penalty methods and of `CONTACT_LAW_GLUE` [J] */
+  /* energy that friction has taken: work of the forces across normals, by the rule of the integrators, half the sum of the forces at both
+     ends of a substep times the displacement in it, less what penalty springs there have of it [J] */
+  PetscReal      friction_loss;
+  PetscReal      obstacle_work; /* of obstacles whose surface moves [J] */
+  PetscInt       rebuilds;      /* of the operators between contact surfaces, beyond the first */
+  PetscLogDouble seconds;       /* in sweeps */
 } ContactCounts;
 
 /* What ContactFieldsCompute() gives for each node */
@@ -180,33 +185,18 @@ PETSC_EXTERN PetscErrorCode ContactSetPairFrictionLaw(Contact, PetscInt, const c
 PETSC_EXTERN PetscErrorCode ContactSetFriction(Contact, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetPairFriction(Contact, PetscInt, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSetKineticFriction(Contact, PetscReal, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactGetFrictionLoss(Contact, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactGetObstacleWork(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetBalance(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetUnlimitedReason(Contact, const char *[], const char *[]);
 PETSC_EXTERN PetscErrorCode ContactGetLossReason(Contact, const char *[]);
-PETSC_EXTERN PetscErrorCode ContactGetParts(Contact, PetscInt *);
-PETSC_EXTERN PetscErrorCode ContactSetStartEnergies(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyCap(Contact, PetscBool *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetSeparation(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUpSurfaces(Contact);
-PETSC_EXTERN PetscErrorCode ContactGetShare(Contact, PetscInt *, PetscInt *);
-PETSC_EXTERN PetscErrorCode ContactGetResolvedStep(Contact, PetscReal *, size_t, char[]);
-PETSC_EXTERN PetscErrorCode ContactCheckInitialGap(Contact);
 PETSC_EXTERN PetscErrorCode ContactStep(Contact);
 PETSC_EXTERN PetscErrorCode ContactAccept(Contact);
-PETSC_EXTERN PetscErrorCode ContactTryStep(Contact, PetscBool, PetscReal, StepConvergedReason *);
-PETSC_EXTERN PetscErrorCode ContactStepBack(Contact);
-PETSC_EXTERN PetscErrorCode ContactSetStepLevel(Contact, PetscInt);
-PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt, PetscInt);
-PETSC_EXTERN PetscErrorCode ContactGetNearInertiaChange(Contact, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetOverlaps(Contact, ContactOverlap[]);
 PETSC_EXTERN PetscErrorCode ContactGetOverlapName(Contact, const ContactOverlap *, const char *[]);
-PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactGetUnresolvedEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
@@ -216,7 +206,6 @@ PETSC_EXTERN PetscErrorCode ContactGetPair(Contact, PetscInt, const char *[], Bo
 PETSC_EXTERN PetscErrorCode ContactGetPairNormal(Contact, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactGetPairState(Contact, PetscInt, ContactPairState *);
 PETSC_EXTERN PetscErrorCode ContactGetPairStates(Contact, ContactPairState[]);
-PETSC_EXTERN PetscErrorCode ContactGetPenaltyEnergy(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);
 PETSC_EXTERN PetscErrorCode ContactGetBodyTraces(Contact, PetscReal[], PetscReal[]);
 

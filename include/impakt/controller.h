@@ -65,10 +65,10 @@ typedef struct {
   const PetscReal        *contact_velocities; /* per body: mean velocity of its contact nodes, 3 numbers [m/s] */
   const ContactPairState *pairs;              /* per pair */
   PetscInt                sweeps;             /* of this step, or of that part of it which took most */
-  PetscReal               penalty_energy;     /* stored in springs between surfaces, see ContactGetPenaltyEnergy() [J] */
+  PetscReal               penalty_energy;     /* stored in springs between surfaces, see ContactCounts [J] */
   PetscReal uncounted_energy; /* that part of it which `energy_change` leaves out: of penalty springs, which are no glue [J] */
-  PetscReal obstacle_work;    /* work of obstacles whose surface moves, see ContactGetObstacleWork() [J] */
-  PetscReal friction_loss;    /* energy that friction has taken so far, see ContactGetFrictionLoss() [J] */
+  PetscReal obstacle_work;    /* work of obstacles whose surface moves, see ContactCounts [J] */
+  PetscReal friction_loss;    /* energy that friction has taken so far, see ContactCounts [J] */
   PetscReal glue_loss;        /* energy that damage of glue has taken so far, see ContactGlueBreaks() [J] */
   PetscReal contact_loss;     /* energy that contact has taken so far by its rule, see ContactGetLossReason() [J] */
   PetscReal energy_change;    /* of all bodies since the start, less work done on them, with what friction, damage of glue, damping and

@@ -1,6 +1,7 @@
 /* Private to src/controller. */
 #pragma once
 #include <impakt/controller.h>
+#include <impakt/private/contactsteps.h>
 #include <petsc/private/petscimpl.h>
 #include "energyscale.h"
 

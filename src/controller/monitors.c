@@ -63,14 +63,14 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   PetscCall(ControllerFindProbes(controller));
   frame.sweeps    = step ? controller->step_sweeps : 0;
   frame.step_cuts = step ? controller->step_cuts : 0;
-  PetscCall(ContactGetPenaltyEnergy(controller->contact, &frame.penalty_energy));
+  PetscCall(ContactGetCounts(controller->contact, &counts));
+  frame.penalty_energy = counts.spring_energy;
   PetscCall(ContactHasLaw(controller->contact, CONTACT_LAW_GLUE, &glued));
   frame.uncounted_energy = glued ? 0 : frame.penalty_energy;
-  PetscCall(ContactGetFrictionLoss(controller->contact, &frame.friction_loss));
-  PetscCall(ContactGetObstacleWork(controller->contact, &frame.obstacle_work));
-  PetscCall(ContactGetCounts(controller->contact, &counts));
-  frame.contact_loss = counts.contact_loss;
-  frame.glue_loss    = counts.glue_loss;
+  frame.friction_loss    = counts.friction_loss;
+  frame.obstacle_work    = counts.obstacle_work;
+  frame.contact_loss     = counts.contact_loss;
+  frame.glue_loss        = counts.glue_loss;
   PetscCall(EnergyScaleAdd(&controller->scale, controller, &frame));
   PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)

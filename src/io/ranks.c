@@ -1,5 +1,6 @@
 /* How the work of a run lies on the ranks: the most that one of them has, and the mean. */
 #include "ranks.h"
+#include <impakt/private/contactsteps.h>
 #include <petscsf.h>
 #include <sys/petsccompat.h>
 #include <sys/resource.h>

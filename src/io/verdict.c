@@ -5,6 +5,7 @@
 #include "verdict.h"
 #include <controller/plausible.h>
 #include <impakt/private/bodyrows.h>
+#include <impakt/private/contactsteps.h>
 #include <stdarg.h>
 
 /* Parts of its largest energy or work from which on a run says that it has lost them, or gained: nothing makes energy */

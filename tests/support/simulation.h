@@ -1,6 +1,7 @@
 /* What the tests of surfaces, contact, controller and output share: meshes, bars, a controller. */
 #pragma once
 #include "support.h"
+#include <impakt/private/contactsteps.h>
 
 typedef struct {
   PetscOptions options; /* of this test alone */

@@ -2,6 +2,7 @@
 #pragma once
 #include <impakt/contact.h>
 #include <impakt/private/bodyrows.h>
+#include <impakt/private/contactsteps.h>
 #include <impakt/private/transfer.h>
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h>

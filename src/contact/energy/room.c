@@ -58,26 +58,10 @@ static PetscReal SumForces(Contact contact)
   return sum;
 }
 
-/*@
-  ContactGetUnresolvedEnergy - what contact forces do over the distances to which gaps are known
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up
-
-  Output Parameter:
-. energy - [J]; the same on every rank
-
-  Level: developer
-
-  Note:
-  Of the step in which their sum was largest so far: gaps are known to the tolerance of penetration and that of the outer iteration. Where
-  bodies start at rest without strain, and loads grow slowly, there is less energy than that in the first steps. Where rows in contact hold
-  the change of their gaps, not these, it is that of all steps so far.
-
-.seealso: `Contact`, `ContactGetEnergyCap()`
-@*/
+/* What contact forces do over the distances to which gaps are known, the tolerance of penetration and that of the outer iteration [J], in
+   the step in which their sum was largest so far; the same on every rank. Where bodies start at rest without strain, and loads grow slowly,
+   there is less energy than that in the first steps. Where rows in contact hold the change of their gaps, not these, it is that of all
+   steps so far. */
 PetscErrorCode ContactGetUnresolvedEnergy(Contact contact, PetscReal *energy)
 {
   PetscFunctionBegin;

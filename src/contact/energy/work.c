@@ -145,22 +145,8 @@ PetscErrorCode ContactNoteRebuild(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactSetStartEnergies - tells the energies of the bodies at the start of the next step, where they are known
-
-  Not Collective
-
-  Input Parameters:
-+ contact  - the `Contact`, set up, after `ContactAccept()`
-- energies - of each body: kinetic and potential energy less the work of its loads, as `BodyComputeEnergy()` has it [J]
-
-  Level: developer
-
-  Note:
-  Saves computing them again where the energy that contact gains follows from them.
-
-.seealso: `Contact`, `ContactGetEnergyCap()`
-@*/
+/* Tells, after ContactAccept(), the energies of the bodies at the start of the next step: kinetic and potential less the work of loads [J].
+   They need not be computed again then for the energy that contact gains. */
 PetscErrorCode ContactSetStartEnergies(Contact contact, const PetscReal energies[])
 {
   PetscFunctionBegin;

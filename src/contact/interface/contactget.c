@@ -131,31 +131,7 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
 }
 
 /*@
-  ContactGetPenaltyEnergy - energy stored in springs between surfaces: of penalty methods, and of `CONTACT_LAW_GLUE`
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. energy - [J]
-
-  Level: intermediate
-
-.seealso: `Contact`
-@*/
-PetscErrorCode ContactGetPenaltyEnergy(Contact contact, PetscReal *energy)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(energy, 2);
-  *energy = contact->resultants.penalty_energy;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetCounts - sweeps and changes of the active set
+  ContactGetCounts - sweeps, changes of the active set, and what contact has done to energy
 
   Not Collective
 
@@ -174,7 +150,16 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(counts, 2);
-  *counts = contact->counts;
+  *counts               = contact->counts;
+  counts->spring_energy = contact->resultants.penalty_energy;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    if (contact->friction.pair_loss) counts->friction_loss += contact->friction.pair_loss[p];
+    if (contact->friction.pair_driven) counts->obstacle_work += contact->friction.pair_driven[p];
+  }
+  for (PetscInt p = 0; p < contact->neighbours.told.n; p++) {
+    counts->friction_loss += contact->neighbours.told.gone_friction[2 * p];
+    counts->obstacle_work += contact->neighbours.told.gone_friction[2 * p + 1];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

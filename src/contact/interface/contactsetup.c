@@ -45,21 +45,7 @@ static PetscErrorCode ShareControllerStep(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetParts - number of parts that a controller step has, at whose ends all bodies have a time in common
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up
-
-  Output Parameter:
-. parts - calls of `ContactStep()` and `ContactAccept()` that make a controller step
-
-  Level: developer
-
-.seealso: `Contact`, `ContactStep()`, `ContactSetFromOptions()`
-@*/
+/* The number of parts of a controller step, at whose ends all bodies have a time in common: calls of ContactStep() and ContactAccept() */
 PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
 {
   PetscFunctionBegin;
@@ -275,25 +261,9 @@ static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactCheckInitialGap - takes the present states as the start: ties what lies on each other, refuses bodies that overlap, and brings
-  massless nodes into balance
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up
-
-  Level: developer
-
-  Note:
-  To be called again when the initial states have been changed after `ContactSetUp()`. Under `CONTACT_LAW_TIED` nodes within the tie
-  distance of their partner are tied as they lie there; a pair that ties nothing, a gap above that distance or an overlap is an error.
-
-  Massless nodes go where loads, strains, ties and closed rows have them in balance, unless `-contact_balanced_start false` is given.
-
-.seealso: `Contact`, `BodySetInitialState()`, `ContactSetFromOptions()`
-@*/
+/* Takes the present states as the start: ties what lies on each other, refuses bodies that overlap, and brings massless nodes into balance
+   where loads, strains, ties and closed rows have them, unless -contact_balanced_start false is given. To be called again when states have
+   been changed after ContactSetUp(). A tied pair that ties nothing, a gap above the tie distance or an overlap is an error. Collective. */
 PetscErrorCode ContactCheckInitialGap(Contact contact)
 {
   PetscFunctionBegin;

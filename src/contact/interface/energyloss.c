@@ -28,30 +28,12 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetEnergyLoss - the energy that contact has taken in the controller step just made
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, after `ContactStep()` and before `ContactAccept()`
-
-  Output Parameter:
-. loss - [J]; positive where energy is lost
-
-  Level: developer
-
-  Notes:
-  Work of the contact forces on the bodies and on the springs of the penalty method, of which energy has been taken where it is negative, in
-  a step in which rows join or leave contact; 0 in all others. What loads and the bodies' own integrators do is not in it.
-
-  Also 0 where halves of the step would cost more than they save, since what central differences conserve depends on the step;
-  where nodes with mass join or leave, whose impact takes energy whatever the step, where a body has no inertia, where the method
-does not tell what its springs store, and where -contact_constraint has gap rates end; and, where all starts at rest without strain,
-  below what `ContactGetUnresolvedEnergy()` tells.
-
-.seealso: `Contact`, `ContactGetEnergyTolerance()`, `ContactTryStep()`
-@*/
+/* The energy that contact has taken in the step just made, before ContactAccept() [J]: the work of contact forces on bodies and on springs
+   of the penalty method, of which energy has been taken where it is negative, in a step in which rows join or leave contact; 0 in all
+   others. Also 0 where halves of the step would cost more than they save, since what central differences conserve depends on the step;
+   where nodes with mass join or leave, whose impact takes energy whatever the step, where a body has no inertia, where the method does not
+   tell what its springs store, and where -contact_constraint has gap rates end; and, where all starts at rest without strain, below what
+   ContactGetUnresolvedEnergy() tells. Collective. */
 PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
 {
   PetscBool any, left_out;

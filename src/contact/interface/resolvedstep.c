@@ -105,32 +105,12 @@ static PetscErrorCode GetNeighboursStep(Contact contact, PetscReal *step, size_t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetResolvedStep - the largest controller step that resolves contact
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, after `ContactSetUpSurfaces()`
-- size    - of `reason`
-
-  Output Parameters:
-+ step   - the least of all pairs [s]; infinity where no pair has inertia on both sides, or there is none
-- reason - what it follows from, for the user
-
-  Level: developer
-
-  Notes:
-  With the masses m = rho h and the stiffnesses k = M / h of the contact elements on both sides, for a unit of area, h being the mean edge
-of the elements with a contact node and M the modulus of plane waves, the step is sqrt((1/k_1 + 1/k_2) / (1/m_1 + 1/m_2)): between equal
-sides the time that a wave takes through a contact element.
-
-  Where pairs come and go it is that of the body through whose contact elements waves go fastest.
-
-  It is less where the bodies, at their mean velocities at the start, would close by more than a quarter of a contact element.
-
-.seealso: `Contact`, `ContactSetUpSurfaces()`, `ControllerSetTimes()`
-@*/
+/* The largest controller step that resolves contact, after ContactSetUpSurfaces(), and what it follows from, in words; infinity where no
+   pair has inertia on both sides. With the masses m = rho h and the stiffnesses k = M / h of the contact elements on both sides, for a unit
+   of area, h being the mean edge of the elements with a contact node and M the modulus of plane waves, it is sqrt((1/k_1 + 1/k_2) / (1/m_1
+   + 1/m_2)) of the pair where that is least: between equal sides the time that a wave takes through a contact element. Where pairs come and
+   go it is that of the body through whose contact elements waves go fastest. It is less where the bodies, at their mean velocities at the
+   start, would close by more than a quarter of a contact element. Collective. */
 PetscErrorCode ContactGetResolvedStep(Contact contact, PetscReal *step, size_t size, char reason[])
 {
   PetscFunctionBegin;

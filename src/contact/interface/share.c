@@ -1,22 +1,7 @@
 /* What part of contact is a rank's own. */
 #include <contact/parts.h>
 
-/*@
-  ContactGetShare - how much of contact lies on this rank
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`, after `ContactSetUp()`
-
-  Output Parameters:
-+ facets - faces of the surfaces of all pairs, of both sides
-- rows   - rows of all pairs: conditions on gaps and slips
-
-  Level: developer
-
-.seealso: `Contact`, `SurfaceGetData()`
-@*/
+/* How many faces of the surfaces of all pairs, of both sides, and rows of all pairs lie on this rank */
 PetscErrorCode ContactGetShare(Contact contact, PetscInt *facets, PetscInt *rows)
 {
   PetscFunctionBegin;

@@ -27,27 +27,11 @@ PetscErrorCode ContactReadUnconverged(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactTryStep - as `ContactStep()`, for those who can make a step that fails again in halves
-
-  Collective
-
-  Input Parameters:
-+ contact   - the `Contact`, set up
-. may_cut   - false where this is the last try: then the method may accept what has not converged, as -schwarz_unconverged accept does
-- most_loss - energy that contact may take or bring before the step is made again in halves, if it may be: `ContactGetEnergyLoss()` [J]
-
-  Output Parameter:
-. reason - negative where the step has failed, the same on every rank
-
-  Level: developer
-
-  Notes:
-  A step that has been made becomes final by `ContactAccept()`. After one that has failed, or that is not to be accepted, call
-  `ContactStepBack()`, then `ContactSetStepLevel()` and try again; or end with the error by `ContactRaiseFailure()`.
-
-.seealso: `Contact`, `ContactStep()`, `ContactStepBack()`, `ContactSetStepLevel()`, `ContactRaiseFailure()`, `StepConvergedReason`
-@*/
+/* As ContactStep(), for those who can make a step that fails again in halves. `may_cut`: false where this is the last try, in which the
+   method may accept what has not converged; `most_loss`: energy that contact may take or bring before the step is made again, if it may be
+   [J]; `reason`: negative where the step has failed, the same on every rank. Then, or where the step is not to be accepted,
+   ContactStepBack() and
+   ContactSetStepLevel() lead to another try, or ContactRaiseFailure() ends the run. Collective. */
 PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most_loss, StepConvergedReason *reason)
 {
   PetscFunctionBegin;
@@ -85,20 +69,8 @@ static PetscErrorCode NamePairs(Contact contact, size_t size, char text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactRaiseFailure - ends with an error that says why the last step has failed
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, after `ContactTryStep()`
-. step    - number of the controller step, for the message
-- cuts    - how often it had been cut in halves, for the message
-
-  Level: developer
-
-.seealso: `Contact`, `ContactTryStep()`
-@*/
+/* Ends with an error that says why the last step has failed; number of the controller step, and how often it had been cut, for the message.
+   Collective. */
 PetscErrorCode ContactRaiseFailure(Contact contact, PetscInt step, PetscInt cuts)
 {
   MPI_Comm comm       = PetscObjectComm((PetscObject)contact);
@@ -119,22 +91,8 @@ PetscErrorCode ContactRaiseFailure(Contact contact, PetscInt step, PetscInt cuts
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactStepBack - goes back to the start of a controller step that has not been accepted
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, after `ContactTryStep()`
-
-  Level: developer
-
-  Note:
-  As if the step had not been tried, but for the counts of work. The rows of the bodies remain those that the step has begun with until the
-  next step begins, which starts from those before.
-
-.seealso: `Contact`, `ContactTryStep()`, `ContactSetStepLevel()`
-@*/
+/* Goes back to the start of a controller step that has not been accepted, as if it had not been tried, but for the counts of work. The rows
+   of the bodies remain those that the step has begun with until the next step begins, which starts from those before. Collective. */
 PetscErrorCode ContactStepBack(Contact contact)
 {
   PetscFunctionBegin;
@@ -153,19 +111,7 @@ PetscErrorCode ContactStepBack(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactSetStepLevel - the next controller step is cut in halves a number of times
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up, at the start of a controller step
-- level   - 0: the whole step, k: a part of 1 / 2^k of it
-
-  Level: developer
-
-.seealso: `Contact`, `ContactTryStep()`, `ContactCanCut()`, `BodySetStepLevel()`
-@*/
+/* The next controller step is cut in halves so many times, from the start of a controller step on. Collective. */
 PetscErrorCode ContactSetStepLevel(Contact contact, PetscInt level)
 {
   ContactAttempt *attempt = &contact->attempt;
@@ -182,21 +128,8 @@ PetscErrorCode ContactSetStepLevel(Contact contact, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactCanCut - whether controller steps can be made again in halves
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up
-
-  Output Parameter:
-. can - false where the method moves the start of its steps: forward-increment Lagrange multipliers, and the contact-stabilised method
-
-  Level: developer
-
-.seealso: `Contact`, `ContactSetStepLevel()`
-@*/
+/* Whether controller steps can be made again in halves: not where the method moves the start of its steps, as forward increments and the
+   contact-stabilised method do */
 PetscErrorCode ContactCanCut(Contact contact, PetscBool *can)
 {
   PetscFunctionBegin;

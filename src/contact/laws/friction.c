@@ -12,63 +12,6 @@
 /* Round-off of normals that a velocity may have a part along */
 #define ACROSS 1e-6
 
-/*@
-  ContactGetFrictionLoss - the energy that friction has taken so far
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. loss - of all pairs, in all accepted steps [J]; 0 without friction
-
-  Level: intermediate
-
-  Note:
-  The work of the forces across the normals, by the rule by which the integrators take them: half the sum of the forces at both ends of a
-  substep times the displacement in it; less what penalty springs across the normals have of it. Kinetic and potential energy and this, less
-the work of the loads, are what they were at the start.
-
-.seealso: `Contact`, `ContactSetFrictionLaw()`, `ContactPairState`
-@*/
-PetscErrorCode ContactGetFrictionLoss(Contact contact, PetscReal *loss)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(loss, 2);
-  *loss = 0;
-  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_loss; p++) *loss += contact->friction.pair_loss[p];
-  for (PetscInt p = 0; p < contact->neighbours.told.n; p++) *loss += contact->neighbours.told.gone_friction[2 * p];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGetObstacleWork - the work that obstacles whose surface moves have done so far
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. work - of all obstacles, in all accepted steps [J]; 0 without friction
-
-  Level: intermediate
-
-.seealso: `Contact`, `ObstacleSetVelocity()`, `ContactGetFrictionLoss()`
-@*/
-PetscErrorCode ContactGetObstacleWork(Contact contact, PetscReal *work)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(work, 2);
-  *work = 0;
-  for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_driven; p++) *work += contact->friction.pair_driven[p];
-  for (PetscInt p = 0; p < contact->neighbours.told.n; p++) *work += contact->neighbours.told.gone_friction[2 * p + 1];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A method that has no friction ends the run with words; `why`: what is in its way, and what to choose */
 PetscErrorCode ContactRefuseFriction(Contact contact, const char why[])
 {

@@ -53,23 +53,8 @@ PetscErrorCode ContactCheckNear(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetNearInertiaChange - what -<body>_mass_redistribute near would change of the moments of inertia that a body turns with
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up
-- body    - number of the body
-
-  Output Parameter:
-. change - as `BodyGetInertiaChange()` tells of the nodes that are massless; the same as now where the body has it already, or where pairs
-           come and go, which they do not with it
-
-  Level: developer
-
-.seealso: `Contact`, `BodySetMassRedistributeNear()`, `BodyGetInertiaChange()`
-@*/
+/* What -<body>_mass_redistribute near would change of the moments of inertia that a body turns with, as BodyGetInertiaChange() tells of the
+   massless nodes; the same as now where the body has it already, or where pairs come and go, which they do not with it. Collective. */
 PetscErrorCode ContactGetNearInertiaChange(Contact contact, PetscInt body, PetscReal *change)
 {
   PetscBool near;

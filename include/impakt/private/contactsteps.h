@@ -1,0 +1,17 @@
+/* What those ask of contact who make its controller steps: set-up, steps that may fail, what a step has done to energy. */
+#pragma once
+#include <impakt/contact.h>
+
+PETSC_EXTERN PetscErrorCode ContactGetUnresolvedEnergy(Contact, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactSetStartEnergies(Contact, const PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);
+PETSC_EXTERN PetscErrorCode ContactGetResolvedStep(Contact, PetscReal *, size_t, char[]);
+PETSC_EXTERN PetscErrorCode ContactGetShare(Contact, PetscInt *, PetscInt *);
+PETSC_EXTERN PetscErrorCode ContactGetParts(Contact, PetscInt *);
+PETSC_EXTERN PetscErrorCode ContactCheckInitialGap(Contact);
+PETSC_EXTERN PetscErrorCode ContactTryStep(Contact, PetscBool, PetscReal, StepConvergedReason *);
+PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactStepBack(Contact);
+PETSC_EXTERN PetscErrorCode ContactSetStepLevel(Contact, PetscInt);
+PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactGetNearInertiaChange(Contact, PetscInt, PetscReal *);
