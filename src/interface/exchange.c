@@ -4,83 +4,35 @@
 /* Beyond the box in which partners are looked for [parts of the face]: keeps those that touch its side but for round-off */
 #define BOX_MARGIN 0.1
 
-/* The messages that are to be sent: ranks that get any records, and how many each; these sorted by the rank */
-static PetscErrorCode SortRecords(PetscMPIInt size, size_t bytes, PetscInt n, const PetscMPIInt destination[], const char records[],
-                                  PetscMPIInt *n_to, PetscMPIInt **to, PetscInt **counts, char **sorted)
-{
-  PetscInt *at;
-
-  PetscFunctionBegin;
-  *n_to = 0;
-  PetscCall(PetscCalloc1(size + 1, &at));
-  for (PetscInt i = 0; i < n; i++) at[destination[i] + 1]++;
-  for (PetscMPIInt r = 0; r < size; r++)
-    if (at[r + 1]) (*n_to)++;
-  PetscCall(PetscMalloc2(*n_to, to, *n_to, counts));
-  *n_to = 0;
-  for (PetscMPIInt r = 0; r < size; r++) {
-    if (at[r + 1]) {
-      (*to)[*n_to]         = r;
-      (*counts)[(*n_to)++] = at[r + 1];
-    }
-    at[r + 1] += at[r];
-  }
-  PetscCall(PetscMalloc1((size_t)n * bytes, sorted));
-  for (PetscInt i = 0; i < n; i++)
-    PetscCall(PetscMemcpy(*sorted + (size_t)(at[destination[i]]++) * bytes, records + (size_t)i * bytes, bytes));
-  PetscCall(PetscFree(at));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Sends record i, of `bytes` bytes, to rank destination[i]; what arrives is sorted by the rank it comes from. Free with PetscFree(). Only
-   ranks that have something for each other exchange messages. */
+/* Sends record i, of `bytes` bytes, to rank destination[i]; what arrives is sorted by the rank it comes from. Free with PetscFree(). */
 PetscErrorCode ExchangeRecords(MPI_Comm comm, size_t bytes, PetscInt n, const PetscMPIInt destination[], const void *records,
                                PetscInt *n_received, void **received)
 {
-  MPI_Comm     inner;
   MPI_Datatype type;
-  MPI_Request *requests;
-  PetscMPIInt  size, tag, n_to, n_from, *to, *from;
-  PetscInt    *counts, *arrived, *order, at = 0;
+  PetscMPIInt  size, *sent, *arrived, *from, *to;
   char        *sorted;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(PetscCommDuplicate(comm, &inner, &tag));
-  PetscCall(SortRecords(size, bytes, n, destination, (const char *)records, &n_to, &to, &counts, &sorted));
-  PetscCall(PetscCommBuildTwoSided(inner, 1, MPIU_INT, n_to, to, counts, &n_from, &from, (void **)&arrived));
-  PetscCall(PetscMalloc2(n_from, &order, n_to + n_from, &requests));
-  *n_received = 0;
-  for (PetscMPIInt k = 0; k < n_from; k++) {
-    PetscInt place = 0;
-
-    for (PetscMPIInt other = 0; other < n_from; other++)
-      if (from[other] < from[k]) place++;
-    order[place] = k;
-    *n_received += arrived[k];
+  PetscCall(PetscCalloc4(size, &sent, size, &arrived, size + 1, &from, size + 1, &to));
+  for (PetscInt i = 0; i < n; i++) sent[destination[i]]++;
+  PetscCallMPI(MPI_Alltoall(sent, 1, MPI_INT, arrived, 1, MPI_INT, comm));
+  for (PetscMPIInt r = 0; r < size; r++) {
+    from[r + 1] = from[r] + sent[r];
+    to[r + 1]   = to[r] + arrived[r];
   }
+  *n_received = to[size];
+  PetscCall(PetscMalloc((size_t)n * bytes, &sorted));
   PetscCall(PetscMalloc((size_t)*n_received * bytes, received));
+  for (PetscInt i = 0; i < n; i++)
+    PetscCall(PetscMemcpy(sorted + (size_t)(from[destination[i]]++) * bytes, (const char *)records + (size_t)i * bytes, bytes));
+  for (PetscMPIInt r = 0; r < size; r++) from[r] -= sent[r];
   PetscCallMPI(MPI_Type_contiguous((int)bytes, MPI_BYTE, &type));
   PetscCallMPI(MPI_Type_commit(&type));
-  for (PetscMPIInt k = 0; k < n_from; k++) {
-    const PetscInt rank = order[k];
-
-    PetscCallMPI(MPIU_Irecv((char *)*received + (size_t)at * bytes, arrived[rank], type, from[rank], tag, inner, &requests[k]));
-    at += arrived[rank];
-  }
-  at = 0;
-  for (PetscMPIInt k = 0; k < n_to; k++) {
-    PetscCallMPI(MPIU_Isend(sorted + (size_t)at * bytes, counts[k], type, to[k], tag, inner, &requests[n_from + k]));
-    at += counts[k];
-  }
-  PetscCallMPI(MPI_Waitall(n_from + n_to, requests, MPI_STATUSES_IGNORE));
+  PetscCallMPI(MPI_Alltoallv(sorted, sent, from, type, *received, arrived, to, type, comm));
   PetscCallMPI(MPI_Type_free(&type));
-  PetscCall(PetscFree(from));
-  PetscCall(PetscFree(arrived));
   PetscCall(PetscFree(sorted));
-  PetscCall(PetscFree2(to, counts));
-  PetscCall(PetscFree2(order, requests));
-  PetscCall(PetscCommDestroy(&inner));
+  PetscCall(PetscFree4(sent, arrived, from, to));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
