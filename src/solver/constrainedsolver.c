@@ -70,8 +70,7 @@ static PetscErrorCode ChooseForRows(ConstrainedSolver s)
   PetscFunctionBegin;
   PetscCall(ChooseColumns(s));
   PetscCall(ConstrainedSolverChooseBlock(s));
-  s->room = s->keeps ? s->global : FEW_ROWS;
-  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
+  PetscCall(PetscMalloc3(s->global, &s->gathered, s->global, &s->force, s->global, &s->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,7 +82,9 @@ static PetscErrorCode DestroyRows(ConstrainedSolver s)
   PetscCall(PetscFree(s->changes));
   PetscCall(PetscFree3(s->gathered, s->force, s->used));
   PetscCall(PetscFree2(s->counts, s->offsets));
-  PetscCall(DenseFactorDestroy(&s->factor));
+  PetscCall(MatDestroy(&s->dense_W));
+  PetscCall(VecDestroy(&s->gaps));
+  PetscCall(VecDestroy(&s->forces));
   PetscCall(KSPDestroy(&s->iterative));
   PetscCall(VecDestroy(&s->force_vec));
   PetscCall(VecDestroy(&s->gap_vec));

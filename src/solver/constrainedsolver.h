@@ -26,7 +26,6 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFree(ConstrainedSolver, Ve
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFreeColumns(ConstrainedSolver, Mat, Mat);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
-PETSC_INTERN PetscErrorCode     ConstrainedSolverBringRows(ConstrainedSolver, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscBool          ConstrainedSolverIsDirect(ConstrainedSolver);
 PETSC_INTERN void               ConstrainedSolverSetExact(ConstrainedSolver);
 PETSC_INTERN PetscBool          ConstrainedSolverIsHome(ConstrainedSolver);

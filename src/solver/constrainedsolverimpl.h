@@ -1,7 +1,6 @@
 /* What the sources of the constrained solver share. Private to src/solver. */
 #pragma once
 #include "constrainedsolver.h"
-#include "densefactor.h"
 
 struct _n_ConstrainedSolver {
   KSP                ksp;
@@ -21,10 +20,10 @@ struct _n_ConstrainedSolver {
   Vec       *columns; /* per row: A^{-1} B^T e, or NULL until needed */
   PetscBool *fresh;   /* per row: its column is there, with A and B as they are */
   /* a dense matrix for the constraint forces */
-  PetscBool    dense;       /* its factors are there */
-  PetscBool    must_factor; /* conjugate gradients have not converged, see Iterate() */
-  DenseFactor  factor;
-  PetscInt     room;             /* of the following */
+  PetscBool    dense;            /* its factors are there */
+  PetscBool    must_factor;      /* conjugate gradients have not converged, see Iterate() */
+  Mat          dense_W;          /* LU factors of W_mm, the same on every rank */
+  Vec          gaps, forces;     /* as the following, of constrained rows */
   PetscScalar *gathered, *force; /* of constrained rows, on every rank */
   Vec         *used;             /* columns */
   Vec          row, rhs;

@@ -11,6 +11,8 @@
 #define FEW_CONSTRAINTS 256
 /* of the constraint forces by conjugate gradients: contact gaps are closed to about 1e-12 of the displacements */
 #define FORCE_TOLERANCE 1e-13
+/* Of a pivot, in parts of the largest entry of its column */
+#define ROUND_OFF (16 * PETSC_MACHINE_EPSILON)
 
 /* y = W_mm x + flexibility x; rows that are not constrained are left out */
 static PetscErrorCode MultiplyConstrained(Mat shell, Vec x, Vec y)
@@ -64,17 +66,6 @@ static PetscErrorCode MayBeDense(ConstrainedSolver s, PetscBool *may)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for as many constraint forces as the dense matrix has */
-static PetscErrorCode MakeRoom(ConstrainedSolver s)
-{
-  PetscFunctionBegin;
-  if (s->factor.room <= s->room) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree3(s->gathered, s->force, s->used));
-  s->room = s->factor.room;
-  PetscCall(PetscMalloc3(s->room, &s->gathered, s->room, &s->force, s->room, &s->used));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* B x on the constrained rows, less targets of this rank's (NULL: 0), on every rank */
 static PetscErrorCode Gather(ConstrainedSolver s, Vec x, const PetscScalar target[], PetscScalar gathered[])
 {
@@ -97,15 +88,46 @@ static PetscErrorCode Gather(ConstrainedSolver s, Vec x, const PetscScalar targe
 /* W_mm, symmetric to the last bit, with flexibilities on its diagonal */
 static PetscErrorCode FillMatrix(ConstrainedSolver s)
 {
-  PetscScalar *W = s->factor.values;
+  PetscScalar *W;
 
   PetscFunctionBegin;
+  PetscCall(MatDestroy(&s->dense_W));
+  PetscCall(VecDestroy(&s->gaps));
+  PetscCall(VecDestroy(&s->forces));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, s->n, s->n, NULL, &s->dense_W));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, s->n, s->gathered, &s->gaps));
+  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, s->n, s->force, &s->forces));
+  PetscCall(MatDenseGetArrayWrite(s->dense_W, &W));
   for (PetscInt k = 0; k < s->n; k++) {
     PetscCall(ConstrainedSolverMakeColumn(s, s->rows[k]));
     PetscCall(Gather(s, s->columns[s->rows[k]], NULL, s->gathered));
     for (PetscInt l = 0; l <= k; l++) W[k * s->n + l] = W[l * s->n + k] = s->gathered[l];
     W[k * s->n + k] += s->constrained[s->rows[k]];
   }
+  PetscCall(MatDenseRestoreArrayWrite(s->dense_W, &W));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* LU factors of W_mm. Of rows that depend on each other some pivot is zero but for round-off. */
+static PetscErrorCode FactorMatrix(ConstrainedSolver s, PetscBool *singular)
+{
+  PetscReal         *largest; /* entry of each column, without sign */
+  const PetscScalar *pivots;
+  PetscErrorCode     error;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(s->n, &largest));
+  PetscCall(MatGetColumnNorms(s->dense_W, NORM_INFINITY, largest));
+  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
+  error = MatLUFactor(s->dense_W, NULL, NULL, NULL);
+  PetscCall(PetscPopErrorHandler());
+  *singular = (PetscBool)(error == PETSC_ERR_MAT_LU_ZRPVT);
+  if (!*singular) PetscCall(error);
+  PetscCall(MatGetDiagonal(s->dense_W, s->gaps));
+  PetscCall(VecGetArrayRead(s->gaps, &pivots));
+  for (PetscInt k = 0; k < s->n; k++) *singular = (PetscBool)(*singular || PetscAbsScalar(pivots[k]) <= ROUND_OFF * largest[k]);
+  PetscCall(VecRestoreArrayRead(s->gaps, &pivots));
+  PetscCall(PetscFree(largest));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -126,10 +148,8 @@ static PetscErrorCode FactorConstraints(ConstrainedSolver s)
     if (!s->iterative) PetscCall(CreateIterative(s));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(DenseFactorResize(&s->factor, s->n, s->global));
-  PetscCall(MakeRoom(s));
   PetscCall(FillMatrix(s));
-  PetscCall(DenseFactorCompute(&s->factor, &singular));
+  PetscCall(FactorMatrix(s, &singular));
   if (s->failed) { /* columns are not numbers: the step has failed, and is not constrained any more */
     s->n = 0;
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -231,10 +251,10 @@ static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[],
   if (!s->dense) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Gather(s, x, target, s->gathered));
   for (PetscInt k = 0; k < s->n; k++) {
-    s->force[k] = -s->gathered[k];
-    s->used[k]  = s->columns[s->rows[k]];
+    s->gathered[k] = -s->gathered[k];
+    s->used[k]     = s->columns[s->rows[k]];
   }
-  PetscCall(DenseFactorSolve(&s->factor, s->force));
+  PetscCall(MatSolve(s->dense_W, s->gaps, s->forces));
   PetscCall(VecMAXPY(x, s->n, s->force, s->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -341,23 +361,17 @@ PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The constraints and their forces, for a checkpoint. The columns are loaded before. */
+/* The constraints, for a checkpoint; their matrix follows from the columns, which are loaded before */
 PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver s, Checkpoint checkpoint)
 {
-  PetscInt numbers[4] = {s->n, s->dense, s->missed, s->must_factor};
+  PetscInt numbers[2] = {s->missed, s->must_factor};
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitReals(checkpoint, "flexibility", s->local, s->mine));
   PetscCall(CheckpointVisitReals(checkpoint, "flexibility of all", s->global, s->constrained));
-  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 4, numbers));
-  s->n           = numbers[0];
-  s->dense       = (PetscBool)numbers[1];
-  s->missed      = numbers[2];
-  s->must_factor = (PetscBool)numbers[3];
-  PetscCall(CheckpointVisitInts(checkpoint, "constrained rows", s->n, s->rows));
-  PetscCall(DenseFactorVisit(&s->factor, s->global, checkpoint));
-  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MakeRoom(s));
-  if (!s->dense && !s->iterative) PetscCall(CreateIterative(s));
+  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 2, numbers));
+  s->missed      = numbers[0];
+  s->must_factor = (PetscBool)numbers[1];
+  if (CheckpointLoads(checkpoint)) PetscCall(FactorConstraints(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
