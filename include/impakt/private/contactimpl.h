@@ -80,7 +80,6 @@ typedef struct {
   PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
   PetscInt       near_begin, near_end; /* of them those near contact, in rows.near */
   PetscInt       acts_begin, acts_end; /* of these those that act, in rows.acting */
-  PetscBool      idle;                 /* of its near nodes the first row alone is read: one of its bodies is idle */
   PetscInt       shift[2];             /* row i of this rank has the number i - shift[side] among those of the body on that side */
   PetscReal      normal[3];            /* mean outward normal of the body that has the rows */
   PetscBool      bonded;       /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
@@ -181,7 +180,6 @@ typedef struct {
   /* those that may touch, see src/contact/rows/nearrows.c */
   PetscBool lists;             /* the method looks at no others */
   PetscBool listed;            /* there may be others */
-  PetscBool idles;             /* of bodies none of whose rows acts the first row of each near node alone is read */
   PetscInt  n_near;            /* of this rank */
   PetscInt *near;              /* their numbers, ascending: all rows of a node, or none */
   PetscInt  n_acting, *acting; /* near rows of nodes that touch in the step, or had a force in it or the last one, or all of them */
@@ -197,7 +195,6 @@ typedef struct {
   PetscInt  *all;               /* of those of all ranks: their numbers among the rows of all ranks, ascending */
   PetscInt   n_near, *near;     /* its rows near contact: their places in `rows`, ascending */
   PetscInt   n_acting, *acting; /* those that act, the same */
-  PetscBool  idle;              /* none acts, and of near nodes the first row alone is read */
   PetscReal *area;              /* as that of rows; the body borrows it */
   PetscInt   n_pairs, *pairs;   /* that it is in, ascending */
   /* its matrix in contact->interfaces, and the spare one */
@@ -541,12 +538,6 @@ static inline PetscInt ContactFirstRow(Contact contact, PetscInt i)
   const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
 
   return i - (i - pair->begin) % pair->components;
-}
-
-/* From one near row of a pair that is read to the next */
-static inline PetscInt ContactReadStride(const ContactPair *pair)
-{
-  return pair->idle ? pair->components : 1;
 }
 
 /* Whether a row lies across the normal of a node and has a force by friction alone */

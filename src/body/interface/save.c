@@ -16,7 +16,7 @@
 PetscErrorCode BodySave(Body body)
 {
   const PetscBool stepped = (PetscBool)(body->state.step != body->saved.step), here = (PetscBool)!BodyIsElsewhere(body);
-  const RowList  *read = body->rows.read;
+  const RowList  *read = &body->rows.near;
   PetscScalar    *start, *end;
 
   PetscFunctionBegin;

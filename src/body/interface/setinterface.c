@@ -49,7 +49,7 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscInt numbers[], c
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&body->rows.matrix));
   body->rows.matrix = B;
-  PetscCall(BodySetNearRows(body, -1, NULL, 0, NULL));
+  PetscCall(BodySetNearRows(body, -1, NULL));
   PetscCall(BodySetUpFreeRows(body));
   if (body->integrator->ops.setrows) PetscCall((*body->integrator->ops.setrows)(body, all));
   PetscCall(BodySetRowsOfLevels(body, all));

@@ -210,13 +210,12 @@ typedef struct {
   BodyHandover handover;
   BodyExchange exchange;
   /* rows that anything happens to, see BodySetNearRows() */
-  RowList        near, leading; /* all of them; those that are read while nothing happens to any, none of its own where these are all */
-  const RowList *read;          /* which of both is read in the present step */
-  PetscBool      some_near;     /* on some rank there may be others than near ones */
-  PetscBool      constant;      /* forces act that are the same throughout the controller step, see BodySetConstantForces() */
-  PetscBool      idle;          /* these are zero; where all rows are on this rank */
-  Vec            nodal_force;   /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
-  BodyForceShape nodal_shape;   /* how */
+  RowList        near;
+  PetscBool      some_near;   /* on some rank there may be others than near ones */
+  PetscBool      constant;    /* forces act that are the same throughout the controller step, see BodySetConstantForces() */
+  PetscBool      idle;        /* these are zero; where all rows are on this rank */
+  Vec            nodal_force; /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
+  BodyForceShape nodal_shape; /* how */
 } BodyRows;
 
 /* What a body keeps for controller steps that have been cut in halves so many times, see src/body/interface/steplevel.c */

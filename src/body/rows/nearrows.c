@@ -1,7 +1,6 @@
 /*
    Rows near contact. Callers who know which rows may have a force say so, and a step costs what these cost, not what all contact nodes do:
-   of a sheet that falls these are all of its nodes, though a corner touches. Output traces of other rows are old. Of a node that nothing
-   happens to the leading row alone is read, which tells whether it touches.
+   of a sheet that falls these are all of its nodes, though a corner touches. Output traces of other rows are old.
 */
 #include <body/layout/bodyimpl.h>
 
@@ -19,11 +18,8 @@ PetscErrorCode BodyDestroyNearRows(Body body)
 
   PetscFunctionBegin;
   PetscCall(DestroyList(&rows->near));
-  PetscCall(DestroyList(&rows->leading));
   PetscCall(PetscFree(rows->near.numbers));
-  PetscCall(PetscFree(rows->leading.numbers));
   rows->near.n = -1;
-  rows->read   = NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -54,22 +50,18 @@ static PetscErrorCode CreateMatrix(Body body, RowList *list)
   Collective
 
   Input Parameters:
-+ body      - the `Body`, set up, with the state of its start of a controller step; none of its rows is prescribed or a Robin row
-. n         - number of these rows on this rank; negative, on all ranks: all rows are
-. near      - their numbers, ascending
-. n_leading - number of those among them that are read in steps in which `BodySetConstantForces()` is given no row, as long as there is
-              one rank
-- leading   - their numbers, ascending; `NULL`: all are read in all steps
++ body - the `Body`, set up, with the state of its start of a controller step; none of its rows is prescribed or a Robin row
+. n    - number of these rows on this rank; negative, on all ranks: all rows are
+- near - their numbers, ascending
 
   Level: developer
 
   Note:
-  Other rows have no force. Their output traces, and those of near rows that have not been read, stay as they are, until
-  `BodyWriteStartTraces()` makes those at the start of the step anew.
+  Other rows have no force. Their output traces stay as they are, until `BodyWriteStartTraces()` makes those at the start of the step anew.
 
 .seealso: `Body`, `BodyWriteStartTraces()`, `BodyUpdateInterface()`, `BodySetConstantForces()`
 @*/
-PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[], PetscInt n_leading, const PetscInt leading[])
+PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[])
 {
   BodyRows       *rows = &body->rows;
   const PetscBool all = (PetscBool)(n < 0), other = (PetscBool)(!all || rows->some_near || rows->near.n != rows->local);
@@ -77,8 +69,6 @@ PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[], Pet
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(DestroyList(&rows->near));
-  PetscCall(DestroyList(&rows->leading));
-  rows->read      = &rows->near;
   rows->near.n    = all ? rows->local : n;
   rows->some_near = (PetscBool)!all;
   if (!rows->near.numbers) PetscCall(PetscMalloc1(rows->local, &rows->near.numbers));
@@ -92,20 +82,14 @@ PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[], Pet
     rows->near.matrix = rows->matrix;
     rows->near.values = body->work.rows[0];
   }
-  if (leading) {
-    if (!rows->leading.numbers) PetscCall(PetscMalloc1(rows->local, &rows->leading.numbers));
-    PetscCall(PetscArraycpy(rows->leading.numbers, leading, n_leading));
-    rows->leading.n = n_leading;
-    PetscCall(CreateMatrix(body, &rows->leading));
-  }
   if (other) PetscCall(BodyListContactDofs(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* values = B vec, of the rows that are read */
+/* values = B vec, of near rows */
 PetscErrorCode BodyMultiplyNearRows(Body body, Vec vec, PetscScalar values[])
 {
-  const RowList     *list = body->rows.read;
+  const RowList     *list = &body->rows.near;
   const PetscScalar *row;
 
   PetscFunctionBegin;
@@ -122,7 +106,6 @@ PetscBool BodyNearRowsAreZero(Body body, const PetscScalar values[])
   const BodyRows *rows = &body->rows;
   PetscBool       zero = (PetscBool)(rows->size == 1);
 
-  if (rows->read == &rows->leading) return PETSC_TRUE;
   for (PetscInt k = 0; k < rows->near.n && zero; k++) zero = (PetscBool)(values[rows->near.numbers[k]] == 0);
   return zero;
 }

@@ -49,7 +49,7 @@ static PetscErrorCode CompareInputs(Body body, PetscBool *any)
 {
   const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
   struct _BodyRepeat *repeat   = body->repeat;
-  const RowList      *read     = body->rows.read;
+  const RowList      *read     = &body->rows.near;
 
   PetscFunctionBegin;
   *any = PETSC_FALSE;
@@ -71,7 +71,7 @@ static PetscErrorCode CompareInputs(Body body, PetscBool *any)
 static PetscErrorCode TakeInputs(Body body)
 {
   const Trace    traces[] = {body->traces.force_in, body->traces.displacement_in};
-  const RowList *read     = body->rows.read;
+  const RowList *read     = &body->rows.near;
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < (body->rows.n_prescribed ? 2 : 1); k++) {

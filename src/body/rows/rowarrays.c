@@ -63,7 +63,7 @@ PetscErrorCode BodyCreateRowArrays(Body body)
   PetscCall(PetscMalloc1(rows->global, &rows->changed));
   PetscCall(BodyHandoverCreate(rows->local, &rows->handover));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(rows->matrix, NULL, &body->work.rows[k]));
-  PetscCall(BodySetNearRows(body, -1, NULL, 0, NULL));
+  PetscCall(BodySetNearRows(body, -1, NULL));
   rows->n_prescribed = rows->n_forced = rows->n_robin = 0;
   rows->laid_out++;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -43,7 +43,6 @@ PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[
     PetscCall(TraceGetLevel(body->traces.force_in, level, &values));
     for (PetscInt k = 0; k < n; k++) values[rows[k]] = force[rows[k]];
   }
-  body->rows.read = n || !body->rows.leading.matrix ? &body->rows.near : &body->rows.leading;
   body->rows.idle = (PetscBool)(body->rows.size == 1);
   for (PetscInt k = 0; k < n && body->rows.idle; k++) body->rows.idle = (PetscBool)(force[rows[k]] == 0);
   if (!BodyAnswersByNodes(body)) PetscCall(PetscArrayzero(change, body->rows.local)); /* all rows count there */

@@ -63,39 +63,19 @@ static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyWriteStartRates - velocities of rows in the output traces, at the start of the controller step, from the state there
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up, saved, which has read its leading rows alone in the last step, without their velocities
-
-  Level: developer
-
-.seealso: `Body`, `BodySetNearRows()`, `BodyWriteStartTraces()`
-@*/
-PetscErrorCode BodyWriteStartRates(Body body)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(WriteNear(body, body->saved.v, body->traces.velocity, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All but the displacement of BodyWriteTraces(). Velocities of leading rows are read when somebody looks at them. Nobody looks at
-   accelerations where forces are constant in a controller step, but at those of tied nodes with mass. */
+/* All but the displacement of BodyWriteTraces(). Nobody looks at accelerations where forces are constant in a controller step, but at those
+ * of tied nodes with mass. */
 static PetscErrorCode WriteRates(Body body, PetscInt level)
 {
   const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
-  const RowList  *read     = body->rows.read;
+  const RowList  *near     = &body->rows.near;
   PetscScalar    *reaction, *displacement, *acceleration, *force_in;
 
   PetscFunctionBegin;
-  if (read != &body->rows.leading) PetscCall(WriteNear(body, body->state.v, body->traces.velocity, level));
+  PetscCall(WriteNear(body, body->state.v, body->traces.velocity, level));
   if (body->state.incomplete && !body->held.any) {
     PetscCall(TraceGetLevel(body->traces.acceleration, level, &acceleration));
-    for (PetscInt k = 0; k < read->n; k++) acceleration[read->numbers[k]] = 0;
+    for (PetscInt k = 0; k < near->n; k++) acceleration[near->numbers[k]] = 0;
   } else if (!body->rows.constant || body->rows.tied_mass) PetscCall(WriteNear(body, body->state.a, body->traces.acceleration, level));
   if (body->rows.n_prescribed) {
     Vec             force   = body->state.internal_force;
@@ -120,8 +100,8 @@ static PetscErrorCode WriteRates(Body body, PetscInt level)
   if (body->rows.n_prescribed && at_stage) PetscCall(ExtendFromStage(body, level, reaction));
   PetscCall(TraceGetLevel(body->traces.displacement, level, &displacement));
   PetscCall(TraceGetLevel(body->traces.force_in, level, &force_in));
-  for (PetscInt k = 0; k < read->n; k++) {
-    const PetscInt i = read->numbers[k];
+  for (PetscInt k = 0; k < near->n; k++) {
+    const PetscInt i = near->numbers[k];
 
     if (body->rows.conditions[i] == BODY_ROBIN) reaction[i] = force_in[i] - body->rows.robin[i] * displacement[i];
     else if (body->rows.conditions[i] != BODY_PRESCRIBED) reaction[i] = 0;
@@ -129,7 +109,7 @@ static PetscErrorCode WriteRates(Body body, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement, velocity and acceleration of the rows that are read, and the force along prescribed and Robin ones, as they are now.
+/* Displacement, velocity and acceleration of the near rows, and the force along prescribed and Robin ones, as they are now.
    Massless nodes, which all rows are on where the state may be incomplete, have no acceleration unless they are held. */
 PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 {

@@ -71,7 +71,7 @@ PetscErrorCode ContactComputeGaps(Contact contact)
       PetscCall(TraceGetSizes(traces->displacement, NULL, &levels));
       PetscCall(TraceGetLevel(traces->displacement, levels, &end[side]));
     }
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair)) {
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
       const PetscInt i = contact->rows.near[k];
 
       contact->end.gap[i] = contact->rows.initial_gap[i] + end[1][i - pair->shift[1]] - end[0][i - pair->shift[0]];

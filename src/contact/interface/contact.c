@@ -266,7 +266,7 @@ PetscErrorCode ContactAccept(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair))
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++)
       contact->start.gap[contact->rows.near[k]] = contact->end.gap[contact->rows.near[k]];
   }
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) {

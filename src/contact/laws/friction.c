@@ -174,7 +174,7 @@ PetscErrorCode ContactDriveFriction(Contact contact)
 }
 
 /* Whether the law takes the speed at which nodes have slid before they touch: then slips count on all near rows, else where forces act */
-PetscBool ContactSpeedCounts(Contact contact)
+static PetscBool ContactSpeedCounts(Contact contact)
 {
   return (PetscBool)(contact->friction.slip && !contact->friction.law.ignores_speed);
 }

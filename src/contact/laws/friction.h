@@ -3,5 +3,4 @@
 #include <contact/parts.h>
 
 PETSC_INTERN PetscErrorCode ContactLawCreate_Coulomb(Contact, ContactFrictionLaw *);
-PETSC_INTERN PetscBool      ContactSpeedCounts(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeSlips(Contact);

@@ -5,12 +5,8 @@
 
    Of near rows those act in a step whose node touches in it, or had a force in it or in the last one. Whatever comes of forces, on bodies
    too, is zero on all others, since it was made zero in the step after their last force; so nobody looks at them for it.
-
-   Whether a node touches its first row tells, that along the normal. So a body none of whose rows acts is idle: the others of its near
-   nodes are not read, and have to be before one of them acts. Where rows are on several ranks they are always read.
 */
 #include <contact/parts.h>
-#include <contact/laws/friction.h>
 
 /* Gap of a row up to which it is near [edges of the face]: rows within two edges count as near contact in builds, and surfaces may have
    moved by a quarter of an edge since the last one, and by another one until the next */
@@ -29,19 +25,6 @@ static void ListActingOfBodies(Contact contact)
       for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) of->acting[of->n_acting++] = contact->rows.acting[k] - pair->shift[side];
     }
   }
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    contact->body_rows[b].idle = (PetscBool)(contact->rows.idles && !contact->body_rows[b].n_acting);
-}
-
-/* Pairs are idle whose bodies are */
-static void FindIdlePairs(Contact contact)
-{
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    pair->idle = contact->body_rows[pair->body[0]].idle;
-    if (!pair->obstacle) pair->idle = (PetscBool)(pair->idle || contact->body_rows[pair->body[1]].idle);
-  }
 }
 
 /* All near rows count as acting; those of the bodies are listed, too */
@@ -58,11 +41,9 @@ static PetscErrorCode ListBodyRows(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     ContactBodyRows *of = &contact->body_rows[b];
 
-    of->idle   = PETSC_FALSE;
     of->n_near = of->n_acting;
     PetscCall(PetscArraycpy(of->near, of->acting, of->n_near));
   }
-  FindIdlePairs(contact);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,7 +59,7 @@ void ContactListActingRows(Contact contact, const PetscBool touches[])
     ContactPair *pair = &contact->pairs[p];
 
     pair->acts_begin = rows->n_acting;
-    for (PetscInt k = pair->near_begin; k < pair->near_end && !pair->idle; k += pair->components) {
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
       const PetscInt first = rows->near[k];
       PetscBool      acts  = (PetscBool)(touches[first] || contact->attempt.again);
 
@@ -89,7 +70,6 @@ void ContactListActingRows(Contact contact, const PetscBool touches[])
     pair->acts_end = rows->n_acting;
   }
   ListActingOfBodies(contact);
-  FindIdlePairs(contact);
 }
 
 /* The gap of a row at the start of the step, from the displacements of both sides there */
@@ -104,36 +84,6 @@ static PetscErrorCode GetStart(Contact contact, const ContactPair *pair, PetscSc
   PetscFunctionBegin;
   for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].displacement, 0, &u[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Near rows of the bodies of a pair are all read from the start of the step on, since one of them is to act */
-PetscErrorCode ContactReadAllRows(Contact contact, const ContactPair *pair)
-{
-  PetscFunctionBegin;
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    ContactBodyRows *of = &contact->body_rows[pair->body[side]];
-
-    if (!of->idle) continue;
-    PetscCall(BodyWriteStartTraces(contact->bodies[pair->body[side]]));
-    of->idle = PETSC_FALSE;
-    for (PetscInt k = 0; k < of->n_pairs; k++) {
-      const ContactPair *other = &contact->pairs[of->pairs[k]];
-      PetscScalar       *u[2];
-
-      PetscCall(GetStart(contact, other, u));
-      for (PetscInt j = other->near_begin; j < other->near_end; j++)
-        if ((j - other->near_begin) % other->components) ReadStartGap(contact, other, u, contact->rows.near[j]);
-    }
-  }
-  FindIdlePairs(contact);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where rows have gone back to what they were at the start of a step: all of them are to be read anew */
-void ContactForgetReadRows(Contact contact)
-{
-  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].idle = contact->rows.idles;
-  FindIdlePairs(contact);
 }
 
 /* Gaps of all rows as they are where the saved states of the bodies are */
@@ -154,7 +104,7 @@ PetscErrorCode ContactRefreshGaps(Contact contact)
       const PetscBool near = (PetscBool)(k < contact->rows.n_near && contact->rows.near[k] == i);
 
       k += near;
-      if (near && !((i - pair->begin) % ContactReadStride(pair))) continue; /* as the step has left it */
+      if (near) continue; /* as the step has left it */
       ReadStartGap(contact, pair, u, i);
     }
   }
@@ -203,10 +153,10 @@ PetscErrorCode ContactListAllRows(Contact contact)
   if (!contact->body_rows) PetscFunctionReturn(PETSC_SUCCESS); /* no rows have been laid out yet */
   PetscCall(ContactRefreshGaps(contact));
   for (PetscInt b = 0; b < contact->n_bodies && before; b++)
-    if (contact->body_rows[b].n_all) PetscCall(BodySetNearRows(contact->bodies[b], -1, NULL, 0, NULL));
-  contact->rows.listed = contact->rows.idles = PETSC_FALSE;
-  contact->rows.near_reach                   = PETSC_MAX_REAL;
-  contact->rows.n_near                       = contact->rows.n;
+    if (contact->body_rows[b].n_all) PetscCall(BodySetNearRows(contact->bodies[b], -1, NULL));
+  contact->rows.listed     = PETSC_FALSE;
+  contact->rows.near_reach = PETSC_MAX_REAL;
+  contact->rows.n_near     = contact->rows.n;
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.near[i] = i;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     contact->pairs[p].near_begin = contact->pairs[p].begin;
@@ -240,32 +190,6 @@ static PetscErrorCode ListPair(Contact contact, ContactPair *pair, PetscReal *sm
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether bodies may be idle: ties have no row along the normal, and friction may depend on the speed of nodes that do not touch */
-static PetscBool MayIdle(Contact contact)
-{
-  PetscBool may = (PetscBool)(contact->ranks.size == 1 && !ContactSpeedCounts(contact));
-
-  for (PetscInt p = 0; p < contact->n_pairs; p++) may = (PetscBool)(may && !ContactPairTies(&contact->pairs[p]));
-  return may;
-}
-
-/* Tells a body which of its rows are near, and which of these are the first of their nodes */
-static PetscErrorCode TellBody(Contact contact, PetscInt b)
-{
-  const ContactBodyRows *of      = &contact->body_rows[b];
-  PetscInt              *leading = NULL, n = 0;
-
-  PetscFunctionBegin;
-  if (contact->rows.idles) {
-    PetscCall(PetscMalloc1(of->n_near + 1, &leading)); /* never NULL */
-    for (PetscInt k = 0; k < of->n_near; k++)
-      if (of->rows[of->near[k]] == ContactFirstRow(contact, of->rows[of->near[k]])) leading[n++] = of->near[k];
-  }
-  PetscCall(BodySetNearRows(contact->bodies[b], of->n_near, of->near, n, leading));
-  PetscCall(PetscFree(leading));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* At the start of a step in which rows stay as they are: lists those that are near, if the method looks at no others. `reach`: surfaces
    that far apart may touch in the step [m] */
 PetscErrorCode ContactListNearRows(Contact contact, PetscReal reach)
@@ -285,10 +209,10 @@ PetscErrorCode ContactListNearRows(Contact contact, PetscReal reach)
   }
   contact->rows.near_reach = smallest;
   contact->rows.listed     = PETSC_TRUE;
-  contact->rows.idles      = MayIdle(contact);
   PetscCall(ListBodyRows(contact));
   PetscCall(TellSurfaces(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (contact->body_rows[b].n_all) PetscCall(TellBody(contact, b));
+    if (contact->body_rows[b].n_all)
+      PetscCall(BodySetNearRows(contact->bodies[b], contact->body_rows[b].n_near, contact->body_rows[b].near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

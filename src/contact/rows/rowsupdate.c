@@ -90,7 +90,7 @@ static void DropShifts(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair)) {
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
       const PetscInt i = contact->rows.near[k];
       PetscReal      part;
 

@@ -50,7 +50,7 @@ void ContactListRowState(Contact contact, StateList *list)
                                  {rubs, .bools = friction->slides}}};
 }
 
-/* Of near rows that are read what changes while rows stay as they are, of those that have acted in the last step forces, too; all else has
+/* Of near rows what changes while rows stay as they are, of those that have acted in the last step forces, too; all else has
    been put aside since rows changed last */
 static void SaveNear(Contact contact, const StateList *list)
 {
@@ -59,8 +59,7 @@ static void SaveNear(Contact contact, const StateList *list)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    StateListSaveSome(list, of_near, pair->near_end - pair->near_begin, rows->near + pair->near_begin, ContactReadStride(pair),
-                      contact->saved.state);
+    StateListSaveSome(list, of_near, pair->near_end - pair->near_begin, rows->near + pair->near_begin, 1, contact->saved.state);
   }
   StateListSaveSome(list, of_acting, rows->n_acting, rows->acting, 1, contact->saved.state);
 }
@@ -96,7 +95,6 @@ PetscErrorCode ContactRestoreRows(Contact contact)
   PetscFunctionBegin;
   ContactListRowState(contact, &list);
   PetscCall(StateListCopy(&list, PETSC_TRUE, contact->saved.state));
-  ContactForgetReadRows(contact);
   contact->counts.rebuilds = contact->saved.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (contact->body_rows[b].pattern != contact->body_rows[b].saved) contact->body_rows[b].pattern++;

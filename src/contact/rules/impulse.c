@@ -43,16 +43,6 @@ static PetscBool Closes(Contact contact, const ContactStepper *stepper, PetscInt
                      contact->start.gap[first] + 0.5 * contact->step * stepper->rate[first] <= stepper->problem.resolution);
 }
 
-/* Rows of an idle pair are read where one of them is to act, with their rates */
-static PetscErrorCode ReadRows(Contact contact, ContactStepper *stepper, const ContactPair *pair)
-{
-  PetscFunctionBegin;
-  if (!pair->idle) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactReadAllRows(contact, pair));
-  PetscCall(ContactStepperComputeRates(contact, stepper->rate));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
   const PetscReal half = 0.5 * contact->step;
@@ -65,7 +55,6 @@ static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const Cont
     const PetscBool touches = (PetscBool)(carried || Closes(contact, stepper, first));
 
     if (!touches && !stepper->touches[first]) continue; /* as it was in the last step */
-    PetscCall(ReadRows(contact, stepper, pair));
     for (PetscInt i = first; i < first + pair->components; i++) {
       const PetscReal way = half * (i == first ? PetscMin(stepper->rate[i], 0) : stepper->rate[i]);
 
@@ -124,7 +113,6 @@ static PetscErrorCode More(Contact contact, ContactStepper *stepper, const Conta
     if (contact->end.gap[first] >= 0 || stepper->touches[first] || !contact->rows.opposite[first]) continue;
     most = PetscMin(PetscAbsReal(contact->step * stepper->rate[first]), DEEP * size) + GRAZES * size;
     if (contact->end.gap[first] >= -most) continue;
-    PetscCall(ReadRows(contact, stepper, pair));
     for (PetscInt i = first; i < first + pair->components; i++) {
       stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
       stepper->lets[i]                        = 0.5 * contact->step * stepper->rate[i];

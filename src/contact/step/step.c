@@ -12,35 +12,19 @@ static ContactStepper *Stepper(Contact contact)
   return (ContactStepper *)contact->data;
 }
 
-/* Whether the near rows of a pair are farther apart than bodies come in the step by their velocities */
-static PetscBool IsApart(Contact contact, const ContactPair *pair)
-{
-  PetscReal least = PETSC_MAX_REAL;
-
-  for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components)
-    least = PetscMin(least, contact->start.gap[contact->rows.near[k]]);
-  return (PetscBool)(least > contact->reach.all);
-}
-
-/* Rates of rows as the step begins; zero for idle pairs that are apart, which do not close by them */
+/* Rates of rows as the step begins */
 PetscErrorCode ContactStepperComputeRates(Contact contact, PetscReal rate[])
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair  = &contact->pairs[p];
-    const PetscBool    apart = (PetscBool)(pair->idle && IsApart(contact, pair));
+    const ContactPair *pair = &contact->pairs[p];
     PetscScalar       *v[2];
 
-    for (PetscInt side = 0; side < 2; side++) {
-      const PetscInt b = pair->body[side];
-
-      if (!apart && !(side && pair->obstacle) && contact->body_rows[b].idle) PetscCall(BodyWriteStartRates(contact->bodies[b]));
-      PetscCall(TraceGetLevel(contact->traces[b].velocity, 0, &v[side]));
-    }
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactReadStride(pair)) {
+    for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].velocity, 0, &v[side]));
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
       const PetscInt i = contact->rows.near[k];
 
-      rate[i] = apart ? 0 : PetscRealPart(v[1][i - pair->shift[1]] - v[0][i - pair->shift[0]]);
+      rate[i] = PetscRealPart(v[1][i - pair->shift[1]] - v[0][i - pair->shift[0]]);
       if (contact->friction.drive) rate[i] += contact->friction.drive[i] / contact->step;
     }
   }
@@ -172,7 +156,6 @@ PetscErrorCode ContactStepperStep(Contact contact)
   if (stepper->has_rigid || stepper->forms) stepper->state++;
   stepper->forms = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
-  for (PetscInt p = 0; p < contact->n_pairs && contact->attempt.again; p++) PetscCall(ContactReadAllRows(contact, &contact->pairs[p]));
   PetscCall(ContactStepperComputeRates(contact, stepper->rate));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
