@@ -41,7 +41,7 @@ struct _ContactOps {
   PetscErrorCode (*destroy)(Contact);
 };
 
-/* Which body of a pair has a contact row for each of its nodes: the first, the second, or the one that is finer where they may touch */
+/* Which body of a pair has a contact row for each of its nodes: the first, the second, or the finer one */
 typedef enum { CONTACT_ROW_SIDE_FIRST, CONTACT_ROW_SIDE_SECOND, CONTACT_ROW_SIDE_FINER } ContactRowSide;
 PETSC_INTERN const char *const ContactRowSides[];
 

@@ -8,11 +8,9 @@
 /* The body that has the rows takes displacements, its partner tractions, whatever their order in ContactAddPair(). Names, forces, moments
    and normals of the pair stay in that order.
 
-   The finer surface is the one whose nodes are closer together by more than a thousandth where the two may touch; else the first body has
-   the rows. That distance is the mean over those faces of each surface, in the reference positions, that lie within the box around the
-   other one; along an axis on which the boxes are apart all do. It is the same on any number of ranks. In one dimension the first body has
-   the rows. A pair for which that would bring the bodies into a circle, each waiting for the reaction of the one before, has them on its
-   first body too. A pair with an obstacle has its rows on the body. */
+   The finer surface is the one whose nodes are closer together by more than a thousandth, as a mean over its faces in the reference
+   positions; else, and in one dimension, the first body has the rows. A pair for which that would bring the bodies into a circle, each
+   waiting for the reaction of the one before, has them on its first body too. A pair with an obstacle has its rows on the body. */
 const char *const ContactRowSides[] = {"first", "second", "finer", "ContactRowSide", "CONTACT_ROW_SIDE_", NULL};
 
 /*@
@@ -41,69 +39,19 @@ PetscErrorCode ContactGetPairRowSide(Contact contact, PetscInt pair, PetscInt *b
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The box about the nodes of a surface on all ranks */
-static PetscErrorCode GetBox(Contact contact, Surface surface, PetscReal box[6])
-{
-  const SurfaceData *data;
-
-  PetscFunctionBegin;
-  PetscCall(SurfaceGetData(surface, &data));
-  BoxFind(data->n_nodes, data->reference, box);
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether a face reaches into a box; axes that do not count are passed over */
-static PetscBool IsWithin(const SurfaceData *data, PetscInt f, const PetscBool counts[3], const PetscReal box[6])
-{
-  for (PetscInt d = 0; d < 3; d++) {
-    PetscReal least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
-
-    for (PetscInt k = 0; k < data->face_nodes; k++) {
-      const PetscReal x = data->reference[3 * data->faces[data->face_nodes * f + k] + d];
-
-      least = PetscMin(least, x);
-      most  = PetscMax(most, x);
-    }
-    if (counts[d] && (most < box[d] || least > -box[3 + d])) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
-/* Mean distance of the nodes of a surface, on the faces that reach into a box [m], zero if none does: the root of the area for each node,
-   of which triangles have half as many as quadrilaterals */
-static PetscErrorCode GetSpacing(Contact contact, Surface surface, const PetscBool counts[3], const PetscReal box[6], PetscReal *spacing)
+/* Mean distance of the nodes of a surface [m]: the root of the area for each node, of which triangles have half as many as quadrilaterals
+ */
+static PetscErrorCode GetSpacing(Contact contact, Surface surface, PetscReal *spacing)
 {
   const SurfaceData *data;
   PetscReal          sums[2] = {0, 0}; /* area, and nodes on it */
 
   PetscFunctionBegin;
   PetscCall(SurfaceGetData(surface, &data));
-  for (PetscInt f = 0; f < data->n_faces; f++) {
-    if (!IsWithin(data, f, counts, box)) continue;
-    sums[0] += data->face_areas[f];
-    sums[1] += data->face_nodes == 3 ? 0.5 : 1;
-  }
+  for (PetscInt f = 0; f < data->n_faces; f++) sums[0] += data->face_areas[f];
+  sums[1] = data->n_faces * (data->face_nodes == 3 ? 0.5 : 1);
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  *spacing = sums[1] > 0 ? sums[0] / sums[1] : 0;
-  if (contact->dim == 3) *spacing = PetscSqrtReal(*spacing);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether the second surface of a pair is the finer one where the two may touch */
-static PetscErrorCode SecondIsFiner(Contact contact, const ContactPair *pair, PetscBool *finer)
-{
-  const PetscBool everywhere[3] = {PETSC_FALSE, PETSC_FALSE, PETSC_FALSE};
-  PetscReal       boxes[2][6], spacing[2];
-  PetscBool       counts[3];
-
-  PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) PetscCall(GetBox(contact, pair->surfaces[side], boxes[side]));
-  for (PetscInt d = 0; d < 3; d++) counts[d] = (PetscBool)(boxes[0][d] <= -boxes[1][3 + d] && boxes[1][d] <= -boxes[0][3 + d]);
-  for (PetscInt side = 0; side < 2; side++) PetscCall(GetSpacing(contact, pair->surfaces[side], counts, boxes[1 - side], &spacing[side]));
-  for (PetscInt side = 0; side < 2; side++) /* curved surfaces may pass by the place where the boxes meet */
-    if (spacing[side] == 0) PetscCall(GetSpacing(contact, pair->surfaces[side], everywhere, boxes[side], &spacing[side]));
-  *finer = (PetscBool)(spacing[1] < ALIKE * spacing[0]);
+  *spacing = PetscPowReal(sums[0] / sums[1], 1.0 / (contact->dim - 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -129,7 +77,7 @@ void ContactTurnPair(ContactPair *pair)
 /* Turns a pair round if its second body is to have the rows. Its surfaces must be known. */
 PetscErrorCode ContactChooseRowSide(Contact contact, ContactPair *pair)
 {
-  PetscBool second = PETSC_FALSE;
+  PetscReal spacing[2] = {0, 0};
 
   PetscFunctionBegin;
   if (!pair->own_side) pair->row_side = contact->options.row_side;
@@ -137,9 +85,9 @@ PetscErrorCode ContactChooseRowSide(Contact contact, ContactPair *pair)
     PetscCall(ContactTurnRigid(contact, pair));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (pair->row_side == CONTACT_ROW_SIDE_SECOND) second = PETSC_TRUE;
-  if (pair->row_side == CONTACT_ROW_SIDE_FINER && contact->dim > 1) PetscCall(SecondIsFiner(contact, pair, &second));
-  if (second) ContactTurnPair(pair);
+  if (pair->row_side == CONTACT_ROW_SIDE_FINER && contact->dim > 1)
+    for (PetscInt side = 0; side < 2; side++) PetscCall(GetSpacing(contact, pair->surfaces[side], &spacing[side]));
+  if (pair->row_side == CONTACT_ROW_SIDE_SECOND || spacing[1] < ALIKE * spacing[0]) ContactTurnPair(pair);
   PetscCall(ContactTurnRigid(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -108,8 +108,7 @@ static void names_hold_whoever_has_the_rows(void **state)
   check_sides(simulation, 3, "-a_ts_type centraldifference -b_ts_type centraldifference");
 }
 
-/* Places of the nodes count, not shapes: two triangles make a quadrilateral, and alike surfaces leave the rows where they are. What lies
-   outside of the box of the partner does not count. */
+/* Places of the nodes count, not shapes: two triangles make a quadrilateral, and alike surfaces leave the rows where they are */
 static void the_finer_surface_is_found(void **state)
 {
   static const struct {
@@ -125,10 +124,6 @@ static void the_finer_surface_is_found(void **state)
       {"-a_dm_plex_dim 2 -b_dm_plex_dim 2 -a_dm_plex_box_faces 3,3 -b_dm_plex_box_faces 5,3 -b_dm_plex_box_lower 1.01,0 "
        "-b_dm_plex_box_upper 2.01,0.998",
        1},
-      {"-a_dm_plex_dim 2 -b_dm_plex_dim 2 -a_dm_plex_box_faces 3,3 -b_dm_plex_box_faces 60,3 -b_dm_plex_box_lower 1.01,-1 "
-       "-b_dm_plex_box_upper 2.01,2 "
-       "-contact_pairs a.xmax:b.all",
-       0},
       {"-a_dm_plex_dim 3 -b_dm_plex_dim 3 -a_dm_plex_box_faces 2,2,2 -b_dm_plex_box_faces 1,1,1 -b_dm_plex_box_lower 1.01,0,0 "
        "-b_dm_plex_box_upper 2.01,1,1 "
        "-b_dm_plex_simplex 1 -b_dm_refine 1",
