@@ -24,63 +24,34 @@ void InverseMassAddBodyRows(Contact contact, PetscInt b, const PetscScalar moved
   for (PetscInt k = 0; k < of->n; k++) gaps[of->rows[k]] += ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * moved[k];
 }
 
-typedef struct {
-  Contact      contact;
-  InverseMass *owner;
-} ShellContext;
-
 /* y = C x by the bodies, one solution with the mass of each */
 static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
 {
-  ShellContext      *ctx;
+  InverseMass       *inverse;
+  Contact            contact;
   const PetscScalar *force;
   PetscScalar       *sum;
 
   PetscFunctionBegin;
-  PetscCall(MatShellGetContext(shell, &ctx));
+  PetscCall(MatShellGetContext(shell, &inverse));
+  contact = inverse->contact;
   PetscCall(VecGetArrayRead(x, &force));
   PetscCall(VecGetArray(y, &sum));
-  for (PetscInt i = 0; i < ctx->contact->rows.n; i++) sum[i] = ctx->owner->takes_part[i] ? 0 : force[i];
-  for (PetscInt b = 0; b < ctx->contact->n_bodies; b++) {
-    const ContactBodyRows *of  = &ctx->contact->body_rows[b];
-    PetscScalar *const on_body = ctx->owner->work[0], *const moved = ctx->owner->work[1];
+  for (PetscInt i = 0; i < contact->rows.n; i++) sum[i] = inverse->takes_part[i] ? 0 : force[i];
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of  = &contact->body_rows[b];
+    PetscScalar *const on_body = inverse->work[0], *const moved = inverse->work[1];
 
-    InverseMassGetBodyForces(ctx->contact, b, force, on_body);
+    InverseMassGetBodyForces(contact, b, force, on_body);
     for (PetscInt k = 0; k < of->n; k++)
-      if (!ctx->owner->takes_part[of->rows[k]]) on_body[k] = 0;
-    PetscCall(BodyMultiplyInverseMass(ctx->contact->bodies[b], on_body, moved));
+      if (!inverse->takes_part[of->rows[k]]) on_body[k] = 0;
+    PetscCall(BodyMultiplyInverseMass(contact->bodies[b], on_body, moved));
     for (PetscInt k = 0; k < of->n; k++)
-      if (!ctx->owner->takes_part[of->rows[k]]) moved[k] = 0;
-    InverseMassAddBodyRows(ctx->contact, b, moved, sum);
+      if (!inverse->takes_part[of->rows[k]]) moved[k] = 0;
+    InverseMassAddBodyRows(contact, b, moved, sum);
   }
   PetscCall(VecRestoreArray(y, &sum));
   PetscCall(VecRestoreArrayRead(x, &force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode DestroyContext(Mat shell)
-{
-  ShellContext *ctx;
-
-  PetscFunctionBegin;
-  PetscCall(MatShellGetContext(shell, &ctx));
-  PetscCall(PetscFree(ctx));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateShell(Contact contact, InverseMass *inverse, Mat *shell)
-{
-  ShellContext *ctx;
-
-  PetscFunctionBegin;
-  PetscCall(PetscNew(&ctx));
-  ctx->contact = contact;
-  ctx->owner   = inverse;
-  PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), contact->rows.n, contact->rows.n, contact->rows.n_all,
-                           contact->rows.n_all, ctx, shell));
-  PetscCall(MatShellSetOperation(*shell, MATOP_MULT, (void (*)(void))MultiplyByBodies));
-  PetscCall(MatShellSetOperation(*shell, MATOP_DESTROY, (void (*)(void))DestroyContext));
-  PetscCall(MatSetOption(*shell, MAT_SYMMETRIC, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,14 +110,18 @@ PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseM
   PC             pc;
 
   PetscFunctionBegin;
+  inverse->contact = contact;
   PetscCall(PetscMalloc3(n, &inverse->takes_part, n, &inverse->work[0], n, &inverse->work[1]));
   PetscCall(ContactCreateRowVec(contact, &inverse->rhs));
   PetscCall(VecDuplicate(inverse->rhs, &inverse->solution));
   PetscCall(Assemble(contact, PETSC_TRUE, &lumped));
   PetscCall(FindRows(contact, lumped, inverse));
   PetscCall(LeaveOutOthers(contact, inverse, lumped));
-  if (type == INVERSE_MASS_ONCE) PetscCall(CreateShell(contact, inverse, &C));
-  else if (type == INVERSE_MASS_ASSEMBLED) {
+  if (type == INVERSE_MASS_ONCE) {
+    PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), n, n, contact->rows.n_all, contact->rows.n_all, inverse, &C));
+    PetscCall(MatShellSetOperation(C, MATOP_MULT, (void (*)(void))MultiplyByBodies));
+    PetscCall(MatSetOption(C, MAT_SYMMETRIC, PETSC_TRUE));
+  } else if (type == INVERSE_MASS_ASSEMBLED) {
     PetscCall(Assemble(contact, PETSC_FALSE, &C));
     PetscCall(LeaveOutOthers(contact, inverse, C));
   } else {

@@ -11,6 +11,7 @@ typedef enum {
 /* What forces on ties do to the accelerations of their rows: C = sum_bodies B M^{-1} B^T [1/kg], on the rows of pairs whose nodes keep
    their mass */
 typedef struct _InverseMass {
+  Contact      contact;
   KSP          ksp; /* with C, on all rows: the identity on others */
   Vec          rhs, solution;
   PetscBool   *takes_part; /* per row of this rank */
