@@ -202,16 +202,8 @@ static PetscErrorCode LayOut(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ContactReplacePairs - other pairs than before, between two controller steps
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, whose bodies are set up
-. n       - number of pairs
-- list    - for each pair its first body and its second one, or the number of bodies and that of an obstacle; in order
-*/
+/* Other pairs than before, between two controller steps. `list`: for each of n pairs its first body and its second one, or the number of
+   bodies and that of an obstacle; in order */
 PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt list[])
 {
   PetscInt  *was, *old_begin, *old_shift;
