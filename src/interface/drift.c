@@ -4,9 +4,8 @@
 /* Gaps of rows that are built where the surfaces are, without taking them; PETSC_MAX_REAL: nothing lies opposite */
 static PetscErrorCode GetNewGaps(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal gaps[])
 {
-  const RowSet         kept   = transfer->rows;
-  const TransferCounts counts = transfer->counts;
-  PetscReal            reach;
+  const RowSet kept = transfer->rows;
+  PetscReal    reach;
 
   PetscFunctionBegin;
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, 0, &transfer->rows));
@@ -18,8 +17,7 @@ static PetscErrorCode GetNewGaps(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   for (PetscInt row = 0; row < transfer->n; row++)
     gaps[row] = transfer->rows.opposite[row] ? TransferPresentGap(transfer, row) : PETSC_MAX_REAL;
   PetscCall(RowSetDestroy(&transfer->rows));
-  transfer->rows   = kept;
-  transfer->counts = counts;
+  transfer->rows = kept;
   PetscCall(TransferAllocateColumns(transfer));
   PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.reference, transfer->column_reference));
   PetscFunctionReturn(PETSC_SUCCESS);

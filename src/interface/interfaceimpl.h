@@ -166,7 +166,7 @@ struct _p_Transfer {
   PetscReal      *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
   PetscBool       columns_present;                 /* positions and normals are those of the last update */
   Balance         balance;
-  TransferCounts  counts;
+  PetscInt        builds; /* how often rows have been built */
   TransferSaved   saved;
 };
 
@@ -241,6 +241,7 @@ PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[
 PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
+PETSC_INTERN int            ShareCompare(const void *, const void *, void *);
 PETSC_INTERN PetscErrorCode RowSetConnectColumns(MPI_Comm, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],

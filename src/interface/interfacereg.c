@@ -11,16 +11,11 @@ PetscErrorCode ObstacleInitializePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode SurfaceInitializePackage(void)
+/* Surfaces and transfers, which only contact uses */
+PetscErrorCode InterfaceInitializePackage(void)
 {
   PetscFunctionBegin;
   PetscCall(ImpaktRegisterClass("Surface", &SURFACE_CLASSID, NULL, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode TransferInitializePackage(void)
-{
-  PetscFunctionBegin;
   PetscCall(ImpaktRegisterClass("Transfer", &TRANSFER_CLASSID, NULL, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

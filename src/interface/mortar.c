@@ -253,7 +253,6 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   Face        *faces;
   Share       *mine;
   PetscMPIInt *owners;
-  PetscInt64   counts[2];
 
   PetscFunctionBegin;
   PetscCall(ExchangeFaces(transfer->comm, dirichlet, transfer->neumann, ahead, behind, &n_faces, &faces));
@@ -281,11 +280,6 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
   if (transfer->owner >= 0) PetscCall(PetscArrayzero(owners, n_mine)); /* of one rank alone that is its number */
   PetscCall(ExchangeRecords(transfer->comm, sizeof(Share), n_mine, owners, mine, n_shares, (void **)shares));
-  counts[0] = segments.candidates;
-  counts[1] = segments.n;
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, counts, 2, MPIU_INT64, MPI_SUM, transfer->comm));
-  transfer->counts.candidates = counts[0];
-  transfer->counts.segments   = counts[1];
   PetscCall(PetscFree2(mine, owners));
   PetscCall(PetscFree(segments.list));
   PetscCall(PetscFree(faces));

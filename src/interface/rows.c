@@ -35,7 +35,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
 
 /* Orders shares by row, then by displacement, then by value, so that sums do not depend on the order in which ranks and faces add to them
  */
-static int CompareShares(const void *a, const void *b, void *context)
+int ShareCompare(const void *a, const void *b, void *context)
 {
   const Share *left = (const Share *)a, *right = (const Share *)b;
 
@@ -55,7 +55,7 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
   PetscInt count = 0, share = 0;
 
   PetscFunctionBegin;
-  if (n_shares > 1) PetscCall(PetscTimSort(n_shares, shares, sizeof(Share), CompareShares, NULL)); /* which reads the first even of none */
+  if (n_shares > 1) PetscCall(PetscTimSort(n_shares, shares, sizeof(Share), ShareCompare, NULL)); /* which reads the first even of none */
   for (PetscInt row = 0; row < n; row++) {
     const PetscBool covered = (PetscBool)(lumped[row] > COVERED * areas[row] || (keep[row] && lumped[row] > 0));
 

@@ -139,7 +139,6 @@ static PetscErrorCode ComparePoints(const SurfaceData *data, PetscInt f, PetscIn
     smallest        = distance;
     segment.partner = g;
   }
-  segments->candidates += n_faces;
   if (segment.partner >= 0) PetscCall(AddSegment(segments, &segment));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -184,7 +183,6 @@ static PetscErrorCode CompareWithTree(const Target *target, Tree *tree, const Fa
   upper[2] = segments->ahead < PETSC_MAX_REAL ? segments->ahead + target->size : PETSC_MAX_REAL;
   PetscCall(TreeQuery(tree, &target->frame, lower, upper, &n_found, &found));
   for (PetscInt i = 0; i < n_found; i++) PetscCall(CompareFaces(target, &faces[found[i]], found[i], segments));
-  segments->candidates += n_found;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

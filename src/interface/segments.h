@@ -13,12 +13,11 @@ typedef struct {
 } Segment;
 
 typedef struct {
-  PetscInt   n, max;        /* number of segments, and how many there is room for */
-  PetscInt   face_nodes;    /* nodes of a face of the Neumann side */
-  PetscInt64 candidates;    /* pairs of faces that have been compared */
-  PetscReal  ahead, behind; /* how far before and behind a face its partner may be [m] */
-  PetscBool  guards;        /* whether nodes just beyond the end of the partner are marked */
-  Segment   *list;          /* segments of one Dirichlet face follow each other */
+  PetscInt  n, max;        /* number of segments, and how many there is room for */
+  PetscInt  face_nodes;    /* nodes of a face of the Neumann side */
+  PetscReal ahead, behind; /* how far before and behind a face its partner may be [m] */
+  PetscBool guards;        /* whether nodes just beyond the end of the partner are marked */
+  Segment  *list;          /* segments of one Dirichlet face follow each other */
 } Segments;
 
 PETSC_INTERN PetscErrorCode SegmentsFind(Surface, PetscInt, const Face[], PetscInt[], Segments *);

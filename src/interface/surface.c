@@ -259,7 +259,7 @@ PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
   char         full[256];
 
   PetscFunctionBegin;
-  PetscCall(SurfaceInitializePackage());
+  PetscCall(InterfaceInitializePackage());
   PetscCall(PetscHeaderCreate(*surface, SURFACE_CLASSID, "Surface", "Contact surface", "Interface", PetscObjectComm((PetscObject)dm),
                               SurfaceDestroy, NULL));
   PetscCall(PetscObjectGetName((PetscObject)dm, &body));

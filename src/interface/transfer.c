@@ -14,7 +14,7 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   Transfer t;
 
   PetscFunctionBegin;
-  PetscCall(TransferInitializePackage());
+  PetscCall(InterfaceInitializePackage());
   PetscCall(PetscHeaderCreate(*transfer, TRANSFER_CLASSID, "Transfer", "Rows between contact surfaces", "Interface", comm, TransferDestroy,
                               NULL));
   PetscCheck(!neumann != !obstacle, comm, PETSC_ERR_ARG_WRONG, "A transfer is between a surface and either another surface or an obstacle");
@@ -151,9 +151,10 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode TransferGetCounts(Transfer transfer, TransferCounts *counts)
+/* How often rows have been built, the first time included */
+PetscErrorCode TransferGetBuilds(Transfer transfer, PetscInt *builds)
 {
   PetscFunctionBegin;
-  *counts = transfer->counts;
+  *builds = transfer->builds;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

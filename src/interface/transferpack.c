@@ -81,16 +81,7 @@ static PetscErrorCode CopySides(Transfer transfer, const char pair[], PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  TransferPack - adds the tables of a transfer
-
-  Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`
-. pair     - what the names of its tables begin with
-- tables   - the tables
-*/
+/* Adds the tables of a transfer, whose names begin with that of the pair */
 PetscErrorCode TransferPack(Transfer transfer, const char pair[], Tables tables)
 {
   PetscFunctionBegin;
@@ -125,15 +116,6 @@ static PetscErrorCode ShareOwners(Transfer transfer, Tables *owners)
   PetscCall(TablesCreate(transfer->comm, owners));
   PetscCall(TablesShare(*owners, "owners", total / 6, 6, all));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static int CompareShares(const void *a, const void *b, void *context)
-{
-  const Share *left = (const Share *)a, *right = (const Share *)b;
-
-  (void)context;
-  if (left->row != right->row) return left->row < right->row ? -1 : 1;
-  return left->dof < right->dof ? -1 : left->dof > right->dof;
 }
 
 /* The shares of the rows of this rank, and room for its rows */
@@ -177,7 +159,7 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
     PetscCall(PetscArraycpy(shares[count].slope, packed + N_SHARE * j + 8, 3));
     count++;
   }
-  if (count > 1) PetscCall(PetscTimSort(count, shares, sizeof(Share), CompareShares, NULL));
+  if (count > 1) PetscCall(PetscTimSort(count, shares, sizeof(Share), ShareCompare, NULL));
   PetscCall(RowSetDestroy(&transfer->rows));
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, count, &transfer->rows));
   PetscCall(PetscArraycpy(transfer->rows.shares, shares, count));
@@ -193,16 +175,7 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  TransferUnpack - the state of a transfer from the tables of a run with any number of ranks
-
-  Collective
-
-  Input Parameters:
-+ transfer - the `Transfer`, whose numbers for all ranks have been loaded by TransferVisitShared()
-. pair     - what the names of its tables begin with
-- tables   - the tables
-*/
+/* The state of a transfer from the tables of a run with any number of ranks, after TransferVisitShared() */
 PetscErrorCode TransferUnpack(Transfer transfer, const char pair[], Tables tables)
 {
   PetscFunctionBegin;

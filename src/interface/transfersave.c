@@ -46,7 +46,7 @@ static PetscErrorCode SaveShares(Transfer transfer)
   const PetscInt n_shares = rows->offsets[transfer->n];
 
   PetscFunctionBegin;
-  if (saved->builds != transfer->counts.builds) {
+  if (saved->builds != transfer->builds) {
     PetscCall(RowSetDestroy(&saved->rows));
     PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &saved->rows));
     PetscCall(PetscArraycpy(saved->rows.offsets, rows->offsets, transfer->n + 1));
@@ -54,7 +54,7 @@ static PetscErrorCode SaveShares(Transfer transfer)
     saved->rows.n_columns = rows->n_columns;
     saved->rows.vectors   = rows->vectors;
     if (rows->vectors) PetscCall(PetscObjectReference((PetscObject)rows->vectors));
-    saved->builds = transfer->counts.builds;
+    saved->builds = transfer->builds;
   }
   PetscCall(PetscArraycpy(saved->rows.shares, rows->shares, n_shares));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -65,7 +65,7 @@ static PetscErrorCode RestoreShares(Transfer transfer)
   TransferSaved *saved = &transfer->saved;
 
   PetscFunctionBegin;
-  if (saved->builds == transfer->counts.builds) {
+  if (saved->builds == transfer->builds) {
     PetscCall(PetscArraycpy(transfer->rows.shares, saved->rows.shares, transfer->rows.offsets[transfer->n]));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -85,7 +85,7 @@ static PetscErrorCode RestoreShares(Transfer transfer)
 PetscErrorCode TransferSave(Transfer transfer)
 {
   TransferSaved  *saved = &transfer->saved;
-  const PetscBool same  = (PetscBool)(saved->same && saved->builds == transfer->counts.builds);
+  const PetscBool same  = (PetscBool)(saved->same && saved->builds == transfer->builds);
   StateList       lists[2];
 
   PetscFunctionBegin;

@@ -120,7 +120,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
   }
   transfer->built        = PETSC_TRUE;
   transfer->numbers.near = near;
-  transfer->counts.builds++;
+  transfer->builds++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -24,7 +24,7 @@ static PetscErrorCode VisitShares(Transfer transfer, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* TransferVisitShared - what all ranks have of the state of a transfer, to or from a checkpoint */
+/* What all ranks have of the state of a transfer, to or from a checkpoint */
 PetscErrorCode TransferVisitShared(Transfer transfer, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
@@ -32,23 +32,15 @@ PetscErrorCode TransferVisitShared(Transfer transfer, Checkpoint checkpoint)
     MPI_Comm comm = PetscObjectComm((PetscObject)transfer);
 
     PetscCallMPI(MPI_Bcast(&transfer->numbers, sizeof(transfer->numbers), MPI_BYTE, transfer->owner, comm));
-    PetscCallMPI(MPI_Bcast(&transfer->counts, sizeof(transfer->counts), MPI_BYTE, transfer->owner, comm));
+    PetscCallMPI(MPI_Bcast(&transfer->builds, 1, MPIU_INT, transfer->owner, comm));
   }
   PetscCall(CheckpointVisitBytes(checkpoint, "numbers", sizeof(transfer->numbers), &transfer->numbers));
-  PetscCall(CheckpointVisitBytes(checkpoint, "counts", sizeof(transfer->counts), &transfer->counts));
+  PetscCall(CheckpointVisitInts(checkpoint, "builds", 1, &transfer->builds));
   PetscCall(CheckpointCheckInts(checkpoint, "turns of gaps", 1, &transfer->balance.n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  TransferVisit - what a rank has of the state of a transfer, to or from a checkpoint
-
-  Collective
-
-  Input Parameters:
-+ transfer   - the `Transfer`, updated once at least
-- checkpoint - the `Checkpoint`
-*/
+/* What a rank has of the state of a transfer, to or from a checkpoint */
 PetscErrorCode TransferVisit(Transfer transfer, Checkpoint checkpoint)
 {
   const PetscInt sizes[2] = {transfer->n, transfer->neumann ? transfer->neumann->data.n_owned : -1};

@@ -38,8 +38,7 @@ PetscErrorCode ImpaktRegisterAll(void)
   PetscCall(ElementInitializePackage());
   PetscCall(ExpressionInitializePackage());
   PetscCall(ObstacleInitializePackage());
-  PetscCall(SurfaceInitializePackage());
-  PetscCall(TransferInitializePackage());
+  PetscCall(InterfaceInitializePackage());
   PetscCall(ContactInitializePackage());
   PetscCall(ControllerInitializePackage());
   PetscCall(ExactInitializePackage());

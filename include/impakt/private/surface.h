@@ -45,7 +45,7 @@ typedef struct {
   PetscReal x[3];        /* the point [m] */
 } SurfaceDepth;
 
-PETSC_EXTERN PetscErrorCode SurfaceInitializePackage(void);
+PETSC_EXTERN PetscErrorCode InterfaceInitializePackage(void);
 PETSC_EXTERN PetscErrorCode SurfaceCreate(DM, const char[], Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceKeepFacing(Surface, Surface, Obstacle, PetscBool, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceSetRound(Surface, PetscBool);

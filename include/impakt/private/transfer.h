@@ -38,20 +38,10 @@ typedef struct {
   const PetscReal *bow;      /* depth that the row may have between surfaces which only touch, since the partner's faces are bent [m] */
 } TransferRows;
 
-/*
-   TransferCounts - what the updates of a transfer have done; sums over all ranks
-*/
-typedef struct {
-  PetscInt   builds;     /* the first one included */
-  PetscInt64 candidates; /* pairs of faces that were compared in the last build */
-  PetscInt64 segments;   /* pairs of faces that lie opposite, in the last build */
-} TransferCounts;
-
 /* Numbers of each rank that parts of an update hand to the next one, summed up and the largest of all ranks */
 #define TRANSFER_SUMS    4
 #define TRANSFER_LARGEST 3
 
-PETSC_EXTERN PetscErrorCode TransferInitializePackage(void);
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
 PETSC_EXTERN PetscErrorCode TransferGetDrift(Transfer, Vec, Vec, PetscReal[], PetscReal[]);
@@ -82,5 +72,5 @@ PETSC_EXTERN PetscErrorCode TransferGetTilts(Transfer, PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, const PetscInt[2], PetscInt, const PetscReal[], const Mat[2]);
 PETSC_EXTERN PetscErrorCode TransferCountValues(Transfer, PetscInt[], PetscInt[]);
 PETSC_EXTERN PetscErrorCode TransferSetNeighbours(Transfer, PetscInt, PetscInt, PetscReal, Mat);
-PETSC_EXTERN PetscErrorCode TransferGetCounts(Transfer, TransferCounts *);
+PETSC_EXTERN PetscErrorCode TransferGetBuilds(Transfer, PetscInt *);
 PETSC_EXTERN PetscErrorCode TransferDestroy(Transfer *);
