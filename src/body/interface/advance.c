@@ -28,33 +28,16 @@ static void CountSubsteps(Body body)
   body->statistics.substeps += body->time.substeps;
 }
 
-/*@
-  BodyTryIntegrateRows - as `BodyIntegrate()`, as far as the rows depend on it, and for those who can do something about a step that fails
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. reason - negative where the step has failed, the same on every rank but of a body that is local, see `BodyIsLocal()`; or `NULL`
-
-  Level: developer
-
-  Notes:
-  For sweeps, of which the last one alone counts. All output traces are there afterwards but the acceleration, which massless nodes do not
-  have. An explicit body whose rows are on massless nodes has its displacements, and leaves the forces of its elements, its acceleration
-  and its velocity to `BodyCompleteStep()`: no sweep changes them but by where the massless nodes get. Other bodies are complete.
-
-.seealso: `Body`, `BodyIntegrate()`, `BodyCompleteStep()`
-@*/
+/* Makes the displacements of the step, without an error where it fails: what a sweep needs, of which the last alone counts. Output
+   traces hold all but the acceleration. An explicit body whose rows are on massless nodes leaves forces of elements, acceleration and
+   velocity to BodyCompleteStep(), since no sweep changes them otherwise. `reason` (or NULL) is the same on every rank but of a local
+   body, see BodyIsLocal(). Collective. */
 PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
 {
   PetscBool      done = PETSC_FALSE;
   PetscLogDouble begin, end;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   StepFailureClear(&body->failure);
   if (reason) *reason = STEP_CONVERGED;
   if (BodyIsElsewhere(body)) {
@@ -75,30 +58,12 @@ PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyCompleteStep - makes the state at the end of the controller step complete
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodyTryIntegrateRows()`
-
-  Output Parameter:
-. reason - negative where the step has failed, the same on every rank but of a body that is local, see `BodyIsLocal()`; or `NULL`
-
-  Level: developer
-
-  Note:
-  A state that is complete stays as it is.
-
-.seealso: `Body`, `BodyTryIntegrateRows()`
-@*/
+/* Completes the state after BodyTryIntegrateRows(); a complete state stays as it is. `reason` (or NULL) as there. Collective. */
 PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
 {
   PetscLogDouble begin, end;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (BodyIsElsewhere(body)) body->state.incomplete = PETSC_FALSE;
   if (body->state.incomplete && !BodyHasStopped(body)) {
     PetscCall(PetscLogEventBegin(BODY_Integrate, body, 0, 0, 0));
@@ -129,76 +94,25 @@ PetscErrorCode BodyTryIntegrate(Body body, StepConvergedReason *reason)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyIsLocal - whether a body is whole on one of several ranks, and integrated there
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. local - if so, ranks do not wait for each other in `BodyTryIntegrateRows()` and `BodyCompleteStep()` unless rows are prescribed, and the
-rank of `BodyGetMeshRank()` alone knows whether the step has failed
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetMeshRank()`, `BodyTryIntegrateRows()`, `ContactAgree()`
-@*/
+/* Whether one of several ranks has the whole body and integrates it: ranks do not wait for each other in BodyTryIntegrateRows() and
+   BodyCompleteStep() unless rows are prescribed, and the rank of BodyGetMeshRank() alone has the reason of a failure */
 PetscErrorCode BodyIsLocal(Body body, PetscBool *local)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(local, 2);
   *local = body->local;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetFailure - why the last integration failed
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. failure - reason, and the error that it becomes where nobody can make the step again; owned by the body
-
-  Level: developer
-
-.seealso: `Body`, `BodyTryIntegrateRows()`
-@*/
+/* Why the last integration failed, and the error that this becomes where nobody can repeat the step; owned by the body */
 PetscErrorCode BodyGetFailure(Body body, const StepFailure **failure)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(failure, 2);
   *failure = &body->failure;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyIntegrate - integrates from the saved state to the end of the controller step, under the conditions and input traces as
-  they are
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-  Notes:
-  May be called any number of times for the same controller step: each call begins at the saved state.
-
-  Where the body is linear and makes one substep, a repeated call with other input traces adds what their change brings about
-  instead of making the step again; the result is the same up to round-off.
-
-  A step that fails is an error; `BodyTryIntegrateRows()` and `BodyCompleteStep()` tell of it instead.
-
-.seealso: `Body`, `BodyTryIntegrateRows()`, `BodySave()`, `BodySetConditions()`, `BodyGetTraces()`
-@*/
+/* Integrates from the saved state to the end of the controller step, any number of times. A step that fails is an error. A linear body
+   with one substep adds what changed input traces bring about to the last result, which is the same up to round-off. Collective. */
 PetscErrorCode BodyIntegrate(Body body)
 {
   PetscFunctionBegin;
@@ -230,25 +144,8 @@ SIMD_CLONES static void SumSquares(PetscInt n, const PetscScalar u[], const Pets
   }
 }
 
-/*@
-  BodyGetPositionChange - how far the positions at the end of the controller step have moved since the last call for it
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, integrated
-
-  Output Parameters:
-+ change   - 2-norm over all nodes [m]; infinity at the first call in a controller step, where there is nothing to compare with
-- position - 2-norm of the positions [m]
-
-  Level: developer
-
-  Note:
-  The convergence criterion of Hoy, Tezaur, Mota, section 4.4.
-
-.seealso: `Body`, `BodyIntegrate()`
-@*/
+/* 2-norms of the change of all nodal positions since the last call in this controller step (infinity in the first) and of the positions
+   [m]: the convergence criterion of Hoy, Tezaur, Mota, section 4.4. Collective. */
 PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *position)
 {
   const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
@@ -257,7 +154,6 @@ PetscErrorCode BodyGetPositionChange(Body body, PetscReal *change, PetscReal *po
   PetscReal          sums[2];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(VecGetArrayRead(body->state.u, &u));
   PetscCall(VecGetArrayRead(body->mesh.positions, &x));
   PetscCall(VecGetArray(body->iterate.u, &previous));

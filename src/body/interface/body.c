@@ -101,30 +101,12 @@ PetscErrorCode BodyMarkNodes(Body body, PetscInt n, const PetscInt vertices[], P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetContactNodes - says which nodes lie on surfaces that may touch something
-
-  Collective
-
-  Input Parameters:
-+ body     - the `Body`
-. n        - number of vertices
-- vertices - points of its `DMPlex`
-
-  Level: developer
-
-  Note:
-  With `-<body>_mass_redistribute` these nodes become massless.
-
-.seealso: `Body`, `BodySetUp()`
-@*/
+/* Adds vertices (points of the DM) that lie on contact surfaces; with `-<body>_mass_redistribute` these become massless. Collective. */
 PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertices[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
   PetscCheck(!body->mass.decided, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodyChooseMass()");
-  if (n) PetscAssertPointer(vertices, 3);
   PetscCall(BodySetUpDiscretization(body));
   PetscCall(BodyMarkNodes(body, n, vertices, body->layer.contains));
   body->layer.edge = 0;
@@ -155,27 +137,12 @@ static PetscErrorCode SetUpRows(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetUpSteps - finds out how many substeps the body makes in a controller step
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, with mesh, material, interface and controller step
-
-  Level: developer
-
-  Note:
-  The first part of `BodySetUp()`: makes the mass, on which stable steps depend.
-
-.seealso: `Body`, `BodySetUp()`, `BodyGetSubsteps()`, `BodyShareControllerStep()`
-@*/
+/* The first part of BodySetUp(): makes the mass, on which stable steps depend, and chooses the number of substeps. Collective. */
 PetscErrorCode BodySetUpSteps(Body body)
 {
   PetscBool keeps;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->time.substeps) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyChooseMass(body, 0, NULL, &keeps));
   if (keeps) PetscCall(BodyKeepMass(body));
@@ -196,26 +163,11 @@ PetscErrorCode BodySetUpSteps(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyShareControllerStep - divides the controller step at times that all bodies have
-
-  Logically Collective
-
-  Input Parameters:
-+ body - the `Body`, after `BodySetUpSteps()`, before `BodySetUp()`
-- n    - number of parts, of which each has a whole number of the body's substeps
-
-  Level: developer
-
-  Note:
-  From then on `BodyIntegrate()` advances the body through one part, and `BodyGetSubsteps()` counts the substeps of one.
-
-.seealso: `Body`, `BodySetUpSteps()`
-@*/
+/* Divides the controller step into n parts at whose ends all bodies have a common time, after BodySetUpSteps() and before BodySetUp().
+   From then on BodyIntegrate() advances the body by one part, and BodyGetSubsteps() counts the substeps of one. */
 PetscErrorCode BodyShareControllerStep(Body body, PetscInt n)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(!body->setup && n > 0 && body->time.substeps % n == 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
              "Body '%s': %" PetscInt_FMT " substeps cannot be divided into %" PetscInt_FMT " parts", body->hdr.name, body->time.substeps,
              n);
@@ -253,26 +205,11 @@ PetscErrorCode BodyEndSolver(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyBeginSetUp - the part of `BodySetUp()` before matrices are factored
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, with mesh and material
-
-  Level: developer
-
-  Note:
-  Where this is called for all bodies, then `BodyFactor()`, and then `BodySetUp()`, ranks that have a body each make its factors at the same
-  time.
-
-.seealso: `Body`, `BodySetUp()`, `BodyFactor()`
-@*/
+/* The part of BodySetUp() before matrices are factored. Where callers call this for all bodies, then BodyFactor() and BodySetUp(), ranks
+   that have a body each factor at the same time. Collective. */
 PetscErrorCode BodyBeginSetUp(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->begun) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySetUpSteps(body));
   PetscCall(BodyCreateTraces(body));
@@ -287,22 +224,10 @@ PetscErrorCode BodyBeginSetUp(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyFactor - factors the matrix of a body that one of several ranks has, on that rank
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodyBeginSetUp()`
-
-  Level: developer
-
-.seealso: `Body`, `BodySetUp()`, `BodyBeginSetUp()`
-@*/
+/* Factors the matrix of a body on the one of several ranks that has it, after BodyBeginSetUp() */
 PetscErrorCode BodyFactor(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->solver_begun) PetscCall(ConstrainedSolverFactor(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

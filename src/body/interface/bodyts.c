@@ -109,26 +109,10 @@ PetscErrorCode BodySetTimeStep(Body body, PetscReal step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetStartTime - the time at which the step under way begins
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. time - of the last state that `BodySave()` has kept [s]
-
-  Level: developer
-
-.seealso: `Body`, `BodySave()`
-@*/
+/* The time of the saved state [s] */
 PetscErrorCode BodyGetStartTime(Body body, PetscReal *time)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(time, 2);
   *time = body->saved.time;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -157,35 +141,14 @@ PetscErrorCode BodyGetTimeStep(Body body, PetscReal *step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyEstimateSubsteps - about how many substeps an explicit body will make to a controller step, before contact is set up
-
-  Not Collective
-
-  Input Parameters:
-+ body    - the `Body`, with its mesh and material
-. transit - time that a plane wave takes through its mean element [s]
-- step    - controller step [s]
-
-  Output Parameter:
-. substeps - at least 1; 1 for implicit and static bodies
-
-  Level: developer
-
-  Note:
-  The stable step itself depends on which nodes are massless, and costs as much as some steps. What is made of the estimate must not be
-  wrong where the estimate is.
-
-.seealso: `Body`, `BodyGetSubsteps()`, `BodyGetStableStep()`
-@*/
+/* About how many substeps an explicit body will make in a controller step, before its stable step is known; 1 for others. `transit`: of
+   a plane wave through its mean element [s]. */
 PetscErrorCode BodyEstimateSubsteps(Body body, PetscReal transit, PetscReal step, PetscInt *substeps)
 {
   PetscBool is_explicit;
   PetscReal substep;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(substeps, 4);
   *substeps = 1;
   PetscCall(BodyIsExplicit(body, &is_explicit));
   if (!is_explicit || !(transit > 0)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -196,26 +159,10 @@ PetscErrorCode BodyEstimateSubsteps(Body body, PetscReal transit, PetscReal step
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetControllerStep - the controller step that the body has been told
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. step - as given to `BodySetControllerStep()` [s]; 0: not yet known
-
-  Level: developer
-
-.seealso: `Body`, `BodySetControllerStep()`
-@*/
+/* As given to BodySetControllerStep() [s]; 0: not yet known */
 PetscErrorCode BodyGetControllerStep(Body body, PetscReal *step)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(step, 2);
   *step = body->time.whole_step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -318,23 +265,8 @@ static PetscErrorCode CheckNewtonOption(PetscInt n, const Body bodies[], const c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyRefuseNewtonOptions - makes an error of options of Newton's method that bodies have no use for
-
-  Collective
-
-  Input Parameters:
-+ n      - number of bodies
-- bodies - the bodies, set up
-
-  Level: developer
-
-  Note:
-  A `TS` reads the options of its `SNES` whether it has something to solve or not, so that nothing else tells of them. All bodies are
-  checked together: `PetscOptionsGetAll()` takes time in proportion to the square of the number of options.
-
-.seealso: `Body`, `BodySetUp()`, `BodySetFromOptions()`
-@*/
+/* Makes an error of options of Newton's method that bodies have no use for: a TS reads the options of its SNES in any case. All bodies
+   are checked together, since PetscOptionsGetAll() takes time in proportion to the square of the number of options. Collective. */
 PetscErrorCode BodyRefuseNewtonOptions(PetscInt n, const Body bodies[])
 {
   const char *name, *value;

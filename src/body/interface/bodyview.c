@@ -366,62 +366,22 @@ PetscErrorCode BodyIsRedistributed(Body body, PetscBool *redistributed)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  BodyGetHeldDofs - degrees of freedom whose displacement is prescribed
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, with mesh and loads
-
-  Output Parameters:
-+ n    - how many of this rank's
-- dofs - their numbers among those of this rank, ascending; owned by the body
-
-  Level: developer
-
-.seealso: `Body`, `BodyAddDisplacement()`, `BodySetFromOptions()`
-@*/
+/* Degrees of freedom of this rank whose displacement is prescribed, ascending; owned by the body */
 PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(n, 2);
-  PetscAssertPointer(dofs, 3);
   *n    = body->held.n;
   *dofs = body->held.dofs;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetNewmark - velocity and acceleration at the end of a substep as linear functions of the displacement in it
-
-  Not Collective
-
-  Input Parameter:
-. body - an implicit `Body`, set up
-
-  Output Parameters:
-+ v_u - v1 = v_u (u1 - u0) + v_v v0 + v_a a0 [1/s]
-. v_v - see `v_u`
-. v_a - see `v_u` [s]
-. a_u - a1 = a_u (u1 - u0) + a_v v0 + a_a a0 [1/s^2]
-. a_v - see `a_u` [1/s]
-- a_a - see `a_u`
-
-  Level: developer
-
-  Note:
-  Newmark's formulas. Massless nodes, which have no dynamics, report u1 - u0 over the step and zero instead.
-
-.seealso: `Body`
-@*/
+/* Newmark's formulas of an implicit body: at the end of a substep v1 = v_u (u1 - u0) + v_v v0 + v_a a0 and a1 = a_u (u1 - u0) + a_v v0 +
+   a_a a0. Massless nodes report u1 - u0 over the step and zero instead. */
 PetscErrorCode BodyGetNewmark(Body body, PetscReal *v_u, PetscReal *v_v, PetscReal *v_a, PetscReal *a_u, PetscReal *a_v, PetscReal *a_a)
 {
   PetscReal velocity[3], acceleration[3];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->integrator->ops.rates, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG, "Body '%s' is explicit", body->hdr.name);
   PetscCall((*body->integrator->ops.rates)(body, velocity, acceleration));
   *v_u = velocity[0];

@@ -44,28 +44,11 @@ PetscErrorCode BodySetUpMesh(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetUpDiscretization - makes elements, numbering and integrator ready
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, with mesh and material
-
-  Level: developer
-
-  Notes:
-  The first part of `BodySetUp()`: what contact has to know of a body before it can tell it which rows it has. The mesh and what
-  belongs to the elements cannot be changed after that; integrator, mass, loads and initial state still can.
-
-  Calls beyond the first cost nothing.
-
-.seealso: `Body`, `BodySetDM()`, `BodySetMaterial()`, `BodySetUp()`, `ContactSetUp()`
-@*/
+/* The first part of BodySetUp(): elements, numbering and integrator, which contact needs before rows are made. Mesh and elements are
+   fixed then; parameters of the integrator, mass, loads and initial state are not. Collective. */
 PetscErrorCode BodySetUpDiscretization(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->setup) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySetUpMesh(body));
   if (body->mesh.touches_axis && !body->loads) {

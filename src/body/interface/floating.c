@@ -40,49 +40,19 @@ PetscErrorCode BodySetArtificialStiffness(Body body, PetscReal part)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyIsFloating - whether a static body is held by contact or ties alone, in one direction at least
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. floating - true if so: it has artificial springs then
-
-  Level: developer
-
-.seealso: `Body`, `BodySetArtificialStiffness()`, `BodyResetSprings()`
-@*/
+/* Whether contact or ties alone hold a static body in one direction at least: it has artificial springs then */
 PetscErrorCode BodyIsFloating(Body body, PetscBool *floating)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(floating, 2);
   *floating = (PetscBool)(body->springs.n > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetSpringStiffness - sets the stiffness of the artificial springs of a floating body
-
-  Logically Collective
-
-  Input Parameters:
-+ body  - the `Body`, after `BodySetUpSteps()`, before `BodyBeginSetUp()`; one without springs is left as it is
-- least - what `BodyGetLeastStiffness()` says of the softest of the bodies that may touch each other, of which the springs take their part
-[N/m]
-
-  Level: developer
-
-.seealso: `Body`, `BodyIsFloating()`, `BodySetArtificialStiffness()`
-@*/
+/* Sets the stiffness of artificial springs to their part of `least`, the least BodyGetLeastStiffness() of the bodies that may touch each
+   other [N/m]; after BodySetUpSteps(), before BodyBeginSetUp() */
 PetscErrorCode BodySetSpringStiffness(Body body, PetscReal least)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(body, least, 2);
   body->springs.stiffness = body->springs.part * least;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -101,25 +71,10 @@ static PetscErrorCode GatherDisplacements(Body body, Vec u, PetscReal values[BOD
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyResetSprings - puts the artificial springs of a floating body at rest in its saved state
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Level: developer
-
-  Note:
-  What a controller step begins with; `BodySave()` does it too.
-
-.seealso: `Body`, `BodyIsFloating()`, `BodyMoveSprings()`
-@*/
+/* Puts artificial springs at rest in the saved state, as each controller step begins. Collective. */
 PetscErrorCode BodyResetSprings(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(GatherDisplacements(body, body->saved.u, body->springs.start));
   PetscCall(PetscArraycpy(body->springs.place, body->springs.start, BODY_MAX_RIGID));
   body->repeats = PETSC_FALSE;
@@ -164,28 +119,12 @@ static PetscErrorCode FindFall(Body body, BodySpringState *state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyMeasureSprings - how the artificial springs of a floating body are stretched at the end of the step that has been made
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, integrated
-
-  Output Parameter:
-. state - the same on every rank
-
-  Level: developer
-
-.seealso: `Body`, `BodyIsFloating()`, `BodyMoveSprings()`
-@*/
+/* How artificial springs are stretched at the end of the step, the same on every rank. Collective. */
 PetscErrorCode BodyMeasureSprings(Body body, BodySpringState *state)
 {
   BodySprings *springs = &body->springs;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(state, 2);
   PetscCall(PetscMemzero(state, sizeof(*state)));
   state->n         = springs->n;
   state->stiffness = springs->stiffness;
@@ -202,53 +141,22 @@ PetscErrorCode BodyMeasureSprings(Body body, BodySpringState *state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyMoveSprings - moves the places at which the artificial springs of a floating body are at rest
-
-  Logically Collective
-
-  Input Parameters:
-+ body - the `Body`
-- move - of each spring [m]; by its stretch: to where the body has come
-
-  Level: developer
-
-.seealso: `Body`, `BodyMeasureSprings()`, `BodyResetSprings()`
-@*/
+/* Moves the places at which artificial springs are at rest, each by `move` [m]; a move by the stretch brings them to where the body is */
 PetscErrorCode BodyMoveSprings(Body body, const PetscReal move[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->springs.n) PetscAssertPointer(move, 2);
   for (PetscInt k = 0; k < body->springs.n; k++) body->springs.place[k] += move[k];
   body->repeats = PETSC_FALSE; /* the end state was found with the springs where they have been */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  BodyDescribeDrift - in words, how a floating body has moved as a whole in the step, by its springs
-
-  Not Collective
-
-  Input Parameters:
-+ body - the `Body`, after `BodyMeasureSprings()`
-- size - of the text
-
-  Output Parameter:
-. text - as in "move along x and turn about z"
-
-  Level: developer
-
-.seealso: `Body`, `BodyMeasureSprings()`
-@*/
+/* How a floating body has moved as a whole, after BodyMeasureSprings(), in words: "move along x and turn about z" */
 PetscErrorCode BodyDescribeDrift(Body body, size_t size, char text[])
 {
   const BodySprings *springs = &body->springs;
   PetscReal          values[BODY_MAX_RIGID], amounts[BODY_MAX_RIGID], parts[BODY_MAX_RIGID];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(text, 3);
   for (PetscInt k = 0; k < springs->n; k++) values[k] = springs->reached[k] - springs->start[k];
   PetscCall(FindMotions(body, values, amounts, parts));
   PetscCall(BodyDescribeMotions(body->mesh.dim, parts, size, text));

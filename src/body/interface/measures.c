@@ -198,31 +198,12 @@ static PetscErrorCode Finish(Body body, const PetscReal sums[], BodyMeasures *me
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetAllMeasures - energies, momenta and mean velocity of some bodies at the current time
-
-  Collective
-
-  Input Parameters:
-+ n      - number of bodies, all on one communicator
-. bodies - the bodies
-- sums   - work space, `BODY_MEASURE_SUMS` for each
-
-  Output Parameter:
-. measures - of each, see `BodyMeasures`
-
-  Level: developer
-
-  Note:
-  As `BodyGetMeasures()` of each, with one sum over the ranks for all.
-
-.seealso: `Body`, `BodyMeasures`, `BodyGetMeasures()`, `BodyComputeEnergies()`
-@*/
+/* BodyGetMeasures() of bodies on one communicator, with one sum over the ranks for all. `sums`: work space, BODY_MEASURE_SUMS for each
+   body. Collective. */
 PetscErrorCode BodyGetAllMeasures(PetscInt n, const Body bodies[], PetscReal sums[], BodyMeasures measures[])
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < n; b++) {
-    PetscValidHeaderSpecific(bodies[b], BODY_CLASSID, 2);
     PetscCall(GetSums(bodies[b], sums + BODY_MEASURE_SUMS * b));
   }
   PetscCall(AddRanks(n, bodies, sums));
@@ -230,33 +211,15 @@ PetscErrorCode BodyGetAllMeasures(PetscInt n, const Body bodies[], PetscReal sum
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyComputeEnergies - kinetic and potential energy, less the work of loads, with what dashpots took, of the present states of some bodies
-
-  Collective
-
-  Input Parameters:
-+ n      - number of bodies, all on one communicator
-. bodies - the bodies, integrated or saved
-- sums   - work space, `BODY_MEASURE_SUMS` for each
-
-  Output Parameter:
-. energies - of each, of all ranks; what only contact and errors of the integrator change [J]
-
-  Level: developer
-
-  Note:
-  As `BodyComputeEnergy()` of each, with one sum over the ranks for all.
-
-.seealso: `Body`, `BodyComputeEnergy()`, `BodyGetAllMeasures()`
-@*/
+/* Energies that only contact and errors of the integrator change: kinetic and potential energy, less the work of loads, with what
+   dashpots took, of the present states [J]. Unlike BodyGetMeasures() they have the work of a step that is not accepted yet. `sums`: work
+   space, BODY_MEASURE_SUMS for each body. One sum over the ranks for all bodies. Collective. */
 PetscErrorCode BodyComputeEnergies(PetscInt n, const Body bodies[], PetscReal sums[], PetscReal energies[])
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < n; b++) {
     const Body body = bodies[b];
 
-    PetscValidHeaderSpecific(body, BODY_CLASSID, 2);
     /* where a step has been undone, the internal force is still that of its end */
     if (body->state.step == body->saved.step && !BodyIsElsewhere(body))
       PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
@@ -294,24 +257,8 @@ PetscReal BodyMeasuresGetBalance(const BodyMeasures *measures)
   return measures->kinetic + measures->potential + measures->damping_work + measures->plastic_work - measures->external_work;
 }
 
-/*@
-  BodyGetOwnKinetic - kinetic energy of some bodies that they have in every frame
-
-  Not Collective
-
-  Input Parameters:
-+ n        - number of bodies
-. bodies   - all bodies of a system
-- measures - of each, see `BodyGetAllMeasures()`
-
-  Output Parameter:
-. kinetic - of bodies that are not led. Where nothing outside holds, loads or stops any of them that of their common motion is left out: so
-            it is the same in frames that move [J]
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetAllMeasures()`, `BodyGetLed()`
-@*/
+/* Kinetic energy of all bodies of a system that are not led [J]. That of their common motion is left out where nothing outside holds,
+   loads or stops any of them: so it is the same in frames that move. */
 PetscErrorCode BodyGetOwnKinetic(PetscInt n, const Body bodies[], const BodyMeasures measures[], PetscReal *kinetic)
 {
   PetscReal momentum[3] = {0}, mass = 0, common = 0;
@@ -334,22 +281,8 @@ PetscErrorCode BodyGetOwnKinetic(PetscInt n, const Body bodies[], const BodyMeas
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetAllBoxes - boxes about some bodies where they are
-
-  Collective
-
-  Input Parameters:
-+ n      - number of bodies, all on one communicator
-- bodies - the bodies; those that have no displacements yet, before their set-up, are where their meshes are
-
-  Output Parameter:
-. boxes - of each, of all ranks: the lower corner, and the upper one with its sign changed; zeros beyond the space dimension [m]
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetAllMeasures()`
-@*/
+/* Boxes about bodies on one communicator where they are, or where their meshes are before the set-up: of each the lower corner, and the
+   upper corner with its sign changed; zeros beyond the dimension [m]. Collective. */
 PetscErrorCode BodyGetAllBoxes(PetscInt n, const Body bodies[], PetscReal boxes[])
 {
   PetscMPIInt count;

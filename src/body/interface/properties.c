@@ -138,26 +138,11 @@ PetscErrorCode BodyGetMassRedistribution(Body body, PetscReal *least, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetCrossSection - what lengths and points of the mesh are multiplied by to give areas
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodySetFromOptions()`
-
-  Output Parameter:
-. cross_section - of bars [m^2]; thickness of plane bodies [m]; 1 in three dimensions
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyGetImpedance()`
-@*/
+/* What lengths and points of the mesh are multiplied by to give areas: the cross-section of bars [m^2], the thickness of plane bodies
+   [m], else 1 */
 PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(cross_section, 2);
   *cross_section = body->model.element->cross_section;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -188,28 +173,14 @@ static PetscErrorCode SumCells(Body body, PetscReal sums[3])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetElementSize - edge length of the elements, from their mean volume
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, with its mesh
-
-  Output Parameter:
-. size - edge of the line, square or cube with the mean volume of the elements; of simplices, of that which holds 2 or 6 of them [m]
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetDM()`
-@*/
+/* Edge of the line, square or cube with the mean volume of the elements; of simplices, of that which holds 2 or 6 of them [m].
+   Collective. */
 PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
 {
   PetscReal sums[3];
   PetscInt  dim;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyGetDimension(body, &dim));
   PetscCall(SumCells(body, sums));
   if (sums[2] > 0 && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
@@ -217,22 +188,7 @@ PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetContactElementSize - edge length of the elements with a contact node, from their mean volume
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodySetContactNodes()`
-
-  Output Parameter:
-. size - edge of the line, square or cube with the mean volume; of simplices, of that which holds 2 or 6 of them; that of all
-         elements where there are no contact nodes [m]
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetElementSize()`, `ContactGetResolvedStep()`
-@*/
+/* BodyGetElementSize() of the elements with a contact node, or of all where there are none. Collective. */
 PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
 {
   const PetscInt nodes   = body->mesh.cell_nodes;
@@ -241,8 +197,6 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
   PetscBool      simplex;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(size, 2);
   *size = body->layer.edge;
   if (*size > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetDimension(body, &dim));
@@ -266,33 +220,14 @@ PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetImpedance - force for a unit velocity of a plane wave, for each unit of area
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. impedance - sqrt(M rho) [N s/m^3], M = lambda + 2 mu being the modulus of plane waves; of a bar, sqrt(E rho) times its cross-section
-              [N s/m]
-
-  Level: intermediate
-
-  Note:
-  Of a body with several materials, that of `BodyGetSurfaceMaterial()`.
-
-.seealso: `Body`, `BodyComputeRowStiffness()`, `MaterialGetUniaxialModulus()`
-@*/
+/* Force for a unit velocity of a plane wave, for each unit of area: sqrt((lambda + 2 mu) rho) [N s/m^3]; of a bar sqrt(E rho) times its
+   cross-section [N s/m]. Of BodyGetSurfaceMaterial(). */
 PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
 {
   PetscReal density, modulus;
   Material  material;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(impedance, 2);
   PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));
   if (body->mesh.dim == 1) PetscCall(MaterialGetUniaxialModulus(material, &modulus));
@@ -301,24 +236,8 @@ PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetElementStiffness - stiffness of an element against pressure on one of its faces
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, with its mesh and material
-
-  Output Parameter:
-. stiffness - modulus of plane waves over edge length [N/m^3], times the cross-sectional area in one dimension [N/m]
-
-  Level: developer
-
-  Note:
-  Of a body with several materials, with that of `BodyGetSurfaceMaterial()`.
-
-.seealso: `Body`, `BodyGetElementSize()`, `BodyGetImpedance()`
-@*/
+/* Stiffness of an element against pressure on a face: modulus of plane waves over edge length [N/m^3], times the cross-section in one
+   dimension [N/m]. Of BodyGetSurfaceMaterial(). */
 PetscErrorCode BodyGetElementStiffness(Body body, PetscReal *stiffness)
 {
   PetscReal impedance, density, size, cross_section;
@@ -326,7 +245,6 @@ PetscErrorCode BodyGetElementStiffness(Body body, PetscReal *stiffness)
   PetscInt  dim;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyGetImpedance(body, &impedance));
   PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));

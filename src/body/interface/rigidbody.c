@@ -66,28 +66,12 @@ PetscErrorCode BodyIsRigid(Body body, PetscBool *rigid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetLed - whether formulas lead a rigid body, in part or wholly
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameters:
-+ led    - `PETSC_TRUE` if so, or `NULL`
-- wholly - `PETSC_TRUE` if nothing is left to forces, or `NULL`: then its kinetic energy is given
-
-  Level: developer
-
-.seealso: `Body`, `BodySetRigidDisplacement()`, `BodySetRigidRotation()`
-@*/
+/* Whether formulas lead a rigid body, and whether they leave nothing to forces, so that its kinetic energy is given; either may be NULL */
 PetscErrorCode BodyGetLed(Body body, PetscBool *led, PetscBool *wholly)
 {
   const PetscBool axisymmetric = body->model.element->axisymmetric;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (led) *led = BodyIsLed(body);
   if (!wholly) PetscFunctionReturn(PETSC_SUCCESS);
   *wholly = (PetscBool)(BodyLeads(body, 3) || body->mesh.dim == 1 || axisymmetric);

@@ -1,18 +1,7 @@
 /* States that a body goes back to: the start of a controller step, and an end of it that is kept. */
 #include <body/layout/bodyimpl.h>
 
-/*@
-  BodySave - takes the current state as the start of the next controller step
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-.seealso: `Body`, `BodyRestore()`, `BodyIntegrate()`
-@*/
+/* Takes the current state as the start of the next controller step. Collective. */
 PetscErrorCode BodySave(Body body)
 {
   const PetscBool stepped = (PetscBool)(body->state.step != body->saved.step), here = (PetscBool)!BodyIsElsewhere(body);
@@ -20,7 +9,6 @@ PetscErrorCode BodySave(Body body)
   PetscScalar    *start, *end;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (body->rows.local && stepped) {
     const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
 
@@ -67,25 +55,10 @@ static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyKeep - puts the state at the end of the controller step aside, for `BodyReinstate()`
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, integrated
-
-  Level: developer
-
-  Note:
-  For an integration under other conditions, tried to see what it would bring.
-
-.seealso: `Body`, `BodyReinstate()`, `BodySave()`
-@*/
+/* Puts the state at the end of the controller step aside while the step is tried under other conditions. Collective. */
 PetscErrorCode BodyKeep(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(body, &body->state, &body->kept));
   if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyHistoryKeep(body, PETSC_FALSE));
@@ -94,22 +67,10 @@ PetscErrorCode BodyKeep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyReinstate - brings the state and the output traces of the last `BodyKeep()` back
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, in the same controller step
-
-  Level: developer
-
-.seealso: `Body`, `BodyKeep()`
-@*/
+/* Brings state and output traces of the last BodyKeep() back, in the same controller step. Collective. */
 PetscErrorCode BodyReinstate(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(body, &body->kept, &body->state));
   body->repeats = PETSC_FALSE;
   if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -119,28 +80,13 @@ PetscErrorCode BodyReinstate(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyResetTraces - sets the output traces, at all times of the controller step, to their values at its start
-
-  Logically Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-  Note:
-  What the first sweep of a controller step starts from.
-
-.seealso: `Body`, `BodyGetTraces()`
-@*/
+/* Sets the output traces at all times of the controller step to their values at its start: what the first sweep starts from */
 PetscErrorCode BodyResetTraces(Body body)
 {
   const Trace  traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
   PetscScalar *start, *values;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt t = 0; t < 4; t++) {
     PetscCall(TraceGetLevel(traces[t], 0, &start));
     for (PetscInt level = 1; level <= body->time.substeps; level++) {

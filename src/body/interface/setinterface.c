@@ -1,50 +1,24 @@
 /* New entries for rows of the interface, as contact surfaces slide and turn in the course of a run. */
 #include <body/layout/bodyimpl.h>
 
-/*@
-  BodyWriteStartTraces - the output traces of all rows at the start of the controller step, from the state there
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up, saved
-
-  Level: developer
-
-.seealso: `Body`, `BodySetNearRows()`, `BodyGetTraces()`
-@*/
+/* Writes the output traces of all rows at the start of the controller step from the saved state. Collective. */
 PetscErrorCode BodyWriteStartTraces(Body body)
 {
   const Vec   vecs[]   = {body->saved.u, body->saved.v, body->saved.a};
   const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt t = 0; t < 3; t++) PetscCall(BodyWriteTrace(body, body->rows.matrix, vecs[t], traces[t], 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyUpdateInterface - gives the rows of a body new entries, by callers who have told all ranks which rows of many bodies have changed
-
-  Collective
-
-  Input Parameters:
-+ body    - the `Body`, set up, at the start of a controller step
-. B       - matrix of as many rows as before
-. numbers - for each row of the body, of all ranks, its number in the list of the caller
-- changed - for each row of that list, of all ranks, 1 if its entries differ from those before, else 0; the same on every rank
-
-  Level: developer
-
-.seealso: `Body`, `BodySetInterface()`
-@*/
+/* Gives the rows of a body, as many as before, new entries at the start of a controller step. `numbers`: of each row of all ranks in the
+   caller's list; `changed`: 1 for each row of that list, of all ranks, whose entries differ from those before. Collective. */
 PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscInt numbers[], const int changed[])
 {
   PetscMPIInt *all = body->rows.changed;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt k = 0; k < body->rows.global; k++) all[k] = changed[numbers[k]];
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&body->rows.matrix));

@@ -45,32 +45,13 @@ PetscErrorCode BodyTakeLevel(Body body, PetscInt number, PetscBool *made)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetStepLevel - goes back to the saved state, and makes controller steps from there that are cut in halves a number of times
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, set up
-- level - 0: the whole controller step; k: that over 2^k; at most `STEP_MAX_CUTS`
-
-  Level: developer
-
-  Notes:
-  The number of substeps stays, so that they are shorter too, and those of explicit bodies as stable as before.
-
-  The first step of a level factors the effective matrix of an implicit body, which is kept. Nonlinear bodies factor in each iteration
-  anyway.
-
-.seealso: `Body`, `BodySetControllerStep()`, `BodyRestore()`, `ContactSetStepLevel()`
-@*/
+/* Goes back to the saved state, from where controller steps are the whole one over 2^level, with as many substeps. The first step of a
+   level factors the effective matrix of a linear implicit body, which is kept. Collective. */
 PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
 {
   PetscBool made;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveInt(body, level, 2);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   PetscCheck(level >= 0 && level <= STEP_MAX_CUTS, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "A controller step cannot be cut in halves %" PetscInt_FMT " times; 0 to %d", level, STEP_MAX_CUTS);
@@ -85,26 +66,8 @@ PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetLevelEnergy - by how much more energy the saved state counts in steps that are cut in halves so many times than in the last step
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, set up
-- level - k: of controller steps over 2^k
-
-  Output Parameter:
-. energy - [J]; 0 but for central differences
-
-  Level: developer
-
-  Note:
-  What central differences conserve depends on the step, see `BodyGetMeasures()`: where steps become shorter energy comes out of nothing,
-and goes where they become longer.
-
-.seealso: `Body`, `BodySetStepLevel()`, `BodyGetMeasures()`
-@*/
+/* By how much more energy the saved state has for steps over 2^level than for the last one [J]: what central differences conserve
+   depends on the step; 0 for others. Collective. */
 PetscErrorCode BodyGetLevelEnergy(Body body, PetscInt level, PetscReal *energy)
 {
   const PetscReal    whole = body->time.whole_step / body->time.substeps;
@@ -113,8 +76,6 @@ PetscErrorCode BodyGetLevelEnergy(Body body, PetscInt level, PetscReal *energy)
   PetscReal          sum = 0;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(energy, 3);
   *energy = 0;
   if (body->integrator->staggered == 0 || level == body->time.accepted_level) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyMultiplyMass(body, body->saved.a, body->work.nodes[0]));
@@ -128,25 +89,11 @@ PetscErrorCode BodyGetLevelEnergy(Body body, PetscInt level, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyStepBack - goes back to the saved state after a step that is not accepted
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-  Note:
-  As if the step had not been tried. `BodyRestore()` alone goes back for another integration in the same step.
-
-.seealso: `Body`, `BodyRestore()`, `BodySetStepLevel()`, `ContactStepBack()`
-@*/
+/* Goes back to the saved state after a step that is not accepted, as if it had not been tried; BodyRestore() goes back for another
+   integration in the same step. Collective. */
 PetscErrorCode BodyStepBack(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyRestore(body));
   body->iterate.known = PETSC_FALSE;
   PetscCall(FreeRows(body));

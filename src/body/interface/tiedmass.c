@@ -1,23 +1,8 @@
 /* Bodies whose contact nodes keep their mass because they are tied to nodes that move by the same rule. */
 #include <body/layout/bodyimpl.h>
 
-/*@
-  BodyIntegratesLike - whether two bodies make the same substeps by the same rule
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, after `BodySetUpDiscretization()` and `BodySetControllerStep()`
-- other - another one
-
-  Output Parameter:
-. alike - true if both have inertia, integrators of one type with equal parameters, and equal substeps; false where a substep is chosen
-          automatically, which is known only when the mass is
-
-  Level: developer
-
-.seealso: `Body`, `BodySetTiedMass()`
-@*/
+/* Whether two bodies with inertia have integrators of one type, equal parameters and equal substeps, which are not automatic; after
+   BodySetUpDiscretization() and BodySetControllerStep(). Collective. */
 PetscErrorCode BodyIntegratesLike(Body body, Body other, PetscBool *alike)
 {
   const Body bodies[2]        = {body, other};
@@ -25,9 +10,6 @@ PetscErrorCode BodyIntegratesLike(Body body, Body other, PetscBool *alike)
   PetscBool  same, newmark;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidHeaderSpecific(other, BODY_CLASSID, 2);
-  PetscAssertPointer(alike, 3);
   PetscCall(PetscStrcmp(body->integrator->type, other->integrator->type, &same));
   *alike = (PetscBool)(same && body->integrator->has_inertia);
   for (PetscInt k = 0; k < 2 && *alike; k++) {
@@ -44,106 +26,38 @@ PetscErrorCode BodyIntegratesLike(Body body, Body other, PetscBool *alike)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyRequestsControllerStep - whether the body is to make one substep in a controller step
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodySetControllerStep()`
-
-  Output Parameter:
-. requests - false also where the substep is chosen automatically
-
-  Level: developer
-
-.seealso: `Body`, `BodyIntegratesLike()`
-@*/
+/* Whether the body is to make one substep in a controller step, and that not by automatic choice */
 PetscErrorCode BodyRequestsControllerStep(Body body, PetscBool *requests)
 {
   const PetscReal step = body->time.requested_step;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(requests, 2);
   *requests = (PetscBool)(step == 0 || (step > 0 && PetscFloorReal(0.5 + body->time.controller_step / step) == 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyMassIsChosen - whether program or options have said what becomes of the mass of contact nodes
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameters:
-+ chosen       - `BodySetMassRedistribute()` has been called, or its option given
-- redistribute - whether contact nodes are to be massless
-
-  Level: developer
-
-.seealso: `Body`, `BodySetMassRedistribute()`, `BodySetTiedMass()`
-@*/
+/* Whether program or options have set what becomes of the mass of contact nodes, and whether these are to be massless */
 PetscErrorCode BodyMassIsChosen(Body body, PetscBool *chosen, PetscBool *redistribute)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(chosen, 2);
-  PetscAssertPointer(redistribute, 3);
   *chosen       = body->mass.chosen;
   *redistribute = body->mass.redistribute;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyPrescribesMass - whether prescribed rows take velocity and acceleration from their partner
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. prescribes - true where contact nodes have mass and are not tied, see `BodySetTiedMass()`; else only their displacement is prescribed
-
-  Level: developer
-
-.seealso: `Body`, `BodySetTiedMass()`, `BodyIsRedistributed()`
-@*/
+/* Whether prescribed rows take velocity and acceleration from their partner: where contact nodes have mass and are not tied */
 PetscErrorCode BodyPrescribesMass(Body body, PetscBool *prescribes)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(prescribes, 2);
   *prescribes = (PetscBool)(!body->mass.redistribute && !body->rows.tied_mass && body->integrator->has_inertia);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetTiedMass - says that rows on nodes with mass are ties to nodes that move by the same rule
-
-  Logically Collective
-
-  Input Parameters:
-+ body - the `Body`, not yet set up
-- tied - whether they are; false by default
-
-  Level: developer
-
-  Note:
-  Such a row is a constraint in the equations of motion: where it is prescribed, the displacement is enough, since velocity and
-  acceleration follow from it by the rule that the partner has too, and its force has the inertia of the nodes in it. Other rows on nodes
-  with mass take velocity and acceleration from their partner.
-
-.seealso: `Body`, `BodyIntegratesLike()`, `BodySetContactNodes()`, `BodyIsRedistributed()`
-@*/
+/* Declares, before the set-up, that rows on nodes with mass are ties to nodes that move by the same rule: constraints in the equations
+   of motion. Velocity and acceleration follow from the prescribed displacement then, and the force has the inertia of the nodes. */
 PetscErrorCode BodySetTiedMass(Body body, PetscBool tied)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(body, tied, 2);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
   body->rows.tied_mass = tied;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -161,30 +161,12 @@ PetscErrorCode BodyAddWork(Body body, Vec start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyComputeEnergy - kinetic and potential energy, less the work of loads, with what dashpots took, of the present state
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, integrated or saved
-
-  Output Parameter:
-. energy - of all ranks; what only contact and errors of the integrator change [J]
-
-  Level: developer
-
-  Note:
-  Unlike `BodyGetMeasures()`, it has the work of a step that has not been accepted yet.
-
-.seealso: `Body`, `BodyGetMeasures()`, `BodySave()`
-@*/
+/* BodyComputeEnergies() of one body */
 PetscErrorCode BodyComputeEnergy(Body body, PetscReal *energy)
 {
   PetscReal sums[BODY_MEASURE_SUMS];
 
   PetscFunctionBegin;
-  PetscAssertPointer(energy, 2);
   PetscCall(BodyComputeEnergies(1, &body, sums, energy));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

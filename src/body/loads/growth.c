@@ -87,22 +87,8 @@ static PetscErrorCode DescribeGravity(Body body, char text[BODY_SUDDEN_LENGTH])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  BodyDescribeSuddenLoad - a remedy for a step that fails soon after the start, where a load comes suddenly
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, which knows its controller step
-
-  Output Parameter:
-. text - "A load comes suddenly: ..." with an option whose formula lets it grow, of at most `BODY_SUDDEN_LENGTH` characters; empty where
-no load or prescribed displacement is there at once, or the step does not begin within the first ten controller steps
-
-  Level: developer
-
-.seealso: `Body`, `BodyLoadsSetFromOptions()`
-@*/
+/* A remedy where a step fails soon after the start: "A load comes suddenly: ..." with an option whose formula lets it grow; empty where
+   no load or prescribed displacement is there at once, or after the first ten controller steps */
 PetscErrorCode BodyDescribeSuddenLoad(Body body, char text[BODY_SUDDEN_LENGTH])
 {
   const struct _BodyLoads *loads                      = body->loads;
@@ -110,8 +96,6 @@ PetscErrorCode BodyDescribeSuddenLoad(Body body, char text[BODY_SUDDEN_LENGTH])
   char                     remedy[BODY_SUDDEN_LENGTH] = "";
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(text, 2);
   text[0] = 0;
   if (!loads || !(since < STEPS * body->time.whole_step)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < loads->n_loads && !remedy[0]; i++) PetscCall(DescribeFormulas(body, loads->loads[i].component, remedy));

@@ -139,24 +139,7 @@ PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetInitialVelocity - mean velocity of the nodes at the start, as it has been set for the body
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodySetUpDiscretization()`
-
-  Output Parameter:
-. velocity - 3 numbers, zeros beyond the dimension [m/s]
-
-  Level: developer
-
-  Note:
-  By `BodySetInitialVelocity()` and options; without what `BodySetInitialState()` or held displacements may bring.
-
-.seealso: `Body`, `BodySetInitialVelocity()`, `ContactGetResolvedStep()`
-@*/
+/* Mean velocity of the nodes at the start by BodySetInitialVelocity() and options, zeros beyond the dimension [m/s]. Collective. */
 PetscErrorCode BodyGetInitialVelocity(Body body, PetscReal velocity[3])
 {
   PetscReal          sums[4] = {0};
@@ -164,8 +147,6 @@ PetscErrorCode BodyGetInitialVelocity(Body body, PetscReal velocity[3])
   Vec                values;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(velocity, 2);
   for (PetscInt d = 0; d < 3; d++) velocity[d] = 0;
   PetscCall(PetscObjectQuery((PetscObject)body, initial[1], (PetscObject *)&values));
   if (!values) PetscFunctionReturn(PETSC_SUCCESS);

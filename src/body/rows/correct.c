@@ -16,29 +16,11 @@ static PetscErrorCode SolveLumpedMassOfRows(Body body, const PetscScalar impulse
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyAddImpulses - changes the state at one end of the controller step by impulses or forces on the rows
-
-  Collective
-
-  Input Parameters:
-+ body    - the `Body`, with inertia: integrated, where its end changes, else saved
-. side    - which end; the start of a step changes in the saved state too, and the body goes back to it
-. lumped  - whether the mass is taken as lumped: the momentum changes as much, and no mass matrix is solved with
-. parts   - by how much of M^{-1} B^T impulse displacement, velocity and acceleration change
-- impulse - one for each row of this rank
-
-  Level: developer
-
-  Notes:
-  Massless nodes stay as they are. The end is to be changed before `BodySave()`. Traces at the end of the step follow, those at its start do
-  not, see `BodyWriteStartTraces()`.
-
-  Forward-increment Lagrange multipliers (Carpenter, Taylor, Katona 1991) act on the start: they are known only after the step that they
-  begin, and a force from half a step before to half a step after changes the velocity by dt / 2 of what it changes the acceleration by.
-
-.seealso: `Body`, `BodyComputeInverseMass()`, `BodyClearAcceleration()`, `BodySave()`
-@*/
+/* Changes displacement, velocity and acceleration at one end of the controller step by `parts` of M^{-1} B^T impulse, by the lumped mass
+   on request, which keeps the momentum and needs no solution. Massless nodes stay. A changed start is saved, and the body goes back to
+   it; a changed end needs a later BodySave(). Traces at the end follow, those at the start do not, see BodyWriteStartTraces(). Forward-
+   increment Lagrange multipliers (Carpenter, Taylor, Katona 1991) act on the start: they are found after the step that they begin.
+   Collective. */
 PetscErrorCode BodyAddImpulses(Body body, BodyStepSide side, PetscBool lumped, const PetscReal parts[3], const PetscScalar impulse[])
 {
   const Vec   change = body->work.nodes[2], vecs[] = {body->state.u, body->state.v, body->state.a};
@@ -46,7 +28,6 @@ PetscErrorCode BodyAddImpulses(Body body, BodyStepSide side, PetscBool lumped, c
   const Trace traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration};
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   if (side == BODY_AT_START) PetscCall(BodyRestore(body));
   PetscCall(lumped ? SolveLumpedMassOfRows(body, impulse, change) : BodySolveMassOfRows(body, impulse, change));
@@ -74,30 +55,14 @@ static PetscErrorCode MultiplyMarked(Body body, const PetscBool marked[], Vec x,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyClearAcceleration - takes some rows out of the acceleration at the end of the controller step
-
-  Collective
-
-  Input Parameters:
-+ body - the `Body`, integrated
-- rows - for each row of this rank, whether its acceleration becomes zero
-
-  Level: developer
-
-  Note:
-  a -= B^T (B B^T)^{-1} B a on these rows, the nearest that has none of them: by conjugate gradients, in one iteration if they are
-orthonormal. To be called before `BodySave()`.
-
-.seealso: `Body`, `BodyAddImpulses()`
-@*/
+/* a -= B^T (B B^T)^{-1} B a on some rows at the end of the controller step, by conjugate gradients, in one iteration if rows are
+   orthonormal. Before BodySave(). Collective. */
 PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
 {
   Vec         residual = body->work.rows[0], direction = body->work.rows[1], product = body->work.rows[2], change = body->work.nodes[2];
   PetscScalar square, first, last, curvature;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(MultiplyMarked(body, rows, body->state.a, residual));
   PetscCall(VecCopy(residual, direction));
   PetscCall(VecDot(residual, residual, &first));

@@ -33,27 +33,12 @@ static PetscErrorCode BringForces(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyBeginExchange - brings the forces on the rows of a body to the rank that has the body, before its step
-
-  Collective
-
-  Input Parameters:
-+ body      - the `Body`, with its input traces
-- completes - whether `BodyCompleteStep()` is next, and not `BodyTryIntegrateRows()`
-
-  Level: developer
-
-  Note:
-  Until `BodyEndExchange()`, which has to follow, input traces and conditions must stay as they are, and output traces mean nothing. For
-  bodies that need no exchange, or cannot do with one, both do nothing.
-
-.seealso: `Body`, `BodyEndExchange()`, `BodyTryIntegrateRows()`, `BodyCompleteStep()`, `BodyIsLocal()`
-@*/
+/* Brings the forces on the rows to the rank that has the body, before BodyTryIntegrateRows(), or BodyCompleteStep() if `completes`.
+   Until BodyEndExchange() input traces and conditions must stay, and output traces mean nothing. For bodies without exchange both do
+   nothing. Collective. */
 PetscErrorCode BodyBeginExchange(Body body, PetscBool completes)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!Exchanges(body) || (completes && !body->state.incomplete)) PetscFunctionReturn(PETSC_SUCCESS);
   body->rows.exchange.open   = PETSC_TRUE;
   body->rows.exchange.writes = PETSC_FALSE;
@@ -62,24 +47,12 @@ PetscErrorCode BodyBeginExchange(Body body, PetscBool completes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyEndExchange - writes the output traces of a body, after its step
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodyBeginExchange()`
-
-  Level: developer
-
-.seealso: `Body`, `BodyBeginExchange()`
-@*/
+/* Writes the output traces of a body after its step. Collective. */
 PetscErrorCode BodyEndExchange(Body body)
 {
   BodyExchange *exchange = &body->rows.exchange;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!exchange->open) PetscFunctionReturn(PETSC_SUCCESS);
   exchange->open = PETSC_FALSE;
   if (exchange->writes) PetscCall(BodyWriteTraces(body, 1));

@@ -43,32 +43,15 @@ PetscErrorCode BodyHandoverEnd(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyHandOver - lets the contact forces go over from the rows of the last accepted step to those of `BodyUpdateInterface()`
-
-  Collective
-
-  Input Parameters:
-+ body      - the `Body`, after `BodyUpdateInterface()`
-. before    - for each row of this rank the force on the body at the end of the last accepted step, along the row as it was then [N]
-. now       - the force at the start of this step that the input trace has, along the row as it is now; 0 for a row that has been let go [N]
-. intervals - for each row of this rank the intervals of the controller step between which its force is linear; at least 1
-- fewest    - the least of `intervals` of all ranks
-
-  Level: developer
-
-  Note:
-  It lasts until `BodySave()`.
-
-.seealso: `Body`, `BodyIntegrate()`
-@*/
+/* After BodyUpdateInterface(), lets contact forces go over from the rows of the last accepted step to the new ones, until BodySave(). Of
+   each row of this rank: the force at the end of the last step along the old row, that at the start of this one along the new row, 0 for
+   a released row [N], and the intervals between which the force is linear; `fewest`: their least over all ranks. Collective. */
 PetscErrorCode BodyHandOver(Body body, const PetscReal before[], const PetscReal now[], const PetscInt intervals[], PetscInt fewest)
 {
   BodyRows     *rows     = &body->rows;
   BodyHandover *handover = &rows->handover;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(handover->matrix, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySave()");
   PetscCheck(fewest > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "A controller step has %" PetscInt_FMT " intervals, but must have 1 at least", fewest);

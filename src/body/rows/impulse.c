@@ -67,26 +67,9 @@ static PetscErrorCode CreateInverseRowSum(Body body, Vec *inverse)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyComputeInverseMass - velocity of the rows after unit impulses on them
-
-  Collective
-
-  Input Parameters:
-+ body   - the `Body`, set up, without prescribed rows
-- lumped - as if the mass were lumped
-
-  Output Parameter:
-. matrix - B M^{-1} B^T [1/kg], all rows by all rows; zero for massless nodes and for static bodies; destroy it with `MatDestroy()`
-
-  Level: developer
-
-  Note:
-  Sparse with lumped mass: rows are coupled that share a node. Other masses couple all rows, of which there may be 2000 then. Times dt^2 it
-  is the matrix of the forward-increment Lagrange multipliers (Carpenter, Taylor, Katona 1991).
-
-.seealso: `Body`, `BodyAddImpulses()`, `BodyBoundInverseMass()`
-@*/
+/* B M^{-1} B^T of all rows [1/kg], without prescribed rows; zero for massless nodes and static bodies. The caller destroys the matrix.
+   Sparse with a lumped mass, where rows couple that share a node; other masses couple all rows, of which there may be 2000 then.
+   Collective. */
 PetscErrorCode BodyComputeInverseMass(Body body, PetscBool lumped, Mat *matrix)
 {
   const BodyRows *rows    = &body->rows;
@@ -94,8 +77,6 @@ PetscErrorCode BodyComputeInverseMass(Body body, PetscBool lumped, Mat *matrix)
   MPI_Comm        comm    = PetscObjectComm((PetscObject)body);
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(matrix, 3);
   if (inertia && (lumped || body->mass.inverse)) {
     Vec inverse;
 
@@ -118,26 +99,10 @@ PetscErrorCode BodyComputeInverseMass(Body body, PetscBool lumped, Mat *matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyMultiplyInverseMass - velocity of the rows after impulses on them
-
-  Collective
-
-  Input Parameters:
-+ body    - the `Body`, set up
-- impulse - one for each row of this rank [N s]
-
-  Output Parameter:
-. velocity - B M^{-1} B^T impulse, one for each row of this rank [m/s]
-
-  Level: developer
-
-.seealso: `Body`, `BodyComputeInverseMass()`
-@*/
+/* velocity = B M^{-1} B^T impulse for the rows of this rank [m/s], [N s]. Collective. */
 PetscErrorCode BodyMultiplyInverseMass(Body body, const PetscScalar impulse[], PetscScalar velocity[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodySolveMassOfRows(body, impulse, body->work.nodes[2]));
   PetscCall(BodyReadRows(body, body->rows.matrix, body->work.nodes[2], velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -156,22 +121,9 @@ static PetscReal LeastMass(const struct _p_Body *body)
   return body->mass.type == BODY_MASS_AVERAGED ? 0.5 * (1 + least) : least;
 }
 
-/*@
-  BodyBoundInverseMass - bound of each row's velocity after a unit impulse on it
-
-  Collective
-
-  Input Parameter:
-. body - an explicit `Body` without massless nodes
-
-  Output Parameter:
-. bound - one for each row of this rank [1/kg]; the diagonal of `BodyComputeInverseMass()` itself, but for interfaces with many rows and a
-          mass that is not lumped, which have one from the eigenvalues of the elements' masses
-
-  Level: developer
-
-.seealso: `Body`, `BodyComputeInverseMass()`
-@*/
+/* Bound of each row's velocity after a unit impulse on it, in an explicit body without massless nodes [1/kg]: the diagonal of
+   BodyComputeInverseMass(), or a bound from the eigenvalues of the elements' masses where many rows meet a mass that is not lumped.
+   Collective. */
 PetscErrorCode BodyBoundInverseMass(Body body, PetscReal bound[])
 {
   const PetscBool    lumped = (PetscBool)(!body->mass.inverse && body->rows.global > MAX_PROBED_ROWS);
@@ -180,7 +132,6 @@ PetscErrorCode BodyBoundInverseMass(Body body, PetscReal bound[])
   Vec                diagonal;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyComputeInverseMass(body, lumped, &matrix));
   if (lumped) PetscCall(MatScale(matrix, 1 / LeastMass(body)));
   PetscCall(MatCreateVecs(matrix, NULL, &diagonal));
@@ -193,23 +144,7 @@ PetscErrorCode BodyBoundInverseMass(Body body, PetscReal bound[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetForceOnMass - how much of the forces on the rows acts on nodes with mass
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, set up
-- force - of each row of this rank [N]
-
-  Output Parameters:
-+ on_mass - largest nodal force on a node with mass [N]
-- largest - largest nodal force [N]
-
-  Level: developer
-
-.seealso: `Body`, `BodySetMassRedistributeNear()`
-@*/
+/* Largest nodal force on a node with mass, and on any, under forces on the rows of this rank [N]. Collective. */
 PetscErrorCode BodyGetForceOnMass(Body body, const PetscReal force[], PetscReal *on_mass, PetscReal *largest)
 {
   const PetscScalar *nodal;
@@ -217,10 +152,6 @@ PetscErrorCode BodyGetForceOnMass(Body body, const PetscReal force[], PetscReal 
   PetscReal          most[2] = {0, 0};
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->rows.local) PetscAssertPointer(force, 2);
-  PetscAssertPointer(on_mass, 3);
-  PetscAssertPointer(largest, 4);
   PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
   for (PetscInt i = 0; i < body->rows.local; i++) row[i] = force[i];
   PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));

@@ -44,30 +44,15 @@ static PetscErrorCode CreateMatrix(Body body, RowList *list)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetNearRows - tells which rows may have a force, until rows get new entries or the next call; a step looks at no others
-
-  Collective
-
-  Input Parameters:
-+ body - the `Body`, set up, with the state of its start of a controller step; none of its rows is prescribed or a Robin row
-. n    - number of these rows on this rank; negative, on all ranks: all rows are
-- near - their numbers, ascending
-
-  Level: developer
-
-  Note:
-  Other rows have no force. Their output traces stay as they are, until `BodyWriteStartTraces()` makes those at the start of the step anew.
-
-.seealso: `Body`, `BodyWriteStartTraces()`, `BodyUpdateInterface()`, `BodySetConstantForces()`
-@*/
+/* Limits the rows that may have a force, and that a step reads, until rows get new entries: ascending numbers on this rank; n < 0 on all
+   ranks: all rows. Output traces of other rows stay as they are until BodyWriteStartTraces(). No row is prescribed or a Robin row.
+   Collective. */
 PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[])
 {
   BodyRows       *rows = &body->rows;
   const PetscBool all = (PetscBool)(n < 0), other = (PetscBool)(!all || rows->some_near || rows->near.n != rows->local);
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(DestroyList(&rows->near));
   rows->near.n    = all ? rows->local : n;
   rows->some_near = (PetscBool)!all;

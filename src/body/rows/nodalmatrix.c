@@ -48,30 +48,13 @@ PetscErrorCode NodalMatrixDestroy(NodalMatrix *nodal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyNodalComplianceFollows - whether `BodyGetNodalCompliance()` has displacements of a body as it has answered last
-
-  Not Collective
-
-  Input Parameters:
-+ body - the `Body`, set up
-- n    - number of displacements
-
-  Output Parameter:
-. follows - true for nonlinear implicit bodies with one substep and factors of their matrix, but for more than 100 displacements of a body
-            of more than 5000: they are those of the last iteration of Newton's method, so that each call gives others
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetNodalCompliance()`
-@*/
+/* Whether each BodyGetNodalCompliance() of n displacements gives others: of nonlinear implicit bodies with one substep and factors of
+   the last iteration of Newton's method, but for more than 100 displacements of a body of more than 5000 */
 PetscErrorCode BodyNodalComplianceFollows(Body body, PetscInt n, PetscBool *follows)
 {
   PetscInt all;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(follows, 3);
   PetscCall(VecGetSize(body->state.u, &all));
   *follows = (PetscBool)(body->integrator->uses_newton && body->time.substeps == 1 && (n <= MANY || all <= SMALL_BODY) &&
                          ConstrainedSolverIsDirect(body->solver));

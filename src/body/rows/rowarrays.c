@@ -145,52 +145,23 @@ static PetscErrorCode RenewLevels(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyExpectRows - tells a body that rows may come in the course of a run, whether it has any at the set-up or not
-
-  Logically Collective
-
-  Input Parameter:
-. body - the `Body`, not yet set up
-
-  Level: developer
-
-.seealso: `Body`, `BodyReplaceInterface()`
-@*/
+/* Announces, before the set-up, that rows may come in the course of a run */
 PetscErrorCode BodyExpectRows(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   BodyCheckNotSetUp(body);
   body->rows.expected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyReplaceInterface - gives the body other rows of the interface, as its partners come and go
-
-  Collective
-
-  Input Parameters:
-+ body - the `Body`, set up, at the start of a whole controller step
-. B    - matrix of the rows
-- from - for each row of this rank, the number on this rank of the row that it was before, with the same entries; -1: it is new
-
-  Level: developer
-
-  Note:
-  No matrix of the body is factored again. All rows are free afterwards, and the compliance knows none of them.
-
-.seealso: `Body`, `BodySetInterface()`, `BodyExpectRows()`
-@*/
+/* Gives the body other rows at the start of a whole controller step. `from`: for each row of this rank its former number there, with the
+   same entries; -1: it is new. No matrix is factored again; all rows are free afterwards. Collective. */
 PetscErrorCode BodyReplaceInterface(Body body, Mat B, const PetscInt from[])
 {
   BodyRows       *rows            = &body->rows;
   const PetscBool had_mass_solver = (PetscBool)(body->mass.solver != NULL);
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidHeaderSpecific(B, MAT_CLASSID, 2);
   PetscCheck(body->setup && !body->time.level && (rows->expected || rows->global), PetscObjectComm((PetscObject)body),
              PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp() with rows, or with BodyExpectRows(), at the start of a whole step");
   PetscCall(BodyDestroyRowArrays(body));

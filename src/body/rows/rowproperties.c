@@ -2,29 +2,14 @@
    moves them. */
 #include <body/layout/bodyimpl.h>
 
-/*@
-  BodyComputeRowStiffness - stiffness of the elements beside each row: force along it for a unit displacement of its nodes alone
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. stiffness - diagonal of B K B^T [N/m], one for each row of this rank; E A / h for the end of a bar with elements of length h, 0 on
-              rows of other bodies
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetImpedance()`, `BodySetRobin()`
-@*/
+/* Diagonal of B K B^T for the rows of this rank [N/m]: the force along a row for a unit displacement of its nodes alone; 0 on rows of
+   other bodies. Collective. */
 PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
 {
   const BodyRows *rows = &body->rows;
   Mat             K, forces;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   if (!rows->global) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetStiffness(body, &K));
@@ -48,27 +33,11 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyFeelsEndForce - whether displacements at the end of the controller step answer to the contact forces there
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. feels - false for explicit bodies with mass on their contact nodes and one substep to a controller step, where the force at its end goes
-          into the acceleration alone
-
-  Level: developer
-
-.seealso: `Body`, `BodyIntegrate()`
-@*/
+/* Whether displacements at the end of the controller step depend on the contact forces there: not those of explicit bodies with mass on
+   contact nodes and one substep */
 PetscErrorCode BodyFeelsEndForce(Body body, PetscBool *feels)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(feels, 2);
   *feels = body->integrator->feels_end_force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

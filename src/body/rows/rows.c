@@ -3,30 +3,14 @@
 
 const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
 
-/*@
-  BodySetInterface - sets the linear combinations of displacements by which the body meets others
-
-  Collective
-
-  Input Parameters:
-+ body - the `Body`
-- B    - matrix of all rows of the interface (those of other bodies are empty) times the body's displacements; a row that may be
-         prescribed is a vector on one node of this rank, a unit vector where nothing is held, but for what it has on held dofs
-
-  Level: developer
-
-  Note:
-  Rows of one node may have any directions; of those that depend on each other see `BodySetRowWeights()`.
-
-.seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
-@*/
+/* Sets the rows B: all rows of the interface, those of other bodies empty, times the displacements of the body. A row that may be
+   prescribed is a vector on one node of this rank, a unit vector but for held dofs. Rows of one node may have any directions; of
+   dependent ones see BodySetRowWeights(). Collective. */
 PetscErrorCode BodySetInterface(Body body, Mat B)
 {
   BodyRows *rows = &body->rows;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidHeaderSpecific(B, MAT_CLASSID, 2);
   PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&body->rows.matrix));
@@ -74,106 +58,39 @@ PetscErrorCode BodySetUpFreeRows(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetTractionType - chooses the nodal force that is reported for prescribed rows
-
-  Logically Collective
-
-  Input Parameters:
-+ body - the `Body`
-- type - with or without the inertia of the nodes
-
-  Options Database Key:
-. -schwarz_traction (internal|reaction) - read by the contact method, for all bodies
-
-  Level: intermediate
-
-  Note:
-  On massless nodes both are the same.
-
-.seealso: `Body`, `BodyTractionType`
-@*/
+/* Chooses the nodal force that is reported for prescribed rows; on massless nodes both types are the same */
 PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   body->rows.traction = type;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetRowWeights - says how prescribed rows of one node that depend on each other share its displacement and force
-
-  Logically Collective
-
-  Input Parameters:
-+ body    - the `Body`, set up
-- weights - one for each row of this rank, positive on rows that are prescribed; not copied, and looked at whenever rows or conditions
-change
-
-  Level: developer
-
-  Note:
-  Two rows with one direction are prescribed the weighted mean of their displacements, and each has its part of the force. Without this call
-  all weights are equal.
-
-.seealso: `Body`, `BodySetInterface()`, `BodySetConditions()`
-@*/
+/* Weights, positive on prescribed rows of this rank, by which dependent rows of one node share its displacement (a weighted mean) and
+   force; equal without this call. Not copied. */
 PetscErrorCode BodySetRowWeights(Body body, const PetscReal weights[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   body->rows.weights = weights;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetRobin - sets the springs of Robin rows
-
-  Logically Collective
-
-  Input Parameters:
-+ body      - the `Body`, set up
-- stiffness - one for each row of this rank [N/m], positive on rows that are to be Robin rows
-
-  Level: developer
-
-  Note:
-  The force along the row is r - stiffness B u, with r from the input trace. Set before `BodySetConditions()` makes Robin rows.
-
-.seealso: `Body`, `BodySetConditions()`, `BodyGetTraces()`
-@*/
+/* Stiffness of the springs of Robin rows, one for each row of this rank [N/m], before BodySetConditions(): the force along such a row is
+   r - stiffness B u, with r from the input trace */
 PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   PetscCall(PetscArraycpy(body->rows.robin, stiffness, body->rows.local));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetConditions - says which rows are prescribed and which are loaded from now on
-
-  Collective
-
-  Input Parameters:
-+ body       - the `Body`
-- conditions - one for each row of this rank
-
-  Level: developer
-
-  Note:
-  Never makes a matrix be factored again.
-
-.seealso: `Body`, `BodyCondition`, `BodyIntegrate()`
-@*/
+/* Sets the condition of each row of this rank; no matrix is factored again. Collective. */
 PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 {
   PetscInt counts[] = {0, 0, 0, 0}; /* prescribed rows, forced and Robin rows, Robin rows; ranks on which any is another one */
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt i = 0; i < body->rows.local; i++) {
     if (conditions[i] != body->rows.conditions[i]) counts[3] = 1;
     body->rows.conditions[i] = conditions[i];
@@ -191,29 +108,12 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyAllRowsAre - whether all rows have one condition
-
-  Not Collective
-
-  Input Parameters:
-+ body      - the `Body`, set up
-- condition - `BODY_FREE` or `BODY_FORCED`
-
-  Output Parameter:
-. are - if so, the same on every rank
-
-  Level: developer
-
-.seealso: `Body`, `BodySetConditions()`
-@*/
+/* Whether all rows are BODY_FREE, or all BODY_FORCED; the same on every rank */
 PetscErrorCode BodyAllRowsAre(Body body, BodyCondition condition, PetscBool *are)
 {
   const BodyRows *rows = &body->rows;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(are, 3);
   *are = (PetscBool)(rows->n_forced == (condition == BODY_FREE ? 0 : rows->global) && !rows->n_robin && !rows->n_prescribed);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -50,29 +50,14 @@ static PetscBool HasLayer(Body body)
   return (PetscBool)(body->layer.exists && body->integrator->has_inertia);
 }
 
-/*@
-  BodyIsOutOfBalance - whether forces from outside and internal forces of the massless layer differ at all
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up, before its first step
-
-  Output Parameter:
-. out - false also where no node is massless, and for a body without inertia
-
-  Level: developer
-
-.seealso: `Body`, `BodyRelaxLayer()`
-@*/
+/* Whether forces from outside and internal forces of the massless layer differ before the first step; not without massless nodes or
+   inertia. Collective. */
 PetscErrorCode BodyIsOutOfBalance(Body body, PetscBool *out)
 {
   Vec                f = body->work.nodes[0];
   const PetscScalar *values;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(out, 2);
   *out = PETSC_FALSE;
   if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ComputeImbalance(body, PETSC_FALSE, NULL, f));
@@ -101,29 +86,14 @@ static PetscErrorCode FindEntries(Body body, Vec marks, PetscBool found[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyMarkRows - which rows are of massless nodes of the body, and which of nodes with mass
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameters:
-+ massless - for each row of this rank, whether forces on it move the massless layer
-- mass     - for each row of this rank, whether forces on it act on nodes with mass, those of a body without inertia too
-
-  Level: developer
-
-.seealso: `Body`, `BodyMultiplyLayerCompliance()`
-@*/
+/* Marks the rows of this rank whose forces move the massless layer, and those whose forces act on nodes with mass or on a body without
+   inertia. Collective. */
 PetscErrorCode BodyMarkRows(Body body, PetscBool massless[], PetscBool mass[])
 {
   Vec          marks = body->work.nodes[0];
   PetscScalar *mark;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   for (PetscInt massive = 0; massive < 2; massive++) {
     PetscCall(VecSet(marks, massive));
     PetscCall(VecGetArray(marks, &mark));
@@ -147,30 +117,14 @@ static PetscErrorCode MeasureChange(Body body, Vec du, PetscReal *change)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyRelaxLayer - how far the rows would move if the massless layer went into balance without contact forces
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up, before its first step
-
-  Output Parameters:
-+ displacement - of this rank's rows, beside what they have now; from the tangent of the layer at the present displacement, which the next
-                 calls of `BodyMultiplyLayerCompliance()` and `BodyMoveLayer()` use too [m]
-- change       - largest displacement of the layer, 0 where that is round-off [m]
-
-  Level: developer
-
-.seealso: `Body`, `BodyIsOutOfBalance()`, `BodyMultiplyLayerCompliance()`, `BodyMoveLayer()`
-@*/
+/* How far rows would move from their present places [m] if the massless layer went into balance without contact forces, by its tangent
+   at the present displacement, which the next two functions use too; `change`: largest displacement of the layer, 0 where that is round-
+   off [m]. Before the first step. Collective. */
 PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *change)
 {
   Vec f = body->work.nodes[0], du = body->work.nodes[1];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(change, 3);
   *change = 0;
   PetscCall(PetscArrayzero(displacement, body->rows.local));
   if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -183,28 +137,12 @@ PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyMultiplyLayerCompliance - displacement of the rows under forces on them, of the massless layer alone
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, after `BodyRelaxLayer()`
-- force - one for each row of this rank [N]
-
-  Output Parameter:
-. displacement - B K_LL^{-1} B^T force, one for each row of this rank [m]
-
-  Level: developer
-
-.seealso: `Body`, `BodyRelaxLayer()`
-@*/
+/* displacement = B K_LL^{-1} B^T force of the massless layer alone, after BodyRelaxLayer() [m], [N]. Collective. */
 PetscErrorCode BodyMultiplyLayerCompliance(Body body, const PetscScalar force[], PetscScalar displacement[])
 {
   Vec f = body->work.nodes[0], du = body->work.nodes[1];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!HasLayer(body)) {
     PetscCall(PetscArrayzero(displacement, body->rows.local));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -215,32 +153,13 @@ PetscErrorCode BodyMultiplyLayerCompliance(Body body, const PetscScalar force[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyMoveLayer - moves the massless layer towards its balance under forces on the rows, into it if the body is linear
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, after `BodyRelaxLayer()`
-- force - one for each row of this rank [N]
-
-  Output Parameter:
-. change - largest displacement of the layer, 0 where that is round-off [m]
-
-  Level: developer
-
-  Note:
-  Displacements and their traces at the start change; `BodyStartUnderForces()` completes the state.
-
-.seealso: `Body`, `BodyRelaxLayer()`, `BodyStartUnderForces()`
-@*/
+/* Moves the massless layer towards its balance under forces on the rows [N], into it if the body is linear, after BodyRelaxLayer();
+   `change` as there. Displacements and their traces at the start change; BodyStartUnderForces() completes the state. Collective. */
 PetscErrorCode BodyMoveLayer(Body body, const PetscScalar force[], PetscReal *change)
 {
   Vec f = body->work.nodes[0], du = body->work.nodes[1];
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(change, 3);
   PetscCheck(!body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before the first step");
   *change = 0;
   if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
@@ -274,28 +193,13 @@ static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyStartUnderForces - takes the present displacement and velocity as the first state, in which forces act on the rows
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, before its first step
-- force - one for each row of this rank [N]
-
-  Level: developer
-
-  Note:
-  Acceleration, traces and work follow; the forces are the reactions at the start.
-
-.seealso: `Body`, `BodyMoveLayer()`, `BodySetInitialState()`
-@*/
+/* Takes the present displacement and velocity as the first state, in which forces act on the rows [N]; acceleration, traces and work
+   follow. Collective. */
 PetscErrorCode BodyStartUnderForces(Body body, const PetscScalar force[])
 {
   PetscScalar *reaction;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup && !body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
              "Call after BodySetUp(), before the first step");
   PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));

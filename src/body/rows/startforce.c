@@ -45,30 +45,13 @@ static PetscErrorCode CopyAnswering(Body body, Vec from, Vec to)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetStartForce - lets the controller step begin with other contact forces than those that the last one ended with
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, saved
-. force - by how much more than at the end of the last step acts along each row of this rank [N]
-- rest  - for each row of this rank, the part that remains of what goes over from the rows of the last step, see `BodyHandOver()`; `NULL`:
-all
-
-  Level: developer
-
-  Notes:
-  Holds until the next `BodySave()`, `BodyDropStartForce()`, or the next call. The state goes back to the saved one, whose acceleration
-becomes that under the new forces, found with the massless layer in balance with them. A static body has no acceleration, and stays as it
-is.
-
-.seealso: `Body`, `BodySave()`, `BodyIntegrate()`
-@*/
+/* Lets the controller step begin with contact forces that exceed those at the end of the last step by `force` along each row [N], until
+   BodySave() or BodyDropStartForce(). The body goes back to the saved state, whose acceleration becomes that under the new forces, with
+   the massless layer in balance. `rest`: the part that remains of forces handed over, see BodyHandOver(); NULL: all. A static body has
+   no acceleration and stays. Collective. */
 PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const PetscReal rest[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->start.changed && body->state.step == body->saved.step && BodyAnswersByNodes(body) && !BodyHandsOver(body) &&
@@ -95,22 +78,10 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyDropStartForce - lets the controller step begin with the contact forces that the last one ended with
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, saved
-
-  Level: developer
-
-.seealso: `Body`, `BodySetStartForce()`, `BodyStepBack()`
-@*/
+/* Lets the controller step begin with the contact forces that the last one ended with. Collective. */
 PetscErrorCode BodyDropStartForce(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
   PetscCall(BodySetHandoverRest(body, NULL));
@@ -119,34 +90,15 @@ PetscErrorCode BodyDropStartForce(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetMeanForces - forces on some rows act on nodes with mass by their mean over the controller step
-
-  Collective
-
-  Input Parameters:
-+ body - the `Body`, set up, with massless nodes on these rows
-- rows - for each row of this rank, whether its force does, where it is a forced row
-
-  Level: developer
-
-  Notes:
-  For forces that go linearly, from l_0 to l_1, over a controller step of m substeps. The massless layer is in balance with the force at the
-  end of each substep. The trapezoidal rule would have the force l_k do the work (l_{k-1} + l_k) / 2 dw_k in substep k, and the sum of these
-  is not that of a partner with other substeps, (l_0 + l_1) / 2 dw: a row that stays closed would bring energy or take it. Here each substep
-  starts with the force x_k = l_0 + l_1 - l_k on the nodes with mass, so that their mean is (l_0 + l_1) / 2 in all substeps. By the identity
-  of src/contact/energy/limit.c the energy changes by
-
-    dE = (l_0 + l_1) / 2 dw - 1/2 sum_k (x_k - l_{k-1}) C (l_k - l_{k-1}),
-
-  and that sum is zero. So both partners take and give the same, and the same impulse: exact for implicit bodies. Explicit ones take half of
-  x_k - l_{k-1} at the start of the substep and half at its end, and their staggered energy sways by terms of the fourth order of the
-substep.
-
-  Does nothing in nonlinear bodies, whose layers would have to be factored in each substep, and where there is one substep.
-
-.seealso: `Body`, `BodySetStartForce()`, `BodyIntegrate()`
-@*/
+/* Rows of this rank on which forces act on nodes with mass by their mean over the controller step, for forces that go linearly from l_0 to
+   l_1 over m substeps. The massless layer is in balance with the force at the end of each substep. The trapezoidal rule would have the
+   force l_k do the work (l_{k-1} + l_k) / 2 dw_k in substep k, and the sum of these is not that of a partner with other substeps, (l_0 +
+   l_1) / 2 dw: a closed row would bring energy or take it. Here each substep starts with the force x_k = l_0 + l_1 - l_k on the nodes with
+   mass, so that their mean is (l_0 + l_1) / 2 in all substeps. By the identity of src/contact/energy/limit.c the energy changes by dE =
+   (l_0 + l_1) / 2 dw - 1/2 sum_k (x_k - l_{k-1}) C (l_k - l_{k-1}), and that sum is zero. So both partners take and give the same, and the
+   same impulse: exact for implicit bodies. Explicit ones take half of x_k - l_{k-1} at the start of the substep and half at its end, and
+   their staggered energy sways by terms of the fourth order of the substep. Nonlinear bodies, whose layers would be factored in each
+   substep, and single substeps do not change. Collective. */
 PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
 {
   PetscFunctionBegin;
@@ -166,26 +118,10 @@ PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetMeanForces - on which rows forces act by their mean over the controller step
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. rows - for each row of this rank, owned by the body; `NULL` where none do
-
-  Level: developer
-
-.seealso: `Body`, `BodySetMeanForces()`
-@*/
+/* Rows of this rank on which forces act by their mean, owned by the body; NULL where none do */
 PetscErrorCode BodyGetMeanForces(Body body, const PetscBool *rows[])
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(rows, 2);
   *rows = body->rows.by_mean;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,27 +5,9 @@
 */
 #include "complianceimpl.h"
 
-/*@
-  BodySetConstantForces - has forces act along the rows throughout the controller step, in place of those that the last one ended with
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, saved, whose rows are forced
-. n     - number of near rows that may have a force now, or have had one in the last call
-. rows  - their numbers
-. force - along each row of this rank [N]
-. last  - the same at the end of the last step, along the rows as they are now [N]
-- none  - zero for each row of this rank
-
-  Level: developer
-
-  Note:
-  Holds until the next call, `BodySave()`, or `BodyDropStartForce()`. Forces that act along rows as they were, see `BodyHandOver()`, are
-gone.
-
-.seealso: `Body`, `BodySetStartForce()`, `BodyGetNodalCompliance()`
-@*/
+/* Lets forces [N] act along the forced rows throughout the controller step, until the next call, BodySave() or BodyDropStartForce().
+   `rows`: the near rows that may have a force now or had one in the last call; `last`: forces at the end of the last step along the
+   present rows; `none`: zeros for each row. Forces along former rows, see BodyHandOver(), are gone. Collective. */
 PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[], const PetscReal force[], const PetscReal last[],
                                      const PetscReal none[])
 {
@@ -33,12 +15,6 @@ PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[
   PetscScalar *values;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (n) {
-    PetscAssertPointer(rows, 3);
-    PetscAssertPointer(force, 4);
-    PetscAssertPointer(last, 5);
-  }
   for (PetscInt level = 0; level <= body->time.substeps; level++) {
     PetscCall(TraceGetLevel(body->traces.force_in, level, &values));
     for (PetscInt k = 0; k < n; k++) values[rows[k]] = force[rows[k]];
@@ -54,34 +30,13 @@ PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyEndConstantForces - has constant forces count as ones that go from those at the start of the controller step to others at its end
-
-  Not Collective
-
-  Input Parameters:
-+ body  - the `Body`, integrated under the forces of `BodySetConstantForces()`
-. start - for each row of this rank by how much more than at the end of the last step [N]
-- more  - by how much more at the end [N]
-
-  Level: developer
-
-  Note:
-  For what holds dofs against them, and for the next step, which goes on from the forces at the end. The acceleration that these bring there
-  is to be changed with `BodyAddImpulses()`. To be called before `BodySave()`.
-
-.seealso: `Body`, `BodySetConstantForces()`, `BodyAddImpulses()`
-@*/
+/* Counts constant forces as linear ones, that start with `start` more than at the end of the last step and end with `more` more [N]: for
+   the reactions of held dofs and the next step. BodyAddImpulses() has to change the acceleration at the end. Before BodySave(). */
 PetscErrorCode BodyEndConstantForces(Body body, const PetscScalar start[], const PetscScalar more[])
 {
   PetscScalar *end;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->rows.local) {
-    PetscAssertPointer(start, 2);
-    PetscAssertPointer(more, 3);
-  }
   PetscCall(TraceGetLevel(body->traces.force_in, body->time.substeps, &end));
   for (PetscInt i = 0; i < body->rows.local; i++) {
     body->compliance->change[i] = PetscRealPart(start[i]);
@@ -115,34 +70,11 @@ PetscErrorCode BodyCreateNodalCompliance(Body body, Compliance *nodal)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetNodalCompliance - displacements at the end of the controller step under unit forces on nodes
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, set up
-. shape - how forces run in the step: from none to 1 N, or 1 N throughout
-. n     - number of displacements
-- dofs  - their numbers among those of all ranks, the same on every rank; those that are known already cost nothing
-
-  Output Parameters:
-+ place   - for each displacement of all ranks its place among the known ones, or -1
-. leading - distance between columns
-- matrix  - known displacements by known ones, by columns [m/N], owned by the body
-
-  Level: developer
-
-  Note:
-  Each new one costs a solution with a matrix where one tells, see nodalmatrix.c, else a controller step of the body, linearized about its
-  undeformed state. Where they follow the body, see `BodyNodalComplianceFollows()`, all are found anew in each call, with the matrix of
-  the last iteration of Newton's method. Of more than 100 displacements of a body with one substep they are approximate, but for small
-linear bodies and explicit ones with massless contact nodes. More than 100 of an explicit body of one rank, with substeps, lumped mass on
-all nodes and no dashpots, are found 8 together by these substeps where forces are felt. Those of a rigid body are found where it will be in
-the middle of the controller step, anew for each, and cost next to nothing.
-
-.seealso: `Body`, `BodySetConstantForces()`, `BodyNodalComplianceFollows()`
-@*/
+/* Displacements at the end of the controller step under unit forces on n displacements, global numbers, the same on every rank. `place`:
+   of each displacement of all ranks among the known ones, or -1; `matrix`: known by known ones, by columns `leading` apart [m/N], owned
+   by the body. Known ones cost nothing; a new one costs a solution, see nodalmatrix.c, or a controller step linearized about the
+   undeformed state. More than 100 of a body with one substep are approximate, but for small linear bodies and explicit ones with
+   massless contact nodes. Those of a rigid body hold in the middle of the step. Collective. */
 PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], const PetscInt *place[],
                                       PetscInt *leading, const PetscScalar *matrix[])
 {
@@ -153,10 +85,6 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   PetscBool renewed, follows;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(place, 5);
-  PetscAssertPointer(leading, 6);
-  PetscAssertPointer(matrix, 7);
   PetscCall(BodyNodalComplianceFollows(body, n, &follows));
   if (*nodal && (follows || compliance->nodal_step != body->time.step || compliance->nodal_shape != shape ||
                  (probe && compliance->nodal_time != body->saved.time))) {
@@ -192,34 +120,14 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetNodalDiagonal - the nodal compliance of a body none of whose nodes answers to forces on others within a controller step
-
-  Collective
-
-  Input Parameters:
-+ body  - the `Body`, set up
-- shape - how forces run in the step
-
-  Output Parameter:
-. diagonal - displacement of each node along each axis at the end of the step under unit forces there [m/N], owned by the body; `NULL` where
-             nodes answer to each other
-
-  Level: developer
-
-  Note:
-  Central differences with lumped mass in one step move nodes by the forces at its start alone: dt^2/2 over the mass, whatever the
-  material; forces that grow from none do not move them.
-
-.seealso: `Body`, `BodyGetNodalCompliance()`
-@*/
+/* The nodal compliance [m/N] of a body none of whose nodes answers to forces on others in a controller step, owned by the body, else
+   NULL. Central differences with a lumped mass in one step move nodes by the forces at its start alone: by dt^2/2 over the mass under
+   constant forces, not at all under linear ones. Collective. */
 PetscErrorCode BodyGetNodalDiagonal(Body body, BodyForceShape shape, Vec *diagonal)
 {
   struct _BodyCompliance *compliance = body->compliance;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(diagonal, 3);
   *diagonal = NULL;
   if (!body->mass.inverse || body->integrator->staggered <= 0 || body->time.substeps > 1 || body->layer.exists)
     PetscFunctionReturn(PETSC_SUCCESS);

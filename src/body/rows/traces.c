@@ -64,7 +64,7 @@ static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
 }
 
 /* All but the displacement of BodyWriteTraces(). Nobody looks at accelerations where forces are constant in a controller step, but at those
- * of tied nodes with mass. */
+   of tied nodes with mass. */
 static PetscErrorCode WriteRates(Body body, PetscInt level)
 {
   const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
@@ -136,54 +136,21 @@ PetscErrorCode BodyWriteRest(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetTraces - the waveforms through which the body talks with its partners
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. traces - the waveforms, owned by the body; level k is the end of substep k
-
-  Level: developer
-
-.seealso: `Body`, `BodyTraces`, `BodyIntegrate()`
-@*/
+/* The waveforms at the rows, owned by the body; level k is the end of substep k */
 PetscErrorCode BodyGetTraces(Body body, BodyTraces *traces)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(traces, 2);
   *traces = body->traces;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetRowForces - contact force along each row at the end of a substep
-
-  Not Collective
-
-  Input Parameters:
-+ body    - the `Body`, integrated
-- substep - 1 to the number of substeps
-
-  Output Parameter:
-. force - for each row of this rank, near ones alone, see `BodySetNearRows()`: what acts on forced rows, the reaction of prescribed and
-Robin ones, zero on free ones [N]
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetTraces()`, `BodySetConditions()`
-@*/
+/* Contact force along each near row of this rank at the end of substep 1 to their number [N]: that on forced rows, the reaction of
+   prescribed and Robin rows, zero on free ones */
 PetscErrorCode BodyGetRowForces(Body body, PetscInt substep, PetscReal force[])
 {
   PetscScalar *reaction, *force_in;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (body->rows.local) PetscAssertPointer(force, 3);
   PetscCall(TraceGetLevel(body->traces.reaction, substep, &reaction));
   PetscCall(TraceGetLevel(body->traces.force_in, substep, &force_in));
   for (PetscInt k = 0; k < body->rows.near.n; k++) {

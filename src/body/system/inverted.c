@@ -121,26 +121,9 @@ static PetscErrorCode ComputeLeast(Body body, const Corners *shape, PetscReal *e
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetInverted - elements of a linear body that are inside out at present
-
-  Collective
-
-  Input Parameters:
-+ body      - the `Body`, set up
-- potential - its potential energy, as `BodyGetMeasures()` tells it [J]
-
-  Output Parameters:
-+ number - how many of the elements have a corner with a negative volume; 0 for nonlinear bodies, whose steps fail by that
-- centre - of one of them in the undeformed mesh, three numbers; not changed where there is none [m]
-
-  Level: developer
-
-  Note:
-  Elements are looked at only where the body has enough energy to turn one of them inside out: in most runs the call costs a comparison.
-
-.seealso: `Body`, `BodyGetMeasures()`
-@*/
+/* Number of elements of a linear body that have a corner with a negative volume, and the undeformed centre of one of them, unchanged
+   where there is none [m]; steps of nonlinear bodies fail by that. Elements are looked at only where `potential` [J] can turn one inside
+   out. Collective. */
 PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number, PetscReal centre[3])
 {
   const Corners     *shape = BodyFindCorners(body);
@@ -150,9 +133,6 @@ PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number,
   const PetscScalar *u;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(number, 3);
-  PetscAssertPointer(centre, 4);
   *number = 0;
   if (!body->model.linear || !shape) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->model.least_inverting) PetscCall(ComputeLeast(body, shape, &body->model.least_inverting, &body->model.least_stretch));

@@ -39,26 +39,10 @@ static PetscErrorCode GetLayerPart(Body body, PetscReal *part)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetContactPart - the part of its mass that the contact nodes of a body have, before any of it moves
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, after the calls of `BodySetContactNodes()`
-
-  Output Parameter:
-. part - of the whole mass, 0 to 1
-
-  Level: developer
-
-.seealso: `Body`, `BodySetContactNodes()`, `BodyChooseMass()`
-@*/
+/* The part of the whole mass that contact nodes have before any of it moves. Collective. */
 PetscErrorCode BodyGetContactPart(Body body, PetscReal *part)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(part, 2);
   PetscCall(BodySetUpDiscretization(body));
   PetscCall(GetLayerPart(body, part));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -115,30 +99,11 @@ static PetscErrorCode FindThin(Body body, PetscInt n, const PetscInt boundary[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyChooseMass - what becomes of the mass of contact nodes, where that is left to the body
-
-  Collective
-
-  Input Parameters:
-+ body     - the `Body`, after the calls of `BodySetContactNodes()`
-. n        - number of vertices on its boundary; 0 where they are known from an earlier call, or do not matter
-- boundary - these points of its `DMPlex`
-
-  Output Parameter:
-. thin - whether they are to keep their mass, which `BodyKeepMass()` makes them do, since the body is thin
-
-  Level: developer
-
-  Notes:
-  Where contact nodes have little of the mass, and a factor on the masses that are left keeps centre and moments of inertia to
-1e-3, their mass moves to inner neighbours: waves do not feel that, and a lumped mass stays diagonal. Else their velocities are extrapolated
-from those of inner nodes, see extrapolation.c, if inner nodes span the body around each of them. Else they are to keep their mass.
-
-  Calls beyond the first cost nothing.
-
-.seealso: `Body`, `BodySetMassAutomatic()`, `BodyKeepMass()`, `BodySetContactNodes()`
-@*/
+/* Chooses what becomes of the mass of contact nodes under `-<body>_mass_redistribute auto`; calls beyond the first cost nothing. Where
+   the nodes have little mass and a factor on the remaining masses keeps centre and inertia to 1e-3, the mass moves to inner neighbours:
+   a lumped mass stays diagonal. Else velocities are extrapolated, see extrapolation.c, if inner nodes span the body around each node.
+   Else the body is `thin`, and BodyKeepMass() is to follow. `boundary`: vertices of its boundary, n = 0 where they do not matter.
+   Collective. */
 PetscErrorCode BodyChooseMass(Body body, PetscInt n, const PetscInt boundary[], PetscBool *thin)
 {
   BodyMass *mass  = &body->mass;
@@ -147,9 +112,6 @@ PetscErrorCode BodyChooseMass(Body body, PetscInt n, const PetscInt boundary[], 
   PetscBool good = PETSC_FALSE, is_explicit;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  if (n) PetscAssertPointer(boundary, 3);
-  PetscAssertPointer(thin, 4);
   PetscCall(BodySetUpDiscretization(body));
   is_explicit = body->integrator->divides_by_mass;
   if (mass->automatic && mass->redistribute && body->integrator->has_inertia && !mass->decided) {
@@ -173,24 +135,12 @@ PetscBool BodyChoosesMass(Body body)
   return body->mass.automatic;
 }
 
-/*@
-  BodyKeepMass - lets contact nodes keep their mass, where that is left to the body
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodyChooseMass()`
-
-  Level: developer
-
-.seealso: `Body`, `BodyChooseMass()`, `BodySetMassAutomatic()`
-@*/
+/* Lets contact nodes keep their mass under `-<body>_mass_redistribute auto`, after BodyChooseMass(). Collective. */
 PetscErrorCode BodyKeepMass(Body body)
 {
   BodyMass *mass = &body->mass;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   BodyCheckNotSetUp(body);
   if (!mass->automatic || !mass->redistribute) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DropFactor(mass));

@@ -361,32 +361,15 @@ PetscErrorCode BodyFindMassFactor(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetInertiaChange - what a massless contact layer changes of the moments of inertia that the body turns with
-
-  Collective where vertices are given
-
-  Input Parameters:
-+ body     - the `Body`, set up
-. n        - number of vertices
-- vertices - points of the mesh of this rank that would be massless in place of those that are; `NULL`: as it is
-
-  Output Parameter:
-. change - largest change of a moment of inertia about an axis through the centre of mass, relative to it; 0 where all are kept. Axes about
-           which held displacements keep the body from turning, as planes of symmetry do, do not count.
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetMassRedistribution()`, `BodySetContactNodes()`
-@*/
+/* Largest relative change of a moment of inertia about an axis through the centre of mass by the massless layer, or by massless
+   `vertices` in its place if these are given, which is collective then. Axes about which held displacements keep the body from turning
+   do not count. */
 PetscErrorCode BodyGetInertiaChange(Body body, PetscInt n, const PetscInt vertices[], PetscReal *change)
 {
   const BodyMass mass     = body->mass;
   PetscBool     *contains = body->layer.contains;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(change, 4);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   *change = body->mass.turn_error;
   if (!vertices) PetscFunctionReturn(PETSC_SUCCESS);

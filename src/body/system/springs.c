@@ -52,21 +52,8 @@ static PetscErrorCode MeasureStiffness(Body body, const RigidFrame *frame, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetLeastStiffness - the least of what a body sets against being stretched along its longest edge, and bent
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, which deforms, after `BodySetUpSteps()`
-
-  Output Parameter:
-. least - force over displacement, of the undeformed body [N/m]
-
-  Level: developer
-
-.seealso: `Body`, `BodySetSpringStiffness()`
-@*/
+/* The least stiffness of the undeformed body against being stretched along its longest edge and bent [N/m], after BodySetUpSteps().
+   Collective. */
 PetscErrorCode BodyGetLeastStiffness(Body body, PetscReal *least)
 {
   PetscReal  box[6]  = {0};
@@ -74,8 +61,6 @@ PetscErrorCode BodyGetLeastStiffness(Body body, PetscReal *least)
   RigidFrame frame;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(least, 2);
   PetscCall(BodyGetRigidFrame(body, &frame));
   PetscCall(DMGetBoundingBox(body->mesh.dm, box, box + 3));
   for (PetscInt d = 1; d < body->mesh.dim; d++)

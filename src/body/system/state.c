@@ -45,26 +45,11 @@ PetscErrorCode BodyStateDestroy(BodyState *state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyRestore - goes back to the state of the last `BodySave()`, bit for bit
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Level: developer
-
-  Note:
-  What the integrator remembers beside the state is as it was too: the same integration ends with the same bits as before. On three ranks
-  and more, where sums over ranks come in any order, it ends the same up to round-off.
-
-.seealso: `Body`, `BodySave()`, `BodyIntegrate()`
-@*/
+/* Goes back to the state of the last BodySave() and to what the integrator has beside it, bit for bit; the same integration ends with
+   the same bits on two ranks, up to round-off on more, where sums come in any order. Collective. */
 PetscErrorCode BodyRestore(Body body)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscCall(BodyStateCopy(body, &body->saved, &body->state));
   BodyHistoryRestore(body);
   body->repeats = PETSC_FALSE;

@@ -303,26 +303,10 @@ PetscErrorCode BodyComputePlasticStrain(Body body, PetscReal strain[], PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyHasHistory - whether the material of a body flows plastically
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. has - `PETSC_TRUE` if so
-
-  Level: developer
-
-.seealso: `Body`, `BodyComputePlasticStrain()`
-@*/
+/* Whether a material of the body flows plastically */
 PetscErrorCode BodyHasHistory(Body body, PetscBool *has)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(has, 2);
   *has = (PetscBool)(body->history != NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
