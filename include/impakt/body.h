@@ -72,7 +72,7 @@ typedef struct {
 
    Level: intermediate
 
-.seealso: `BodySetMassMoments()`, `BodySetMassRedistribute()`
+.seealso: `BodySetMassRedistribute()`
 E*/
 typedef enum { BODY_MASS_TOTAL, BODY_MASS_CENTRE, BODY_MASS_INERTIA } BodyMassMoments;
 PETSC_EXTERN const char *const BodyMassMomentsNames[];
@@ -123,26 +123,19 @@ PETSC_EXTERN PetscErrorCode BodySetMaterial(Body, Material);
 PETSC_EXTERN PetscErrorCode BodySetCrossSection(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetThickness(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetPlaneStress(Body, PetscBool);
-PETSC_EXTERN PetscErrorCode BodySetAxisymmetric(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyGetAxisymmetric(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodySetElementFormulation(Body, const char[]);
 PETSC_EXTERN PetscErrorCode BodySetTSType(Body, TSType);
 PETSC_EXTERN PetscErrorCode BodySetRigid(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyIsRigid(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodySetRigidDisplacement(Body, const char[]);
 PETSC_EXTERN PetscErrorCode BodySetRigidRotation(Body, const char[]);
 PETSC_EXTERN PetscErrorCode BodySetTimeStep(Body, PetscReal);
-PETSC_EXTERN PetscErrorCode BodyGetStartTime(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetTimeStep(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetMassType(Body, BodyMassType);
 PETSC_EXTERN PetscErrorCode BodyGetMassType(Body, BodyMassType *);
 PETSC_EXTERN PetscErrorCode BodySetMassRedistribute(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodySetFromOptions(Body);
-PETSC_EXTERN PetscErrorCode BodySetUpDiscretization(Body);
-PETSC_EXTERN PetscErrorCode BodyBeginSetUp(Body);
-PETSC_EXTERN PetscErrorCode BodyFactor(Body);
 PETSC_EXTERN PetscErrorCode BodySetUp(Body);
-PETSC_EXTERN PetscErrorCode BodyRefuseNewtonOptions(PetscInt, const Body[]);
 PETSC_EXTERN PetscErrorCode BodyView(Body, PetscViewer);
 PETSC_EXTERN PetscErrorCode BodyViewFromOptions(Body, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode BodyDestroy(Body *);
@@ -157,8 +150,6 @@ PETSC_EXTERN PetscErrorCode BodySetInitialDisplacement(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetInitialVelocity(Body, const PetscReal[]);
 
 PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
-PETSC_EXTERN PetscErrorCode BodyGetControllerStep(Body, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyEstimateSubsteps(Body, PetscReal, PetscReal, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *),
                                                 void *);
 
@@ -171,17 +162,12 @@ PETSC_EXTERN PetscErrorCode BodyGetStepBounds(Body, const BodyStepBounds **);
 PETSC_EXTERN PetscErrorCode BodyMeasureSubstep(Body, PetscLogDouble *);
 PETSC_EXTERN PetscErrorCode BodyGetMass(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetInertia(Body, PetscReal[3], PetscReal[9]);
-PETSC_EXTERN PetscErrorCode BodySetMassRedistributeNear(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyGetMassRedistributeNear(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodySetMassAutomatic(Body, PetscBool);
-PETSC_EXTERN PetscErrorCode BodyGetForceOnMass(Body, const PetscReal[], PetscReal *, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodySetMassMoments(Body, BodyMassMoments);
 PETSC_EXTERN PetscErrorCode BodyAddProbe(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetNumProbes(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetProbes(Body, PetscReal[], PetscReal[], PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetDamping(Body, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode BodyGetDamping(Body, PetscReal *, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodySetArtificialStiffness(Body, PetscReal);
 PETSC_EXTERN PetscErrorCode BodyGetMassRedistribution(Body, PetscReal *, PetscReal *, PetscReal[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetSolution(Body, Vec *, Vec *, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetReferencePositions(Body, Vec *);
@@ -189,18 +175,12 @@ PETSC_EXTERN PetscErrorCode BodyGetDimension(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyIsExplicit(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIsStatic(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyIsRedistributed(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyMassIsChosen(Body, PetscBool *, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodySetTiedMass(Body, PetscBool);
-PETSC_EXTERN PetscErrorCode BodyPrescribesMass(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyRequestsControllerStep(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyIntegratesLike(Body, Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetMeasures(Body, BodyMeasures *);
 PETSC_EXTERN PetscReal      BodyMeasuresGetBalance(const BodyMeasures *);
 PETSC_EXTERN PetscErrorCode BodyGetNumReactions(Body, PetscInt *);
 PETSC_EXTERN PetscErrorCode BodyGetReactionSurface(Body, PetscInt, const char *[]);
 PETSC_EXTERN PetscErrorCode BodyGetReactions(Body, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyHasHourglasses(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyGetInverted(Body, PetscReal, PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyGetCells(Body, DMPolytopeType *, PetscInt *, PetscInt *, PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyComputeStress(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputePlasticStrain(Body, PetscReal[], PetscReal *);
@@ -210,6 +190,5 @@ PETSC_EXTERN PetscErrorCode BodyGetCellBlocks(Body, const PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyGetBlockMass(Body, const PetscReal *[]);
 PETSC_EXTERN PetscErrorCode BodyGetSurfaceMaterial(Body, Material *);
 PETSC_EXTERN PetscErrorCode BodyIsLinear(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyHasHistory(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetTotalSubsteps(Body, PetscInt64 *, PetscLogDouble *);

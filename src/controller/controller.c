@@ -1,6 +1,7 @@
 /* The class and its time loop. */
 #include "controllerimpl.h"
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodymeasures.h>
+#include <impakt/private/bodystep.h>
 #include <sys/largepages.h>
 #include <sys/resource.h>
 #include <sys/stages.h>

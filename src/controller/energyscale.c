@@ -1,6 +1,6 @@
 /* What changes of the energy of all bodies are relative to: in the summary, in the history and on the terminal alike. */
 #include "energyscale.h"
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodymeasures.h>
 
 /* Takes note of the state at the end of a controller step; that of step 0 is the start. `scale`: zeros before the first call. The scale
    is the largest so far of kinetic energy, strain energy and work: of loads, held displacements and moving obstacles, or what friction,

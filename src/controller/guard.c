@@ -1,6 +1,6 @@
 /* The energy guard: a run that gains energy ends. */
 #include "controllerimpl.h"
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodymesh.h>
 
 /* Energy at the start that is below this part of the largest since then is round-off: all starts at rest without strain */
 #define NOTHING_AT_START 1e-9

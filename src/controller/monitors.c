@@ -1,6 +1,6 @@
 /* The observers of a run: who they are, and what they are told after each accepted controller step. */
 #include "controllerimpl.h"
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodymeasures.h>
 #include <sys/stages.h>
 
 /*@C

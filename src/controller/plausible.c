@@ -3,7 +3,7 @@
    message names the one that fits best. Nothing is changed by it, and the run goes on.
 */
 #include "plausible.h"
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodymesh.h>
 #include "controllerimpl.h"
 #include <sys/units.h>
 

@@ -1,6 +1,6 @@
 /* Which bodies of a simulation have inertia: without it, some figures mean nothing. */
 #include "controllerimpl.h"
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodyfloating.h>
 
 /*@
   ControllerGetStatics - whether bodies have no inertia

@@ -8,6 +8,7 @@
 #include <petsctime.h>
 #include <stdio.h>
 #include <unistd.h>
+#include <impakt/private/bodymeasures.h>
 
 /* Most frames in a run whose options do not say how often */
 #define DEFAULT_FRAMES 100

@@ -7,7 +7,7 @@
 #include "hdf5file.h"
 #include "outputfile.h"
 #include "xdmf.h"
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodymesh.h>
 
 #define SIZE        1.5  /* of a plane, and length of a cylinder, in diagonals of the box of all bodies */
 #define FLAT_CELLS  8    /* along each side of a plane, and along a cylinder */

@@ -9,6 +9,7 @@
 #include <stdio.h>
 #include <sys/units.h>
 #include <unistd.h>
+#include <impakt/private/bodymeasures.h>
 
 #define BUFFER_BYTES      ((size_t)1 << 16) /* of records that wait for writing, at first */
 #define BUFFER_BYTES_MOST ((size_t)1 << 26) /* at most: then they are written at once */

@@ -4,7 +4,8 @@
 */
 #include "verdict.h"
 #include <controller/plausible.h>
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodymass.h>
+#include <impakt/private/bodymesh.h>
 #include <impakt/private/contactsteps.h>
 #include <stdarg.h>
 

@@ -3,6 +3,8 @@
 #include "support.h"
 #include <impakt/private/mesh.h>
 #include <body/layout/bodyimpl.h>
+#include <impakt/private/bodymesh.h>
+#include <impakt/private/bodyrows.h>
 
 /* Quadrilaterals, triangles, hexahedra, tetrahedra */
 #define KINDS 4

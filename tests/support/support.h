@@ -6,6 +6,7 @@
 #include <stdint.h>
 #include <cmocka.h>
 #include <impakt.h>
+#include <impakt/private/bodymesh.h>
 #include <impakt/private/bodyrows.h>
 #include <impakt/private/elementimpl.h>
 

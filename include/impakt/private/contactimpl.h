@@ -1,6 +1,7 @@
 /* What the implementation of a contact method needs. */
 #pragma once
 #include <impakt/contact.h>
+#include <impakt/private/bodyfloating.h>
 #include <impakt/private/bodyrows.h>
 #include <impakt/private/contactsteps.h>
 #include <impakt/private/transfer.h>

@@ -1,7 +1,6 @@
 /* A body under TSSTATIC: static balance at the end of each substep. It has a velocity, by the change of its displacement, for contact to
    see, but neither mass nor acceleration. */
 #include "implicitimpl.h"
-#include <impakt/private/bodyrows.h>
 
 /* F = internal force - forces from outside and of contact, with held dofs and prescribed rows projected out */
 static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, Vec F, void *ctx)

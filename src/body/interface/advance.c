@@ -31,7 +31,7 @@ static void CountSubsteps(Body body)
 /* Makes the displacements of the step, without an error where it fails: what a sweep needs, of which the last alone counts. Output
    traces hold all but the acceleration. An explicit body whose rows are on massless nodes leaves forces of elements, acceleration and
    velocity to BodyCompleteStep(), since no sweep changes them otherwise. `reason` (or NULL) is the same on every rank but of a local
-   body, see BodyIsLocal(). Collective. */
+   body, see BodyGetStepProperties(). Collective. */
 PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
 {
   PetscBool      done = PETSC_FALSE;
@@ -91,23 +91,6 @@ PetscErrorCode BodyTryIntegrate(Body body, StepConvergedReason *reason)
   if (body->local)
     PetscCallMPI(MPI_Bcast(&body->failure, sizeof(body->failure), MPI_BYTE, body->mesh.owner, PetscObjectComm((PetscObject)body)));
   if (reason) *reason = body->failure.reason;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether one of several ranks has the whole body and integrates it: ranks do not wait for each other in BodyTryIntegrateRows() and
-   BodyCompleteStep() unless rows are prescribed, and the rank of BodyGetMeshRank() alone has the reason of a failure */
-PetscErrorCode BodyIsLocal(Body body, PetscBool *local)
-{
-  PetscFunctionBegin;
-  *local = body->local;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Why the last integration failed, and the error that this becomes where nobody can repeat the step; owned by the body */
-PetscErrorCode BodyGetFailure(Body body, const StepFailure **failure)
-{
-  PetscFunctionBegin;
-  *failure = &body->failure;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

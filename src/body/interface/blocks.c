@@ -26,7 +26,7 @@
   Cells in no such block have the material of the body, which is not needed where there are none. What the options do not say of a block is
   what they say of the body. A cell can be in one block with a material only.
 
-  All blocks have the formulation of `BodySetElementFormulation()`; without one, each has the default of its material.
+  All blocks have the formulation of `-<body>_element_formulation`; without one, each has the default of its material.
 
 .seealso: `Body`, `BodySetMaterial()`, `BodyGetBlocks()`, `BodyGetSurfaceMaterial()`
 @*/

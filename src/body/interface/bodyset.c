@@ -62,9 +62,9 @@ PetscErrorCode BodySetDM(Body body, DM dm)
   PetscCall(DMCopyDisc(dm, clone));
   PetscCall(PetscObjectSetName((PetscObject)clone, body->hdr.name)); /* of what messages about its surfaces speak */
   PetscCall(DMDestroy(&body->mesh.dm));
-  body->mesh.dm = clone;
-  PetscCall(PetscArrayzero(body->mesh.cells, 3));
-  body->mesh.dim = dim;
+  body->mesh.dm   = clone;
+  body->mesh.edge = 0;
+  body->mesh.dim  = dim;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,7 +110,7 @@ PetscErrorCode BodySetMaterial(Body body, Material material)
 
   Level: beginner
 
-.seealso: `Body`, `BodyGetCrossSection()`, `BodySetThickness()`
+.seealso: `Body`, `BodySetThickness()`
 @*/
 PetscErrorCode BodySetCrossSection(Body body, PetscReal area)
 {
@@ -135,7 +135,7 @@ PetscErrorCode BodySetCrossSection(Body body, PetscReal area)
 
   Level: beginner
 
-.seealso: `Body`, `BodyGetCrossSection()`, `BodySetPlaneStress()`
+.seealso: `Body`, `BodySetPlaneStress()`
 @*/
 PetscErrorCode BodySetThickness(Body body, PetscReal thickness)
 {
@@ -143,36 +143,6 @@ PetscErrorCode BodySetThickness(Body body, PetscReal thickness)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   CheckNotNumbered(body);
   PetscCall(ElementSetThickness(body->model.element, thickness));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodySetAxisymmetric - whether a body with a plane mesh is made of rings about the axis x = 0
-
-  Logically Collective
-
-  Input Parameters:
-+ body         - the `Body`, before its mesh is looked at
-- axisymmetric - `PETSC_TRUE` for rings: x is the distance from the axis, y goes along it; `PETSC_FALSE` by default
-
-  Options Database Key:
-. -<body>_axisymmetric (true|false) - rings
-
-  Level: intermediate
-
-  Notes:
-  Forces, masses, energies and contact areas are those of whole rings. Nodes on the axis are held in x.
-
-  Bodies of a contact pair are both axisymmetric, or none is. Obstacles are planes across the axis, spheres on it, and cylinders about it.
-
-.seealso: `Body`, `BodyGetAxisymmetric()`, `BodySetPlaneStress()`, `ElementSetAxisymmetric()`
-@*/
-PetscErrorCode BodySetAxisymmetric(Body body, PetscBool axisymmetric)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  BodyCheckNotSetUp(body);
-  PetscCall(ElementSetAxisymmetric(body->model.element, axisymmetric));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -222,32 +192,6 @@ PetscErrorCode BodySetPlaneStress(Body body, PetscBool plane_stress)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   CheckNotNumbered(body);
   PetscCall(ElementSetPlaneStress(body->model.element, plane_stress));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodySetElementFormulation - sets what the elements of a body do against locking
-
-  Logically Collective
-
-  Input Parameters:
-+ body        - the `Body`, before `BodySetFromOptions()`
-- formulation - `ELEMENT_FULL`, `ELEMENT_MEAN_DILATATION`, `ELEMENT_ENHANCED`, `ELEMENT_REDUCED`, or a name of
-`ElementRegisterFormulation()`
-
-  Options Database Key:
-. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced|composite) - the formulation
-
-  Level: beginner
-
-.seealso: `Body`, `ElementSetFormulation()`
-@*/
-PetscErrorCode BodySetElementFormulation(Body body, const char formulation[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  CheckNotNumbered(body);
-  PetscCall(ElementSetFormulation(body->model.element, formulation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -312,12 +256,18 @@ PetscErrorCode BodyGetMassType(Body body, BodyMassType *type)
   Input Parameters:
 + body         - the `Body`, not yet set up
 - redistribute - `PETSC_TRUE`: contact nodes are massless; a static body has no mass to move. Until this function is called the body
-                 chooses, see `BodySetMassAutomatic()`, and nodes that are tied to a body with the same integrator and step keep their mass.
+                 chooses, and nodes that are tied to a body with the same integrator and step keep their mass
 
   Options Database Key:
 . -<body>_mass_redistribute (true|false) - massless contact nodes
 
   Level: intermediate
+
+  Note:
+  Where the body chooses, mass moves to inner neighbours in fine bodies. In coarser ones the velocity of a massless node is the affine
+  extrapolation of those of the nearest inner nodes, v = E v_inner, and the mass of the body is E^T M E, with the total, centre and moments
+  of inertia of the full mass M. Thin bodies, in which inner nodes do not span the space around contact nodes, keep their mass, and so do
+  all bodies that contact pairs connect with them. `BodyView()` tells.
 
   Reference:
 . * - H. B. Khenous, P. Laborde, Y. Renard, Mass redistribution method for finite element contact problems in elastodynamics, 2008
@@ -337,70 +287,6 @@ PetscErrorCode BodySetMassRedistribute(Body body, PetscBool redistribute)
 }
 
 /*@
-  BodySetMassRedistributeNear - whether contact nodes that face nothing at the start keep their mass
-
-  Logically Collective
-
-  Input Parameters:
-+ body - the `Body`, before the contact is set up
-- near - `PETSC_FALSE` (default): all nodes of its contact surfaces become massless
-
-  Options Database Key:
-. -<body>_mass_redistribute near - redistribution, and this
-
-  Level: intermediate
-
-  Notes:
-  Less mass moves then, so that a body swings more like one with its full mass: a plate that is hit on one side keeps the mass of its rim.
-
-  Contact that comes to a node with mass is an error.
-
-.seealso: `Body`, `BodySetMassRedistribute()`, `SurfaceKeepFacing()`
-@*/
-PetscErrorCode BodySetMassRedistributeNear(Body body, PetscBool near)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(body, near, 2);
-  BodyCheckNotSetUp(body);
-  body->mass.near = near;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodySetMassAutomatic - whether the body chooses if its contact nodes are massless, and how
-
-  Logically Collective
-
-  Input Parameters:
-+ body      - the `Body`, before the contact is set up
-- automatic - `PETSC_TRUE`, as at first: as is best for body and pairs; `PETSC_FALSE`: as `BodySetMassRedistribute()` says
-
-  Options Database Key:
-. -<body>_mass_redistribute auto - it does
-
-  Level: intermediate
-
-  Notes:
-  In fine bodies mass moves to inner neighbours, as `BodySetMassRedistribute()` has it. In coarser ones the velocity of a massless node is
-the affine extrapolation of those of the nearest inner nodes, v = E v_inner, and the mass of the body is E^T M E: total mass, centre of mass
-and moments of inertia are those of the full mass M. Thin bodies, in which inner nodes do not span the space around contact nodes, keep
-their mass, and so do all bodies that contact pairs connect with them. `BodyView()` tells.
-
-.seealso: `Body`, `BodySetMassRedistribute()`, `BodySetMassRedistributeNear()`
-@*/
-PetscErrorCode BodySetMassAutomatic(Body body, PetscBool automatic)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveBool(body, automatic, 2);
-  BodyCheckNotSetUp(body);
-  if (automatic) body->mass.redistribute = PETSC_TRUE;
-  body->mass.automatic = automatic;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   BodyGetMassRedistributeNear - whether contact nodes that face nothing at the start keep their mass
 
   Not Collective
@@ -413,7 +299,7 @@ PetscErrorCode BodySetMassAutomatic(Body body, PetscBool automatic)
 
   Level: intermediate
 
-.seealso: `Body`, `BodySetMassRedistributeNear()`
+.seealso: `Body`, `BodySetMassRedistribute()`
 @*/
 PetscErrorCode BodyGetMassRedistributeNear(Body body, PetscBool *near)
 {
@@ -421,38 +307,5 @@ PetscErrorCode BodyGetMassRedistributeNear(Body body, PetscBool *near)
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(near, 2);
   *near = (PetscBool)(body->mass.redistribute && body->mass.near);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodySetMassMoments - what a body with massless contact nodes keeps of its full mass, beyond the total
-
-  Logically Collective
-
-  Input Parameters:
-+ body    - the `Body`, not yet set up
-- moments - the total mass alone, that and the centre of mass, or (default) the moments of inertia too, where positive masses allow
-
-  Options Database Key:
-. -<body>_mass_moments (total|centre|inertia) - what is kept
-
-  Level: intermediate
-
-  Note:
-  A smooth factor on the masses that are left keeps them. For the centre alone it is linear, for the moments of inertia quadratic, and that
-  moves mass from the middle of a body to its ends: in bars of 25 elements whose ends are massless, waves
-  have 0.4 % less force there. Choose `centre` where waves matter and nothing turns. In one dimension nothing can.
-
-.seealso: `Body`, `BodySetMassRedistribute()`, `BodyGetMassRedistribution()`
-@*/
-PetscErrorCode BodySetMassMoments(Body body, BodyMassMoments moments)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveEnum(body, moments, 2);
-  BodyCheckNotSetUp(body);
-  PetscCheck(moments == BODY_MASS_TOTAL || moments == BODY_MASS_CENTRE || moments == BODY_MASS_INERTIA, PetscObjectComm((PetscObject)body),
-             PETSC_ERR_ARG_OUTOFRANGE, "Body '%s': there are no moments %d", body->hdr.name, (int)moments);
-  body->mass.moments = moments;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

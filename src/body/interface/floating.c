@@ -1,44 +1,6 @@
 /* Static bodies that contact or ties alone hold: how contact sees their artificial springs, see src/body/system/springs.c. */
 #include <body/layout/bodyimpl.h>
-#include <impakt/private/bodyrows.h>
 #include <petscblaslapack.h>
-
-/*@
-  BodySetArtificialStiffness - sets how stiff the artificial springs are of a static body that contact or ties alone hold
-
-  Logically Collective
-
-  Input Parameters:
-+ body - the `Body`, not yet set up
-- part - of the least that the softest static body sets against being stretched along its longest edge and bent, by force over
-         displacement; positive
-
-  Options Database Key:
-. -<body>_artificial_stiffness part - the part, 5e-2, of a nonlinear body 1
-
-  Level: advanced
-
-  Notes:
-  Springs hold the body while the contact forces are found. They are moved then, and the step is solved again, until they do not pull
-  any more: so results do not depend on them, but for round-off, which the displacement of the body as a whole has by the inverse of the
-  part more of.
-
-  The softer the springs, the fewer times that takes where contact is soft, and where the active set changes much. In a nonlinear body they
-  have to hold against what Newton's method leaves.
-
-.seealso: `Body`, `BodyIsFloating()`, `BodyAddDisplacement()`
-@*/
-PetscErrorCode BodySetArtificialStiffness(Body body, PetscReal part)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveReal(body, part, 2);
-  BodyCheckNotSetUp(body);
-  PetscCheck(part > 0 && part < PETSC_INFINITY, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
-             "-%sartificial_stiffness %g must be positive", ((PetscObject)body)->prefix, (double)part);
-  body->springs.part = part;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Whether contact or ties alone hold a static body in one direction at least: it has artificial springs then */
 PetscErrorCode BodyIsFloating(Body body, PetscBool *floating)

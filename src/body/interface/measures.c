@@ -52,7 +52,7 @@ static PetscErrorCode ComputeHourglassEnergy(Body body, PetscReal *energy)
 
   Level: intermediate
 
-.seealso: `Body`, `BodyMeasures`, `BodySetElementFormulation()`
+.seealso: `Body`, `BodyMeasures`
 @*/
 PetscErrorCode BodyHasHourglasses(Body body, PetscBool *hourglasses)
 {

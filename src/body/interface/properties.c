@@ -138,119 +138,72 @@ PetscErrorCode BodyGetMassRedistribution(Body body, PetscReal *least, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What lengths and points of the mesh are multiplied by to give areas: the cross-section of bars [m^2], the thickness of plane bodies
-   [m], else 1 */
-PetscErrorCode BodyGetCrossSection(Body body, PetscReal *cross_section)
-{
-  PetscFunctionBegin;
-  *cross_section = body->model.element->cross_section;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Measure of all cells (length, area or volume), their number, and how many are simplices, on all ranks together: a rank without cells does
-   not know their shape */
-static PetscErrorCode SumCells(Body body, PetscReal sums[3])
-{
-  PetscBool simplex;
-  PetscInt  cstart, cend;
-
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(sums, body->mesh.cells, 3));
-  if (sums[1] > 0) PetscFunctionReturn(PETSC_SUCCESS);
-  sums[0] = 0;
-  PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
-  for (PetscInt cell = cstart; cell < cend; cell++) {
-    PetscReal measure;
-
-    PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cell, &measure, NULL, NULL));
-    sums[0] += measure;
-  }
-  PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
-  sums[1] = cend - cstart;
-  sums[2] = simplex ? cend - cstart : 0;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  PetscCall(PetscArraycpy(body->mesh.cells, sums, 3));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Edge of the line, square or cube with the mean volume of the elements; of simplices, of that which holds 2 or 6 of them [m].
-   Collective. */
-PetscErrorCode BodyGetElementSize(Body body, PetscReal *size)
-{
-  PetscReal sums[3];
-  PetscInt  dim;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetDimension(body, &dim));
-  PetscCall(SumCells(body, sums));
-  if (sums[2] > 0 && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
-  *size = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* BodyGetElementSize() of the elements with a contact node, or of all where there are none. Collective. */
-PetscErrorCode BodyGetContactElementSize(Body body, PetscReal *size)
+/* Edge of the elements with a contact node, or of all, from their mean volume, see BodyScale. A rank without cells does not know their
+   shape. */
+static PetscErrorCode MeasureEdge(Body body, PetscBool contact, PetscReal *edge)
 {
   const PetscInt nodes   = body->mesh.cell_nodes;
-  PetscReal      sums[3] = {0}; /* as those of SumCells() */
+  PetscReal      sums[3] = {0}; /* volume of cells, their number, and how many are simplices */
   PetscInt       dim, cstart, cend;
   PetscBool      simplex;
 
   PetscFunctionBegin;
-  *size = body->layer.edge;
-  if (*size > 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (*edge > 0) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetDimension(body, &dim));
   PetscCall(DMPlexIsSimplex(body->mesh.dm, &simplex));
   PetscCall(DMPlexGetHeightStratum(body->mesh.dm, 0, &cstart, &cend));
   for (PetscInt e = 0; e < cend - cstart; e++) {
-    PetscBool touches = PETSC_FALSE;
+    PetscBool counts = (PetscBool)!contact;
     PetscReal measure;
 
-    for (PetscInt a = 0; a < nodes && !touches; a++) touches = body->layer.contains[body->mesh.cell_connectivity[e * nodes + a]];
-    if (!touches) continue;
+    for (PetscInt a = 0; a < nodes && !counts; a++) counts = body->layer.contains[body->mesh.cell_connectivity[e * nodes + a]];
+    if (!counts) continue;
     PetscCall(DMPlexComputeCellGeometryFVM(body->mesh.dm, cstart + e, &measure, NULL, NULL));
     sums[0] += measure;
     sums[1]++;
     if (simplex) sums[2]++;
   }
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 3, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  if (!(sums[1] > 0)) PetscCall(SumCells(body, sums));
+  if (contact && !(sums[1] > 0)) {
+    PetscCall(MeasureEdge(body, PETSC_FALSE, &body->mesh.edge));
+    *edge = body->mesh.edge;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (sums[2] > 0 && dim > 1) sums[0] *= dim == 3 ? 6 : 2;
-  *size = body->layer.edge = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
+  *edge = PetscPowReal(sums[0] / sums[1], 1.0 / dim);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Force for a unit velocity of a plane wave, for each unit of area: sqrt((lambda + 2 mu) rho) [N s/m^3]; of a bar sqrt(E rho) times its
-   cross-section [N s/m]. Of BodyGetSurfaceMaterial(). */
-PetscErrorCode BodyGetImpedance(Body body, PetscReal *impedance)
+/* A length, stiffness or impedance by which contact scales what it does to a body with mesh and material; collective for sizes of elements
+   and what they are part of */
+PetscErrorCode BodyGetScale(Body body, BodyScale scale, PetscReal *value)
 {
-  PetscReal density, modulus;
-  Material  material;
+  const PetscReal cross_section = body->model.element->cross_section;
+  PetscReal       density, modulus;
+  PetscInt        dim;
+  Material        material;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetSurfaceMaterial(body, &material));
-  PetscCall(MaterialGetDensity(material, &density));
-  if (body->mesh.dim == 1) PetscCall(MaterialGetUniaxialModulus(material, &modulus));
-  else PetscCall(MaterialGetWaveModulus(material, &modulus));
-  *impedance = PetscSqrtReal(modulus * density) * body->model.element->cross_section;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Stiffness of an element against pressure on a face: modulus of plane waves over edge length [N/m^3], times the cross-section in one
-   dimension [N/m]. Of BodyGetSurfaceMaterial(). */
-PetscErrorCode BodyGetElementStiffness(Body body, PetscReal *stiffness)
-{
-  PetscReal impedance, density, size, cross_section;
-  Material  material;
-  PetscInt  dim;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetImpedance(body, &impedance));
-  PetscCall(BodyGetSurfaceMaterial(body, &material));
-  PetscCall(MaterialGetDensity(material, &density));
-  PetscCall(BodyGetElementSize(body, &size));
-  PetscCall(BodyGetCrossSection(body, &cross_section));
+  if (scale == BODY_CROSS_SECTION) {
+    *value = cross_section;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (scale == BODY_CONTACT_ELEMENT_SIZE) {
+    PetscCall(MeasureEdge(body, PETSC_TRUE, &body->layer.edge));
+    *value = body->layer.edge;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (scale != BODY_IMPEDANCE) PetscCall(MeasureEdge(body, PETSC_FALSE, &body->mesh.edge));
+  if (scale == BODY_ELEMENT_SIZE) {
+    *value = body->mesh.edge;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodyGetDimension(body, &dim));
-  *stiffness = PetscSqr(impedance / cross_section) / density / size * (dim == 1 ? cross_section : 1);
+  PetscCall(BodyGetSurfaceMaterial(body, &material));
+  PetscCall(MaterialGetDensity(material, &density));
+  if (dim == 1) PetscCall(MaterialGetUniaxialModulus(material, &modulus));
+  else PetscCall(MaterialGetWaveModulus(material, &modulus));
+  *value = scale == BODY_IMPEDANCE ? PetscSqrtReal(modulus * density) * cross_section
+                                   : modulus / body->mesh.edge * (dim == 1 ? cross_section : 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

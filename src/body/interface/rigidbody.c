@@ -1,7 +1,6 @@
 /* Bodies that do not deform: what a program sets of them, and asks. */
 #include <body/layout/bodyimpl.h>
 #include <body/loads/loadsimpl.h>
-#include <impakt/private/bodyrows.h>
 #include "bodysetup.h"
 
 /*@

@@ -1,6 +1,5 @@
 /* How long a substep takes, found by making some. */
 #include <body/layout/bodyimpl.h>
-#include <impakt/private/bodyrows.h>
 
 /* Of more substeps to a controller step so many are made at a time */
 #define MOST_SUBSTEPS 8

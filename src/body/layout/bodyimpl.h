@@ -1,5 +1,13 @@
 #pragma once
+#include <impakt/private/bodyfloating.h>
+#include <impakt/private/bodyforces.h>
+#include <impakt/private/bodymass.h>
+#include <impakt/private/bodymeasures.h>
+#include <impakt/private/bodymesh.h>
 #include <impakt/private/bodyrows.h>
+#include <impakt/private/bodystart.h>
+#include <impakt/private/bodystep.h>
+#include <impakt/private/bodysweeps.h>
 #include <impakt/private/stepfailure.h>
 #include <impakt/private/tssecondorder.h>
 #include <petsc/private/petscimpl.h>
@@ -30,7 +38,7 @@ typedef struct {
   PetscReal  *coordinates;       /* local_nodes x dim: reference positions [m] */
   PetscInt   *ghost_dofs;        /* global numbers */
   Vec         positions;         /* reference positions of owned nodes, laid out as displacements [m] */
-  PetscReal   cells[3];          /* volume of all cells [m, m^2 or m^3], their number, and how many are simplices; 0: not computed */
+  PetscReal   edge;              /* of the elements, see BODY_ELEMENT_SIZE; 0 until it is asked for [m] */
   PetscBool  *on_axis;           /* of axisymmetric bodies, per local node: on x = 0, where it is held in x; NULL for others */
   PetscBool   touches_axis;      /* there are such nodes on any rank */
   PetscMPIInt n_ranks, *ranks;   /* that are to have a mesh from options among them, ascending; 0: all, or as the program has divided it */
@@ -105,7 +113,7 @@ typedef struct {
 /* The contact nodes, and those of their dofs that are massless */
 typedef struct {
   PetscBool    *contains; /* per local node: it belongs to a contact surface */
-  PetscReal     edge;     /* of the elements with such a node, see BodyGetContactElementSize(); 0 until it is asked for [m] */
+  PetscReal     edge;     /* of the elements with such a node, see BODY_CONTACT_ELEMENT_SIZE; 0 until it is asked for [m] */
   PetscBool     exists;   /* some rank has massless nodes */
   PetscInt      n_dofs;   /* owned */
   PetscInt     *dofs;     /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */

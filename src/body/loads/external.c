@@ -161,16 +161,6 @@ PetscErrorCode BodyAddWork(Body body, Vec start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyComputeEnergies() of one body */
-PetscErrorCode BodyComputeEnergy(Body body, PetscReal *energy)
-{
-  PetscReal sums[BODY_MEASURE_SUMS];
-
-  PetscFunctionBegin;
-  PetscCall(BodyComputeEnergies(1, &body, sums, energy));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What this rank adds to the sums that the energy of the present state is made of, beside those of the measures: the work of loads and of
    dashpots in a step that has not been accepted yet */
 PetscErrorCode BodyAddPendingWork(Body body, PetscReal sums[2])

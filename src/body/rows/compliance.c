@@ -25,15 +25,6 @@ PetscErrorCode BodyCreateCompliance(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether displacements of rows are affine in the contact forces at the ends of the substeps: of linear bodies, if implicit then under
-   Newmark's method */
-PetscErrorCode BodyComplianceIsExact(Body body, PetscBool *exact)
-{
-  PetscFunctionBegin;
-  *exact = (PetscBool)(body->model.linear && body->integrator->affine);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The parts of the compliance B K^{-1} B^T of rows that answer by a massless layer alone: its stiffness K, held by the rest of the body
    [N/m], and B on its dofs without held ones. Both are owned by the body and change with layer and rows; NULL where rows answer
    otherwise. */

@@ -1,5 +1,4 @@
-/* What a body has to set against a push on its rows: the stiffness of the elements beside them; and whether a push at the end of a step
-   moves them. */
+/* What a body has to set against a push on its rows: the stiffness of the elements beside them, and how its steps answer. */
 #include <body/layout/bodyimpl.h>
 
 /* Diagonal of B K B^T for the rows of this rank [N/m]: the force along a row for a unit displacement of its nodes alone; 0 on rows of
@@ -33,11 +32,20 @@ PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether displacements at the end of the controller step depend on the contact forces there: not those of explicit bodies with mass on
-   contact nodes and one substep */
-PetscErrorCode BodyFeelsEndForce(Body body, PetscBool *feels)
+/* How the steps of a body answer to contact. Of a local body ranks do not wait for each other in BodyTryIntegrateRows() and
+   BodyCompleteStep() unless rows are prescribed, and the rank of BodyGetMeshRank() alone has the reason of a failure. */
+PetscErrorCode BodyGetStepProperties(Body body, BodyStepProperties *properties)
 {
+  const BodyRows *rows  = &body->rows;
+  const PetscBool plain = (PetscBool)(!rows->n_robin && !rows->n_prescribed);
+
   PetscFunctionBegin;
-  *feels = body->integrator->feels_end_force;
+  properties->local           = body->local;
+  properties->free            = (PetscBool)(plain && !rows->n_forced);
+  properties->forced          = (PetscBool)(plain && rows->n_forced == rows->global);
+  properties->affine          = (PetscBool)(body->model.linear && body->integrator->affine);
+  properties->feels_end_force = body->integrator->feels_end_force;
+  properties->by_mean         = rows->by_mean;
+  properties->failure         = &body->failure;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -108,16 +108,6 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether all rows are BODY_FREE, or all BODY_FORCED; the same on every rank */
-PetscErrorCode BodyAllRowsAre(Body body, BodyCondition condition, PetscBool *are)
-{
-  const BodyRows *rows = &body->rows;
-
-  PetscFunctionBegin;
-  *are = (PetscBool)(rows->n_forced == (condition == BODY_FREE ? 0 : rows->global) && !rows->n_robin && !rows->n_prescribed);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Tells the solvers which rows they hold */
 PetscErrorCode BodySetConstraints(Body body)
 {

@@ -46,13 +46,20 @@ static PetscErrorCode CopyAnswering(Body body, Vec from, Vec to)
 }
 
 /* Lets the controller step begin with contact forces that exceed those at the end of the last step by `force` along each row [N], until
-   BodySave() or BodyDropStartForce(). The body goes back to the saved state, whose acceleration becomes that under the new forces, with
+   BodySave(); NULL: with those again. The body goes back to the saved state, whose acceleration becomes that under the new forces, with
    the massless layer in balance. `rest`: the part that remains of forces handed over, see BodyHandOver(); NULL: all. A static body has
    no acceleration and stays. Collective. */
 PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const PetscReal rest[])
 {
   PetscFunctionBegin;
-  PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
+  if (!force) {
+    if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
+    PetscCall(BodySetHandoverRest(body, NULL));
+    body->start.changed = PETSC_FALSE;
+    PetscCall(BodyRestore(body));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->start.changed && body->state.step == body->saved.step && BodyAnswersByNodes(body) && !BodyHandsOver(body) &&
       BodyNearRowsAreZero(body, force))
@@ -74,18 +81,6 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const Pet
   PetscCall(BodySetHandoverRest(body, rest));
   PetscCall(ComputeChange(body, force, body->state.a));
   PetscCall(VecAXPY(body->saved.a, 1, body->state.a));
-  PetscCall(BodyRestore(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Lets the controller step begin with the contact forces that the last one ended with. Collective. */
-PetscErrorCode BodyDropStartForce(Body body)
-{
-  PetscFunctionBegin;
-  if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
-  PetscCall(BodySetHandoverRest(body, NULL));
-  body->start.changed = PETSC_FALSE;
   PetscCall(BodyRestore(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -115,14 +110,6 @@ PetscErrorCode BodySetMeanForces(Body body, const PetscBool rows[])
   PetscCall(BodyAnyRank(body, &body->rows.any_by_mean));
   if (body->layer.exists && body->rows.any_by_mean)
     PetscCall(BodyPrepareLayer(body, body->state.u)); /* its factors, before the time loop */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rows of this rank on which forces act by their mean, owned by the body; NULL where none do */
-PetscErrorCode BodyGetMeanForces(Body body, const PetscBool *rows[])
-{
-  PetscFunctionBegin;
-  *rows = body->rows.by_mean;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

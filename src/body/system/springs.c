@@ -10,7 +10,6 @@
    and the body set against the motion; motions that nothing resists and nothing drives stay as they are.
 */
 #include "held.h"
-#include <impakt/private/bodyrows.h>
 
 /* Of the springs, in parts of the stiffness of the softest static body, by default: soft beside what holds a body, and stiff enough that
    round-off in forces does not show in displacements, which is 1e-14 of them over the part with linear bodies, and what Newton's method

@@ -23,11 +23,15 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
 /* Tells the bodies what their rows mean, but those that are left out; NULL: none is, or the same of them on every rank */
 PetscErrorCode ContactSetSomeConditions(Contact contact, ContactConditions conditions, const PetscBool left_out[])
 {
-  const BodyCondition all  = conditions == CONDITIONS_FREE ? BODY_FREE : BODY_FORCED;
-  PetscBool           same = (PetscBool)(conditions == CONDITIONS_FORCES || conditions == CONDITIONS_FREE);
+  PetscBool same = (PetscBool)(conditions == CONDITIONS_FORCES || conditions == CONDITIONS_FREE);
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies && same; b++) PetscCall(BodyAllRowsAre(contact->bodies[b], all, &same));
+  for (PetscInt b = 0; b < contact->n_bodies && same; b++) {
+    BodyStepProperties properties;
+
+    PetscCall(BodyGetStepProperties(contact->bodies[b], &properties));
+    same = conditions == CONDITIONS_FREE ? properties.free : properties.forced;
+  }
   for (PetscInt b = 0; b < contact->n_bodies && !same; b++) {
     if (left_out && left_out[b]) continue;
     ContactGetConditions(contact, conditions, b, contact->work.conditions);
@@ -106,17 +110,14 @@ PetscErrorCode ContactComputeRates(Contact contact, PetscInt order, PetscBool at
 /* The failure of a body's step is that of the controller step; that of a body of one rank alone once ContactAgree() tells the others */
 static PetscErrorCode TakeFailure(Contact contact, PetscInt b, StepConvergedReason reason)
 {
-  const StepFailure *failure;
-  PetscBool          local;
+  BodyStepProperties properties;
 
   PetscFunctionBegin;
-  PetscCall(BodyIsLocal(contact->bodies[b], &local));
-  contact->attempt.local = (PetscBool)(contact->attempt.local || local);
+  PetscCall(BodyGetStepProperties(contact->bodies[b], &properties));
+  contact->attempt.local = (PetscBool)(contact->attempt.local || properties.local);
   if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (local) contact->attempt.failed = PetscMin(contact->attempt.failed, b);
-  if (local) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetFailure(contact->bodies[b], &failure));
-  StepFailureCopy(failure, &contact->attempt.failure);
+  if (properties.local) contact->attempt.failed = PetscMin(contact->attempt.failed, b);
+  else StepFailureCopy(properties.failure, &contact->attempt.failure);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,7 +126,7 @@ static PetscErrorCode TakeFailure(Contact contact, PetscInt b, StepConvergedReas
 PetscErrorCode ContactAgree(Contact contact)
 {
   PetscInt           failed = contact->attempt.failed;
-  const StepFailure *failure;
+  BodyStepProperties properties;
   StepFailure        told;
   PetscMPIInt        rank;
 
@@ -136,8 +137,8 @@ PetscErrorCode ContactAgree(Contact contact)
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)contact)));
   if (failed == PETSC_INT_MAX) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetMeshRank(contact->bodies[failed], &rank));
-  PetscCall(BodyGetFailure(contact->bodies[failed], &failure));
-  told = *failure;
+  PetscCall(BodyGetStepProperties(contact->bodies[failed], &properties));
+  told = *properties.failure;
   PetscCallMPI(MPI_Bcast(&told, sizeof(told), MPI_BYTE, rank, PetscObjectComm((PetscObject)contact)));
   StepFailureCopy(&told, &contact->attempt.failure);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,6 @@
 /* An attempt at a step with other contact forces at its start, for limit.c. */
 #include "energyimpl.h"
+#include <impakt/private/bodyforces.h>
 
 /* What attempts start from: the step as it has been made */
 PetscErrorCode ContactBeginAttempts(Contact contact)

@@ -310,10 +310,10 @@ static PetscErrorCode MeasureGroupWork(Contact contact)
     touches[g] = inexact[g] = 0;
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool exact;
+    BodyStepProperties properties;
 
-    PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
-    if (!exact) inexact[energy->group[b]] = 1;
+    PetscCall(BodyGetStepProperties(contact->bodies[b], &properties));
+    if (!properties.affine) inexact[energy->group[b]] = 1;
     work[energy->group[b]] += energy->energies[b] - energy->start_energy[b];
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

@@ -11,6 +11,7 @@
    where it does not, would gain by that; so it is booked too, and a step is not cut for the sake of energy where there is no room for it.
 */
 #include "energyimpl.h"
+#include <impakt/private/bodymeasures.h>
 
 #define ROUND_OFF_STRAIN PETSC_MACHINE_EPSILON /* what bodies at rest may have when their massless nodes have found their balance */
 

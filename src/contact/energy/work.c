@@ -3,6 +3,7 @@
    trapezoidal rule of the integrators over the substeps of each body, and what springs of penalty forces have taken of it.
 */
 #include "energyimpl.h"
+#include <impakt/private/bodymeasures.h>
 
 /* For methods whose forces close gaps and store nothing */
 PetscReal ContactStoresNothing(Contact contact, PetscInt row, PetscReal gap)
@@ -48,14 +49,14 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   ContactEnergy         *energy = &contact->energy;
   const BodyTraces      *traces = &contact->traces[b];
   PetscReal             *last = energy->last, *now = energy->now;
-  const PetscBool       *by_mean;
+  BodyStepProperties     properties;
   PetscScalar           *first;
   PetscInt               substeps;
 
   PetscFunctionBegin;
   if (!IsLoaded(contact, b)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-  PetscCall(BodyGetMeanForces(contact->bodies[b], &by_mean));
+  PetscCall(BodyGetStepProperties(contact->bodies[b], &properties));
   PetscCall(TraceGetLevel(traces->displacement, 0, &first));
   for (PetscInt k = 0; k < of->n; k++)
     last[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * energy->last_force[of->rows[k]];
@@ -69,7 +70,7 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
       PetscReal *sum = &energy->pair_sums[2 * contact->rows.pair[of->rows[k]]];
 
       if (ContactRowRubs(contact, of->rows[k])) continue; /* what friction takes is no room for gains */
-      if (by_mean && by_mean[k]) {                        /* one force in all substeps */
+      if (properties.by_mean && properties.by_mean[k]) {  /* one force in all substeps */
         if (level == substeps) *sum += 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - first[k]);
         continue;
       }

@@ -2,6 +2,7 @@
 #include <contact/parts.h>
 #include <sys/names.h>
 #include <sys/stages.h>
+#include <impakt/private/bodystep.h>
 
 /* Parts of the energy of the system: contact may gain so much in a run, see tests/README.md, energy at any step; and take or bring so much
    in a step before it is made again in halves */

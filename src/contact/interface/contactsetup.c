@@ -3,6 +3,8 @@
 #include "contactvisit.h"
 #include <sys/citations.h>
 #include <sys/statusline.h>
+#include <impakt/private/bodymass.h>
+#include <impakt/private/bodystep.h>
 
 /* Arrays with an entry for each body; traces have one more, for all obstacles */
 static PetscErrorCode AllocateBodies(Contact contact)

@@ -5,6 +5,7 @@
    src/contact/interface/springmoves.c has by how much the springs are moved.
 */
 #include "floating.h"
+#include <impakt/private/bodyfloating.h>
 
 /* Times that a step is made: 3 to 12 are enough for most */
 #define MAX_TIMES 200

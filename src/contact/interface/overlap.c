@@ -2,6 +2,7 @@
 #include <contact/parts.h>
 #include <impakt/private/mesh.h>
 #include <sys/units.h>
+#include <impakt/private/bodymesh.h>
 
 /* Rows at the start are at most this deep where bodies have the state of another run, in contact there [parts of a contact element] */
 #define INSIDE 0.02
@@ -17,7 +18,7 @@ PetscErrorCode ContactGetLeastElement(Contact contact, const ContactPair *pair, 
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     PetscReal size;
 
-    PetscCall(BodyGetContactElementSize(contact->bodies[pair->body[side]], &size));
+    PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_CONTACT_ELEMENT_SIZE, &size));
     *least = PetscMin(*least, size);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -117,7 +118,7 @@ static PetscErrorCode FindDepths(Contact contact, PetscInt *n, SurfaceDepth *dep
       PetscReal size;
 
       if (of[k] >= contact->n_bodies) continue;
-      PetscCall(BodyGetContactElementSize(contact->bodies[of[k]], &size));
+      PetscCall(BodyGetScale(contact->bodies[of[k]], BODY_CONTACT_ELEMENT_SIZE, &size));
       (*depths)[i].size = k ? PetscMin((*depths)[i].size, size) : size;
     }
   }

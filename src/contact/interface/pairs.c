@@ -1,6 +1,7 @@
 /* Contact pairs: from their names to surfaces of bodies; all bodies with each other. */
 #include <contact/parts.h>
 #include <sys/names.h>
+#include <impakt/private/bodystep.h>
 
 /* Finds body and surface of one side of a pair by its name. The second side may be an obstacle: its body is one past the last. */
 static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface, Obstacle *obstacle)

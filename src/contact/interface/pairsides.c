@@ -1,5 +1,7 @@
 /* Which body of a pair takes displacements where the user leaves that to the program, and the order of the bodies in a sweep. */
 #include <contact/parts.h>
+#include <impakt/private/bodymesh.h>
+#include <impakt/private/bodystep.h>
 
 /* Mean elements of two bodies are alike if the ratio of their edges is above this, so that round-off does not choose the sides */
 #define ALIKE 0.999
@@ -13,8 +15,8 @@ static PetscErrorCode GetTransit(Body body, PetscReal size, PetscReal *transit)
   PetscFunctionBegin;
   PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));
-  PetscCall(BodyGetImpedance(body, &impedance));
-  PetscCall(BodyGetCrossSection(body, &cross_section));
+  PetscCall(BodyGetScale(body, BODY_IMPEDANCE, &impedance));
+  PetscCall(BodyGetScale(body, BODY_CROSS_SECTION, &cross_section));
   *transit = impedance > 0 ? size * density * cross_section / impedance : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -52,7 +54,7 @@ PetscErrorCode ContactGetPreferences(Contact contact, ContactPreference preferen
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
     PetscCall(BodyIsRigid(contact->bodies[b], &preferences[b].is_rigid));
-    PetscCall(BodyGetElementSize(contact->bodies[b], &size[b]));
+    PetscCall(BodyGetScale(contact->bodies[b], BODY_ELEMENT_SIZE, &size[b]));
     preferences[b].size = -1;
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {

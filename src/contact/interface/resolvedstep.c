@@ -6,6 +6,7 @@
 */
 #include <contact/parts.h>
 #include <sys/units.h>
+#include <impakt/private/bodymesh.h>
 
 /* Part of a contact element by which the bodies may close in a step */
 #define CLOSING 0.25
@@ -26,9 +27,9 @@ static PetscErrorCode GetSide(Body body, Side *side)
 
   PetscFunctionBegin;
   PetscCall(BodyIsRigid(body, &side->rigid));
-  PetscCall(BodyGetContactElementSize(body, &side->size));
-  PetscCall(BodyGetImpedance(body, &impedance));
-  PetscCall(BodyGetCrossSection(body, &cross_section));
+  PetscCall(BodyGetScale(body, BODY_CONTACT_ELEMENT_SIZE, &side->size));
+  PetscCall(BodyGetScale(body, BODY_IMPEDANCE, &impedance));
+  PetscCall(BodyGetScale(body, BODY_CROSS_SECTION, &cross_section));
   PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));
   side->impedance = impedance / cross_section;

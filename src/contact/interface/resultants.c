@@ -1,5 +1,6 @@
 /* What the contact forces of each pair amount to: resultant, moment, impulse, area. */
 #include <contact/parts.h>
+#include <impakt/private/bodymesh.h>
 
 /* What is summed over the rows of a pair */
 enum {
@@ -29,7 +30,7 @@ PetscErrorCode ContactSetUpPairResultants(Contact contact)
                          N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, N_KEPT * contact->n_pairs,
                          &contact->resultants.impulse));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    PetscCall(BodyGetCrossSection(contact->bodies[contact->pairs[p].body[0]], &contact->resultants.cross_section[p]));
+    PetscCall(BodyGetScale(contact->bodies[contact->pairs[p].body[0]], BODY_CROSS_SECTION, &contact->resultants.cross_section[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,6 +4,7 @@
 */
 #include <contact/parts.h>
 #include <sys/units.h>
+#include <impakt/private/bodymesh.h>
 
 /* Diameter of the ball about the mean of a body's nodes that has all of them in it [m]: the length of a bar, however it lies in space */
 static PetscErrorCode GetExtent(Body body, PetscReal *extent)
@@ -43,9 +44,9 @@ static PetscErrorCode GetElementForce(Body body, PetscReal *force)
   PetscInt  dim;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetElementStiffness(body, &stiffness));
-  PetscCall(BodyGetElementSize(body, &size));
-  PetscCall(BodyGetCrossSection(body, &cross_section));
+  PetscCall(BodyGetScale(body, BODY_ELEMENT_STIFFNESS, &stiffness));
+  PetscCall(BodyGetScale(body, BODY_ELEMENT_SIZE, &size));
+  PetscCall(BodyGetScale(body, BODY_CROSS_SECTION, &cross_section));
   PetscCall(BodyGetDimension(body, &dim));
   *force = stiffness * size; /* of a bar the force already, else a pressure */
   if (dim == 2) *force *= size * cross_section;

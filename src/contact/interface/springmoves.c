@@ -9,6 +9,7 @@
    springs leap by its size, and farther the next time.
 */
 #include "floating.h"
+#include <impakt/private/bodyfloating.h>
 
 /* What is left of a change after those before have been taken out of it, below which it has nothing new */
 #define NOTHING_NEW 1e-4

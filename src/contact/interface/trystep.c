@@ -1,5 +1,7 @@
 /* Controller steps that may fail, and be made again in halves. */
 #include <contact/parts.h>
+#include <impakt/private/bodyforces.h>
+#include <impakt/private/bodystep.h>
 
 enum { MOST_PAIRS = 3 }; /* that a message names */
 
@@ -98,7 +100,7 @@ PetscErrorCode ContactStepBack(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(BodyDropStartForce(contact->bodies[b]));
+    PetscCall(BodySetStartForce(contact->bodies[b], NULL, NULL));
     PetscCall(BodyStepBack(contact->bodies[b]));
   }
   if (contact->energy.changed) PetscCall(PetscArraycpy(contact->start.force, contact->energy.last_force, contact->rows.n));

@@ -8,6 +8,7 @@
 */
 #include "friction.h"
 #include <sys/units.h>
+#include <impakt/private/bodystep.h>
 
 /* Round-off of normals that a velocity may have a part along */
 #define ACROSS 1e-6

@@ -19,6 +19,7 @@
    With auto, the default, forces are balanced where all that holds, and all pairs are of bodies whose surfaces are round without edges.
 */
 #include <contact/parts.h>
+#include <impakt/private/bodymesh.h>
 
 /* Chords of angles between the normals of two nodes of a face: from 18 degrees on the face is beside an edge; faces that bend by more than
    11.5 degrees are too coarse: discs of 32 edges keep half of their spin or more */
@@ -193,9 +194,9 @@ static PetscErrorCode GetStiffness(Contact contact, const ContactPair *pair, Pet
     PetscBool rigid;
 
     PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &rigid));
-    PetscCall(BodyGetElementStiffness(contact->bodies[pair->body[side]], &of_element));
-    PetscCall(BodyGetElementSize(contact->bodies[pair->body[side]], &size));
-    PetscCall(BodyGetCrossSection(contact->bodies[pair->body[side]], &thickness));
+    PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_ELEMENT_STIFFNESS, &of_element));
+    PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_ELEMENT_SIZE, &size));
+    PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_CROSS_SECTION, &thickness));
     *edge = PetscMax(*edge, size);
     if (!rigid) softness += 1 / (of_element * size * (contact->dim == 2 ? thickness : size));
   }

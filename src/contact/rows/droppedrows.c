@@ -5,6 +5,7 @@
    held too, so that no force on it moves anything.
 */
 #include <contact/parts.h>
+#include <impakt/private/bodymesh.h>
 
 /* Neither opens nor closes */
 static void LeaveOut(Contact contact, PetscInt i)

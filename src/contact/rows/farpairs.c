@@ -4,6 +4,7 @@
    at, and nothing is put aside of them.
 */
 #include <contact/parts.h>
+#include <impakt/private/bodymesh.h>
 
 /* Boxes that are farther apart, beyond the reach of a controller step, are far [edges of the contact elements] */
 #define FAR 4
@@ -44,7 +45,7 @@ PetscErrorCode ContactFindFarPairs(Contact contact, PetscReal near)
   for (PetscInt b = 0; b < contact->n_bodies && !come_and_go; b++) {
     PetscReal size;
 
-    PetscCall(BodyGetContactElementSize(contact->bodies[b], &size));
+    PetscCall(BodyGetScale(contact->bodies[b], BODY_CONTACT_ELEMENT_SIZE, &size));
     largest = PetscMax(largest, size);
   }
   PetscCall(GetBoxes(contact));

@@ -1,5 +1,6 @@
 /* Forces or impulses on ties that give both sides one acceleration or one velocity. */
 #include "inversemass.h"
+#include <impakt/private/bodymass.h>
 
 /* Of the rates, relative: near round-off, since what is left drifts */
 #define TOLERANCE 1e-15

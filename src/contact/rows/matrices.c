@@ -1,5 +1,6 @@
 /* The matrices of the rows of each body, and how they get entries in other places as rows are built again. */
 #include <contact/parts.h>
+#include <impakt/private/bodymesh.h>
 
 /* Entries of each row of a body, as its transfer tells. Ties have other rows, and where ranks share a body nobody knows which columns are
    those of other ranks. */

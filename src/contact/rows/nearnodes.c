@@ -1,6 +1,8 @@
 /* Bodies of which those contact nodes alone are massless that face a partner at the start (-<body>_mass_redistribute near): which nodes
    these are, that contact comes to no others, and what other bodies would gain by it. */
 #include <contact/parts.h>
+#include <impakt/private/bodymass.h>
+#include <impakt/private/bodymesh.h>
 
 /* Forces on nodes with mass that are smaller, in parts of the largest nodal force, are round-off of the weights */
 #define FORCE_ROUND_OFF 1e-9

@@ -5,6 +5,8 @@
    that the two fastest of them can make towards each other.
 */
 #include <contact/parts.h>
+#include <impakt/private/bodymesh.h>
+#include <impakt/private/bodystep.h>
 
 /* Up to so many pairs of bodies that the program has chosen all of them are there all the time */
 #define MANY_PAIRS 100
@@ -271,7 +273,8 @@ PetscErrorCode ContactSetUpNeighbours(Contact contact, ContactPreference prefere
 PetscErrorCode ContactMeasureNeighbours(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyGetContactElementSize(contact->bodies[b], &contact->neighbours.edge[b]));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    PetscCall(BodyGetScale(contact->bodies[b], BODY_CONTACT_ELEMENT_SIZE, &contact->neighbours.edge[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,7 @@
 /* The rows of all pairs: from surfaces to transfers, and what these say of each row. */
 #include <contact/parts.h>
 #include <sys/units.h>
+#include <impakt/private/bodymesh.h>
 
 /* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
 #define NO_COMPONENT 1e-9

@@ -4,6 +4,7 @@
    cover: see BodySetRowWeights(). Of several obstacles with the same normal at a node only the nearest counts.
 */
 #include <contact/parts.h>
+#include <impakt/private/bodysweeps.h>
 
 /* Squared sine of the angle between two normals of obstacles below which they count as the same: 0.006 degrees */
 #define PARALLEL 1e-8

@@ -12,6 +12,7 @@
 #include <contact/parts.h>
 #include <contact/rows/inversemass.h>
 #include <contact/solve/lawproblem.h>
+#include <impakt/private/bodystart.h>
 
 /* Rows up to which S has entries; more are products with it */
 #define FEW_ROWS 500

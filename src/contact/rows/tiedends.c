@@ -8,6 +8,7 @@
    uncut body has at the end of the step, and velocities have the mean of both in them. With it both sides move as the uncut body does.
 */
 #include <contact/rows/inversemass.h>
+#include <impakt/private/bodyforces.h>
 
 /* At the end of a controller step, before the next one starts from it. `change`: per row, impulses [N s], then forces [N]; zero on rows
    that take no part */

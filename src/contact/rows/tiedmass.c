@@ -8,6 +8,8 @@
    with other integrators or steps tied nodes are massless.
 */
 #include <contact/rows/inversemass.h>
+#include <impakt/private/bodyforces.h>
+#include <impakt/private/bodymass.h>
 
 /* Whether both bodies of a pair would have one rule for all their tied nodes, and nobody has asked for massless ones */
 static PetscErrorCode CanKeepMass(Contact contact, const ContactPair *pair, PetscBool *can)

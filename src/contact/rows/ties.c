@@ -6,6 +6,7 @@
 */
 #include <contact/parts.h>
 #include <sys/units.h>
+#include <impakt/private/bodymesh.h>
 
 /* Nodes farther from the partner than this belong to another part of the surface and are left alone [edges of the face]. A node that is
    nearer and yet not within the tie distance is an error. */
@@ -26,7 +27,7 @@ typedef struct {
 static PetscErrorCode GetFaceSize(Contact contact, const ContactPair *pair, const TransferRows *rows, PetscInt node, PetscReal *size)
 {
   PetscFunctionBegin;
-  if (contact->dim == 1) PetscCall(BodyGetElementSize(contact->bodies[pair->body[0]], size));
+  if (contact->dim == 1) PetscCall(BodyGetScale(contact->bodies[pair->body[0]], BODY_ELEMENT_SIZE, size));
   else *size = rows->size[node];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

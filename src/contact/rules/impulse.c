@@ -7,6 +7,7 @@
    Velocity-level contact: V. Acary, ZAMM 96 (2016) 585-603; here on increments of gaps, so that substeps of any integrator may lie between.
 */
 #include <contact/step/stepimpl.h>
+#include <impakt/private/bodyforces.h>
 
 #define MOST_LOSS 1.1 /* of a row that joins, in parts of the kinetic energy of its node */
 /* How deep rows may end inside their partner that stay open by their rates: as deep as these would bring them, at most by DEEP, and by

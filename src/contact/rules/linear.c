@@ -3,6 +3,7 @@
    at the end of this one, where a closed row has no gap. Rows are laid as bodies are at the start of the step.
 */
 #include <contact/step/stepimpl.h>
+#include <impakt/private/bodyforces.h>
 
 /* Rows that were in contact, or would be at the end if bodies went on as they do: others join as they are found to be inside. Rows that
    keep a part of their gap join then alone: that part is one of a penetration. */

@@ -6,6 +6,7 @@
    many bodies are, S is sparse.
 */
 #include "stepimpl.h"
+#include <impakt/private/bodyforces.h>
 
 #define FEW_ROWS  60    /* up to so many S is dense whatever it is made of, */
 #define MANY_ROWS 150   /* and up to so many where bodies have blocks, whose LU factors are exact where bodies hang on soft springs */

@@ -1,6 +1,7 @@
 /* What a hit may take of a body whose contact nodes have mass: they stop where they hit, and lose their kinetic energy. */
 #include "stepimpl.h"
 #include <petscblaslapack.h>
+#include <impakt/private/bodymass.h>
 
 /* The most of its kinetic energy that a body loses where it hits flat: its contact nodes' part of the mass, times the part of its contact
    surfaces that faces one way. With areas A and normals n of the faces that is (l + |sum A n|) / 2 of their sum, l the largest eigenvalue

@@ -9,6 +9,7 @@
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/units.h>
+#include <impakt/private/bodyforces.h>
 
 /* Whether a law of glue holds a row */
 static PetscBool IsGlued(Contact contact, const ContactStepper *stepper, PetscInt i)

@@ -5,6 +5,7 @@
 */
 #include "stepimpl.h"
 #include <contact/laws/friction.h>
+#include <impakt/private/bodyforces.h>
 
 /* The rule of each set: contact nodes without mass have no impulse to lose; those with mass would swing if their gap were closed */
 PetscErrorCode ContactStepperSetUpRules(Contact contact, ContactStepper *stepper)

@@ -9,6 +9,7 @@
    Numerical Analysis 20 (1983) 362-376.
 */
 #include "stepimpl.h"
+#include <impakt/private/bodyforces.h>
 
 #define FEW_PRODUCTS 500 /* rows up to which S is dense, whose factors take little then */
 #define SPREAD       6   /* eigenvalues of D^{-1} K that count: from the largest down to that part of it; 4 and 10 take 5 % more products */
@@ -22,13 +23,13 @@ PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *ste
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies && products; b++) {
-    PetscBool exact;
-    Mat       K;
+    BodyStepProperties properties;
+    Mat                K;
 
     if (!stepper->assembly.of_body[b].n) continue;
     PetscCall(BodyGetLayerMatrices(contact->bodies[b], &K, NULL));
-    PetscCall(BodyComplianceIsExact(contact->bodies[b], &exact));
-    products = (PetscBool)(K && exact && stepper->rules[b]->shape == BODY_FORCE_LINEAR);
+    PetscCall(BodyGetStepProperties(contact->bodies[b], &properties));
+    products = (PetscBool)(K && properties.affine && stepper->rules[b]->shape == BODY_FORCE_LINEAR);
   }
   stepper->products = products;
   PetscFunctionReturn(PETSC_SUCCESS);

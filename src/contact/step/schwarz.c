@@ -4,6 +4,7 @@
 #include <sys/citations.h>
 #include <sys/units.h>
 #include <stddef.h>
+#include <impakt/private/bodymass.h>
 
 /* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right */
 #define RTOL       1e-7

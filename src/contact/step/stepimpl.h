@@ -3,6 +3,7 @@
 #include <contact/parts.h>
 #include <contact/solve/lawproblem.h>
 #include <contact/laws/glue.h>
+#include <impakt/private/bodyforces.h>
 
 typedef struct _ContactStepper ContactStepper;
 

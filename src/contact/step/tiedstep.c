@@ -6,6 +6,7 @@
 */
 #include "stepimpl.h"
 #include <contact/rows/inversemass.h>
+#include <impakt/private/bodyforces.h>
 
 /* What a force that runs in a step of the trapezoidal rule has more at the end than in the mean */
 static PetscErrorCode ExtrapolateForces(Contact contact, const ContactStepper *stepper, PetscReal more[])

@@ -1,5 +1,6 @@
 /* Integrators of bodies: order in time, Newton's method, and what cannot converge. */
 #include "solid_bodies.h"
+#include <impakt/private/bodystep.h>
 #include <impakt/private/contactsteps.h>
 
 static const char *const materials[] = {MATERIAL_SAINT_VENANT_KIRCHHOFF, MATERIAL_NEO_HOOKEAN};

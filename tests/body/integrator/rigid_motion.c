@@ -2,7 +2,8 @@
  * on. */
 #include "support.h"
 #include <body/integrator/rigidmotion.h>
-#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodymesh.h>
+#include <impakt/private/bodystep.h>
 #include <impakt/private/tssecondorder.h>
 
 static void is_a_rotation(const PetscReal R[9])

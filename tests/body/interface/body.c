@@ -1,6 +1,9 @@
 /* ranks: 1 3 */
 /* A body from its options, and of several materials as a program makes it: what it takes, what it refuses, where it loses a number. */
 #include "support.h"
+#include <impakt/private/bodymesh.h>
+#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodystep.h>
 
 #define MESH     "-dm_plex_box_faces 10 -dm_plex_box_lower 1 -dm_plex_box_upper 3 "
 #define MATERIAL "-density 4 -youngs_modulus 16 -cross_section 0.5 "
@@ -328,7 +331,7 @@ static void tells_of_its_blocks(void **state)
   assert_false(linear);
   ok(BodyGetSurfaceMaterial(body, &found)); /* the stiffest */
   assert_ptr_equal(found, heavy);
-  ok(BodyGetImpedance(body, &impedance));
+  ok(BodyGetScale(body, BODY_IMPEDANCE, &impedance));
   near(impedance, PetscSqrtReal(6 * 400), 1e-10); /* sqrt(rho E), Poisson's ratio being 0 */
   ok(BodyGetCellBlocks(body, &blocks));
   assert_non_null(blocks);

@@ -1,6 +1,7 @@
 /* Nothing is allocated in the time loop: the C library's allocator is replaced by one that counts. */
 #include "loads.h"
 #include "count_allocations.h"
+#include <impakt/private/bodystep.h>
 
 /* Steps at which the count is taken. The bars touch in step 4 and part in step 505: first free flight, then contact with the
    set-up of PETSc's solvers behind it (each makes its work vectors in its first solve), then all the rest with the release. Without the

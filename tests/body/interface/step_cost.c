@@ -1,6 +1,7 @@
 /* What a step costs, counted rather than timed; and a changing set of contact nodes: no factorisation. */
 #include "simulation.h"
 #include <body/layout/bodyimpl.h>
+#include <impakt/private/bodystep.h>
 
 #define STEPS 10
 

@@ -3,6 +3,8 @@
 /* Displacements under unit forces on nodes: of few by controller steps, which are right; of many as a slab at the surface answers, or, with
    substeps, by these where forces are felt. */
 #include "solid_bodies.h"
+#include <impakt/private/bodyforces.h>
+#include <impakt/private/bodystep.h>
 
 /* 2 m of 8 elements along each edge. Waves run at 1.36 m/s: they cross an element in 0.18 s. */
 #define BLOCK                                                                                                                              \

@@ -2,6 +2,9 @@
 /* long: 3 */
 /* Prescribed rows of one node along any directions, beside displacements that are held, and more than its displacements can follow. */
 #include "solid_bodies.h"
+#include <impakt/private/bodyrows.h>
+#include <impakt/private/bodystep.h>
+#include <impakt/private/bodysweeps.h>
 
 /* Linear bodies of quadrilaterals and hexahedra of edge 0.5 m, by their dimension less 1; 5 Pa and 3 kg/m^3, so that waves run at some 1.4
    m/s; explicit steps are stable up to some 0.25 s */

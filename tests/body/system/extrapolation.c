@@ -2,6 +2,7 @@
 /* The mass of bodies whose massless contact nodes move as inner nodes do (-mass_redistribute auto): E^T M E. */
 #include "frequencies.h"
 #include "solid_bodies.h"
+#include <impakt/private/bodymass.h>
 
 static const char *const types[] = {"lumped", "consistent", "averaged"};
 static const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};

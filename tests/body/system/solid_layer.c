@@ -3,6 +3,7 @@
 /* The massless layer of explicit bodies in two and three dimensions: in balance with what is inside and with its loads, by linear and by
    nonlinear materials; and not damped. */
 #include "solid_bodies.h"
+#include <impakt/private/bodystep.h>
 
 static const char *const materials[] = {MATERIAL_LINEAR_ELASTIC, MATERIAL_NEO_HOOKEAN};
 #define MATERIALS 2

@@ -5,6 +5,7 @@
 #include <sys/petsccompat.h>
 #include <stddef.h>
 #include <sys/units.h>
+#include <impakt/private/bodysweeps.h>
 
 static const char *const ConvergenceTests[] = {
     "auto", "position", "contact_position", "mismatch", "SchwarzConvergence", "SCHWARZ_CONVERGENCE_", NULL};

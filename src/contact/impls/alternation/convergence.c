@@ -2,6 +2,8 @@
 #include "alternationimpl.h"
 #include <sys/petsccompat.h>
 #include <sys/units.h>
+#include <impakt/private/bodymass.h>
+#include <impakt/private/bodysweeps.h>
 
 /* An iteration has come to round-off if, after STALL_FROM sweeps, STEADY_SWEEPS sweeps in a row change forces by at most STEADY_FORCE of
    them, and positions by no less than an earlier sweep. An iteration that converges, however slowly, has no such sweeps. */

@@ -1,5 +1,6 @@
 /* Where the first sweep of a controller step starts from. */
 #include "alternationimpl.h"
+#include <impakt/private/bodysweeps.h>
 
 /* By how much the displacement of the Dirichlet side exceeds that of its partner at a part (0 to 1) of the controller step, against the
    row's direction: a gap that is open at its start closes linearly over it, or stays as it is if only its rate is constrained */

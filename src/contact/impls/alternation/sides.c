@@ -1,5 +1,6 @@
 /* Which body of a pair takes displacements, and what the unknowns of the outer iteration are then. */
 #include "alternationimpl.h"
+#include <impakt/private/bodymass.h>
 
 /* By how much the weight of a node that lies opposite may be off one, and those of others off zero: round-off of geometry */
 #define OPPOSITE 1e-9

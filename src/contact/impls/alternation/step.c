@@ -1,5 +1,6 @@
 /* One controller step: trial, contact, and the nodes that join and leave. */
 #include "alternationimpl.h"
+#include <impakt/private/bodysweeps.h>
 
 /* Forces of this rank's rows at the end of the controller step, from the bodies' traces [N] */
 PetscErrorCode AlternationGetForces(Contact contact, PetscScalar force[])

@@ -5,6 +5,7 @@
    outer SNES.
 */
 #include "alternationimpl.h"
+#include <impakt/private/bodysweeps.h>
 
 /* The velocity and acceleration that the Neumann side would have if it were where the unknowns put the Dirichlet side: with the
    inertia of the nodes in the traction, those of its last sweep would be another unknown that the SNES does not see. */

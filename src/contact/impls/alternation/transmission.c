@@ -14,6 +14,9 @@
    so that it is the mean velocity over it that counts, and the gap closes whatever the substeps.
 */
 #include "alternationimpl.h"
+#include <impakt/private/bodymass.h>
+#include <impakt/private/bodymesh.h>
+#include <impakt/private/bodysweeps.h>
 
 /* Stiffness of the springs of each row: as given, or that of the partner, which answers best */
 static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
@@ -169,7 +172,7 @@ PetscErrorCode AlternationSetUpTransmission(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal impedance;
 
-    PetscCall(BodyGetImpedance(contact->bodies[b], &impedance));
+    PetscCall(BodyGetScale(contact->bodies[b], BODY_IMPEDANCE, &impedance));
     if (robin || alternation->mass_prescribed) PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
     PetscCall(SetUpMasses(contact, b, stiffness, impedance));
     if (tied) PetscCall(SetUpTiedWeights(contact, b, stiffness));

@@ -1,5 +1,6 @@
 /* Complementarity of gaps and forces of rows at one instant: the equations of the laws of rows, with a sparse C in place of S. */
 #include "complementarity.h"
+#include <impakt/private/bodymass.h>
 
 PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
 {

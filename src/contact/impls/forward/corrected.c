@@ -10,6 +10,7 @@
 */
 #include "forwardimpl.h"
 #include <checkpoint/checkpoint.h>
+#include <impakt/private/bodyforces.h>
 
 /* What changes states beside the forces of the step */
 typedef struct {

@@ -3,13 +3,13 @@
 
 static PetscErrorCode CheckBeforeObstacle(Contact contact, const ContactPair *pair, const char type[])
 {
-  const Body  body = contact->bodies[pair->body[0]];
-  const char *name = ((PetscObject)body)->name;
-  PetscBool   feels;
+  const Body         body = contact->bodies[pair->body[0]];
+  const char        *name = ((PetscObject)body)->name;
+  BodyStepProperties properties;
 
   PetscFunctionBegin;
-  PetscCall(BodyFeelsEndForce(body, &feels));
-  PetscCheck(feels, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCall(BodyGetStepProperties(body, &properties));
+  PetscCheck(properties.feels_end_force, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_type %s closes the gap by the contact force at the end of the step, which does not move the explicit contact nodes "
              "with mass of '%s' before the next step; set -%s_mass_redistribute true, give it -%s_ts_type alpha2, or use -contact_type "
              "lagrange with all bodies explicit, with mass and without substeps",

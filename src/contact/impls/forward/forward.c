@@ -8,6 +8,7 @@
 #include "forwardimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
+#include <impakt/private/bodyforces.h>
 
 typedef struct {
   Complementarity forces; /* C: [m/N] */

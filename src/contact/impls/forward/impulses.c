@@ -1,5 +1,6 @@
 /* Impulses on the contact nodes at one instant: what ends the gap rate, and what closes a predicted gap in the norm of the mass. */
 #include "forwardimpl.h"
+#include <impakt/private/bodyforces.h>
 
 /* The effect of unit impulses on the gap rates [1/kg]. One side of each pair must have mass, since `option` cannot do without. */
 PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Complementarity *impulses)

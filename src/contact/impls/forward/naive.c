@@ -1,6 +1,7 @@
 /* What is done against chatter, whatever the method: the naive stabilisation. */
 #include <contact/parts.h>
 #include <sys/citations.h>
+#include <impakt/private/bodyforces.h>
 
 const char *const ContactStabilizations[] = {"none", "naive", "contact_stabilized", "ContactStabilization", "CONTACT_STABILIZATION_", NULL};
 

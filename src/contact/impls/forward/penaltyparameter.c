@@ -1,6 +1,8 @@
 /* How stiff the springs and dampers of the penalty method are, and whether explicit steps stand them. */
 #include "forwardimpl.h"
 #include <sys/units.h>
+#include <impakt/private/bodymass.h>
+#include <impakt/private/bodymesh.h>
 
 /* Penalty parameter relative to that of an element on each side, one behind the other. Two plane strain blocks that meet at 100 m/s
    (explicit at their stable steps, lumped mass), scale: largest penetration in elements, energy gained, contact force's scatter to mean:
@@ -47,7 +49,7 @@ static PetscErrorCode GetPairParameter(Contact contact, const ContactPair *pair,
     PetscReal stiffness = 0;
     PetscBool massless, rigid;
 
-    PetscCall(BodyGetElementStiffness(contact->bodies[pair->body[side]], &stiffness));
+    PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_ELEMENT_STIFFNESS, &stiffness));
     PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
     PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &rigid));
     if (!massless && !rigid) all_massless = PETSC_FALSE;

@@ -1,0 +1,13 @@
+/* The balance of the massless layer in the first state, and loads that come suddenly there. */
+#pragma once
+#include <impakt/body.h>
+
+#define BODY_SUDDEN_LENGTH 512 /* of the text of BodyDescribeSuddenLoad() */
+
+PETSC_EXTERN PetscErrorCode BodyIsOutOfBalance(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyMarkRows(Body, PetscBool[], PetscBool[]);
+PETSC_EXTERN PetscErrorCode BodyRelaxLayer(Body, PetscScalar[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyMultiplyLayerCompliance(Body, const PetscScalar[], PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyMoveLayer(Body, const PetscScalar[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyStartUnderForces(Body, const PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyDescribeSuddenLoad(Body, char[BODY_SUDDEN_LENGTH]);
