@@ -138,17 +138,8 @@ static PetscErrorCode NameMaterials(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodySetUpBlocks - finds the block of each cell; calls after the first that is complete cost nothing
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, with its mesh
-
-  Output Parameter:
-. own - whether there are cells that have the material of the body. `NULL`: complete the blocks by those
-*/
+/* Finds the block of each cell; calls after the first complete one cost nothing. `own`: whether cells have the material of the body;
+   NULL: complete the blocks by those. Collective. */
 PetscErrorCode BodySetUpBlocks(Body body, PetscBool *own)
 {
   BodyBlocks *blocks = &body->model.blocks;

@@ -288,8 +288,8 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   {
-    Vec *vecs[] = {&b->start.a,       &b->iterate.u,    &b->rows.stage_balance, &b->mesh.positions, &b->mass.row_sum,  &b->mass.orphans,
-                   &b->mass.diagonal, &b->mass.inverse, &b->work.nodes[0],      &b->work.nodes[1],  &b->work.nodes[2], &b->start.change};
+    Vec *vecs[] = {&b->start.a,      &b->iterate.u,     &b->rows.stage_balance, &b->mesh.positions, &b->mass.row_sum, &b->mass.diagonal,
+                   &b->mass.inverse, &b->work.nodes[0], &b->work.nodes[1],      &b->work.nodes[2],  &b->start.change};
     BodyState *states[] = {&b->state, &b->saved, &b->kept, &b->substep_start};
 
     PetscCall(BodyDestroyHistory(b));

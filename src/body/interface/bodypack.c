@@ -103,15 +103,7 @@ static PetscErrorCode UnpackPoint(Body body, const PetscInt rows[], Tables table
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodyPack - adds the tables of a body
-
-  Collective
-
-  Input Parameters:
-+ body   - the `Body`, after an accepted step
-- tables - the tables
-*/
+/* Adds the tables of a body after an accepted step. Collective. */
 PetscErrorCode BodyPack(Body body, Tables tables)
 {
   const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + N_VECS * dim;
@@ -138,15 +130,8 @@ PetscErrorCode BodyPack(Body body, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodyUnpack - the state of a body from the tables of a run with any number of ranks
-
-  Collective
-
-  Input Parameters:
-+ body   - the `Body`, in its first state, whose numbers for all ranks have been loaded by BodyVisitShared()
-- tables - the tables
-*/
+/* The first state of a body from the tables of a run with any number of ranks, after BodyVisitShared() has loaded what all ranks have.
+   Collective. */
 PetscErrorCode BodyUnpack(Body body, Tables tables)
 {
   const PetscInt   dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + N_VECS * dim;
@@ -183,14 +168,7 @@ PetscErrorCode BodyUnpack(Body body, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodyTakeRows - the rows of BodyUpdateInterface() are those of the last accepted step; after BodyUnpack()
-
-  Collective
-
-  Input Parameters:
-. body   - the `Body`
-*/
+/* The rows of BodyUpdateInterface() are those of the last accepted step; after BodyUnpack(). Collective. */
 PetscErrorCode BodyTakeRows(Body body)
 {
   PetscFunctionBegin;

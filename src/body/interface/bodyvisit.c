@@ -138,15 +138,7 @@ static PetscErrorCode VisitMassSolver(Body body, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodyVisitMesh - makes sure that the mesh is that of the checkpoint, on the same ranks
-
-  Not Collective
-
-  Input Parameters:
-+ body       - the `Body`, set up
-- checkpoint - the `Checkpoint`
-*/
+/* Makes sure that the mesh is that of the checkpoint, on the same ranks */
 PetscErrorCode BodyVisitMesh(Body body, Checkpoint checkpoint)
 {
   const PetscInt     sizes[] = {body->mesh.dim, body->mesh.owned_nodes, body->mesh.local_nodes};
@@ -171,15 +163,8 @@ PetscErrorCode BodyVisitMesh(Body body, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodyVisit - the state of a body after an accepted controller step, to or from a checkpoint
-
-  Collective
-
-  Input Parameters:
-+ body       - the `Body`, set up; loading: in its first state, its rows being those of the checkpoint already
-- checkpoint - the `Checkpoint`
-*/
+/* The state of a body after an accepted controller step, to or from a checkpoint; loading: in its first state, with the rows of the
+   checkpoint. Collective. */
 PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
 {
   const PetscInt sizes[] = {body->mesh.owned_nodes, body->mesh.dim, body->rows.local, body->rows.global, body->time.substeps};

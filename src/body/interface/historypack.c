@@ -144,19 +144,9 @@ static PetscErrorCode FindHistory(Body body, Tables tables, const char *material
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodyTakeHistory - the history of a body's material from the tables of another run
-
-  Collective
-
-  Input Parameters:
-+ body   - the `Body`, set up, before `BodySetInitialState()`
-- tables - the tables, of a run with the same mesh
-
-  Notes:
-  Where the body had none there, as an elastic one, its material stays virgin. Plastic work that has been done before is none of this run:
-  call `BodyNotePlasticBefore()` when the displacements are there.
-*/
+/* The history of a body's material from the tables of another run with the same mesh, before BodySetInitialState(). Where the body had
+   none, as an elastic one, its material stays virgin. BodyNotePlasticBefore() has to follow when the displacements are there.
+   Collective. */
 PetscErrorCode BodyTakeHistory(Body body, Tables tables)
 {
   const char *before, *now = BodyGetMaterialName(body);

@@ -80,7 +80,7 @@ typedef struct {
   PetscBool         near;         /* but those that face no partner at the start, which keep their mass */
   PetscBool         automatic;    /* the body chooses whether and how they become massless, see masschoice.c */
   PetscBool         decided;      /* it has */
-  PetscBool         moved;        /* the mass has found a place, with factor and orphans */
+  PetscBool         moved;        /* the mass has found a place, by a factor */
   PetscBool         chosen;       /* program or options have said whether they are massless */
   Vec               row_sum;      /* M 1: the lumped mass */
   Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
@@ -90,9 +90,8 @@ typedef struct {
   PetscScalar      *diagonals;    /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
   Vec               inverse;      /* of a diagonal one: 1/m, 0 on massless nodes */
   ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
-  MassBlocks        blocks;  /* in its place where the matrix couples nodes near the surface alone, on one rank; NULL until first needed */
-  Vec               orphans; /* of elements without inner nodes, where redistribution has put it; NULL: none [kg] */
-  PetscReal         total;   /* [kg] */
+  MassBlocks        blocks; /* in its place where the matrix couples nodes near the surface alone, on one rank; NULL until first needed */
+  PetscReal         total;  /* [kg] */
   PetscReal         centre[3]; /* of the undeformed body [m] */
   PetscReal
       inverse_inertia[9]; /* inverse of the inertia tensor of the undeformed body about its centre; zero in one dimension [1/(kg m^2)] */
@@ -387,7 +386,7 @@ PETSC_INTERN PetscErrorCode BodySumNodes(Body, PetscReal *, PetscReal *, PetscRe
 PETSC_INTERN void           BodyFinishRotation(Body, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodyGetElementMassParts(Body, PetscInt, PetscBool, PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
-PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body);
+PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body, PetscReal *);
 PETSC_INTERN PetscErrorCode BodyCreateMassOfNodes(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodyExtrapolateMass(Body);
 PETSC_INTERN PetscErrorCode BodyCreateMassBlocks(Body, MassBlocks *);
@@ -428,7 +427,6 @@ PETSC_INTERN PetscErrorCode BodySetUpWork(Body);
 PETSC_INTERN PetscErrorCode BodyComputeStartAcceleration(Body, PetscBool, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyAddWork(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
-PETSC_INTERN PetscErrorCode BodyFindOrphans(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyFindExtrapolation(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementDofs(Body, PetscInt, PetscInt[]);
 PETSC_INTERN PetscErrorCode BodyComputeStableStep(Body);

@@ -5,22 +5,9 @@
 */
 #include <body/layout/bodyimpl.h>
 
-/*
-  BodyWholeRowsTellColumns - has the ranks that have rows, but nothing of the body itself, know the columns in which these will ever have
-  entries
-
-  Collective
-
-  Input Parameters:
-+ matrix  - rows by dofs, new
-. owner   - whether this rank has the body
-. n       - number of columns, the same on all ranks
-- columns - which they are
-
-  Note:
-  There are zeros in the first row. What ranks tell each other in products stays as it is when rows get entries in other places, and so does
-  the matrix. Assembled again, it asks no other rank.
-*/
+/* Has ranks with rows but nothing of the body itself (`owner`) know the columns in which a new matrix will ever have entries, n columns,
+   the same on all ranks: there are zeros in the first row. What ranks exchange in products stays when rows get entries in other places,
+   and so does the matrix. Assembled again, it needs no other rank. Collective. */
 PetscErrorCode BodyWholeRowsTellColumns(Mat matrix, PetscBool owner, PetscInt n, const PetscInt columns[])
 {
   PetscInt begin, end;
@@ -34,20 +21,9 @@ PetscErrorCode BodyWholeRowsTellColumns(Mat matrix, PetscBool owner, PetscInt n,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  BodyWholeRowsRenew - new room for the entries of this rank's rows
-
-  Not Collective
-
-  Input Parameters:
-+ matrix - of which all ranks know the columns
-. owner  - whether this rank has the body
-- counts - entries of each row of this rank, at most
-
-  Note:
-  A new matrix, as after a checkpoint, multiplies by groups of rows alike where it has enough of them, in the block of its own columns. One
-  that goes on is to look for them anew too: without this gaps after a checkpoint differed in the last bit.
-*/
+/* New room for at most `counts` entries of each of this rank's rows. A new matrix, as after a checkpoint, multiplies by groups of rows
+   alike in the block of its own columns; one that goes on has to look for them anew too: without this gaps after a checkpoint differed
+   in the last bit. */
 PetscErrorCode BodyWholeRowsRenew(Mat matrix, PetscBool owner, const PetscInt counts[])
 {
   PetscInt n;

@@ -9,7 +9,7 @@ const char *const BodyMassMomentsNames[] = {"total", "centre", "inertia", "BodyM
 /* The two parts that the mass matrix of one element is the sum of, before any factor, and the same for each component: lumped, by nodes,
    and consistent, nodes x nodes, or zero where the type has none. All mass is where it is; or that of contact nodes is moved to the inner
    nodes, in each part by itself: what these have is scaled to the mass of the element, with the coupling between them, so that the mass
-   does not spread along the layer. Without inner nodes nothing is left: BodyFindOrphans() finds the mass a place. */
+   does not spread along the layer. Without inner nodes nothing is left: BodyFindMassFactor() makes up for it. */
 PetscErrorCode BodyGetElementMassParts(Body body, PetscInt e, PetscBool move, PetscScalar lumped[], PetscScalar consistent[])
 {
   const PetscInt   n     = body->model.element->nodes;
@@ -58,7 +58,7 @@ static PetscReal MeanFactor(Body body, const PetscInt nodes[])
 }
 
 /* The mass matrix of one element as the body uses it, nodes x nodes, the same for each component; its full mass where the body
-   extrapolates. What elements without inner nodes have given to their neighbours is not in it. */
+   extrapolates. */
 PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
 {
   const PetscInt  n     = body->model.element->nodes;
@@ -103,20 +103,6 @@ static PetscErrorCode AssembleMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The mass of elements without inner nodes, where it has gone */
-static PetscErrorCode AddOrphans(Body body)
-{
-  PetscScalar *mass;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArray(body->mass.orphans, &mass));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) mass[i] *= body->mass.factor[i / body->mesh.dim];
-  PetscCall(VecRestoreArray(body->mass.orphans, &mass));
-  if (body->mass.diagonal) PetscCall(VecAXPY(body->mass.diagonal, 1, body->mass.orphans));
-  else PetscCall(MatDiagonalSet(body->mass.matrix, body->mass.orphans, ADD_VALUES));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Marks the massless nodes and their displacements, but those that are held */
 static PetscErrorCode SetUpLayer(Body body)
 {
@@ -148,12 +134,8 @@ PetscErrorCode BodySetUpMass(Body body)
 
   PetscFunctionBegin;
   PetscCall(SetUpLayer(body));
-  if (body->mass.redistribute && !body->mass.extrapolation && !body->mass.moved) {
-    PetscCall(BodyFindOrphans(body, NULL));
-    PetscCall(BodyFindMassFactor(body));
-  }
+  if (body->mass.redistribute && !body->mass.extrapolation && !body->mass.moved) PetscCall(BodyFindMassFactor(body, NULL));
   PetscCall(AssembleMass(body));
-  if (body->mass.orphans) PetscCall(AddOrphans(body));
   if (body->mass.redistribute && body->mass.extrapolation) PetscCall(BodyExtrapolateMass(body));
   PetscCall(BodySetUpMassProduct(body));
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));

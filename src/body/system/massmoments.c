@@ -1,10 +1,11 @@
 /*
    A body whose contact layer is massless keeps its total mass, its centre of mass and, where positive masses allow, its moments of inertia.
 
-   The mass of the layer has gone to the nodes next to the layer, which moves the centre of mass inwards. A smooth factor f(x) = 1 + p(x) on
-   the mass that is left puts the centre back, p being a polynomial and f kept above a bound. The factor acts on the lumped part of the mass
-   matrix node by node, and on the consistent part of an element, whose symmetry and sign must stay, as its mean over the element's inner
-   nodes. In a fine mesh f differs from 1 by terms of the size of the layer, so that waves do not feel the factor.
+   The mass of the layer has gone to the nodes next to the layer, which moves the centre of mass inwards, and elements all of whose nodes
+   are in the layer, as tetrahedra in corners are, have lost theirs. A smooth factor f(x) = s (1 + p(x)) on the mass that is left puts both
+   back, s being the whole mass over what is left, p a polynomial and 1 + p kept above a bound. The factor acts on the lumped part of the
+   mass matrix node by node, and on the consistent part of an element, whose symmetry and sign must stay, as its mean over the element's
+   inner nodes. In a fine mesh f differs from 1 by terms of the size of the layer, so that waves do not feel the factor.
 
    With the fields phi = (1, x, y, z), the moments of M are the products phi_a' M phi_b. Momentum and angular momentum of a rigid motion
    depend on M through these alone. The moments are sums over the nodes of f times a weight of the node. Each condition says that a moment
@@ -13,6 +14,7 @@
    but for the bounds; Newton's method solves them for the coefficients.
 */
 #include "massmoments.h"
+#include <sys/units.h>
 #include <petscblaslapack.h>
 
 /* Where moments of inertia cannot be kept anyhow, the factor stays below this: on the coarse ball of options/hertz-impact.opts a factor of
@@ -69,14 +71,15 @@ static PetscErrorCode ComputeFullMoments(const MomentsProblem *problem, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the mass at each node adds to the moments: lumped mass, its share of the consistent part of its elements, and orphans */
+/* What the mass at each node adds to the moments: lumped mass and its share of the consistent part of its elements, scaled to the whole
+   mass. Without inner nodes there is none to scale. */
 static PetscErrorCode ComputeWeights(MomentsProblem *problem)
 {
-  Body               body = problem->body;
-  const PetscInt     n = body->model.element->nodes, dim = body->mesh.dim, n_moments = problem->n_moments;
-  PetscScalar        lumped[ELEMENT_MAX_NODES], consistent[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
-  PetscReal          phi[ELEMENT_MAX_NODES][4] = {{0}};
-  const PetscScalar *orphans;
+  Body           body = problem->body;
+  const PetscInt n = body->model.element->nodes, n_moments = problem->n_moments;
+  PetscScalar    lumped[ELEMENT_MAX_NODES], consistent[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
+  PetscReal      phi[ELEMENT_MAX_NODES][4] = {{0}};
+  PetscReal      left                      = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(body->mesh.local_nodes * n_moments, &problem->weights));
@@ -100,15 +103,10 @@ static PetscErrorCode ComputeWeights(MomentsProblem *problem)
         weights[m] += share[m] + lumped[i] * phi[i][problem->pair[m][0]] * phi[i][problem->pair[m][1]] / problem->total;
     }
   }
-  if (!body->mass.orphans) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetArrayRead(body->mass.orphans, &orphans));
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    MomentsGetFields(problem, node, phi[0]);
-    for (PetscInt m = 0; m < n_moments; m++)
-      problem->weights[node * n_moments + m] += orphans[node * dim] * phi[0][problem->pair[m][0]] * phi[0][problem->pair[m][1]] /
-                                                problem->total;
-  }
-  PetscCall(VecRestoreArrayRead(body->mass.orphans, &orphans));
+  for (PetscInt node = 0; node < body->mesh.local_nodes; node++) left += problem->weights[node * n_moments];
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &left, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  problem->scale = PetscAbsReal(left - 1) <= KEPT ? 1 : left > 0 ? 1 / left : 0;
+  for (PetscInt i = 0; i < body->mesh.local_nodes * n_moments; i++) problem->weights[i] *= problem->scale;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -283,7 +281,8 @@ static PetscErrorCode EvaluateFactor(MomentsProblem *problem, const PetscReal co
     PetscReal psi[MAX_MOMENTS];
 
     MomentsGetPolynomials(problem, node, psi);
-    body->mass.factor[node] = PetscClipInterval(MomentsGetPolynomial(problem, coefficients, psi), LEAST_FACTOR, problem->most);
+    body->mass.factor[node] = problem->scale *
+                              PetscClipInterval(MomentsGetPolynomial(problem, coefficients, psi), LEAST_FACTOR, problem->most);
     if (body->layer.contains[node]) continue;
     range[0] = PetscMin(range[0], body->mass.factor[node]);
     range[1] = PetscMin(range[1], -body->mass.factor[node]);
@@ -344,19 +343,26 @@ static PetscErrorCode FindFactor(MomentsProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the factor with which the mass that is left has the moments of the full mass, where any node is massless */
-PetscErrorCode BodyFindMassFactor(Body body)
+/* Finds the factor with which the mass that is left has the moments of the full mass, where any node is massless. `less`: the part of the
+   mass that elements without inner nodes have; NULL: it is an error if they are all. */
+PetscErrorCode BodyFindMassFactor(Body body, PetscReal *less)
 {
   MomentsProblem problem = {.body = body, .most = PETSC_MAX_REAL};
   PetscBool      any     = PETSC_FALSE;
 
   PetscFunctionBegin;
+  if (less) *less = 0;
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) any = (PetscBool)(any || body->layer.contains[node]);
   PetscCall(BodyAnyRank(body, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SetUpFields(&problem));
   PetscCall(ComputeWeights(&problem));
-  PetscCall(FindFactor(&problem));
+  if (less) *less = problem.scale > 0 ? 1 - 1 / problem.scale : 1;
+  PetscCheck(problem.scale > 0 || less, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "Body '%s': %g%s of elements that have all their nodes on contact surfaces find no inner node to go to; refine the mesh, name "
+             "smaller surfaces in -contact_pairs, or leave the choice to the body: -%smass_redistribute auto",
+             body->hdr.name, (double)problem.total, UnitsOf((PetscObject)body, UNIT_MASS), ((PetscObject)body)->prefix);
+  if (problem.scale > 0) PetscCall(FindFactor(&problem));
   PetscCall(PetscFree(problem.weights));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -375,13 +381,10 @@ PetscErrorCode BodyGetInertiaChange(Body body, PetscInt n, const PetscInt vertic
   if (!vertices) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscCalloc1(body->mesh.local_nodes, &body->layer.contains));
   PetscCall(BodyMarkNodes(body, n, vertices, body->layer.contains));
-  body->mass.orphans    = NULL;
   body->mass.factor     = NULL;
   body->mass.turn_error = 0;
-  PetscCall(BodyFindOrphans(body, NULL));
-  PetscCall(BodyFindMassFactor(body));
+  PetscCall(BodyFindMassFactor(body, NULL));
   *change = body->mass.turn_error;
-  PetscCall(VecDestroy(&body->mass.orphans));
   PetscCall(PetscFree(body->mass.factor));
   PetscCall(PetscFree(body->layer.contains));
   body->mass           = mass;

@@ -9,20 +9,20 @@
 
 /* The conditions, and what they are made of */
 typedef struct {
-  Body      body;
-  PetscBool alone;                               /* this rank has all of the mass, and what is computed is its own */
-  PetscInt  n_fields, n_moments;                 /* moments: phi_a' M phi_b for a <= b */
-  PetscInt  pair[MAX_MOMENTS][2];                /* a and b of a moment */
-  PetscReal axes[3][3];                          /* of the fields of first order, axis . (x - centre) / size */
-  PetscReal centre[3], size[3];                  /* [m] */
-  PetscReal target[MAX_MOMENTS];                 /* of the full mass, over the total mass */
-  PetscReal total;                               /* the full mass [kg] */
-  PetscInt  n;                                   /* conditions */
-  PetscReal condition[MAX_MOMENTS][MAX_MOMENTS]; /* weights of the moments in each condition */
-  PetscReal softness[MAX_MOMENTS];
-  PetscReal most; /* the largest factor */
-  PetscReal
-      *weights; /* per local node, ghosts too: what this rank's elements and the orphans' mass at it add to each moment, over the total */
+  Body       body;
+  PetscBool  alone;                               /* this rank has all of the mass, and what is computed is its own */
+  PetscInt   n_fields, n_moments;                 /* moments: phi_a' M phi_b for a <= b */
+  PetscInt   pair[MAX_MOMENTS][2];                /* a and b of a moment */
+  PetscReal  axes[3][3];                          /* of the fields of first order, axis . (x - centre) / size */
+  PetscReal  centre[3], size[3];                  /* [m] */
+  PetscReal  target[MAX_MOMENTS];                 /* of the full mass, over the total mass */
+  PetscReal  total;                               /* the full mass [kg] */
+  PetscInt   n;                                   /* conditions */
+  PetscReal  condition[MAX_MOMENTS][MAX_MOMENTS]; /* weights of the moments in each condition */
+  PetscReal  softness[MAX_MOMENTS];
+  PetscReal  most;    /* the largest factor */
+  PetscReal  scale;   /* the whole mass over what the massless layer has left */
+  PetscReal *weights; /* per local node, ghosts too: what mass of this rank's elements at it adds to each moment, over the total */
 } MomentsProblem;
 
 PETSC_INTERN void           MomentsGetFields(const MomentsProblem *, PetscInt, PetscReal[4]);

@@ -272,6 +272,20 @@ static void rigid_mass(Body body, PetscReal products[MAX_RIGID][MAX_RIGID])
   ok(VecDestroy(&image));
 }
 
+/* Whether an element of any rank has no inner node, which the factor on all others makes up for */
+static PetscBool loses_elements(Body body)
+{
+  const PetscInt n    = body->model.element->nodes;
+  PetscBool      lost = PETSC_FALSE;
+
+  for (PetscInt e = 0; e < body->model.element->count && !lost; e++) {
+    lost = PETSC_TRUE;
+    for (PetscInt a = 0; a < n; a++) lost = (PetscBool)(lost && body->layer.contains[body->mesh.connectivity[e * n + a]]);
+  }
+  ok(BodyAnyRank(body, &lost));
+  return lost;
+}
+
 /* Against the body with its mass where it was: the same mass; a centre of mass and moments of inertia that are the same or have changed by
    what the body says */
 static void compare(Body moved, Body whole, PetscReal size)
@@ -284,7 +298,7 @@ static void compare(Body moved, Body whole, PetscReal size)
   ok(BodyIsRedistributed(moved, &redistributed));
   assert_true(redistributed);
   ok(BodyGetMassRedistribution(moved, &least, &largest, shift, &inertia));
-  assert_true(least >= 0.3 && least <= 1 + 1e-12 && largest >= 1 - 1e-12);
+  assert_true(least >= 0.3 && (least <= 1 + 1e-12 || loses_elements(moved)) && largest >= 1 - 1e-12);
   /* sums of some hundred terms */
   near(after.mass, before.mass, 1e-12 * before.mass);
   near(moved->mass.total, before.mass, 1e-12 * before.mass);
@@ -368,7 +382,7 @@ static void of_a_layer_is_kept(void **state)
       for (PetscInt d = 0; d <= axis; d++) near(pair.moved->mass.shift[d], 0, 0);
       if (axis == 1) near(pair.moved->mass.inertia_error, 0, 0);
       else between(pair.moved->mass.inertia_error, 1e-3, 0.2); /* measured: 0.08 to 0.15 */
-      assert_true(!pair.moved->mass.orphans);
+      assert_true(!loses_elements(pair.moved));
       pair_destroy(&pair);
     }
 }
@@ -395,15 +409,16 @@ static void check_alone(Body body, const char text[], PetscInt n_sides)
 }
 
 /* From one side to the whole boundary: then triangles in two corners, and tetrahedra along edges, have no inner node */
-static void of_elements_without_inner_nodes_goes_to_their_neighbours(void **state)
+static void of_elements_without_inner_nodes_is_kept_by_the_factor(void **state)
 {
-  PetscInt orphaned = 0;
+  PetscInt n_losing = 0;
 
   (void)state;
   for (PetscInt kind = 0; kind < KINDS; kind++)
     for (PetscInt n_sides = 1; n_sides <= 2 * kind_dim[kind]; n_sides++) {
       const PetscInt type = (kind + n_sides) % TYPES;
       char           text[1024], full[2048];
+      PetscBool      loses;
       Pair           pair;
 
       (void)snprintf(text, sizeof(text), "%s %s", kind_options(kind), kind_dim[kind] == 2 ? BOX_2D : BOX_3D);
@@ -414,13 +429,14 @@ static void of_elements_without_inner_nodes_goes_to_their_neighbours(void **stat
       check_layer(pair.moved);
       compare(pair.moved, pair.whole, 2);
       check_alone(pair.moved, full, n_sides);
-      if (pair.moved->mass.orphans) orphaned++;
+      loses = loses_elements(pair.moved);
+      n_losing += loses;
       /* corners of quadrilaterals and hexahedra are met by elements with an inner node */
-      if (kind == 0 || kind == 2) assert_true(!pair.moved->mass.orphans);
-      else if (n_sides == 2 * kind_dim[kind]) assert_true(pair.moved->mass.orphans != NULL);
+      if (kind == 0 || kind == 2) assert_true(!loses);
+      else if (n_sides == 2 * kind_dim[kind]) assert_true(loses);
       pair_destroy(&pair);
     }
-  assert_true(orphaned >= 2);
+  assert_true(n_losing >= 2);
 }
 
 /* The whole boundary is the layer: of 3 kg, the inner nodes of 3 x 2 squares or 3 x 3 x 2 cubes carry equal shares, by symmetry. Fewer of
@@ -542,7 +558,7 @@ int main(int argc, char **argv)
       cmocka_unit_test(adds_up_to_that_of_the_body),
       cmocka_unit_test(is_refused_without_a_place_to_go),
       cmocka_unit_test(of_a_layer_is_kept),
-      cmocka_unit_test(of_elements_without_inner_nodes_goes_to_their_neighbours),
+      cmocka_unit_test(of_elements_without_inner_nodes_is_kept_by_the_factor),
       cmocka_unit_test(of_all_elements_is_at_a_few_inner_nodes),
       cmocka_unit_test(is_refused_without_an_inner_node),
       cmocka_unit_test(is_refused_where_it_cannot_hold_the_layer),
