@@ -1,6 +1,7 @@
 /* What a run is to be expected to do, before it is made: bodies, elements that bound steps, steps and cost. */
 #include "controllerimpl.h"
 #include <sys/units.h>
+#include <impakt/private/bodystep.h>
 
 /* An element whose stable step is so many times shorter than the median of its body is worth a warning; it is 2.5 times in
    hertz-impact.opts, graded on purpose by 64 */
@@ -138,7 +139,7 @@ static PetscErrorCode ViewBounds(Body body, PetscViewer viewer)
 all mass where the mesh has it; of explicit bodies the elements that bound the stable step; controller steps and substeps of the run; and
 its wall time, estimated from a few substeps of each body that are tried without contact. No solution goes on from there.
 
-.seealso: `Controller`, `ControllerSolve()`, `ControllerView()`, `BodyGetStepBounds()`, `BodyMeasureSubstep()`
+.seealso: `Controller`, `ControllerSolve()`, `ControllerView()`, `BodyGetStepBounds()`
 @*/
 PetscErrorCode ControllerCheck(Controller controller, PetscViewer viewer)
 {

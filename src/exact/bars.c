@@ -1,6 +1,7 @@
 /* The two bars of an exact solution, from the initial state of the bodies. */
 #include "exactimpl.h"
 #include <sys/units.h>
+#include <impakt/private/bodystart.h>
 
 /* Bars move as a whole and undeformed if their energies are those of their mean velocity but for this part: round-off of sums over all
    nodes */

@@ -16,3 +16,4 @@ PETSC_EXTERN PetscErrorCode BodyPrescribesMass(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeInverseMass(Body, PetscBool, Mat *);
 PETSC_EXTERN PetscErrorCode BodyBoundInverseMass(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyMultiplyInverseMass(Body, const PetscScalar[], PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyGetMassRedistributeNear(Body, PetscBool *);

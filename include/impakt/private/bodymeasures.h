@@ -10,3 +10,4 @@ PETSC_EXTERN PetscErrorCode BodyGetOwnKinetic(PetscInt, const Body[], const Body
 PETSC_EXTERN PetscErrorCode BodyGetLevelEnergy(Body, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetInverted(Body, PetscReal, PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyHasHistory(Body, PetscBool *);
+PETSC_EXTERN PetscErrorCode BodyHasHourglasses(Body, PetscBool *);

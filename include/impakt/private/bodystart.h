@@ -1,4 +1,4 @@
-/* The balance of the massless layer in the first state, and loads that come suddenly there. */
+/* The balance of the massless layer in the first state, and loads. */
 #pragma once
 #include <impakt/body.h>
 
@@ -11,3 +11,4 @@ PETSC_EXTERN PetscErrorCode BodyMultiplyLayerCompliance(Body, const PetscScalar[
 PETSC_EXTERN PetscErrorCode BodyMoveLayer(Body, const PetscScalar[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyStartUnderForces(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyDescribeSuddenLoad(Body, char[BODY_SUDDEN_LENGTH]);
+PETSC_EXTERN PetscErrorCode BodyHasForces(Body, PetscBool *);

@@ -18,3 +18,4 @@ PETSC_EXTERN PetscErrorCode BodyRestore(Body);
 PETSC_EXTERN PetscErrorCode BodyStepBack(Body);
 PETSC_EXTERN PetscErrorCode BodySetStepLevel(Body, PetscInt);
 PETSC_EXTERN PetscErrorCode BodyIntegrate(Body);
+PETSC_EXTERN PetscErrorCode BodyMeasureSubstep(Body, PetscLogDouble *);

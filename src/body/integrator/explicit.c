@@ -1,17 +1,6 @@
 /* A body under central differences. */
 #include "explicitimpl.h"
 
-typedef struct {
-  LayerBalance layer;       /* NULL: no node is massless, on any rank */
-  PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
-  FrontStep    front;       /* NULL until a substep of several is made that may be made again in a part of the nodes */
-} BodyExplicit;
-
-static LayerBalance GetLayer(Body body)
-{
-  return ((BodyExplicit *)body->integrator->data)->layer;
-}
-
 /* a = (force - internal force) / m in one pass; without a force, where it is NULL */
 static PetscErrorCode DivideByMass(Body body, Vec force, Vec A)
 {
@@ -63,7 +52,7 @@ static PetscReal GetPosition(Body body)
    layer, `force` becomes them. */
 static PetscErrorCode PlaceRows(Body body, PetscReal t, Vec U, Vec force)
 {
-  const LayerBalance layer    = GetLayer(body);
+  const LayerBalance layer    = GetLayerBalance(body);
   const PetscReal    position = GetPosition(body);
 
   PetscFunctionBegin;
@@ -109,7 +98,7 @@ static PetscErrorCode Accelerate(Body body, PetscReal t, PetscBool known, Vec fo
 /* Whether the force that LayerBalanceSolve() has left is the one that acts: Robin rows have moved with the layer since */
 static PetscBool KnowsForce(Body body)
 {
-  return (PetscBool)(GetLayer(body) && !body->rows.n_robin);
+  return (PetscBool)(GetLayerBalance(body) && !body->rows.n_robin);
 }
 
 /* Whether rows get where they do whatever the elements and the end of the step bring: by the balance of the layer alone, or, on nodes with
@@ -117,7 +106,7 @@ static PetscBool KnowsForce(Body body)
 static PetscBool IsEarly(Body body)
 {
   if (((BodyExplicit *)body->integrator->data)->layer_alone) return PETSC_TRUE;
-  return (PetscBool)(body->rows.constant && body->time.substeps == 1 && !GetLayer(body) && !body->rows.n_prescribed &&
+  return (PetscBool)(body->rows.constant && body->time.substeps == 1 && !GetLayerBalance(body) && !body->rows.n_prescribed &&
                      !body->rows.n_robin && !body->unloaded);
 }
 
@@ -126,7 +115,7 @@ static PetscBool IsEarly(Body body)
 static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceGetForce(GetLayer(body), body, U, body->state.internal_force));
+  if (GetLayerBalance(body)) PetscCall(LayerBalanceGetForce(GetLayerBalance(body), body, U, body->state.internal_force));
   if (body->held.n && !body->state.incomplete) PetscCall(VecZeroEntries(A)); /* of held nodes it is not */
   else PetscCall(PetscObjectStateIncrease((PetscObject)A));
   body->state.incomplete = PETSC_TRUE;
@@ -147,48 +136,6 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
     PetscCall(LeaveIncomplete(body, U, A));
     PetscCall(TSCentralDifferenceLeaveVelocity(ts));
   } else PetscCall(Accelerate(body, t, KnowsForce(body), force, U, A));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode SetRows(Body body, const PetscMPIInt changed[])
-{
-  PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceSetRows(GetLayer(body), body, changed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Save(Body body, BodySlot slot)
-{
-  PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceSave(GetLayer(body), body, slot));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Restore(Body body, BodySlot slot)
-{
-  PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceRestore(GetLayer(body), body, slot));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Agree(Body body)
-{
-  PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceAgree(GetLayer(body), body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode VisitLayer(Body body, PetscInt level, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  if (!level && GetLayer(body)) PetscCall(LayerBalanceVisit(GetLayer(body), body, checkpoint)); /* one for all levels */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
-{
-  PetscFunctionBegin;
-  if (GetLayer(body)) PetscCall(LayerBalanceCopyPoint(GetLayer(body), body, back, point, numbers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,7 +191,7 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   const PetscReal half = 0.5 * body->time.step;
 
   PetscFunctionBegin;
-  if (!body->rows.n_prescribed && !body->rows.n_robin && !GetLayer(body)) {
+  if (!body->rows.n_prescribed && !body->rows.n_robin && !GetLayerBalance(body)) {
     PetscCall(RepeatForces(body, force, displacement));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
@@ -299,7 +246,15 @@ static PetscErrorCode SetUp(Body body)
   const PetscBool layer     = body->layer.exists;
 
   PetscFunctionBegin;
-  if (layer) PetscCall(LayerBalanceCreate(body, &explicit->layer));
+  if (layer) {
+    PetscCall(LayerBalanceCreate(body, &explicit->layer));
+    integrator->ops.setrows   = LayerBalanceSetRows;
+    integrator->ops.save      = LayerBalanceSave;
+    integrator->ops.restore   = LayerBalanceRestore;
+    integrator->ops.visit     = LayerBalanceVisit;
+    integrator->ops.agree     = LayerBalanceAgree;
+    integrator->ops.copypoint = LayerBalanceCopyPoint;
+  }
   integrator->answers_by_layer = (PetscBool)(layer && body->time.substeps == 1 && (body->rows.global || body->rows.expected) &&
                                              !body->rows.have_mass && !body->rows.tied_mass);
   /* dashpots of a nonlinear body act by where the layer is, and by its velocity at mid-step */
@@ -348,13 +303,7 @@ PetscErrorCode BodyIntegratorCreate_Explicit(BodyIntegrator integrator)
   integrator->staggered         = 0.25;
   integrator->affine            = PETSC_TRUE;
   integrator->ops.setup         = SetUp;
-  integrator->ops.setrows       = SetRows;
   integrator->ops.finishsubstep = FinishSubstep;
-  integrator->ops.save          = Save;
-  integrator->ops.restore       = Restore;
-  integrator->ops.visit         = VisitLayer;
-  integrator->ops.agree         = Agree;
-  integrator->ops.copypoint     = CopyPoint;
   integrator->ops.destroy       = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,6 +6,17 @@ typedef struct _n_LayerBalance *LayerBalance;
 typedef struct _n_LayerRows    *LayerRows;
 typedef struct _n_FrontStep    *FrontStep;
 
+typedef struct {
+  LayerBalance layer;       /* NULL: no node is massless, on any rank */
+  PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
+  FrontStep    front;       /* NULL until a substep of several is made that may be made again in a part of the nodes */
+} BodyExplicit;
+
+static inline LayerBalance GetLayerBalance(Body body)
+{
+  return ((BodyExplicit *)body->integrator->data)->layer;
+}
+
 PETSC_INTERN PetscErrorCode LayerRowsCreate(Body, IS, LayerRows *);
 PETSC_INTERN PetscErrorCode LayerRowsUpdate(LayerRows, Body);
 PETSC_INTERN Mat            LayerRowsGetMatrix(LayerRows);
@@ -13,14 +24,14 @@ PETSC_INTERN PetscErrorCode LayerRowsDestroy(LayerRows *);
 
 PETSC_INTERN PetscErrorCode LayerBalanceCreate(Body, LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceDestroy(LayerBalance *);
-PETSC_INTERN PetscErrorCode LayerBalanceSetRows(LayerBalance, Body, const PetscMPIInt[]);
+PETSC_INTERN PetscErrorCode LayerBalanceSetRows(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode LayerBalanceSolve(LayerBalance, Body, PetscReal, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode LayerBalanceGetForce(LayerBalance, Body, Vec, Vec);
-PETSC_INTERN PetscErrorCode LayerBalanceSave(LayerBalance, Body, BodySlot);
-PETSC_INTERN PetscErrorCode LayerBalanceRestore(LayerBalance, Body, BodySlot);
-PETSC_INTERN PetscErrorCode LayerBalanceAgree(LayerBalance, Body);
-PETSC_INTERN PetscErrorCode LayerBalanceVisit(LayerBalance, Body, Checkpoint);
-PETSC_INTERN PetscErrorCode LayerBalanceCopyPoint(LayerBalance, Body, PetscBool, Vec, PetscReal[2]);
+PETSC_INTERN PetscErrorCode LayerBalanceSave(Body, BodySlot);
+PETSC_INTERN PetscErrorCode LayerBalanceRestore(Body, BodySlot);
+PETSC_INTERN PetscErrorCode LayerBalanceAgree(Body);
+PETSC_INTERN PetscErrorCode LayerBalanceVisit(Body, PetscInt, Checkpoint);
+PETSC_INTERN PetscErrorCode LayerBalanceCopyPoint(Body, PetscBool, Vec, PetscReal[2]);
 PETSC_INTERN PetscErrorCode FrontStepDestroy(FrontStep *);
 PETSC_INTERN PetscErrorCode FrontStepMake(FrontStep *, Body);
 PETSC_INTERN PetscErrorCode FrontStepNote(FrontStep, Body, Vec, Vec);

@@ -101,9 +101,10 @@ static PetscErrorCode RefactorAt(LayerBalance layer, Body body, Vec u)
 }
 
 /* The state of the body has been put aside. That of an accepted step is where slow factors are made anew, for all that starts there. */
-PetscErrorCode LayerBalanceSave(LayerBalance layer, Body body, BodySlot slot)
+PetscErrorCode LayerBalanceSave(Body body, BodySlot slot)
 {
-  Factors *aside = &layer->aside[slot];
+  LayerBalance layer = GetLayerBalance(body);
+  Factors     *aside = &layer->aside[slot];
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
@@ -116,9 +117,10 @@ PetscErrorCode LayerBalanceSave(LayerBalance layer, Body body, BodySlot slot)
 }
 
 /* How good the factors of a local body are its rank alone knows; before all ranks have rows to hold, they all do */
-PetscErrorCode LayerBalanceAgree(LayerBalance layer, Body body)
+PetscErrorCode LayerBalanceAgree(Body body)
 {
-  PetscInt told[3 + 2 * BODY_SLOTS];
+  LayerBalance layer = GetLayerBalance(body);
+  PetscInt     told[3 + 2 * BODY_SLOTS];
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
@@ -142,8 +144,9 @@ PetscErrorCode LayerBalanceAgree(LayerBalance layer, Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode LayerBalanceRestore(LayerBalance layer, Body body, BodySlot slot)
+PetscErrorCode LayerBalanceRestore(Body body, BodySlot slot)
 {
+  LayerBalance   layer = GetLayerBalance(body);
   const Factors *aside = &layer->aside[slot];
 
   PetscFunctionBegin;
@@ -265,8 +268,10 @@ PetscErrorCode LayerBalanceGetForce(LayerBalance layer, Body body, Vec u, Vec fo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode LayerBalanceSetRows(LayerBalance layer, Body body, const PetscMPIInt changed[])
+PetscErrorCode LayerBalanceSetRows(Body body, const PetscMPIInt changed[])
 {
+  LayerBalance layer = GetLayerBalance(body);
+
   PetscFunctionBegin;
   PetscCall(LayerRowsUpdate(layer->rows, body));
   PetscCall(ConstrainedSolverSetRows(body->solver, LayerRowsGetMatrix(layer->rows), changed));
@@ -333,8 +338,10 @@ static PetscErrorCode TakeFactors(LayerBalance layer, Body body, PetscBool other
 
 /* For a checkpoint that is continued on another number of ranks: where the factors were made, on the nodes of the body near the layer, and
    their number, 0 for those of the undeformed layer, and the rounds of the last balance with them; or back */
-PetscErrorCode LayerBalanceCopyPoint(LayerBalance layer, Body body, PetscBool back, Vec point, PetscReal numbers[2])
+PetscErrorCode LayerBalanceCopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
 {
+  LayerBalance layer = GetLayerBalance(body);
+
   PetscFunctionBegin;
   if (back) {
     layer->n_made = layer->now.number = (PetscInt)numbers[0];
@@ -353,12 +360,13 @@ PetscErrorCode LayerBalanceCopyPoint(LayerBalance layer, Body body, PetscBool ba
 }
 
 /* State for a checkpoint: where the factors of a nonlinear layer were made */
-PetscErrorCode LayerBalanceVisit(LayerBalance layer, Body body, Checkpoint checkpoint)
+PetscErrorCode LayerBalanceVisit(Body body, PetscInt level, Checkpoint checkpoint)
 {
+  LayerBalance   layer  = GetLayerBalance(body);
   const PetscInt before = layer->now.number;
 
   PetscFunctionBegin;
-  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  if (level || body->model.linear) PetscFunctionReturn(PETSC_SUCCESS); /* one for all levels */
   PetscCall(CheckpointVisitInts(checkpoint, "layer factors", 1, &layer->n_made));
   PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.number));
   PetscCall(CheckpointVisitInts(checkpoint, "layer rounds", 1, &layer->now.rounds));

@@ -226,26 +226,10 @@ PetscErrorCode BodySetInitialVelocity(Body body, const PetscReal velocity[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyHasForces - whether forces from outside act on a body: tractions, body forces, or gravity
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. has - whether there are any; contact is none of them
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyAddTraction()`, `BodyAddBodyForce()`, `BodySetGravity()`
-@*/
+/* Whether tractions, body forces or gravity act on a body that is set up */
 PetscErrorCode BodyHasForces(Body body, PetscBool *has)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(has, 2);
   PetscCall(BodyLoadsHaveForce(body, has));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -286,26 +286,10 @@ PetscErrorCode BodySetMassRedistribute(Body body, PetscBool redistribute)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetMassRedistributeNear - whether contact nodes that face nothing at the start keep their mass
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`
-
-  Output Parameter:
-. near - `PETSC_TRUE` if so; `PETSC_FALSE` also where no mass is moved
-
-  Level: intermediate
-
-.seealso: `Body`, `BodySetMassRedistribute()`
-@*/
+/* Whether contact nodes that face nothing at the start keep their mass while that of others moves */
 PetscErrorCode BodyGetMassRedistributeNear(Body body, PetscBool *near)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(near, 2);
   *near = (PetscBool)(body->mass.redistribute && body->mass.near);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

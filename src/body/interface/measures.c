@@ -39,26 +39,10 @@ static PetscErrorCode ComputeHourglassEnergy(Body body, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyHasHourglasses - whether the elements of a body have displacements that their points do not see, and a stiffness that holds them
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. hourglasses - `PETSC_TRUE` for elements of the formulation `ELEMENT_REDUCED`
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyMeasures`
-@*/
+/* Whether the elements have displacements that their points do not see, and a stiffness that holds them: those of ELEMENT_REDUCED */
 PetscErrorCode BodyHasHourglasses(Body body, PetscBool *hourglasses)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(hourglasses, 2);
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   *hourglasses = (PetscBool)(body->model.element->ops->hourglass != NULL && body->integrator->deforms);
   PetscFunctionReturn(PETSC_SUCCESS);

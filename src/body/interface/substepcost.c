@@ -7,27 +7,9 @@
 #define TRIALS  5
 #define SECONDS 0.5
 
-/*@
-  BodyMeasureSubstep - how long a substep of the body takes, tried from its saved state without contact
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. seconds - wall time of a substep on this rank [s]
-
-  Level: advanced
-
-  Notes:
-  The body has its saved state again afterwards, and its rows are free. A substep that fails, as one may whose loads contact is to bear, has
-  taken its time all the same.
-
-  The first call of an integrator makes what it needs once. So there are several, of which the fastest counts, unless they take long.
-
-.seealso: `Body`, `BodyGetSubsteps()`, `BodyIntegrate()`
-@*/
+/* Wall time of a substep on this rank, tried from the saved state without contact: the fastest of several unless they take long, since
+   the first call of an integrator makes what it needs once [s]. A substep that fails, whose loads contact may have to bear, counts too.
+   The body has its saved state again afterwards, with free rows. Collective. */
 PetscErrorCode BodyMeasureSubstep(Body body, PetscLogDouble *seconds)
 {
   MPI_Comm       comm     = PetscObjectComm((PetscObject)body);
@@ -36,8 +18,6 @@ PetscErrorCode BodyMeasureSubstep(Body body, PetscLogDouble *seconds)
   BodyCondition *conditions;
 
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(seconds, 2);
   PetscCheck(body->setup, comm, PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   PetscCall(PetscMalloc1(body->rows.local, &conditions));
   for (PetscInt i = 0; i < body->rows.local; i++) conditions[i] = BODY_FREE;

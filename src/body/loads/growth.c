@@ -1,11 +1,8 @@
-/* Loads that come suddenly, at the start of a run, and formulas that let them grow. */
+/* Loads that come suddenly, at the start of a run, and a factor that lets them grow. */
 #include "loadsimpl.h"
-#include <stdlib.h>
 
-/* Controller steps over which such a formula lets a load grow; a step that fails later does not fail for it */
+/* Controller steps over which such a factor lets a load grow; a step that fails later does not fail for it */
 #define STEPS 10
-/* Of the text of such a formula */
-#define LENGTH 320
 
 /* Whether a component is not zero at the start, whatever the place. One that depends on time and place is taken to grow. */
 static PetscErrorCode IsSudden(Expression component, PetscReal start, PetscBool *sudden)
@@ -24,86 +21,44 @@ static PetscErrorCode IsSudden(Expression component, PetscReal start, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a formula to a list, times a factor that grows from 0 at the start to 1 if it is sudden */
-static PetscErrorCode AddFormula(Body body, const char formula[], PetscBool sudden, char list[LENGTH])
+/* The option of the first of the components that is sudden, but for a table, which cannot stand in a formula; else as it was */
+static PetscErrorCode FindSudden(Body body, const Expression components[], const char *option[])
 {
-  const double start = (double)body->time.start, duration = (double)(STEPS * body->time.whole_step);
-  char         piece[LENGTH], from[32]                    = "t", *end;
-
   PetscFunctionBegin;
-  (void)strtod(formula, &end);
-  if (start != 0) PetscCall(PetscSNPrintf(from, sizeof(from), "(t%+.9g)", -start));
-  if (!sudden) PetscCall(PetscSNPrintf(piece, sizeof(piece), "%s%s", list[0] ? "," : "", formula));
-  else
-    PetscCall(PetscSNPrintf(piece, sizeof(piece), "%s%s%s%s*min(1,%s/%.4g)", list[0] ? "," : "", *end ? "(" : "", formula, *end ? ")" : "",
-                            from, duration));
-  PetscCall(PetscStrlcat(list, piece, LENGTH));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* "-left_boundary_traction_xmax -1e5*min(1,t/0.001),0" where any of the components is sudden, else nothing; of a table neither, which
-   cannot stand in a formula */
-static PetscErrorCode DescribeFormulas(Body body, const Expression components[], char text[BODY_SUDDEN_LENGTH])
-{
-  const char *option       = NULL;
-  char        list[LENGTH] = "";
-  PetscBool   any = PETSC_FALSE, table = PETSC_FALSE;
-  size_t      length;
-
-  PetscFunctionBegin;
-  for (PetscInt d = 0; d < body->mesh.dim; d++) {
-    const char *formula = "free";
-    PetscBool   sudden;
+  for (PetscInt d = 0; d < body->mesh.dim && !*option; d++) {
+    const char *formula;
+    PetscBool   sudden, table = PETSC_FALSE;
 
     PetscCall(IsSudden(components[d], body->time.start, &sudden));
-    if (components[d]) PetscCall(ExpressionGetOption(components[d], &option));
-    if (components[d]) PetscCall(ExpressionGetText(components[d], &formula));
-    PetscCall(AddFormula(body, formula, sudden, list));
-    any = (PetscBool)(any || sudden);
-    if (sudden && !table) PetscCall(PetscStrbeginswith(formula, "table:", &table));
+    if (!sudden) continue;
+    PetscCall(ExpressionGetText(components[d], &formula));
+    PetscCall(PetscStrbeginswith(formula, "table:", &table));
+    if (!table) PetscCall(ExpressionGetOption(components[d], option));
   }
-  PetscCall(PetscStrlen(list, &length));
-  if (any && !table && length + 1 < LENGTH) PetscCall(PetscSNPrintf(text, BODY_SUDDEN_LENGTH, "-%s %s", option, list));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gravity takes no formula: a force in the volume of a static body with one material. Bodies with inertia fall as they are to. */
-static PetscErrorCode DescribeGravity(Body body, char text[BODY_SUDDEN_LENGTH])
-{
-  const char *prefix       = ((PetscObject)body)->prefix;
-  char        list[LENGTH] = "", number[32];
-  PetscReal   density;
-
-  PetscFunctionBegin;
-  if (!body->loads->has_gravity || body->integrator->has_inertia || body->model.blocks.n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MaterialGetDensity(body->model.material, &density));
-  for (PetscInt d = 0; d < body->mesh.dim; d++) {
-    const PetscReal force = density * body->loads->gravity[d];
-
-    PetscCall(PetscSNPrintf(number, sizeof(number), "%.9g", (double)force));
-    PetscCall(AddFormula(body, force == 0 ? "0" : number, (PetscBool)(force != 0), list));
-  }
-  PetscCall(PetscSNPrintf(text, BODY_SUDDEN_LENGTH, "-%sbody_force %s in place of -%sgravity", prefix, list, prefix));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A remedy where a step fails soon after the start: "A load comes suddenly: ..." with an option whose formula lets it grow; empty where
-   no load or prescribed displacement is there at once, or after the first ten controller steps */
+/* A remedy where a step fails soon after the start: "A load comes suddenly: ..." with a factor that lets it grow, and its option; empty
+   where no load or prescribed displacement is there at once, or after the first ten controller steps. Gravity takes no formula: a force in
+   the volume of a static body does. Bodies with inertia fall as they are to. */
 PetscErrorCode BodyDescribeSuddenLoad(Body body, char text[BODY_SUDDEN_LENGTH])
 {
-  const struct _BodyLoads *loads                      = body->loads;
-  const PetscReal          since                      = body->saved.time - body->time.start;
-  char                     remedy[BODY_SUDDEN_LENGTH] = "";
+  const struct _BodyLoads *loads  = body->loads;
+  const char              *prefix = ((PetscObject)body)->prefix, *option = NULL;
+  const double             start = (double)body->time.start, duration = (double)(STEPS * body->time.whole_step);
+  char                     time[32] = "t", of[256];
 
   PetscFunctionBegin;
   text[0] = 0;
-  if (!loads || !(since < STEPS * body->time.whole_step)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < loads->n_loads && !remedy[0]; i++) PetscCall(DescribeFormulas(body, loads->loads[i].component, remedy));
-  for (PetscInt i = 0; i < loads->n_prescribed && !remedy[0]; i++)
-    PetscCall(DescribeFormulas(body, loads->prescribed[i].component, remedy));
-  if (!remedy[0]) PetscCall(DescribeGravity(body, remedy));
-  if (!remedy[0]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(
-      PetscSNPrintf(text, BODY_SUDDEN_LENGTH, "A load comes suddenly: let it grow, as over %d controller steps by %s", STEPS, remedy));
+  if (!loads || !(body->saved.time - body->time.start < STEPS * body->time.whole_step)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt i = 0; i < loads->n_loads; i++) PetscCall(FindSudden(body, loads->loads[i].component, &option));
+  for (PetscInt i = 0; i < loads->n_prescribed; i++) PetscCall(FindSudden(body, loads->prescribed[i].component, &option));
+  if (option) PetscCall(PetscSNPrintf(of, sizeof(of), "-%s", option));
+  else if (!loads->has_gravity || body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
+  else PetscCall(PetscSNPrintf(of, sizeof(of), "-%sbody_force, of density times -%sgravity in place of that", prefix, prefix));
+  if (start != 0) PetscCall(PetscSNPrintf(time, sizeof(time), "(t%+.9g)", -start));
+  PetscCall(PetscSNPrintf(text, BODY_SUDDEN_LENGTH,
+                          "A load comes suddenly: let it grow, as over %d controller steps by a factor of min(1,%s/%.4g) in %s", STEPS,
+                          time, duration, of));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,6 +7,7 @@
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 #include <impakt/private/bodystep.h>
+#include <impakt/private/bodymass.h>
 
 /* Up to so many pairs of bodies that the program has chosen all of them are there all the time */
 #define MANY_PAIRS 100

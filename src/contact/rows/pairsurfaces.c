@@ -1,6 +1,7 @@
 /* The surfaces of a pair, which of their nodes may touch, and the transfer between them. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
+#include <impakt/private/bodymass.h>
 
 /* A surface of a body; `name` NULL: the whole of it */
 PetscErrorCode ContactCreateSurface(Contact contact, PetscInt body, const char name[], Surface *surface)
