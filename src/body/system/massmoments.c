@@ -358,12 +358,12 @@ PetscErrorCode BodyFindMassFactor(Body body, PetscReal *less)
   PetscCall(SetUpFields(&problem));
   PetscCall(ComputeWeights(&problem));
   if (less) *less = problem.scale > 0 ? 1 - 1 / problem.scale : 1;
+  if (problem.scale > 0) PetscCall(FindFactor(&problem));
+  PetscCall(PetscFree(problem.weights));
   PetscCheck(problem.scale > 0 || less, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "Body '%s': %g%s of elements that have all their nodes on contact surfaces find no inner node to go to; refine the mesh, name "
              "smaller surfaces in -contact_pairs, or leave the choice to the body: -%smass_redistribute auto",
              body->hdr.name, (double)problem.total, UnitsOf((PetscObject)body, UNIT_MASS), ((PetscObject)body)->prefix);
-  if (problem.scale > 0) PetscCall(FindFactor(&problem));
-  PetscCall(PetscFree(problem.weights));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
