@@ -159,7 +159,7 @@ PetscErrorCode BodySetThickness(Body body, PetscReal thickness)
 
   Level: intermediate
 
-.seealso: `Body`, `BodySetAxisymmetric()`
+.seealso: `Body`, `ElementSetAxisymmetric()`
 @*/
 PetscErrorCode BodyGetAxisymmetric(Body body, PetscBool *axisymmetric)
 {
