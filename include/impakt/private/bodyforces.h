@@ -19,6 +19,7 @@ typedef enum { BODY_FORCE_LINEAR, BODY_FORCE_CONSTANT } BodyForceShape;
 typedef enum { BODY_AT_START, BODY_AT_END } BodyStepSide;
 
 PETSC_EXTERN PetscErrorCode BodySetStartForce(Body, const PetscScalar[], const PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyDropStartForce(Body);
 PETSC_EXTERN PetscErrorCode BodySetConstantForces(Body, PetscInt, const PetscInt[], const PetscReal[], const PetscReal[],
                                                   const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyEndConstantForces(Body, const PetscScalar[], const PetscScalar[]);

@@ -46,20 +46,12 @@ static PetscErrorCode CopyAnswering(Body body, Vec from, Vec to)
 }
 
 /* Lets the controller step begin with contact forces that exceed those at the end of the last step by `force` along each row [N], until
-   BodySave(); NULL: with those again. The body goes back to the saved state, whose acceleration becomes that under the new forces, with
+   BodySave() or BodyDropStartForce(). The body goes back to the saved state, whose acceleration becomes that under the new forces, with
    the massless layer in balance. `rest`: the part that remains of forces handed over, see BodyHandOver(); NULL: all. A static body has
    no acceleration and stays. Collective. */
 PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const PetscReal rest[])
 {
   PetscFunctionBegin;
-  if (!force) {
-    if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
-    PetscCall(BodySetHandoverRest(body, NULL));
-    body->start.changed = PETSC_FALSE;
-    PetscCall(BodyRestore(body));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->start.changed && body->state.step == body->saved.step && BodyAnswersByNodes(body) && !BodyHandsOver(body) &&
       BodyNearRowsAreZero(body, force))
@@ -81,6 +73,18 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const Pet
   PetscCall(BodySetHandoverRest(body, rest));
   PetscCall(ComputeChange(body, force, body->state.a));
   PetscCall(VecAXPY(body->saved.a, 1, body->state.a));
+  PetscCall(BodyRestore(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Lets the controller step begin with the contact forces that the last one ended with. Collective. */
+PetscErrorCode BodyDropStartForce(Body body)
+{
+  PetscFunctionBegin;
+  if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
+  PetscCall(BodySetHandoverRest(body, NULL));
+  body->start.changed = PETSC_FALSE;
   PetscCall(BodyRestore(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

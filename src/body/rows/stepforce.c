@@ -5,7 +5,7 @@
 */
 #include "complianceimpl.h"
 
-/* Lets forces [N] act along the forced rows throughout the controller step, until the next call, BodySave() or BodySetStartForce().
+/* Lets forces [N] act along the forced rows throughout the controller step, until the next call, BodySave() or BodyDropStartForce().
    `rows`: the near rows that may have a force now or had one in the last call; `last`: forces at the end of the last step along the
    present rows; `none`: zeros for each row. Forces along former rows, see BodyHandOver(), are gone. Collective. */
 PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[], const PetscReal force[], const PetscReal last[],

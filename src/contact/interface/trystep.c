@@ -100,7 +100,7 @@ PetscErrorCode ContactStepBack(Contact contact)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(BodySetStartForce(contact->bodies[b], NULL, NULL));
+    PetscCall(BodyDropStartForce(contact->bodies[b]));
     PetscCall(BodyStepBack(contact->bodies[b]));
   }
   if (contact->energy.changed) PetscCall(PetscArraycpy(contact->start.force, contact->energy.last_force, contact->rows.n));

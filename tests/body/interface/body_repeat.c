@@ -213,7 +213,7 @@ static void check_constant_forces(const char more[])
     set_constant(body, &rows, k, 1e-3);
     ok(BodyCompleteStep(body, NULL));
     note_end(body, &end);
-    ok(BodySetStartForce(body, NULL, NULL));
+    ok(BodyDropStartForce(body));
     expect_same(body, &start, k, "constant forces");
     set_constant(body, &rows, k, 1e-3);
     ok(BodyCompleteStep(body, NULL));
