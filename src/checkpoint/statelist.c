@@ -51,10 +51,8 @@ PetscErrorCode StateListCopy(const StateList *list, PetscBool back, PetscReal as
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the arrays which[0] to which[1] - 1, of one number for each node or row, of some of these aside, where all have been put before: of
-   `n` numbers every `stride`-th */
-void StateListSaveSome(const StateList *list, const PetscInt which[2], PetscInt n, const PetscInt some[], PetscInt stride,
-                       PetscReal aside[])
+/* Puts the arrays which[0] to which[1] - 1, of one number for each node or row, of some of these aside, where all have been put before */
+void StateListSaveSome(const StateList *list, const PetscInt which[2], PetscInt n, const PetscInt some[], PetscReal aside[])
 {
   StateArray places[STATE_ARRAYS];
 
@@ -62,8 +60,8 @@ void StateListSaveSome(const StateList *list, const PetscInt which[2], PetscInt 
   for (PetscInt k = which[0]; k < which[1]; k++) {
     const StateArray *own = &list->arrays[k];
 
-    for (PetscInt j = 0; j < n && own->reals; j += stride) places[k].reals[some[j]] = own->reals[some[j]];
-    for (PetscInt j = 0; j < n && own->bools; j += stride) places[k].bools[some[j]] = own->bools[some[j]];
+    for (PetscInt j = 0; j < n && own->reals; j++) places[k].reals[some[j]] = own->reals[some[j]];
+    for (PetscInt j = 0; j < n && own->bools; j++) places[k].bools[some[j]] = own->bools[some[j]];
   }
 }
 

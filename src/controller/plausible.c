@@ -97,7 +97,8 @@ static PetscErrorCode FindSizeOption(Body body, const char prefix[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which of a body's density, Young's modulus, gravity and size are implausible in the units of -units */
+/* Which of a body's density, Young's modulus, gravity and size are implausible in the units of -units. `text`: option, value and the
+   unit that it would fit; empty where all is plausible; `box`: see BodyGetAllBoxes() */
 PetscErrorCode BodyDoubtUnits(Body body, const PetscReal box[6], char text[DOUBT_SIZE])
 {
   const Material *of_blocks;

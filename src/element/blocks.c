@@ -31,7 +31,8 @@ PetscInt ElementHistorySlot(Element element, PetscInt e)
   return blocks ? blocks->first_slot[blocks->block[e]] + blocks->local[e] : e;
 }
 
-/* Gives elements several materials, before ElementSetUp() */
+/* Gives elements several materials, before ElementSetUp(). `materials`: n, one for each block; `block`: that of each of the `count`
+   elements of this rank */
 PetscErrorCode ElementSetBlocks(Element element, PetscInt n, const Material materials[], PetscInt count, const PetscInt block[])
 {
   ElementBlocks blocks;
@@ -339,8 +340,9 @@ PetscErrorCode ElementWarnOfLockingBlocks(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Some of the elements of another set, with nodes of their own, on this rank alone. `elements`: their numbers there; `NULL`: the first
-   ones; `connectivity`: numbers of their nodes; kept by reference; `coordinates`: of the nodes [m]; kept by reference */
+/* Some of the elements of another set, with nodes of their own, on this rank alone. `linearized`: with the materials of
+   MaterialLinearize(); `elements`: their numbers there; `NULL`: the first ones; `connectivity`: numbers of their nodes; kept by reference;
+   `coordinates`: of the nodes [m]; kept by reference */
 PetscErrorCode ElementCreateSelection(Element element, PetscBool linearized, PetscInt count, const PetscInt elements[],
                                       const PetscInt connectivity[], const PetscReal coordinates[], Element *selection)
 {

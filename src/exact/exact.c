@@ -59,7 +59,8 @@ PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The exact solution at one time. `time`: any time of the run [s]; at a jump, or within round-off of one, the value before it is given */
+/* The exact solution at one time. `side`: 0 for the bar on the Dirichlet side, 1 for its partner; `time`: any time of the run [s]; at a
+ * jump, or within round-off of one, the value before it is given */
 PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSolution *solution)
 {
   PetscFunctionBegin;

@@ -134,7 +134,8 @@ static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Opens a checkpoint and makes sure that it is whole. Collective */
+/* Opens a checkpoint and makes sure that it is whole. `option`: for messages, has to outlive the file. End with CheckpointFileClose().
+   Collective */
 PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char option[], const char path[], CheckpointFile *checkpoint)
 {
   PetscErrorCode error = PETSC_SUCCESS;

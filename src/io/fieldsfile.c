@@ -169,7 +169,7 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, Units units
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes a file with a place for everything */
+/* Makes a file with a place for everything. One rank calls it. */
 PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, FieldsSet set, PetscInt n_frames, OutputPrecision precision,
                                 const char options[])
 {
@@ -199,7 +199,7 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Field
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many frames a file has places for */
+/* How many frames a file has places for; 0 where there is no file of fields. One rank calls it. */
 PetscErrorCode FieldsFileCount(const char path[], PetscInt *n_frames)
 {
   HDF5Silence silence;
@@ -220,8 +220,8 @@ PetscErrorCode FieldsFileCount(const char path[], PetscInt *n_frames)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Leaves the first frames of a file, and has the others count as not there yet. `times`: their times, and not-a-number for the others
-   [s]; n_frames numbers */
+/* Leaves the first frames of a file, and has the others count as not there yet. `n_frames`: that the file has places for; `written`: how
+   many stay, an error if there are fewer; `times`: theirs, and not-a-number for the others [s]; n_frames numbers. One rank calls it. */
 PetscErrorCode FieldsFileCut(const char path[], PetscInt n_frames, PetscInt written, PetscReal times[])
 {
   hsize_t  has = 0;

@@ -167,7 +167,9 @@ PetscErrorCode FieldsObstaclesCheckPath(Contact contact, const char fields[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces of all obstacles that can be seen in the space of the bodies. Collective */
+/* Surfaces of all obstacles that can be seen in the space of the bodies. `grids`: n of them, to be freed; `contact` must outlive them.
+ * Collective
+ */
 PetscErrorCode FieldsObstaclesFind(Contact contact, PetscInt n_bodies, const Body bodies[], PetscInt *n, ObstacleGrid *grids[])
 {
   PetscReal centre[3], diagonal = 0;

@@ -45,7 +45,7 @@ static int TryToWrite(const char path[], const char part[])
   return 0;
 }
 
-/* The name under which a file is written until it is whole */
+/* The name under which a file is written until it is whole. One rank calls it. */
 PetscErrorCode OutputFileGetPart(const char path[], size_t size, char part[])
 {
   char   resolved[PETSC_MAX_PATH_LEN];

@@ -18,7 +18,8 @@ static size_t FolderLength(const char path[])
   return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* The path of the file itself where a path is a symbolic link: what is written goes through the link */
+/* The path of the file itself where a path is a symbolic link: what is written goes through the link. One rank calls it.
+ */
 PetscErrorCode OutputPathResolve(const char path[], size_t size, char resolved[])
 {
   char target[PETSC_MAX_PATH_LEN];

@@ -172,7 +172,7 @@ static PetscErrorCode WriteList(const char part[], void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Writes the XDMF file of an HDF5 file of fields, replacing what is there as a whole. `times`: their times [s] */
+/* Writes the XDMF file of an HDF5 file of fields, replacing what is there as a whole. `times`: their times [s]. One rank calls it. */
 PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, FieldsSet set, OutputPrecision precision, PetscInt n_frames,
                          const PetscReal times[])
 {
@@ -223,7 +223,7 @@ static PetscErrorCode WriteObstacles(const char part[], void *ctx)
 }
 
 /* Writes the XDMF file of the obstacles, replacing what is there as a whole. `time`: of the first frame: readers want one, and another
-   would be a frame of its own in ParaView [s] */
+   would be a frame of its own in ParaView [s]. One rank calls it. */
 PetscErrorCode XdmfWriteObstacles(const char fields[], PetscInt n, const ObstacleGrid grids[], PetscReal time)
 {
   ObstacleList list = {FileName(fields), n, grids, time};

@@ -104,7 +104,8 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
 + -<body>_material_type (linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook) - the constitutive model
 . -<body>_density rho                                                       - mass density [kg/m^3], required
 . -<body>_youngs_modulus E                                                  - of these models, at zero strain [Pa], required
-- -<body>_poissons_ratio (0)                                                - of these models, at zero strain; between -1 and 0.5
+. -<body>_poissons_ratio (0)                                                - of these models, at zero strain; between -1 and 0.5
+- -<body>_yield_stress, -<body>_hardening..., -<body>_mooney_rivlin_share, ... - constants of single models: impakt -help materials
 
   Level: beginner
 

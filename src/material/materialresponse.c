@@ -32,7 +32,8 @@ PetscErrorCode MaterialGetWaveModulus(Material material, PetscReal *modulus)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the body is a thin plate in its plane, free of stress across it */
+/* Whether the body is a thin plate in its plane, free of stress across it; else the displacement gradient is taken as given: plane strain
+   where its third row and column vanish */
 PetscErrorCode MaterialSetPlaneStress(Material material, PetscBool plane_stress)
 {
   PetscFunctionBegin;

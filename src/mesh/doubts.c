@@ -241,7 +241,7 @@ static PetscErrorCode Tell(const MeshFile *file, const char where[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Warns of elements that overlap, and of a mesh in pieces; in one dimension these are errors */
+/* Warns of elements that overlap, and of a mesh in pieces; in one dimension these are errors. The first rank calls it. */
 PetscErrorCode MeshFileDoubt(const MeshFile *file, const char where[])
 {
   PetscInt   n, overlaps, pair[2] = {0}, pieces, doubles, corners = 0;

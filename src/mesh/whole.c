@@ -83,7 +83,8 @@ PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal cent
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether options leave it open how a mesh is divided among ranks, or ask for it to be whole */
+/* Whether options leave it open how a mesh is divided among ranks, or ask for it to be whole. `may`: no option asks for a division, or says
+   which ranks have the mesh; `asks`: -<body>_mesh_division whole, and no option says which rank has it */
 PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may, PetscBool *asks)
 {
   static const char *const options[]   = {"-petscpartitioner_type", "-dm_distribute", "-dm_distribute_overlap", "-mesh_contact_surfaces",

@@ -82,9 +82,7 @@ static PetscErrorCode DestroyRows(ConstrainedSolver s)
   PetscCall(PetscFree(s->changes));
   PetscCall(PetscFree3(s->gathered, s->force, s->used));
   PetscCall(PetscFree2(s->counts, s->offsets));
-  PetscCall(MatDestroy(&s->dense_W));
-  PetscCall(VecDestroy(&s->gaps));
-  PetscCall(VecDestroy(&s->forces));
+  PetscCall(PetscFree2(s->W, s->pivots));
   PetscCall(KSPDestroy(&s->iterative));
   PetscCall(VecDestroy(&s->force_vec));
   PetscCall(VecDestroy(&s->gap_vec));

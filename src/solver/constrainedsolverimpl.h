@@ -20,13 +20,14 @@ struct _n_ConstrainedSolver {
   Vec       *columns; /* per row: A^{-1} B^T e, or NULL until needed */
   PetscBool *fresh;   /* per row: its column is there, with A and B as they are */
   /* a dense matrix for the constraint forces */
-  PetscBool    dense;            /* its factors are there */
-  PetscBool    must_factor;      /* conjugate gradients have not converged, see Iterate() */
-  Mat          dense_W;          /* LU factors of W_mm, the same on every rank */
-  Vec          gaps, forces;     /* as the following, of constrained rows */
-  PetscScalar *gathered, *force; /* of constrained rows, on every rank */
-  Vec         *used;             /* columns */
-  Vec          row, rhs;
+  PetscBool     dense;       /* its factors are there */
+  PetscBool     must_factor; /* conjugate gradients have not converged, see Iterate() */
+  PetscInt      room;        /* rows that there is room for */
+  PetscScalar  *W;           /* LU factors of W_mm, the same on every rank */
+  PetscBLASInt *pivots;
+  PetscScalar  *gathered, *force; /* of constrained rows, on every rank */
+  Vec          *used;             /* columns */
+  Vec           row, rhs;
   /* conjugate gradients */
   KSP            iterative;
   Vec            force_vec, gap_vec, product;

@@ -1,6 +1,7 @@
 /* The constraint forces s: by factors of W_mm, or by conjugate gradients, which need W only as a product. */
 #include "constrainedsolverimpl.h"
 #include <sys/petsccompat.h>
+#include <petscblaslapack.h>
 
 /* Constraint forces up to this number by a dense matrix, whose factors take 64 MB then */
 #define MAX_DENSE_CONSTRAINTS 2000
@@ -88,46 +89,38 @@ static PetscErrorCode Gather(ConstrainedSolver s, Vec x, const PetscScalar targe
 /* W_mm, symmetric to the last bit, with flexibilities on its diagonal */
 static PetscErrorCode FillMatrix(ConstrainedSolver s)
 {
-  PetscScalar *W;
-
   PetscFunctionBegin;
-  PetscCall(MatDestroy(&s->dense_W));
-  PetscCall(VecDestroy(&s->gaps));
-  PetscCall(VecDestroy(&s->forces));
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, s->n, s->n, NULL, &s->dense_W));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, s->n, s->gathered, &s->gaps));
-  PetscCall(VecCreateSeqWithArray(PETSC_COMM_SELF, 1, s->n, s->force, &s->forces));
-  PetscCall(MatDenseGetArrayWrite(s->dense_W, &W));
+  if (s->n > s->room) {
+    PetscCall(PetscFree2(s->W, s->pivots));
+    s->room = s->n;
+    PetscCall(PetscMalloc2(s->room * s->room, &s->W, s->room, &s->pivots));
+  }
   for (PetscInt k = 0; k < s->n; k++) {
     PetscCall(ConstrainedSolverMakeColumn(s, s->rows[k]));
     PetscCall(Gather(s, s->columns[s->rows[k]], NULL, s->gathered));
-    for (PetscInt l = 0; l <= k; l++) W[k * s->n + l] = W[l * s->n + k] = s->gathered[l];
-    W[k * s->n + k] += s->constrained[s->rows[k]];
+    for (PetscInt l = 0; l <= k; l++) s->W[k * s->n + l] = s->W[l * s->n + k] = s->gathered[l];
+    s->W[k * s->n + k] += s->constrained[s->rows[k]];
   }
-  PetscCall(MatDenseRestoreArrayWrite(s->dense_W, &W));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LU factors of W_mm. Of rows that depend on each other some pivot is zero but for round-off. */
+/* LU factors of W_mm. Of rows that depend on each other some pivot is zero but for round-off. By LAPACK, since MatLUFactor() ends the run
+   there, and its error leaves memory behind. */
 static PetscErrorCode FactorMatrix(ConstrainedSolver s, PetscBool *singular)
 {
-  PetscReal         *largest; /* entry of each column, without sign */
-  const PetscScalar *pivots;
-  PetscErrorCode     error;
+  PetscScalar *largest = s->force; /* entry of each column, without sign */
+  PetscBLASInt n, info;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(s->n, &largest));
-  PetscCall(MatGetColumnNorms(s->dense_W, NORM_INFINITY, largest));
-  PetscCall(PetscPushErrorHandler(PetscReturnErrorHandler, NULL));
-  error = MatLUFactor(s->dense_W, NULL, NULL, NULL);
-  PetscCall(PetscPopErrorHandler());
-  *singular = (PetscBool)(error == PETSC_ERR_MAT_LU_ZRPVT);
-  if (!*singular) PetscCall(error);
-  PetscCall(MatGetDiagonal(s->dense_W, s->gaps));
-  PetscCall(VecGetArrayRead(s->gaps, &pivots));
-  for (PetscInt k = 0; k < s->n; k++) *singular = (PetscBool)(*singular || PetscAbsScalar(pivots[k]) <= ROUND_OFF * largest[k]);
-  PetscCall(VecRestoreArrayRead(s->gaps, &pivots));
-  PetscCall(PetscFree(largest));
+  PetscCall(PetscBLASIntCast(s->n, &n));
+  for (PetscInt k = 0; k < s->n; k++) {
+    largest[k] = 0;
+    for (PetscInt l = 0; l < s->n; l++) largest[k] = PetscMax(PetscRealPart(largest[k]), PetscAbsScalar(s->W[k * s->n + l]));
+  }
+  PetscCallBLAS("LAPACKgetrf", LAPACKgetrf_(&n, &n, s->W, &n, s->pivots, &info));
+  *singular = (PetscBool)(info > 0);
+  for (PetscInt k = 0; k < s->n; k++)
+    *singular = (PetscBool)(*singular || !(PetscAbsScalar(s->W[k * s->n + k]) > ROUND_OFF * PetscRealPart(largest[k])));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -245,16 +238,20 @@ static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, const PetscScala
 /* x, a solution without constraints, becomes that with B_m x = target (this rank's rows; NULL: 0) */
 static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[], Vec x)
 {
+  const PetscBLASInt one = 1;
+  PetscBLASInt       n, info;
+
   PetscFunctionBegin;
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
   if (!s->dense) PetscCall(ConstrainIteratively(s, target, x));
   if (!s->dense) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Gather(s, x, target, s->gathered));
   for (PetscInt k = 0; k < s->n; k++) {
-    s->gathered[k] = -s->gathered[k];
-    s->used[k]     = s->columns[s->rows[k]];
+    s->force[k] = -s->gathered[k];
+    s->used[k]  = s->columns[s->rows[k]];
   }
-  PetscCall(MatSolve(s->dense_W, s->gaps, s->forces));
+  PetscCall(PetscBLASIntCast(s->n, &n));
+  PetscCallBLAS("LAPACKgetrs", LAPACKgetrs_("N", &n, &one, s->W, &n, s->pivots, s->force, &n, &info));
   PetscCall(VecMAXPY(x, s->n, s->force, s->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -326,7 +326,7 @@ PetscErrorCode OptionsFindNeed(const char option[], char need[], size_t size)
 }
 
 /* What an option that nobody has read may have been meant to be. A slip of the pen first, up to two letters; then what the words mean;
-   then the nearest by letters */
+   then the nearest by letters. `known`: there is such an option, and nothing is suggested */
 PetscErrorCode OptionsSuggest(const char name[], PetscInt n, const char *const bodies[], PetscBool *known, char text[], size_t size)
 {
   Unknown unknown = {.name = name, .rest = name, .owner = OPTION_OF_RUN, .distance = 1000};

@@ -225,7 +225,8 @@ static PetscErrorCode HasSameValue(const char option[], const char value[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The shared option by which a body has an option. `value`: its value, or `NULL` */
+/* The shared option by which a body has an option. `value`: its value, or `NULL`; `shared`: without its dash; empty: the option is no
+   body's, or stands in a file or on the command line itself */
 PetscErrorCode OptionsFindShared(const char option[], const char value[], char shared[], size_t size)
 {
   Sharers  sharers;

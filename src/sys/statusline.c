@@ -215,7 +215,8 @@ static PetscErrorCode StartThread(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Begins to tell how far the run is, on standard error */
+/* Begins to tell how far the run is, on standard error. `bar`: a line drawn over and over, for terminals; else lines of a log after 1, 2,
+   4, ... minutes. One rank calls it. */
 PetscErrorCode StatusLineBegin(PetscBool bar)
 {
   PetscFunctionBegin;

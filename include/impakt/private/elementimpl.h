@@ -21,11 +21,11 @@ struct _ElementOps {
   PetscErrorCode (*energy)(Element, const PetscScalar[], PetscReal *);          /* stored by all elements of this rank [J] */
   PetscErrorCode (*hourglass)(Element, const PetscScalar[], PetscReal *); /* part of that which holds modes that the points do not see; may
                                                                              be missing */
-  /* tangent of one element at the displacement of the rank's nodes, row by row [N/m]. `viscous`, of elements with viscousforce(): the
-     derivative of that by the velocity. That is for Rayleigh damping of nonlinear bodies, with a linear material, and may be missing: it
-     adds to the third the forces of the stress S = C : dE/dt at the displacement that is first and the velocity that is second, with the
-     rate of Green and Lagrange's strain and the material's C [N/s] */
+  /* derivative of the internal force of one element by displacements, row by row [N/m]; viscous: of viscousforce() by velocities, which
+     only elements with that have */
   PetscErrorCode (*tangent)(Element, PetscInt, PetscBool, const PetscScalar[], PetscScalar[]);
+  /* adds to the third, in [N] per [s] of damping: forces of the stress S = C : dE/dt at displacement (first) and velocity (second), with
+     the rate of Green and Lagrange's strain and the material's C; for Rayleigh damping of nonlinear bodies; may be missing */
   PetscErrorCode (*viscousforce)(Element, const PetscScalar[], const PetscScalar[], PetscScalar[]);
   PetscErrorCode (*mass)(Element, PetscInt, PetscScalar[]); /* consistent mass of one element, nodes x nodes: all components have it [kg] */
   PetscErrorCode (*stress)(Element, const PetscScalar[],

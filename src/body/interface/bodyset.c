@@ -159,7 +159,7 @@ PetscErrorCode BodySetThickness(Body body, PetscReal thickness)
 
   Level: intermediate
 
-.seealso: `Body`, `ElementSetAxisymmetric()`
+.seealso: `Body`, `BodySetFromOptions()`
 @*/
 PetscErrorCode BodyGetAxisymmetric(Body body, PetscBool *axisymmetric)
 {

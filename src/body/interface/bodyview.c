@@ -376,7 +376,7 @@ PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
 }
 
 /* Newmark's formulas of an implicit body: at the end of a substep v1 = v_u (u1 - u0) + v_v v0 + v_a a0 and a1 = a_u (u1 - u0) + a_v v0 +
-   a_a a0. Massless nodes report u1 - u0 over the step and zero instead. */
+   a_a a0. v_u and a_v are in [1/s], v_a in [s], a_u in [1/s^2]. Massless nodes report u1 - u0 over the step and zero instead. */
 PetscErrorCode BodyGetNewmark(Body body, PetscReal *v_u, PetscReal *v_v, PetscReal *v_a, PetscReal *a_u, PetscReal *a_v, PetscReal *a_a)
 {
   PetscReal velocity[3], acceleration[3];

@@ -17,7 +17,7 @@
 #include <sys/units.h>
 #include <petscblaslapack.h>
 
-/* Where moments of inertia cannot be kept anyhow, the factor stays below this: on the coarse ball of options/hertz-impact.opts a factor of
+/* Where moments of inertia cannot be kept anyhow, 1 + p stays below this: on the coarse ball of options/hertz-impact.opts a factor of
    up to 66 would bring them no nearer than 34.5 % instead of 34.9 % */
 #define MOST_FACTOR (1 / LEAST_FACTOR)
 /* Conditions that no such factor satisfies become springs: the sum of the squares of what is missing, over twice the softness, is minimised

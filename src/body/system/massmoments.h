@@ -20,7 +20,7 @@ typedef struct {
   PetscInt   n;                                   /* conditions */
   PetscReal  condition[MAX_MOMENTS][MAX_MOMENTS]; /* weights of the moments in each condition */
   PetscReal  softness[MAX_MOMENTS];
-  PetscReal  most;    /* the largest factor */
+  PetscReal  most;    /* 1 + p stays below this */
   PetscReal  scale;   /* the whole mass over what the massless layer has left */
   PetscReal *weights; /* per local node, ghosts too: what mass of this rank's elements at it adds to each moment, over the total */
 } MomentsProblem;

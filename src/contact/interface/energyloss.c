@@ -28,8 +28,8 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The energy that contact has taken in the step just made, before ContactAccept() [J]: the work of contact forces on bodies and on springs
-   of the penalty method, of which energy has been taken where it is negative, in a step in which rows join or leave contact; 0 in all
+/* The energy that contact has taken in the step just made, before ContactAccept() [J], positive where energy is lost: minus the work of
+   contact forces on bodies and on springs of the penalty method, in a step in which rows join or leave contact; 0 in all
    others. Also 0 where halves of the step would cost more than they save, since what central differences conserve depends on the step;
    where nodes with mass join or leave, whose impact takes energy whatever the step, where a body has no inertia, where the method does not
    tell what its springs store, and where -contact_constraint has gap rates end; and, where all starts at rest without strain, below what

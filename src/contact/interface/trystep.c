@@ -31,9 +31,8 @@ PetscErrorCode ContactReadUnconverged(Contact contact)
 
 /* As ContactStep(), for those who can make a step that fails again in halves. `may_cut`: false where this is the last try, in which the
    method may accept what has not converged; `most_loss`: energy that contact may take or bring before the step is made again, if it may be
-   [J]; `reason`: negative where the step has failed, the same on every rank. Then, or where the step is not to be accepted,
-   ContactStepBack() and
-   ContactSetStepLevel() lead to another try, or ContactRaiseFailure() ends the run. Collective. */
+   [J]; `reason`: negative where the step has failed, the same on every rank. After a step that has failed, or that is not to be accepted,
+   call ContactStepBack(), then ContactSetStepLevel() and try again; or end by ContactRaiseFailure(). Collective. */
 PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most_loss, StepConvergedReason *reason)
 {
   PetscFunctionBegin;

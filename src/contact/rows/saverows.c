@@ -59,9 +59,9 @@ static void SaveNear(Contact contact, const StateList *list)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    StateListSaveSome(list, of_near, pair->near_end - pair->near_begin, rows->near + pair->near_begin, 1, contact->saved.state);
+    StateListSaveSome(list, of_near, pair->near_end - pair->near_begin, rows->near + pair->near_begin, contact->saved.state);
   }
-  StateListSaveSome(list, of_acting, rows->n_acting, rows->acting, 1, contact->saved.state);
+  StateListSaveSome(list, of_acting, rows->n_acting, rows->acting, contact->saved.state);
 }
 
 /* At the start of a controller step that may have to be made again, before the rows change */

@@ -17,7 +17,7 @@ typedef struct {
   PetscReal      resolution;  /* what rows read is right to so much, by round-off of positions [m] */
   PetscReal      proximal;    /* weight of the proximal term, in parts of the diagonal of S */
   PetscBool      regular;     /* S is, so that there need be no such term: springs are on its diagonal */
-  PetscBool      alone;       /* it is, and rows of different nodes do not move each other */
+  PetscBool      alone;       /* it was when it was taken, and rows of different nodes did not move each other: sweeps are tried first */
   PetscScalar   *base, *read; /* per row: a force [N], and what is read under it [m] */
   PetscScalar   *centre;      /* per row: the force that the proximal term pulls to [N] */
   PetscScalar   *force;       /* per row: the solution [N] */
@@ -28,7 +28,7 @@ typedef struct {
   PetscBool      softens;     /* the force of a node falls as its gap grows */
   PetscBool      secant;      /* glue has its present stiffness in the Jacobian, see lawsolve.c */
   PetscBool      solved;      /* there is a solution since the last call */
-  PetscBool      by_nodes;    /* that was found node by node */
+  PetscBool      by_nodes;    /* Newton's method failed, so that sweeps or secants came in */
   PetscBool      sparse;      /* the matrix of entries is */
   Vec            x, f;
   Vec            in, out;            /* the last product with S */

@@ -72,9 +72,10 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscCall(KSPSetTolerances(ksp, PETSC_CURRENT, enough, PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(PetscArraycpy(start, problem->force, problem->n));
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
-  if (problem->alone) {
+  if (problem->alone && !problem->softens) {
     PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
     PetscCall(SolveBy(problem, problem->nodes, &reason));
+    if (reason < 0) PetscCall(PetscArraycpy(problem->force, start, problem->n));
   }
   if (reason <= 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, &reason));
   for (; reason < 0 && sweeps <= (LawProblemHasProducts(problem) ? PetscMin(most, MOST_NEAR) : most); sweeps *= 4) {
