@@ -190,8 +190,6 @@ PETSC_INTERN PetscErrorCode ContactComputeRates(Contact, PetscInt, PetscBool, Pe
 PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
 PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
-PETSC_INTERN void           ContactGetConditions(Contact, ContactConditions, PetscInt, BodyCondition[]);
-PETSC_INTERN PetscErrorCode ContactSetSomeConditions(Contact, ContactConditions, const PetscBool[]);
 PETSC_INTERN PetscErrorCode ContactLoadRows(Contact, PetscInt, const PetscReal[]);
 
 PETSC_INTERN PetscErrorCode ContactReadFriction(Contact);

@@ -11,7 +11,7 @@
 typedef struct {
   Body       body;
   PetscBool  alone;                               /* this rank has all of the mass, and what is computed is its own */
-  PetscInt   n_fields, n_moments;                 /* moments: phi_a' M phi_b for a <= b */
+  PetscInt   n_moments;                           /* moments: phi_a' M phi_b for a <= b */
   PetscInt   pair[MAX_MOMENTS][2];                /* a and b of a moment */
   PetscReal  axes[3][3];                          /* of the fields of first order, axis . (x - centre) / size */
   PetscReal  centre[3], size[3];                  /* [m] */

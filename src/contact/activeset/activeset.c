@@ -3,7 +3,7 @@
 #include <math.h>
 
 /* What its rows mean to a body */
-void ContactGetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
+static void GetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
 {
   const ContactBodyRows *of = &contact->body_rows[b];
 
@@ -20,8 +20,8 @@ void ContactGetConditions(Contact contact, ContactConditions conditions, PetscIn
   }
 }
 
-/* Tells the bodies what their rows mean, but those that are left out; NULL: none is, or the same of them on every rank */
-PetscErrorCode ContactSetSomeConditions(Contact contact, ContactConditions conditions, const PetscBool left_out[])
+/* Tells the bodies what their rows mean */
+PetscErrorCode ContactSetConditions(Contact contact, ContactConditions conditions)
 {
   PetscBool same = (PetscBool)(conditions == CONDITIONS_FORCES || conditions == CONDITIONS_FREE);
 
@@ -33,17 +33,9 @@ PetscErrorCode ContactSetSomeConditions(Contact contact, ContactConditions condi
     same = conditions == CONDITIONS_FREE ? properties.free : properties.forced;
   }
   for (PetscInt b = 0; b < contact->n_bodies && !same; b++) {
-    if (left_out && left_out[b]) continue;
-    ContactGetConditions(contact, conditions, b, contact->work.conditions);
+    GetConditions(contact, conditions, b, contact->work.conditions);
     PetscCall(BodySetConditions(contact->bodies[b], contact->work.conditions));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContactSetConditions(Contact contact, ContactConditions conditions)
-{
-  PetscFunctionBegin;
-  PetscCall(ContactSetSomeConditions(contact, conditions, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
