@@ -9,8 +9,10 @@
 #include <contact/parts.h>
 
 /* Gap of a row up to which it is near [edges of the face]: rows within two edges count as near contact in builds, and surfaces may have
-   moved by a quarter of an edge since the last one, and by another one until the next */
-#define NEAR_CONTACT 3
+   moved by a quarter of an edge since the last one, and by another one until the next. Beside an obstacle, whose builds do not look at
+   rows that cannot touch: half an edge, and the way of a step, which is at most an edge. */
+#define NEAR_CONTACT  3
+#define NEAR_OBSTACLE 1.5
 
 /* The acting rows of the bodies, from the list of all */
 static void ListActingOfBodies(Contact contact)
@@ -170,15 +172,16 @@ PetscErrorCode ContactListAllRows(Contact contact)
 /* The near rows of a pair, and the smallest face at any of its nodes */
 static PetscErrorCode ListPair(Contact contact, ContactPair *pair, PetscReal *smallest)
 {
-  ContactRows *of = &contact->rows;
-  TransferRows rows;
+  const PetscReal most = pair->obstacle ? NEAR_OBSTACLE : NEAR_CONTACT;
+  ContactRows    *of   = &contact->rows;
+  TransferRows    rows;
 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
   pair->near_begin = of->n_near;
   for (PetscInt node = 0; node < rows.n; node++) {
     const PetscInt first = pair->begin + node * pair->components;
-    PetscBool      near = (PetscBool)(pair->bonded || (of->opposite[first] && contact->start.gap[first] <= NEAR_CONTACT * rows.size[node]));
+    PetscBool      near = (PetscBool)(pair->bonded || (of->opposite[first] && contact->start.gap[first] <= most * rows.size[node]));
 
     *smallest = PetscMin(*smallest, rows.size[node]);
     for (PetscInt i = first; i < first + pair->components; i++)
