@@ -107,7 +107,10 @@ static PetscErrorCode SetUp(Body body)
     if (body->integrator->is_local) PetscCall(BodyImplicitSetUpOwnStep(body, ComputeResidual, Predict));
   }
   /* a mass matrix that is not diagonal hands the acceleration of prescribed nodes to others */
-  if (body->rows.have_mass && body->mass.matrix) body->integrator->ops.repeat = NULL;
+  if (body->rows.have_mass && body->mass.matrix) body->integrator->repeats_prescribed = PETSC_FALSE;
+  /* else velocities at the end, and the dashpots' forces, have a part of the acceleration at the start */
+  body->integrator->repeats_constant = (PetscBool)(body->model.linear && body->integrator->affine && !body->layer.exists &&
+                                                   body->time.substeps == 1 && implicit->gamma == 2 * implicit->beta);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -155,15 +158,22 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* dv = gamma / (beta dt) du, da = du / (beta dt^2); of massless nodes dv = du / dt */
+/* dv = gamma / (beta dt) du, da = du / (beta dt^2); of massless nodes dv = du / dt. Forces throughout the step change the acceleration at
+   its start too, by da0 = M^{-1} B^T df: A du = (1 + c0) B^T df and da -= c0 da0, c0 = (1 - 2 beta) / (2 beta). BringChanges() has brought
+   the forces. */
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   const PetscReal     dt = body->time.step, to_velocity = implicit->gamma / (implicit->beta * dt);
+  const PetscReal     c0 = body->rows.constant ? (1 - 2 * implicit->beta) / (2 * implicit->beta) : 0;
 
   PetscFunctionBegin;
-  (void)force; /* which BringChanges() has brought */
-  PetscCall(BodyImplicitCorrect(body, displacement, to_velocity, 1 / (implicit->beta * dt * dt), body->work.nodes[2]));
+  PetscCall(BodyImplicitCorrect(body, displacement, 1 + c0, to_velocity, 1 / (implicit->beta * dt * dt), body->work.nodes[2]));
+  if (body->rows.constant) {
+    PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
+    PetscCall(VecAXPY(body->saved.a, 1, body->work.nodes[2]));
+    PetscCall(VecAXPY(body->state.a, -c0, body->work.nodes[2]));
+  }
   PetscCall(BodyFinishLayer(body));
   if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));

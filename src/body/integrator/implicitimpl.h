@@ -50,5 +50,5 @@ PETSC_INTERN PetscErrorCode BodyImplicitCheckSubstep(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitAddForces(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitPrescribe(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitCarry(Body, BodyResidualFn *, Vec, Vec);
-PETSC_INTERN PetscErrorCode BodyImplicitCorrect(Body, const PetscScalar[], PetscReal, PetscReal, Vec);
+PETSC_INTERN PetscErrorCode BodyImplicitCorrect(Body, const PetscScalar[], PetscReal, PetscReal, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitVisit(Body, PetscInt, Checkpoint);

@@ -110,7 +110,7 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
 {
   PetscFunctionBegin;
   (void)force; /* which BringChanges() has brought */
-  PetscCall(BodyImplicitCorrect(body, displacement, 1 / body->time.step, 0, body->work.nodes[2]));
+  PetscCall(BodyImplicitCorrect(body, displacement, 1, 1 / body->time.step, 0, body->work.nodes[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

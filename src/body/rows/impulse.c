@@ -4,10 +4,15 @@
 /* With more rows no column is made for each of them */
 #define MAX_PROBED_ROWS 2000
 
-/* change = M^{-1} B^T force, zero on massless nodes; one force for each row of this rank */
+/* change = M^{-1} B^T force, zero on massless nodes; one force for each row of this rank. By columns, where the solver keeps them. */
 PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[], Vec change)
 {
   PetscFunctionBegin;
+  if (body->mass.solver && !body->layer.exists) {
+    PetscCall(ConstrainedSolverBring(body->mass.solver, force));
+    PetscCall(ConstrainedSolverCorrect(body->mass.solver, NULL, change));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodySpreadRows(body, body->rows.matrix, force, body->work.nodes[0]));
   PetscCall(BodyZeroHeld(body, body->work.nodes[0]));
   PetscCall(BodySolveMass(body, body->work.nodes[0], change));

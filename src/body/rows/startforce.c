@@ -30,6 +30,10 @@ PetscErrorCode BodyAnswerAtStart(Body body, Vec change)
 static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec change)
 {
   PetscFunctionBegin;
+  if (!body->layer.exists && !BodyHandsOver(body)) {
+    PetscCall(BodySolveMassOfRows(body, force, change));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(BodySpreadRows(body, body->rows.free_matrix, force, body->work.nodes[0]));
   PetscCall(BodyAddStoppedHandover(body, body->work.nodes[0]));
   PetscCall(BodyAnswerAtStart(body, change));
