@@ -165,33 +165,21 @@ SIMD_INLINE void AddPoint(const RingPoint *point, SimdReal P[9], const PetscReal
   }
 }
 
-/* From monomials to the nodes; returns the first member of the batch with a force that is no number, -1: none */
-SIMD_INLINE PetscInt AddNodal(PetscReal scale, const PetscInt connectivity[], PetscInt first, PetscInt in_batch, Field *F, PetscReal f[])
+/* Adds the forces of a batch; returns its first member with one that is no number, -1: none */
+SIMD_INLINE PetscInt AddRings(PetscReal scale, const PetscInt connectivity[], PetscInt first, PetscInt in_batch, Field *F, PetscReal f[])
 {
-  SimdReal nodal[DIM][NODES], check = {0};
+  SimdReal nodal[DIM][NODES], check;
 
-  for (PetscInt part = 0; part < SIMD_PARTS; part++)
-    for (PetscInt i = 0; i < DIM; i++) {
-      SimdVector n[NODES];
+  GetNodal(scale, F->modes, nodal);
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    const SimdVector constant = scale * F->constant[part];
+    SimdVector       n[NODES] = {{0}};
 
-      for (PetscInt k = 0; k < DIM; k++) SimdGetParts(check)[part] += F->modes[part][i][k];
-      for (PetscInt k = 0; k < MODES; k++) F->modes[part][i][k] *= scale;
-      NodesOfModes(F->modes[part][i], n);
-      if (i == 0) {
-        F->constant[part] *= scale;
-        NodesOfConstant(&F->constant[part], n);
-      }
-      for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
-    }
-  for (PetscInt p = 0; p < in_batch; p++) {
-    const PetscInt *nodes = connectivity + NODES * (first + p);
-
-    for (PetscInt a = 0; a < NODES; a++) {
-      PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
-
-      for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
-    }
+    NodesOfConstant(&constant, n);
+    for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[0][a])[part] += n[a];
+    SimdGetParts(check)[part] = F->modes[part][0][0] + F->modes[part][0][1] + F->modes[part][1][0] + F->modes[part][1][1];
   }
+  AddNodal(connectivity, first, in_batch, (const SimdReal(*)[NODES])nodal, f);
   return FindNaN(check);
 }
 
@@ -229,7 +217,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, PetscBool mean, const Solid *s
       if (mean) AddPressure(linear, &at[g], pressure, P[g]);
       AddPoint(&at[g], P[g], points[g], &F);
     }
-    bad = AddNodal(scale, connectivity, first, in_batch, &F, f);
+    bad = AddRings(scale, connectivity, first, in_batch, &F, f);
     if (inverted < 0 && bad >= 0) inverted = first + PetscMin(bad, in_batch - 1);
   }
   return inverted;
@@ -239,7 +227,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, PetscBool mean, const Solid *s
 SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, PetscInt count, const PetscInt connectivity[],
                                       const PetscReal u[], PetscReal f[])
 {
-  if (!solid->mean_dilatation) return AddBatches(solid->linear, PETSC_FALSE, solid, scale, count, connectivity, u, f);
+  if (!(solid->mean_share > 0)) return AddBatches(solid->linear, PETSC_FALSE, solid, scale, count, connectivity, u, f);
   return solid->linear ? AddBatches(PETSC_TRUE, PETSC_TRUE, solid, scale, count, connectivity, u, f)
                        : AddBatches(PETSC_FALSE, PETSC_TRUE, solid, scale, count, connectivity, u, f);
 }
@@ -283,7 +271,7 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
       GetPoint(PETSC_FALSE, &X, &U, points[g], &at[g]);
       GetPoint(PETSC_TRUE, &X, &V, points[g], &rate[g]);
     }
-    if (solid->mean_dilatation) {
+    if (solid->mean_share > 0) {
       GetMeans(PETSC_FALSE, at, &means, volume);
       for (PetscInt g = 0; g < POINTS; g++) Dilate(PETSC_FALSE, &means, &at[g]);
       DilateRates(at, &means, volume, rate);
@@ -292,108 +280,35 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
       RateOfStrain((const SimdReal *)at[g].at.H, (const SimdReal *)rate[g].at.H, strain);
       (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])strain, S);
       PullBack((const SimdReal *)at[g].at.H, (const SimdReal *)S, P[g]);
-      if (solid->mean_dilatation) Undilate(PETSC_FALSE, &at[g], P[g], pressure);
+      if (solid->mean_share > 0) Undilate(PETSC_FALSE, &at[g], P[g], pressure);
     }
-    if (solid->mean_dilatation) FinishPressure(&means, volume, pressure);
+    if (solid->mean_share > 0) FinishPressure(&means, volume, pressure);
     for (PetscInt g = 0; g < POINTS; g++) {
-      if (solid->mean_dilatation) AddPressure(PETSC_FALSE, &at[g], pressure, P[g]);
+      if (solid->mean_share > 0) AddPressure(PETSC_FALSE, &at[g], pressure, P[g]);
       AddPoint(&at[g], P[g], points[g], &F);
     }
-    (void)AddNodal(scale, connectivity, first, PetscMin(SIMD_WIDTH, count - first), &F, f);
+    (void)AddRings(scale, connectivity, first, PetscMin(SIMD_WIDTH, count - first), &F, f);
   }
 }
 
-/* All points of a batch, with H' where there is a mean dilatation */
-SIMD_INLINE void GetPoints(const Solid *solid, PetscInt first, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                           RingPoint at[POINTS])
+SIMD_CLONES static PetscErrorCode GetPoints(Element element, PetscInt first, const PetscScalar u[], SimdReal H[][9], SimdReal weights[])
 {
-  SimdReal volume = {0};
-  Field    X, U;
-  Means    means = {{0}, {0}};
+  const Solid *solid      = (const Solid *)element->data;
+  RingPoint    at[POINTS] = {0};
+  SimdReal     volume     = {0};
+  Field        X, U;
+  Means        means = {{0}, {0}};
 
-  GetField(connectivity, first, count, solid->coordinates, &X);
-  GetField(connectivity, first, count, u, &U);
+  GetField(element->connectivity, first, element->count, solid->coordinates, &X);
+  GetField(element->connectivity, first, element->count, u, &U);
   for (PetscInt g = 0; g < POINTS; g++) GetPoint(solid->linear, &X, &U, points[g], &at[g]);
-  if (!solid->mean_dilatation) return;
-  GetMeans(solid->linear, at, &means, volume);
-  for (PetscInt g = 0; g < POINTS; g++) Dilate(solid->linear, &means, &at[g]);
-}
-
-SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                      PetscReal *energy, PetscReal *plastic)
-{
-  PetscInt  inverted   = -1;
-  RingPoint at[POINTS] = {0};
-
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdReal       W, work, sum = {0}, flowed = {0};
-    PetscInt       bad;
-
-    GetPoints(solid, first, count, connectivity, u, at);
-    for (PetscInt g = 0; g < POINTS; g++) {
-      SolidEnergy(solid, first, g, (const SimdReal *)at[g].at.H, W, work);
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at[g].weight[p] * W[p];
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) flowed[p] += at[g].weight[p] * work[p];
-    }
-    bad = FindNaN(sum);
-    if (inverted < 0 && bad >= 0) inverted = first + PetscMin(bad, n - 1);
-    for (PetscInt p = 0; p < n; p++) *energy += sum[p];
-    for (PetscInt p = 0; p < n; p++) *plastic += flowed[p];
+  if (solid->mean_share > 0) GetMeans(solid->linear, at, &means, volume);
+  for (PetscInt g = 0; g < POINTS; g++) {
+    if (solid->mean_share > 0) Dilate(solid->linear, &means, &at[g]);
+    StorePoint(&at[g].at, H[g], weights[g]);
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) weights[g][p] *= at[g].radius[p];
   }
-  return inverted;
+  return PETSC_SUCCESS;
 }
 
-SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                  PetscReal stress[])
-{
-  RingPoint at[POINTS] = {0};
-
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdReal       P[9], sum[6] = {{0}}, volume = {0};
-
-    GetPoints(solid, first, count, connectivity, u, at);
-    for (PetscInt g = 0; g < POINTS; g++) {
-      SolidStress(solid, first, g, (const SimdReal *)at[g].at.H, P);
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-        PetscReal sigma[6];
-
-        SolidCauchy(at[g].at.H, P, solid->linear, p, sigma);
-        for (PetscInt k = 0; k < 6; k++) sum[k][p] += at[g].weight[p] * sigma[k];
-        volume[p] += at[g].weight[p];
-      }
-    }
-    for (PetscInt p = 0; p < n; p++)
-      for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];
-  }
-}
-
-/* Plastic work of all elements but for the weight of a point, and the mean equivalent plastic strain of each */
-SIMD_CLONES static void GetPlastic(const Solid *solid, PetscInt count, const PetscInt connectivity[], PetscReal *work, PetscReal strain[])
-{
-  RingPoint at = {0};
-
-  *work = 0;
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt n   = PetscMin(SIMD_WIDTH, count - first);
-    SimdReal       sum = {0}, volume = {0};
-    Field          X;
-
-    GetField(connectivity, first, count, solid->coordinates, &X);
-    for (PetscInt g = 0; g < POINTS; g++) {
-      const PetscReal *point = solid->history->start + SolidHistoryOffset(solid->history, first, g);
-
-      GetPoint(PETSC_TRUE, &X, &X, points[g], &at);
-      for (PetscInt p = 0; p < n; p++) {
-        *work += at.weight[p] * point[solid->kernels.plastic_work * SIMD_WIDTH + p];
-        sum[p] += at.weight[p] * point[solid->kernels.plastic_strain * SIMD_WIDTH + p];
-        volume[p] += at.weight[p];
-      }
-    }
-    for (PetscInt p = 0; p < n && strain; p++) strain[first + p] = sum[p] / volume[p];
-  }
-}
-
-#define SOLID_HAS_HISTORY
 #include <impakt/private/solidops.h>

@@ -219,7 +219,7 @@ static PetscErrorCode FillAll(Element element)
 }
 
 /* Gradients of the shape functions at a point of an element, and its weight with the thickness */
-static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gradient[])
+static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gradient[], PetscReal hoop[])
 {
   const Solid     *solid     = (const Solid *)element->data;
   const Composite *composite = (const Composite *)solid->own;
@@ -227,6 +227,7 @@ static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gra
   const PetscReal *from = composite->gradients + (size_t)(e / SIMD_WIDTH * points + g) * (size_t)(n * SIMD_WIDTH) + e % SIMD_WIDTH;
 
   for (PetscInt i = 0; i < n; i++) gradient[i] = from[i * SIMD_WIDTH];
+  for (PetscInt a = 0; a < element->nodes; a++) hoop[a] = 0;
   return element->cross_section * composite->weights[(size_t)(e / SIMD_WIDTH * points + g) * SIMD_WIDTH + (size_t)(e % SIMD_WIDTH)];
 }
 
@@ -388,9 +389,6 @@ PetscErrorCode ElementCreate_Composite(Element element, const CompositeShape *sh
   element->ops->mass    = ElementMass_Composite;
   element->ops->points  = ElementPoints_Composite;
   element->ops->destroy = ElementDestroy_Composite;
-  if (!element->plane_stress) {
-    PetscCall(ElementCreate_Solid_MeanDilatation(element));
-    PetscCall(GetShare(element, &solid->mean_share));
-  }
+  if (!element->plane_stress) PetscCall(GetShare(element, &solid->mean_share));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -210,8 +210,8 @@ SIMD_INLINE void AddPressure(PetscBool linear, const CompositeMeans *means, cons
 }
 
 /* All points of a batch, ready for the material */
-SIMD_INLINE void GetPoints(const Solid *solid, PetscBool linear, const CompositeBatch *batch, SimdReal u[DIM * NODES],
-                           CompositePoint at[POINTS], CompositeMeans *means)
+SIMD_INLINE void FindPoints(const Solid *solid, PetscBool linear, const CompositeBatch *batch, SimdReal u[DIM * NODES],
+                            CompositePoint at[POINTS], CompositeMeans *means)
 {
   const PetscReal share = solid->mean_share;
 
@@ -277,7 +277,7 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
 
     if (SolidSkips(solid, first)) continue;
     GetNodal(connectivity, first, count, u, nodal);
-    GetPoints(solid, solid->linear, &batch, nodal, at, &means);
+    FindPoints(solid, solid->linear, &batch, nodal, at, &means);
     for (PetscInt g = 0; g < POINTS; g++) SolidStress(solid, first, g, (const SimdReal *)at[g].H, P[g]);
     bad = AddBatch(solid, solid->linear, scale, &batch, at, &means, P, connectivity + NODES * first, n, f);
     if (inverted < 0 && bad >= 0) inverted = first + bad;
@@ -348,7 +348,7 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
     CompositeMeans       means;
 
     GetNodal(connectivity, first, count, u, nodal);
-    GetPoints(solid, PETSC_FALSE, &batch, nodal, at, &means);
+    FindPoints(solid, PETSC_FALSE, &batch, nodal, at, &means);
     GetNodal(connectivity, first, count, v, nodal);
     for (PetscInt g = 0; g < POINTS; g++) GetGradient(nodal, batch.gradients + (ptrdiff_t)(g * NODES * DIM), rate[g]);
     if (solid->mean_share > 0) DilateRates(solid->mean_share, &batch, at, &means, rate);
@@ -361,82 +361,22 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
   }
 }
 
-SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                      PetscReal *energy, PetscReal *plastic)
+SIMD_CLONES static PetscErrorCode GetPoints(Element element, PetscInt first, const PetscScalar u[], SimdReal H[][9], SimdReal weights[])
 {
-  PetscInt inverted = -1;
+  const Solid         *solid = (const Solid *)element->data;
+  const CompositeBatch batch = GetBatch(solid, first);
+  SimdReal             nodal[DIM * NODES];
+  CompositePoint       at[POINTS];
+  CompositeMeans       means;
 
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const CompositeBatch batch = GetBatch(solid, first);
-    const PetscInt       n     = PetscMin(SIMD_WIDTH, count - first);
-    SimdReal             nodal[DIM * NODES], W, work, stored = {0}, flowed = {0};
-    CompositePoint       at[POINTS];
-    CompositeMeans       means;
-
-    GetNodal(connectivity, first, count, u, nodal);
-    GetPoints(solid, solid->linear, &batch, nodal, at, &means);
-    for (PetscInt g = 0; g < POINTS; g++) {
-      SolidEnergy(solid, first, g, (const SimdReal *)at[g].H, W, work);
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) stored[p] += batch.weights[g][p] * W[p];
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) flowed[p] += batch.weights[g][p] * work[p];
-    }
-    for (PetscInt p = 0; p < n; p++) {
-      *energy += stored[p];
-      *plastic += flowed[p];
-      if (inverted < 0 && stored[p] != stored[p]) inverted = first + p; /* NOLINT(misc-redundant-expression): a NaN */
-    }
+  GetNodal(element->connectivity, first, element->count, u, nodal);
+  FindPoints(solid, solid->linear, &batch, nodal, at, &means);
+  for (PetscInt g = 0; g < POINTS; g++) {
+    for (PetscInt k = 0; k < 9; k++)
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) H[g][k][p] = at[g].H[k][p];
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) weights[g][p] = batch.weights[g][p];
   }
-  return inverted;
+  return PETSC_SUCCESS;
 }
 
-SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                  PetscReal stress[])
-{
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const CompositeBatch batch = GetBatch(solid, first);
-    const PetscInt       n     = PetscMin(SIMD_WIDTH, count - first);
-    SimdReal             nodal[DIM * NODES], P[9], sum[6] = {{0}}, volume = {0};
-    CompositePoint       at[POINTS];
-    CompositeMeans       means;
-
-    GetNodal(connectivity, first, count, u, nodal);
-    GetPoints(solid, solid->linear, &batch, nodal, at, &means);
-    for (PetscInt g = 0; g < POINTS; g++) {
-      SolidStress(solid, first, g, (const SimdReal *)at[g].H, P);
-      if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, at[g].H);
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-        PetscReal sigma[6];
-
-        SolidCauchy(at[g].H, P, solid->linear, p, sigma);
-        for (PetscInt k = 0; k < 6; k++) sum[k][p] += batch.weights[g][p] * sigma[k];
-        volume[p] += batch.weights[g][p];
-      }
-    }
-    for (PetscInt p = 0; p < n; p++)
-      for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];
-  }
-}
-
-/* Plastic work of all elements, and the mean equivalent plastic strain of each */
-static void GetPlastic(const Solid *solid, PetscInt count, const PetscInt connectivity[], PetscReal *work, PetscReal strain[])
-{
-  (void)connectivity;
-  *work = 0;
-  for (PetscInt e = 0; e < count; e++) {
-    const PetscInt       first = e / SIMD_WIDTH * SIMD_WIDTH, p = e % SIMD_WIDTH;
-    const CompositeBatch batch = GetBatch(solid, first);
-    PetscReal            sum = 0, volume = 0;
-
-    for (PetscInt g = 0; g < POINTS; g++) {
-      const PetscReal *point = solid->history->start + SolidHistoryOffset(solid->history, first, g);
-
-      *work += batch.weights[g][p] * point[solid->kernels.plastic_work * SIMD_WIDTH + p];
-      sum += batch.weights[g][p] * point[solid->kernels.plastic_strain * SIMD_WIDTH + p];
-      volume += batch.weights[g][p];
-    }
-    if (strain) strain[e] = sum / volume;
-  }
-}
-
-#define SOLID_HAS_HISTORY
 #include <impakt/private/solidops.h>

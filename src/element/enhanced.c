@@ -36,29 +36,22 @@ static PetscErrorCode ElementInternalForce_Enhanced(Element element, const Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementEnergy_Enhanced(Element element, const PetscScalar u[], PetscReal *energy)
+/* Of a batch, one after the other; without equilibrium NaN */
+static PetscErrorCode GetPoints(Element element, PetscInt first, const PetscScalar u[], SimdReal H[][9], SimdReal weights[])
 {
-  const Solid *solid = (const Solid *)element->data;
-  Enhanced     enhanced;
-  PetscReal    forces[MAX_UNKNOWNS];
+  Enhanced  enhanced;
+  PetscReal forces[MAX_UNKNOWNS];
 
   PetscFunctionBegin;
-  element->inverted     = -1;
-  element->plastic_work = 0;
-  *energy               = 0;
-  for (PetscInt e = 0; e < element->count; e++) {
-    SimdReal W;
-
-    EnhancedPrepare(element, e, u, &enhanced);
-    PetscCall(EnhancedBalance(solid, &enhanced, forces));
-    if (solid->history->start) {
-      (*solid->kernels.hold)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])enhanced.H,
-                             (const PetscReal(*)[SIMD_WIDTH])enhanced.start, W, NULL);
-      for (PetscInt p = 0; p < enhanced.n_points; p++)
-        element->plastic_work += enhanced.weight[p] * enhanced.start[solid->kernels.plastic_work][p];
-    } else (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])enhanced.H, W);
-    for (PetscInt p = 0; p < enhanced.n_points; p++) *energy += enhanced.weight[p] * W[p];
-    if (element->inverted < 0 && isnan(forces[0])) element->inverted = e;
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
+    if (first + p < element->count) {
+      EnhancedPrepare(element, first + p, u, &enhanced);
+      PetscCall(EnhancedBalance((const Solid *)element->data, &enhanced, forces));
+    }
+    for (PetscInt g = 0; g < enhanced.n_points; g++) {
+      for (PetscInt k = 0; k < 9; k++) H[g][k][p] = isnan(forces[0]) ? forces[0] : enhanced.H[k][g];
+      weights[g][p] = enhanced.weight[g];
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -102,64 +95,16 @@ static PetscErrorCode ElementTangent_Enhanced(Element element, PetscInt e, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementStress_Enhanced(Element element, const PetscScalar u[], PetscReal stress[])
-{
-  const Solid *solid = (const Solid *)element->data;
-  Enhanced     enhanced;
-  PetscReal    forces[MAX_UNKNOWNS];
-
-  PetscFunctionBegin;
-  for (PetscInt e = 0; e < element->count; e++) {
-    PetscReal sigma[6], volume = 0;
-
-    EnhancedPrepare(element, e, u, &enhanced);
-    PetscCall(EnhancedBalance(solid, &enhanced, forces));
-    if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, enhanced.H);
-    for (PetscInt k = 0; k < 6; k++) stress[6 * e + k] = 0;
-    for (PetscInt p = 0; p < enhanced.n_points; p++) {
-      SolidCauchy(enhanced.H, enhanced.P, solid->linear, p, sigma);
-      for (PetscInt k = 0; k < 6; k++) stress[6 * e + k] += enhanced.weight[p] * sigma[k];
-      volume += enhanced.weight[p];
-    }
-    for (PetscInt k = 0; k < 6; k++) stress[6 * e + k] /= volume;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ElementPlastic_Enhanced(Element element, PetscReal *work, PetscReal strain[])
-{
-  const Solid          *solid   = (const Solid *)element->data;
-  const ElementHistory *history = solid->history;
-
-  PetscFunctionBegin;
-  *work = 0;
-  for (PetscInt e = 0; e < element->count; e++) {
-    PetscReal sum = 0, volume = 0, gradient[SOLID_MAX_NODES * 3];
-
-    for (PetscInt g = 0; g < history->points; g++) {
-      const PetscReal *point  = history->start + SolidHistoryOffset(history, e, g) + e % SIMD_WIDTH;
-      const PetscReal  weight = (*solid->point)(element, e, g, gradient);
-
-      *work += weight * point[SIMD_WIDTH * solid->kernels.plastic_work];
-      sum += weight * point[SIMD_WIDTH * solid->kernels.plastic_strain];
-      volume += weight;
-    }
-    if (strain) strain[e] = sum / volume;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ElementCreate_Enhanced(Element element)
 {
   Solid *solid = (Solid *)element->data;
 
   PetscFunctionBegin;
   solid->own_history          = EnhancedAmplitudesPerPoint(element->dim * element->dim, solid->shape->n_points);
+  solid->scale                = 1;
+  solid->observe              = GetPoints;
   element->ops->internalforce = ElementInternalForce_Enhanced;
-  element->ops->energy        = ElementEnergy_Enhanced;
   element->ops->tangent       = ElementTangent_Enhanced;
   element->ops->viscousforce  = SolidViscousForce;
-  element->ops->stress        = ElementStress_Enhanced;
-  element->ops->plastic       = ElementPlastic_Enhanced;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -149,33 +149,18 @@ SIMD_INLINE void DilateAny(PetscBool linear, const Means *means, SimdReal H[9], 
   else Dilate(means, H, dilated);
 }
 
-/* What the points have given and the force of the mean pressure, at the nodes */
-SIMD_INLINE void GetNodalForces(PetscReal scale, const Volumes *volumes, PetscBool linear, SimdVector pressure, PetscInt part,
-                                SimdVector F[DIM][MODES], SimdReal nodal[DIM][NODES])
+/* Adds the force of the mean pressure to what the points have given, and both to the nodes */
+SIMD_INLINE void AddWithPressure(PetscBool linear, PetscReal scale, const PetscInt connectivity[], PetscInt first, PetscInt in_batch,
+                                 const Volumes volumes[SIMD_PARTS], SimdReal pressure, SimdVector F[SIMD_PARTS][DIM][MODES], PetscReal f[])
 {
-  pressure /= volumes->undeformed;
-  if (!linear) pressure *= volumes->inverse;
-  for (PetscInt i = 0; i < DIM; i++) {
-    SimdVector n[NODES];
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    SimdVector mean = SimdGetParts(pressure)[part] / volumes[part].undeformed;
 
-    for (PetscInt k = 0; k < MODES; k++) F[i][k] = scale * (F[i][k] + pressure * volumes->gradient[i][k]);
-    NodesOfModes(F[i], n);
-#pragma GCC unroll 8
-    for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
+    if (!linear) mean *= volumes[part].inverse;
+    for (PetscInt i = 0; i < DIM; i++)
+      for (PetscInt k = 0; k < MODES; k++) F[part][i][k] += mean * volumes[part].gradient[i][k];
   }
-}
-
-SIMD_INLINE void AddNodal(const PetscInt connectivity[], PetscInt first, PetscInt in_batch, const SimdReal nodal[DIM][NODES], PetscReal f[])
-{
-  for (PetscInt p = 0; p < in_batch; p++) {
-    const PetscInt *nodes = connectivity + NODES * (first + p);
-
-    for (PetscInt a = 0; a < NODES; a++) {
-      PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
-
-      for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
-    }
-  }
+  AddBatchForces(scale, connectivity, first, in_batch, F, f);
 }
 
 SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal scale, PetscInt count, const PetscInt connectivity[],
@@ -188,7 +173,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES];
-    SimdReal       P[9], nodal[DIM][NODES], pressure = {0};
+    SimdReal       P[9], pressure = {0};
     Volumes        volumes[SIMD_PARTS];
     Means          means;
     Dilated        dilated[2];
@@ -215,14 +200,12 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
       else Undilate((const PetscReal(*)[SIMD_WIDTH])now->H, &dilated[g % 2], now->determinant, P, pressure);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, now->cofactor[part], points[g], F[part]);
     }
-    for (PetscInt part = 0; part < SIMD_PARTS; part++)
-      GetNodalForces(scale, &volumes[part], linear, SimdGetParts(pressure)[part], part, F[part], nodal);
     if (inverted < 0) {
       const PetscInt bad = FindNaN(pressure);
 
       if (bad >= 0) inverted = first + PetscMin(bad, in_batch - 1);
     }
-    AddNodal(connectivity, first, in_batch, (const SimdReal(*)[NODES])nodal, f);
+    AddWithPressure(linear, scale, connectivity, first, in_batch, volumes, pressure, F, f);
   }
   return inverted;
 }
@@ -261,7 +244,7 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], V[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
-    SimdReal       strain[9], S[9], P[9] = {{0}}, nodal[DIM][NODES], pressure = {0}, growth;
+    SimdReal       strain[9], S[9], P[9] = {{0}}, pressure = {0}, growth;
     Volumes        volumes[SIMD_PARTS];
     Means          means;
     Dilated        dilated;
@@ -288,78 +271,32 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
       Undilate((const PetscReal(*)[SIMD_WIDTH])at.H, &dilated, at.determinant, P, pressure);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at.cofactor[part], points[g], F[part]);
     }
-    for (PetscInt part = 0; part < SIMD_PARTS; part++)
-      GetNodalForces(scale, &volumes[part], PETSC_FALSE, SimdGetParts(pressure)[part], part, F[part], nodal);
-    AddNodal(connectivity, first, in_batch, (const SimdReal(*)[NODES])nodal, f);
+    AddWithPressure(PETSC_FALSE, scale, connectivity, first, in_batch, volumes, pressure, F, f);
   }
 }
 
-/* Adds the energies of a batch, one by one, and returns its first member without one; -1: none. With `stress`, the mean Cauchy stress of
-   each too */
-SIMD_INLINE PetscInt ObserveBatch(const Solid *solid, PetscInt first, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                  PetscReal *energy, PetscReal *plastic, PetscReal stress[])
+SIMD_CLONES static PetscErrorCode GetPoints(Element element, PetscInt first, const PetscScalar u[], SimdReal H[][9], SimdReal weights[])
 {
-  const PetscInt n  = PetscMin(SIMD_WIDTH, count - first);
-  Gradients      at = {0};
-  SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
-  SimdReal       P[9], W, work, sum[6] = {{0}}, stored = {0}, flowed = {0}, volume = {0};
-  Volumes        volumes[SIMD_PARTS];
-  Means          means;
-  Dilated        dilated;
-  PetscInt       bad;
-  PetscBool      affine;
-  Frame          frame = {0};
+  const Solid *solid = (const Solid *)element->data;
+  Gradients    at    = {0};
+  SimdVector   X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
+  Volumes      volumes[SIMD_PARTS];
+  Means        means;
+  Dilated      dilated;
+  PetscBool    affine;
+  Frame        frame = {0};
 
-  GetModes(connectivity, first, count, solid->coordinates, X);
-  GetModes(connectivity, first, count, u, U);
+  GetModes(element->connectivity, first, element->count, solid->coordinates, X);
+  GetModes(element->connectivity, first, element->count, u, U);
   affine = GetFrame(X, &frame);
   if (affine) SetFrame(&frame, &at);
   GetVolumes(solid->linear, X, U, volumes, &means);
   for (PetscInt g = 0; g < POINTS; g++) {
     GetGradientsOf(affine, &frame, X, U, points[g], &at);
     DilateAny(solid->linear, &means, at.H, &dilated);
-    if (energy) {
-      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W, work);
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) stored[p] += at.determinant[p] * W[p];
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) flowed[p] += at.determinant[p] * work[p];
-      continue;
-    }
-    SolidStress(solid, first, g, (const SimdReal *)at.H, P);
-    for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-      PetscReal sigma[6];
-
-      SolidCauchy(at.H, P, solid->linear, p, sigma);
-      for (PetscInt k = 0; k < 6; k++) sum[k][p] += at.determinant[p] * sigma[k];
-      volume[p] += at.determinant[p];
-    }
+    StorePoint(&at, H[g], weights[g]);
   }
-  for (PetscInt p = 0; p < n && energy; p++) *energy += stored[p];
-  for (PetscInt p = 0; p < n && energy; p++) *plastic += flowed[p];
-  for (PetscInt p = 0; p < n && stress; p++)
-    for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];
-  bad = FindNaN(stored);
-  return bad < 0 ? -1 : first + PetscMin(bad, n - 1);
+  return PETSC_SUCCESS;
 }
 
-SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                      PetscReal *energy, PetscReal *plastic)
-{
-  PetscInt inverted = -1;
-
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt bad = ObserveBatch(solid, first, count, connectivity, u, energy, plastic, NULL);
-
-    if (inverted < 0) inverted = bad;
-  }
-  return inverted;
-}
-
-SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                  PetscReal stress[])
-{
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) (void)ObserveBatch(solid, first, count, connectivity, u, NULL, NULL, stress);
-}
-
-#include <impakt/private/solidplastic.h>
-#define SOLID_HAS_HISTORY
 #include <impakt/private/solidops.h>

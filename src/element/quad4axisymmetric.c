@@ -7,7 +7,6 @@
 PetscErrorCode ElementCreate_Quad4_Axisymmetric(Element element)
 {
   PetscFunctionBegin;
-  PetscCall(ElementCreate_Solid_Axisymmetric(element, PETSC_FALSE));
   SetLoops(element);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -15,7 +14,7 @@ PetscErrorCode ElementCreate_Quad4_Axisymmetric(Element element)
 PetscErrorCode ElementCreate_Quad4_AxisymmetricMeanDilatation(Element element)
 {
   PetscFunctionBegin;
-  PetscCall(ElementCreate_Solid_Axisymmetric(element, PETSC_TRUE));
+  PetscCall(ElementCreate_Solid_MeanDilatation(element));
   SetLoops(element);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,29 +8,32 @@ static const PetscReal middle[3] = {0};
 /* One element. Hourglasses in the order of reducedloops.h: that without coordinate k is number k, the product of all three number 3. */
 typedef struct {
   PetscInt  dim, nodes, hourglasses;
-  PetscReal volume;
+  PetscReal volume;                                  /* with the thickness */
   PetscReal modes[SOLID_MAX_NODES][3 + HOURGLASSES]; /* coefficients of the coordinates and their products in a shape function */
-  PetscReal gradient[SOLID_MAX_NODES][3], gamma[SOLID_MAX_NODES][HOURGLASSES]; /* mean gradients; the part of an hourglass that is left */
-  PetscReal H[9], x[3][3], q[3][HOURGLASSES], squares[3];
+  PetscReal gradient[SOLID_MAX_NODES * 3], gamma[SOLID_MAX_NODES][HOURGLASSES]; /* mean gradients; the part of an hourglass that is left */
+  PetscReal x[3][3], q[3][HOURGLASSES], squares[3];
 } Reduced;
 
-/* The mean gradients by the rule of the loads, which is exact for them */
-static void GetMeanGradients(Element element, PetscInt e, Reduced *reduced)
+/* The mean gradients by the rule of the loads, which is exact for them; the volume with the thickness */
+static PetscReal GetPoint(Element element, PetscInt e, PetscInt point, PetscReal mean[], PetscReal hoop[])
 {
-  const Solid      *solid = (const Solid *)element->data;
-  const SolidShape *shape = solid->shape;
-  const PetscInt    dim   = element->dim;
+  const Solid      *solid  = (const Solid *)element->data;
+  const SolidShape *shape  = solid->shape;
+  PetscReal         volume = 0;
 
+  (void)point;
+  for (PetscInt a = 0; a < element->nodes; a++) hoop[a] = 0;
+  for (PetscInt k = 0; k < element->nodes * element->dim; k++) mean[k] = 0;
   for (PetscInt g = 0; g < shape->n_load_points; g++) {
     PetscReal       N[SOLID_MAX_NODES], gradient[SOLID_MAX_NODES * 3];
-    const PetscReal weight = SolidGetShape(element, e, shape->load_points + dim * g, N, gradient) * shape->volume / shape->n_load_points;
+    const PetscReal weight = SolidGetShape(element, e, shape->load_points + element->dim * g, N, gradient) * element->cross_section *
+                             shape->volume / shape->n_load_points;
 
-    reduced->volume += weight;
-    for (PetscInt a = 0; a < element->nodes; a++)
-      for (PetscInt i = 0; i < dim; i++) reduced->gradient[a][i] += weight * gradient[dim * a + i];
+    volume += weight;
+    for (PetscInt k = 0; k < element->nodes * element->dim; k++) mean[k] += weight * gradient[k];
   }
-  for (PetscInt a = 0; a < element->nodes; a++)
-    for (PetscInt i = 0; i < dim; i++) reduced->gradient[a][i] /= reduced->volume;
+  for (PetscInt k = 0; k < element->nodes * element->dim; k++) mean[k] /= volume;
+  return volume;
 }
 
 /* Coefficients of the coordinates and their products: a shape function is the product of (1 + corner_k xi_k) / 2 */
@@ -55,20 +58,19 @@ static void Prepare(Element element, PetscInt e, PetscBool finite, const PetscSc
   const Solid    *solid = (const Solid *)element->data;
   const PetscInt *nodes = element->connectivity + e * element->nodes;
   const PetscInt  dim = element->dim, n = element->nodes;
-  PetscReal       X[3][3 + HOURGLASSES] = {{0}};
+  PetscReal       X[3][3 + HOURGLASSES] = {{0}}, hoop[SOLID_MAX_NODES];
 
   PetscArrayzero(reduced, 1);
   reduced->dim         = dim;
   reduced->nodes       = n;
   reduced->hourglasses = dim == 3 ? HOURGLASSES : 1;
-  GetMeanGradients(element, e, reduced);
+  reduced->volume      = GetPoint(element, e, 0, reduced->gradient, hoop);
   GetModes(element, reduced);
   for (PetscInt a = 0; a < n; a++)
     for (PetscInt i = 0; i < dim; i++) {
       const PetscReal at = solid->coordinates[dim * nodes[a] + i], moved = u[dim * nodes[a] + i];
 
       for (PetscInt k = 0; k < 3 + HOURGLASSES; k++) X[i][k] += at * reduced->modes[a][k];
-      for (PetscInt j = 0; j < dim; j++) reduced->H[3 * i + j] += moved * reduced->gradient[a][j];
       for (PetscInt k = 0; k < dim; k++) reduced->x[i][k] += (at + (finite ? moved : 0)) * reduced->modes[a][k];
     }
   for (PetscInt k = 0; k < dim; k++) {
@@ -80,7 +82,7 @@ static void Prepare(Element element, PetscInt e, PetscBool finite, const PetscSc
   for (PetscInt a = 0; a < n; a++)
     for (PetscInt h = 0; h < reduced->hourglasses; h++) {
       reduced->gamma[a][h] = reduced->modes[a][3 + h];
-      for (PetscInt j = 0; j < dim; j++) reduced->gamma[a][h] -= reduced->gradient[a][j] * X[j][3 + h];
+      for (PetscInt j = 0; j < dim; j++) reduced->gamma[a][h] -= reduced->gradient[dim * a + j] * X[j][3 + h];
       for (PetscInt i = 0; i < dim; i++) reduced->q[i][h] += reduced->gamma[a][h] * u[dim * nodes[a] + i];
     }
 }
@@ -118,8 +120,7 @@ static void GetVariation(const Reduced *reduced, PetscBool finite, PetscInt a, P
 }
 
 /* `geometric`: with what the forces of the hourglasses turn */
-static void AddHourglasses(const Hourglass *constants, const Reduced *reduced, PetscReal scale, PetscBool finite, PetscBool geometric,
-                           PetscScalar K[])
+static void AddHourglasses(const Hourglass *constants, const Reduced *reduced, PetscBool finite, PetscBool geometric, PetscScalar K[])
 {
   const PetscInt dim = reduced->dim, n = reduced->nodes * dim;
   PetscReal      c[COMPONENTS] = {0}, s[COMPONENTS], variation[MAX_DOFS][COMPONENTS];
@@ -136,37 +137,25 @@ static void AddHourglasses(const Hourglass *constants, const Reduced *reduced, P
     for (PetscInt row = 0; row < n; row++) {
       const PetscInt a = row / dim, b = column / dim;
 
-      for (PetscInt k = 0; k < COMPONENTS; k++) K[row * n + column] += scale * variation[row][k] * change[k];
+      for (PetscInt k = 0; k < COMPONENTS; k++) K[row * n + column] += variation[row][k] * change[k];
       for (PetscInt k = 0; k < dim && geometric && row % dim == column % dim; k++)
         for (PetscInt h = 0; h < reduced->hourglasses; h++)
-          K[row * n + column] += scale * s[4 * k + h] *
-                                 (reduced->modes[a][k] * reduced->gamma[b][h] + reduced->modes[b][k] * reduced->gamma[a][h]);
+          K[row * n + column] += s[4 * k + h] * (reduced->modes[a][k] * reduced->gamma[b][h] + reduced->modes[b][k] * reduced->gamma[a][h]);
     }
   }
 }
 
-/* `viscous`: of the stress F C : dE/dt by the velocity, and of hourglasses that are damped as they are held */
+/* Hourglasses are damped as they are held */
 static PetscErrorCode ElementTangent_Reduced(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
-  const Solid    *solid = (const Solid *)element->data;
-  const PetscInt  dim = element->dim, n = element->nodes * dim;
+  const Solid    *solid  = (const Solid *)element->data;
   const PetscBool finite = (PetscBool)(viscous || !solid->linear);
   Reduced         reduced;
-  PetscReal       tangent[81], scale;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(K, n * n));
+  PetscCall(ElementTangent_Solid(element, e, viscous, u, K));
   Prepare(element, e, finite, u, &reduced);
-  scale = element->cross_section * reduced.volume;
-  (*solid->kernels.tangent)(solid->kernels.data, reduced.H, tangent);
-  if (viscous) SolidTurnTangent(reduced.H, tangent);
-  for (PetscInt row = 0; row < n; row++)
-    for (PetscInt column = 0; column < n; column++)
-      for (PetscInt j = 0; j < dim; j++)
-        for (PetscInt l = 0; l < dim; l++)
-          K[row * n + column] += scale * reduced.gradient[row / dim][j] * tangent[9 * (3 * (row % dim) + j) + 3 * (column % dim) + l] *
-                                 reduced.gradient[column / dim][l];
-  AddHourglasses((const Hourglass *)solid->own, &reduced, element->cross_section, finite, (PetscBool)(finite && !viscous), K);
+  AddHourglasses((const Hourglass *)solid->own, &reduced, finite, (PetscBool)(finite && !viscous), K);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -213,6 +202,7 @@ PetscErrorCode ElementCreate_Solid_Reduced(Element element)
   solid->reduced.n_points    = 1;
   solid->reduced.points      = middle;
   solid->shape               = &solid->reduced;
+  solid->point               = GetPoint;
   element->ops->tangent      = ElementTangent_Reduced;
   element->ops->viscousforce = SolidViscousForce;
   element->ops->destroy      = ElementDestroy_Reduced;

@@ -193,7 +193,7 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES];
     SimdVector     stress[SIMD_PARTS][DIM][DIM], twice;
-    SimdReal       P[9], nodal[DIM][NODES], check;
+    SimdReal       P[9], check;
     Undeformed     shape[SIMD_PARTS];
     PetscInt       bad;
 
@@ -209,8 +209,6 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
     (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
     for (PetscInt part = 0; part < SIMD_PARTS; part++) {
       for (PetscInt i = 0; i < DIM; i++) {
-        SimdVector n[NODES];
-
 #pragma GCC unroll 3
         for (PetscInt j = 0; j < DIM; j++) {
           const SimdVector p = scale * SimdGetParts(P[3 * i + j])[part] - stress[part][i][j] * shape[part].inverse;
@@ -218,23 +216,12 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
 #pragma GCC unroll 8
           for (PetscInt k = 0; k < (DIM == 3 ? 6 : 2); k++) F[part][i][k] += p * shape[part].gradient[j][k];
         }
-        NodesOfModes(F[part][i], n);
-#pragma GCC unroll 8
-        for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
       }
       SimdGetParts(check)[part] = F[part][0][0] + F[part][1][0] + F[part][DIM - 1][0];
     }
     bad = inverted < 0 ? FindNaN(check) : -1;
     if (bad >= 0) inverted = first + PetscMin(bad, in_batch - 1);
-    for (PetscInt p = 0; p < in_batch; p++) {
-      const PetscInt *nodes = connectivity + NODES * (first + p);
-
-      for (PetscInt a = 0; a < NODES; a++) {
-        PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
-
-        for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
-      }
-    }
+    AddBatchForces(1, connectivity, first, in_batch, F, f);
   }
   return inverted;
 }
@@ -247,49 +234,15 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
                        : AddBatches(PETSC_FALSE, solid, scale, count, connectivity, u, f);
 }
 
-/* Energies [J/m of thickness, or J], of the mean gradients and of the hourglasses; the first element without one, -1: none */
-SIMD_CLONES static PetscInt AddEnergies(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                        PetscReal *energy, PetscReal *of_hourglasses)
+/* The energy of the hourglasses [J/m of thickness, or J] */
+SIMD_CLONES static PetscReal GetHourglassEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[])
 {
-  PetscInt inverted = -1;
-  SimdReal H[9]     = {{0}};
-
-  *energy = *of_hourglasses = 0;
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[DIM][MODES], stress[DIM][DIM], twice;
-    SimdReal       W, volume, hourglass;
-    Undeformed     shape;
-    PetscInt       bad;
-
-    GetModes(connectivity, first, count, solid->coordinates, X);
-    GetModes(connectivity, first, count, u, U);
-    for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-      GetUndeformed(X[part], &shape);
-      GetMeanGradient(part, &shape, U[part], H);
-      GetHourglasses(solid->linear, part, (const Hourglass *)solid->own, &shape, X[part], U[part], H, 1, F, stress, &twice);
-      SimdGetParts(volume)[part]    = shape.volume;
-      SimdGetParts(hourglass)[part] = 0.5 * twice;
-    }
-    (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, W);
-    bad = inverted < 0 ? FindNaN(W) : -1;
-    if (bad >= 0) inverted = first + PetscMin(bad, in_batch - 1);
-    for (PetscInt p = 0; p < in_batch; p++) {
-      *energy += volume[p] * W[p] + hourglass[p];
-      *of_hourglasses += hourglass[p];
-    }
-  }
-  return inverted;
-}
-
-SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                  PetscReal stress[])
-{
-  SimdReal H[9] = {{0}};
+  PetscReal energy = 0;
+  SimdReal  H[9]   = {{0}};
 
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    SimdVector X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
-    SimdReal   P[9];
+    SimdVector X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[DIM][MODES], stress[DIM][DIM], twice;
+    SimdReal   hourglass;
     Undeformed shape;
 
     GetModes(connectivity, first, count, solid->coordinates, X);
@@ -297,14 +250,27 @@ SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const Pets
     for (PetscInt part = 0; part < SIMD_PARTS; part++) {
       GetUndeformed(X[part], &shape);
       GetMeanGradient(part, &shape, U[part], H);
+      GetHourglasses(solid->linear, part, (const Hourglass *)solid->own, &shape, X[part], U[part], H, 1, F, stress, &twice);
+      SimdGetParts(hourglass)[part] = 0.5 * twice;
     }
-    (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
-    if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, H);
-    for (PetscInt p = 0; p < PetscMin(SIMD_WIDTH, count - first); p++) SolidCauchy(H, P, solid->linear, p, stress + 6 * (first + p));
-    if (solid->plane_stress)
-      for (PetscInt k = 0; k < 9; k++)
-        for (PetscInt p = 0; p < SIMD_WIDTH; p++) H[k][p] = 0;
+    for (PetscInt p = 0; p < PetscMin(SIMD_WIDTH, count - first); p++) energy += hourglass[p];
   }
+  return energy;
+}
+
+SIMD_CLONES static PetscErrorCode GetPoints(Element element, PetscInt first, const PetscScalar u[], SimdReal H[][9], SimdReal weights[])
+{
+  SimdVector X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
+  Undeformed shape;
+
+  GetModes(element->connectivity, first, element->count, ((const Solid *)element->data)->coordinates, X);
+  GetModes(element->connectivity, first, element->count, u, U);
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    GetUndeformed(X[part], &shape);
+    GetMeanGradient(part, &shape, U[part], H[0]);
+    SimdGetParts(weights[0])[part] = shape.volume;
+  }
+  return PETSC_SUCCESS;
 }
 
 static PetscErrorCode InternalForce(Element element, const PetscScalar u[], PetscScalar f[])
@@ -315,30 +281,12 @@ static PetscErrorCode InternalForce(Element element, const PetscScalar u[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Energy(Element element, const PetscScalar u[], PetscReal *energy)
-{
-  PetscReal of_hourglasses;
-
-  PetscFunctionBegin;
-  element->inverted = AddEnergies((const Solid *)element->data, element->count, element->connectivity, u, energy, &of_hourglasses);
-  *energy *= element->cross_section;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode HourglassEnergy(Element element, const PetscScalar u[], PetscReal *energy)
 {
-  PetscReal all;
+  const Solid *solid = (const Solid *)element->data;
 
   PetscFunctionBegin;
-  (void)AddEnergies((const Solid *)element->data, element->count, element->connectivity, u, &all, energy);
-  *energy *= element->cross_section;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Stress(Element element, const PetscScalar u[], PetscReal stress[])
-{
-  PetscFunctionBegin;
-  GetStress((const Solid *)element->data, element->count, element->connectivity, u, stress);
+  *energy = element->cross_section * GetHourglassEnergy(solid, element->count, element->connectivity, u);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -346,9 +294,9 @@ static PetscErrorCode CreateReduced(Element element)
 {
   PetscFunctionBegin;
   PetscCall(ElementCreate_Solid_Reduced(element));
-  element->ops->internalforce = InternalForce;
-  element->ops->energy        = Energy;
-  element->ops->hourglass     = HourglassEnergy;
-  element->ops->stress        = Stress;
+  ((Solid *)element->data)->scale   = 1;
+  ((Solid *)element->data)->observe = GetPoints;
+  element->ops->internalforce       = InternalForce;
+  element->ops->hourglass           = HourglassEnergy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -239,49 +239,20 @@ void SolidPointStress(const Solid *solid, PetscInt e, PetscInt g, const PetscRea
 }
 
 /* A point of integration of the shape */
-static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gradient[])
-{
-  const SolidShape *shape = ((const Solid *)element->data)->shape;
-  PetscReal         N[SOLID_MAX_NODES];
-
-  return SolidGetShape(element, e, shape->points + element->dim * g, N, gradient) * element->cross_section * shape->volume /
-         shape->n_points;
-}
-
-/* K_(a i)(b k) = sum over the points of w dN_a/dX_j (dP_ij/dH_kl) dN_b/dX_l; `viscous`: of the stress F C : dE/dt, by the velocity */
-static PetscErrorCode ElementTangent_Solid(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
+static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gradient[], PetscReal hoop[])
 {
   const Solid      *solid = (const Solid *)element->data;
   const SolidShape *shape = solid->shape;
   const PetscInt   *nodes = element->connectivity + e * element->nodes;
-  const PetscInt    dim = element->dim, n = element->nodes * dim;
+  PetscReal         N[SOLID_MAX_NODES], weight, radius = 0;
 
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(K, n * n));
-  for (PetscInt g = 0; g < shape->n_points; g++) {
-    PetscReal       gradient[SOLID_MAX_NODES * 3], H[9] = {0}, tangent[81];
-    const PetscReal weight = (*solid->point)(element, e, g, gradient);
-
-    for (PetscInt a = 0; a < element->nodes; a++)
-      for (PetscInt i = 0; i < dim; i++)
-        for (PetscInt j = 0; j < dim; j++) H[3 * i + j] += u[dim * nodes[a] + i] * gradient[dim * a + j];
-    SolidTangent(solid, e, g, H, tangent);
-    if (viscous) SolidTurnTangent(H, tangent);
-    for (PetscInt b = 0; b < element->nodes; b++)
-      for (PetscInt k = 0; k < dim; k++) {
-        PetscReal stress[3][3]; /* for a displacement of this degree of freedom */
-
-        for (PetscInt i = 0; i < dim; i++)
-          for (PetscInt j = 0; j < dim; j++) {
-            stress[i][j] = 0;
-            for (PetscInt l = 0; l < dim; l++) stress[i][j] += weight * tangent[9 * (3 * i + j) + 3 * k + l] * gradient[dim * b + l];
-          }
-        for (PetscInt a = 0; a < element->nodes; a++)
-          for (PetscInt i = 0; i < dim; i++)
-            for (PetscInt j = 0; j < dim; j++) K[(dim * a + i) * n + dim * b + k] += stress[i][j] * gradient[dim * a + j];
-      }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  weight = SolidGetShape(element, e, shape->points + element->dim * g, N, gradient) * element->cross_section * shape->volume /
+           shape->n_points;
+  for (PetscInt a = 0; a < element->nodes; a++) hoop[a] = 0;
+  if (!element->axisymmetric) return weight;
+  for (PetscInt a = 0; a < element->nodes; a++) radius += N[a] * solid->coordinates[2 * nodes[a]];
+  for (PetscInt a = 0; a < element->nodes; a++) hoop[a] = N[a] / radius;
+  return weight * 2 * PETSC_PI * radius;
 }
 
 /* The viscous force of formulations that have no loop of their own for it: element by element, by the tangent */
@@ -377,6 +348,9 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   element->ops->setfromoptions = ElementSetFromOptions_Solid;
   element->ops->setup          = ElementSetUp_Solid;
   element->ops->tangent        = ElementTangent_Solid;
+  element->ops->energy         = ElementEnergy_Solid;
+  element->ops->stress         = ElementStress_Solid;
+  element->ops->plastic        = ElementPlastic_Solid;
   element->ops->nearest        = ElementNearest_Solid;
   element->ops->mass           = ElementMass_Solid;
   element->ops->points         = ElementPoints_Solid;

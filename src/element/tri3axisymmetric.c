@@ -7,7 +7,6 @@
 PetscErrorCode ElementCreate_Tri3_Axisymmetric(Element element)
 {
   PetscFunctionBegin;
-  PetscCall(ElementCreate_Solid_Axisymmetric(element, PETSC_FALSE));
   SetLoops(element);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

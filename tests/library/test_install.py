@@ -46,7 +46,7 @@ def test_plots_and_options_are_there(installed, tmp_path):  # noqa: F811
 
 
 # These want a shape's definitions before them, as src/element/hex8.h has them
-TEMPLATES = ("solidaffine.h", "solidbatch.h", "solidloops.h", "solidops.h", "solidplastic.h")
+TEMPLATES = ("solidaffine.h", "solidbatch.h", "solidloops.h", "solidops.h")
 
 
 def check_syntax(words, text, installed, tmp_path):  # noqa: F811

@@ -34,10 +34,14 @@ typedef struct {
   MaterialKernels         unconstrained; /* of the same material when not in plane stress */
   PetscInt  own_history; /* numbers of the formulation behind those of the material at each point, of materials with history */
   PetscBool plane_stress, linear;
-  PetscBool mean_dilatation; /* of axisymmetric elements */
-  PetscReal mean_share;      /* of the mean of the element in the ratio of volumes at its points; 0 to 1, which most formulations have */
-  PetscReal (*point)(Element, PetscInt, PetscInt, PetscReal[]); /* weight of a point of an element with the thickness, and the gradients of
-                                                                   the shape functions there, nodes x dim */
+  PetscReal mean_share; /* of the mean of the element in the ratio of volumes at its points: 1 with a mean dilatation, 0 without */
+  /* weight of a point of an element with the thickness, the gradients of the shape functions there, nodes x dim, and of rings what they
+     add to F_33 for a displacement along r, else 0 */
+  PetscReal (*point)(Element, PetscInt, PetscInt, PetscReal[], PetscReal[]);
+  /* of a batch of elements from the first on: the displacement gradients that its points give the material, n_points, and their weights,
+     times `scale` those of the points of a body without thickness */
+  PetscErrorCode (*observe)(Element, PetscInt, const PetscScalar[], SimdReal[][9], SimdReal[]);
+  PetscReal scale;
   /* shape functions at the points of loads and masses, and their gradients by reference coordinates, nodes x dim */
   PetscReal  load_shape[SOLID_MAX_POINTS * SOLID_MAX_NODES], load_gradients[SOLID_MAX_POINTS][SOLID_MAX_NODES * 3];
   SolidShape reduced; /* the shape with another rule, where a formulation has one */
@@ -90,8 +94,11 @@ PETSC_EXTERN PetscErrorCode ElementCreate_Solid(Element, const SolidShape *);
 PETSC_EXTERN PetscErrorCode ElementCreate_Solid_MeanDilatation(Element);
 PETSC_INTERN PetscErrorCode SolidViscousForce(Element, const PetscScalar[], const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode SolidSetUpMaterial(Element, const PetscReal[]);
-PETSC_INTERN PetscErrorCode ElementCreate_Solid_Axisymmetric(Element, PetscBool);
 PETSC_EXTERN PetscReal      SolidGetShape(Element, PetscInt, const PetscReal xi[], PetscReal N[], PetscReal gradient[]);
+PETSC_INTERN PetscErrorCode ElementTangent_Solid(Element, PetscInt, PetscBool, const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscErrorCode ElementEnergy_Solid(Element, const PetscScalar[], PetscReal *);
+PETSC_INTERN PetscErrorCode ElementStress_Solid(Element, const PetscScalar[], PetscReal[]);
+PETSC_INTERN PetscErrorCode ElementPlastic_Solid(Element, PetscReal *, PetscReal[]);
 PETSC_INTERN PetscErrorCode ElementPoints_Solid(Element, PetscInt, PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ElementNearest_Solid(Element, PetscInt, const PetscReal[], PetscReal[], PetscReal *);
 PETSC_EXTERN void           SolidStretchThickness(const Solid *, PetscReal H[9][SIMD_WIDTH]);

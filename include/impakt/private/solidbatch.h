@@ -154,6 +154,52 @@ SIMD_INLINE void AddPointOfPart(PetscInt part, SimdReal P[9], const SimdVector c
   }
 }
 
+/* The forces of a batch times a scale, by monomials, at its nodes */
+SIMD_INLINE void GetNodal(PetscReal scale, SimdVector F[SIMD_PARTS][DIM][MODES], SimdReal nodal[DIM][NODES])
+{
+  for (PetscInt part = 0; part < SIMD_PARTS; part++)
+    for (PetscInt i = 0; i < DIM; i++) {
+      SimdVector n[NODES];
+
+      for (PetscInt k = 0; k < MODES; k++) F[part][i][k] *= scale;
+      NodesOfModes(F[part][i], n);
+#pragma GCC unroll 8
+      for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
+    }
+}
+
+/* Adds them to those of all */
+SIMD_INLINE void AddNodal(const PetscInt connectivity[], PetscInt first, PetscInt in_batch, const SimdReal nodal[DIM][NODES], PetscReal f[])
+{
+  for (PetscInt p = 0; p < in_batch; p++) {
+    const PetscInt *nodes = connectivity + NODES * (first + p);
+
+    for (PetscInt a = 0; a < NODES; a++) {
+      PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
+
+      for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
+    }
+  }
+}
+
+SIMD_INLINE void AddBatchForces(PetscReal scale, const PetscInt connectivity[], PetscInt first, PetscInt in_batch,
+                                SimdVector F[SIMD_PARTS][DIM][MODES], PetscReal f[])
+{
+  SimdReal nodal[DIM][NODES];
+
+  GetNodal(scale, F, nodal);
+  AddNodal(connectivity, first, in_batch, (const SimdReal(*)[NODES])nodal, f);
+}
+
+/* What is observed of a point: see Solid */
+SIMD_INLINE void StorePoint(Gradients *at, SimdReal H[9], SimdReal weight)
+{
+  for (PetscInt part = 0; part < SIMD_PARTS; part++) {
+    for (PetscInt k = 0; k < 9; k++) SimdGetParts(H[k])[part] = SimdGetParts(at->H[k])[part];
+    SimdGetParts(weight)[part] = SimdGetParts(at->determinant)[part];
+  }
+}
+
 /* The first member of a batch whose number is not one; -1: none */
 SIMD_INLINE PetscInt FindNaN(const SimdReal values)
 {

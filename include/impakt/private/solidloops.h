@@ -1,6 +1,6 @@
 /*
-   The loops over all elements of one shape, fully integrated: internal force, energy, stress. A shape's file defines what solidbatch.h asks
-   for, and includes this.
+   The loops over all elements of one shape, fully integrated: internal and viscous force, points. A shape's file defines what solidbatch.h
+   asks for, and includes this.
 */
 #include <impakt/private/solidbatch.h>
 #include <impakt/private/solidaffine.h>
@@ -18,7 +18,7 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES];
-    SimdReal       P[9], nodal[DIM][NODES], check = {0};
+    SimdReal       P[9], check = {0};
     PetscBool      affine = PETSC_FALSE, by_terms = PETSC_FALSE;
 
     ZeroModes(F);
@@ -44,30 +44,15 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
       SolidStress(solid, first, g, (const SimdReal *)at[now].H, P);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at[now].cofactor[part], points[g], F[part]);
     }
-    for (PetscInt part = 0; part < SIMD_PARTS; part++)
-      for (PetscInt i = 0; i < DIM; i++) {
-        SimdVector n[NODES];
-
+    for (PetscInt part = 0; part < SIMD_PARTS && inverted < 0; part++)
+      for (PetscInt i = 0; i < DIM; i++)
         for (PetscInt k = 0; k < DIM; k++) SimdGetParts(check)[part] += F[part][i][k]; /* every stress goes into these */
-        for (PetscInt k = 0; k < MODES; k++) F[part][i][k] *= scale;
-        NodesOfModes(F[part][i], n);
-#pragma GCC unroll 8
-        for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
-      }
     if (inverted < 0) {
       const PetscInt bad = FindNaN(check);
 
       if (bad >= 0) inverted = first + PetscMin(bad, in_batch - 1);
     }
-    for (PetscInt p = 0; p < in_batch; p++) {
-      const PetscInt *nodes = connectivity + NODES * (first + p);
-
-      for (PetscInt a = 0; a < NODES; a++) {
-        PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
-
-        for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
-      }
-    }
+    AddBatchForces(scale, connectivity, first, in_batch, F, f);
   }
   return inverted;
 }
@@ -81,7 +66,7 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
   for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
     const PetscInt in_batch = PetscMin(SIMD_WIDTH, count - first);
     SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES], V[SIMD_PARTS][DIM][MODES], F[SIMD_PARTS][DIM][MODES] = {{{{0}}}};
-    SimdReal       strain[9], S[9], P[9] = {{0}}, nodal[DIM][NODES];
+    SimdReal       strain[9], S[9], P[9] = {{0}};
 
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
@@ -94,85 +79,27 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
       PullBack(at.H, S, P);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at.cofactor[part], points[g], F[part]);
     }
-    for (PetscInt part = 0; part < SIMD_PARTS; part++)
-      for (PetscInt i = 0; i < DIM; i++) {
-        SimdVector n[NODES];
-
-        for (PetscInt k = 0; k < MODES; k++) F[part][i][k] *= scale;
-        NodesOfModes(F[part][i], n);
-        for (PetscInt a = 0; a < NODES; a++) SimdGetParts(nodal[i][a])[part] = n[a];
-      }
-    for (PetscInt p = 0; p < in_batch; p++) {
-      const PetscInt *nodes = connectivity + NODES * (first + p);
-
-      for (PetscInt a = 0; a < NODES; a++) {
-        PetscReal *of_node = f + (size_t)(DIM * nodes[a]);
-
-        for (PetscInt i = 0; i < DIM; i++) of_node[i] += nodal[i][a][p];
-      }
-    }
+    AddBatchForces(scale, connectivity, first, in_batch, F, f);
   }
 }
 
-SIMD_CLONES static PetscInt AddEnergy(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                      PetscReal *energy, PetscReal *plastic)
+SIMD_CLONES static PetscErrorCode GetPoints(Element element, PetscInt first, const PetscScalar u[], SimdReal H[][9], SimdReal weights[])
 {
-  PetscInt  inverted = -1;
-  Gradients at       = {0};
+  const Solid *solid = (const Solid *)element->data;
+  Gradients    at    = {0};
+  SimdVector   X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
+  Frame        frame;
+  PetscBool    affine;
 
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
-    SimdReal       W, work, sum = {0}, flowed = {0};
-    PetscInt       bad;
-    PetscBool      affine;
-    Frame          frame;
-
-    GetModes(connectivity, first, count, solid->coordinates, X);
-    GetModes(connectivity, first, count, u, U);
-    affine = GetFrame(X, &frame);
-    if (affine) SetFrame(&frame, &at);
-    for (PetscInt g = 0; g < POINTS; g++) {
-      GetGradientsOf(affine, &frame, X, U, points[g], &at);
-      SolidEnergy(solid, first, g, (const SimdReal *)at.H, W, work);
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) sum[p] += at.determinant[p] * W[p];
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) flowed[p] += at.determinant[p] * work[p];
-    }
-    bad = FindNaN(sum);
-    if (inverted < 0 && bad >= 0) inverted = first + PetscMin(bad, n - 1);
-    for (PetscInt p = 0; p < n; p++) *energy += sum[p];
-    for (PetscInt p = 0; p < n; p++) *plastic += flowed[p];
+  GetModes(element->connectivity, first, element->count, solid->coordinates, X);
+  GetModes(element->connectivity, first, element->count, u, U);
+  affine = GetFrame(X, &frame);
+  if (affine) SetFrame(&frame, &at);
+  for (PetscInt g = 0; g < POINTS; g++) {
+    GetGradientsOf(affine, &frame, X, U, points[g], &at);
+    StorePoint(&at, H[g], weights[g]);
   }
-  return inverted;
-}
-
-SIMD_CLONES static void GetStress(const Solid *solid, PetscInt count, const PetscInt connectivity[], const PetscReal u[],
-                                  PetscReal stress[])
-{
-  Gradients at = {0};
-
-  for (PetscInt first = 0; first < count; first += SIMD_WIDTH) {
-    const PetscInt n = PetscMin(SIMD_WIDTH, count - first);
-    SimdVector     X[SIMD_PARTS][DIM][MODES], U[SIMD_PARTS][DIM][MODES];
-    SimdReal       P[9], sum[6] = {{0}}, volume = {0};
-
-    GetModes(connectivity, first, count, solid->coordinates, X);
-    GetModes(connectivity, first, count, u, U);
-    for (PetscInt g = 0; g < POINTS; g++) {
-      GetGradients(X, U, points[g], &at);
-      SolidStress(solid, first, g, (const SimdReal *)at.H, P);
-      if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, at.H);
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-        PetscReal sigma[6];
-
-        SolidCauchy(at.H, P, solid->linear, p, sigma);
-        for (PetscInt k = 0; k < 6; k++) sum[k][p] += at.determinant[p] * sigma[k];
-        volume[p] += at.determinant[p];
-      }
-    }
-    for (PetscInt p = 0; p < n; p++)
-      for (PetscInt k = 0; k < 6; k++) stress[6 * (first + p) + k] = sum[k][p] / volume[p];
-  }
+  return PETSC_SUCCESS;
 }
 
 static PetscErrorCode InternalForce(Element element, const PetscScalar u[], PetscScalar f[])
@@ -188,9 +115,7 @@ static PetscErrorCode InternalForce(Element element, const PetscScalar u[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#include <impakt/private/solidplastic.h>
 #define SOLID_HAS_FORCE
-#define SOLID_HAS_HISTORY
 #include <impakt/private/solidops.h>
 
 static PetscErrorCode Create(Element element, const SolidShape *shape)

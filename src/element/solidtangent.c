@@ -1,12 +1,13 @@
 /*
-   Elements with a mean dilatation, one at a time: their tangent, and their viscosity. The formulation is in meandilatationloops.h.
+   The tangent and the viscosity of solid elements, one at a time: fully integrated, with a mean dilatation (meandilatationloops.h), and
+   rings (axisymmetricloops.h), whose strain along them is one more term.
 
    With D = F^-T : dF at a point and d theta = sum of w J D / V over the points, of weights w and volume V,
      dF' = r (dF + g F) with g = (d theta / theta - D) / 3,
    and the second derivative of F' adds, with pi = P' : F',
      r (P' : d1F g2 + P' : d2F g1) + pi g1 g2 + pi / 3 (d2theta / theta - d1theta d2theta / theta^2 + T)
    where T is the trace of F^-1 d1F F^-1 d2F, and d2theta the sum of w J (D1 D2 - T) / V. A share of the mean less than 1, which composite
-   elements have, is the factor of 1/3 wherever it stands.
+   elements have, is the factor of 1/3 wherever it stands. Without a mean dilatation F' is F, and g is 0.
 */
 #include <impakt/private/solid.h>
 
@@ -17,7 +18,9 @@ typedef struct {
   PetscReal weight, J, ratio, pi, third;              /* ratio: r; third: pi / 3 times the share */
   PetscReal F[9], inverse[9], H[9], P[9];             /* F, F^-T, F' - 1, P' */
   PetscReal gradient[MAX_DOFS];                       /* of the shape functions, nodes x dim */
-  PetscReal D[MAX_DOFS], g[MAX_DOFS], work[MAX_DOFS]; /* F^-T : dF; g; P' : dF */
+  PetscReal hoop[SOLID_MAX_NODES];                    /* of rings: dF_33 for the first component */
+  PetscReal turned[MAX_DOFS], along[MAX_DOFS];        /* F^-T : dF of the plane or space, and along rings; D is their sum */
+  PetscReal D[MAX_DOFS], g[MAX_DOFS], work[MAX_DOFS]; /* g; P' : dF */
 } Point;
 
 static PetscReal Contract(const PetscReal a[9], const PetscReal b[9])
@@ -42,33 +45,41 @@ static PetscReal Invert(const PetscReal F[9], PetscReal inverse[9])
   return J;
 }
 
-/* `finite`: with regard to rotations and changes of volume; else F is 1 in all but H */
-static void FillPoint(Element element, PetscInt e, PetscInt g, PetscBool finite, const PetscScalar u[], Point *point)
+/* The displacement gradient; the rest is what a mean dilatation takes. `finite`: with regard to rotations and changes of volume; else F is
+   1 in all but H */
+static void FillPoint(Element element, PetscInt e, PetscInt g, PetscBool mean, PetscBool finite, const PetscScalar u[], Point *point)
 {
   const Solid    *solid = (const Solid *)element->data;
   const PetscInt *nodes = element->connectivity + e * element->nodes;
   const PetscInt  dim   = element->dim;
 
-  point->weight = (*solid->point)(element, e, g, point->gradient);
-  for (PetscInt i = 0; i < 9; i++) point->F[i] = point->H[i] = 0;
-  for (PetscInt a = 0; a < element->nodes; a++)
+  point->weight = (*solid->point)(element, e, g, point->gradient, point->hoop);
+  point->ratio  = 1;
+  for (PetscInt i = 0; i < 9; i++) point->H[i] = 0;
+  for (PetscInt a = 0; a < element->nodes; a++) {
     for (PetscInt i = 0; i < dim; i++)
       for (PetscInt j = 0; j < dim; j++) point->H[3 * i + j] += u[dim * nodes[a] + i] * point->gradient[dim * a + j];
+    point->H[8] += u[dim * nodes[a]] * point->hoop[a];
+  }
+  if (!mean) return;
   for (PetscInt i = 0; i < 9; i++) point->F[i] = (i % 4 ? 0 : 1) + (finite ? point->H[i] : 0);
   point->J = Invert(point->F, point->inverse);
-  for (PetscInt a = 0; a < element->nodes; a++)
-    for (PetscInt i = 0; i < dim; i++) {
-      point->D[dim * a + i] = 0;
-      for (PetscInt j = 0; j < dim; j++) point->D[dim * a + i] += point->inverse[3 * i + j] * point->gradient[dim * a + j];
-    }
+  for (PetscInt k = 0; k < element->nodes * dim; k++) {
+    const PetscInt a = k / dim, i = k % dim;
+
+    point->turned[k] = 0;
+    for (PetscInt j = 0; j < dim; j++) point->turned[k] += point->inverse[3 * i + j] * point->gradient[dim * a + j];
+    point->along[k] = i ? 0 : point->inverse[8] * point->hoop[a];
+    point->D[k]     = point->turned[k] + point->along[k];
+  }
 }
 
 /* What has to do with the mean: theta, and its derivative by each degree of freedom; then F' and the stress of each point. Returns theta.
  */
 static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscInt n_points, Point points[], PetscReal dtheta[])
 {
-  const Solid    *solid  = (const Solid *)element->data;
-  const PetscInt  n      = element->nodes * element->dim;
+  const Solid    *solid = (const Solid *)element->data;
+  const PetscInt  dim = element->dim, n = element->nodes * dim;
   const PetscReal third  = solid->mean_share / 3;
   PetscReal       volume = 0, theta = 0;
 
@@ -97,35 +108,44 @@ static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscIn
     point->pi    = Contract(point->P, F);
     point->third = third * point->pi;
     for (PetscInt i = 0; i < n; i++) {
-      const PetscReal *gradient = point->gradient + i / element->dim * element->dim;
-
       point->g[i]    = third * (dtheta[i] / (finite ? theta : 1) - point->D[i]);
-      point->work[i] = 0;
-      for (PetscInt j = 0; j < element->dim; j++) point->work[i] += point->P[3 * (i % element->dim) + j] * gradient[j];
+      point->work[i] = i % dim ? 0 : point->P[8] * point->hoop[i / dim];
+      for (PetscInt j = 0; j < dim; j++) point->work[i] += point->P[3 * (i % dim) + j] * point->gradient[i / dim * dim + j];
     }
   }
   return theta;
 }
 
-/* dF' for the displacement of each degree of freedom */
-static void GetVariation(Element element, const Point *point, PetscInt i, PetscReal dF[9])
+/* dF' for the displacement of each degree of freedom: without a mean dilatation a row of it, and along rings F_33 */
+static void AddMaterialPart(Element element, PetscBool mean, const Point *point, const PetscReal tangent[81], PetscScalar K[])
 {
-  for (PetscInt k = 0; k < 9; k++) dF[k] = point->ratio * point->g[i] * point->F[k];
-  for (PetscInt j = 0; j < element->dim; j++)
-    dF[3 * (i % element->dim) + j] += point->ratio * point->gradient[i / element->dim * element->dim + j];
-}
+  const PetscInt dim = element->dim, n = element->nodes * dim, length = mean ? 9 : 3;
+  PetscReal      variation[MAX_DOFS][9], apart[MAX_DOFS];
+  PetscInt       start[MAX_DOFS];
 
-static void AddMaterialPart(Element element, const Point *point, const PetscReal tangent[81], PetscScalar K[])
-{
-  const PetscInt n = element->nodes * element->dim;
-  PetscReal      variation[MAX_DOFS][9];
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal hoop = i % dim ? 0 : point->hoop[i / dim];
 
-  for (PetscInt i = 0; i < n; i++) GetVariation(element, point, i, variation[i]);
+    for (PetscInt k = 0; k < 9; k++) variation[i][k] = mean ? point->ratio * point->g[i] * point->F[k] : 0;
+    for (PetscInt j = 0; j < dim; j++) variation[i][3 * (i % dim) + j] += point->ratio * point->gradient[i / dim * dim + j];
+    if (mean) variation[i][8] += point->ratio * hoop;
+    apart[i] = mean ? 0 : hoop;
+    start[i] = mean ? 0 : 3 * (i % dim);
+  }
   for (PetscInt j = 0; j < n; j++) {
     PetscReal stress[9];
 
-    for (PetscInt k = 0; k < 9; k++) stress[k] = point->weight * Contract(tangent + 9 * k, variation[j]);
-    for (PetscInt i = 0; i < n; i++) K[i * n + j] += Contract(variation[i], stress);
+    for (PetscInt k = 0; k < 9; k++) {
+      stress[k] = tangent[9 * k + 8] * apart[j];
+      for (PetscInt l = start[j]; l < start[j] + length; l++) stress[k] += tangent[9 * k + l] * variation[j][l];
+      stress[k] *= point->weight;
+    }
+    for (PetscInt i = 0; i < n; i++) {
+      PetscReal sum = apart[i] * stress[8];
+
+      for (PetscInt k = start[i]; k < start[i] + length; k++) sum += variation[i][k] * stress[k];
+      K[i * n + j] += sum;
+    }
   }
 }
 
@@ -138,7 +158,8 @@ static void AddGeometricPart(Element element, const Point *point, PetscReal thet
 
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 0; j < n; j++) {
-      const PetscReal trace = point->D[i / dim * dim + j % dim] * point->D[j / dim * dim + i % dim]; /* T */
+      const PetscReal trace = point->turned[i / dim * dim + j % dim] * point->turned[j / dim * dim + i % dim] +
+                              point->along[i] * point->along[j]; /* T */
 
       K[i * n + j] += weight * (point->ratio * (point->work[i] * point->g[j] + point->g[i] * point->work[j]) +
                                 point->pi * point->g[i] * point->g[j] + third * (trace - dtheta[i] * dtheta[j] / (theta * theta)) +
@@ -147,19 +168,19 @@ static void AddGeometricPart(Element element, const Point *point, PetscReal thet
 }
 
 /* `viscous`: of the stress F' C : dE'/dt by the velocity */
-static PetscErrorCode ElementTangent_MeanDilatation(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
+PetscErrorCode ElementTangent_Solid(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Solid    *solid    = (const Solid *)element->data;
   const PetscInt  n_points = solid->shape->n_points, n = element->nodes * element->dim;
-  const PetscBool finite = (PetscBool)(viscous || !solid->linear);
+  const PetscBool finite = (PetscBool)(viscous || !solid->linear), mean = (PetscBool)(solid->mean_share > 0);
   Point           points[SOLID_MAX_POINTS];
-  PetscReal       dtheta[MAX_DOFS], theta, volume = 0, pressure = 0;
+  PetscReal       dtheta[MAX_DOFS], theta = 1, volume = 0, pressure = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(K, n * n));
-  for (PetscInt g = 0; g < n_points; g++) FillPoint(element, e, g, finite, u, &points[g]);
-  theta = FillMean(element, e, finite, n_points, points, dtheta);
-  for (PetscInt g = 0; g < n_points; g++) {
+  for (PetscInt g = 0; g < n_points; g++) FillPoint(element, e, g, mean, finite, u, &points[g]);
+  if (mean) theta = FillMean(element, e, finite, n_points, points, dtheta);
+  for (PetscInt g = 0; g < n_points && mean; g++) {
     volume += points[g].weight;
     pressure += points[g].weight * points[g].third / theta;
   }
@@ -168,13 +189,13 @@ static PetscErrorCode ElementTangent_MeanDilatation(Element element, PetscInt e,
 
     SolidTangent(solid, e, g, points[g].H, tangent);
     if (viscous) SolidTurnTangent(points[g].H, tangent);
-    AddMaterialPart(element, &points[g], tangent, K);
-    if (finite && !viscous) AddGeometricPart(element, &points[g], theta, pressure / volume, dtheta, K);
+    AddMaterialPart(element, mean, &points[g], tangent, K);
+    if (mean && finite && !viscous) AddGeometricPart(element, &points[g], theta, pressure / volume, dtheta, K);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All but the loops over all elements */
+/* Gives an element that has been made as a fully integrated one a mean dilatation */
 PetscErrorCode ElementCreate_Solid_MeanDilatation(Element element)
 {
   PetscFunctionBegin;
@@ -183,6 +204,5 @@ PetscErrorCode ElementCreate_Solid_MeanDilatation(Element element)
              "does not lock; use full or enhanced",
              ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "");
   ((Solid *)element->data)->mean_share = 1;
-  element->ops->tangent                = ElementTangent_MeanDilatation;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
