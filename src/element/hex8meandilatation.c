@@ -1,6 +1,6 @@
 /* hex8 with a mean dilatation. */
 #include <element/hex8.h>
-#include <element/meandilatationloops.h>
+#include <element/boxpoints.h>
 
 PetscErrorCode ElementCreate_Hex8_MeanDilatation(Element element)
 {

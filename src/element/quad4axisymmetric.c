@@ -2,7 +2,8 @@
 #include <element/quad4.h>
 #undef WEIGHT
 #define WEIGHT (2 * PETSC_PI)
-#include <element/axisymmetricloops.h>
+#define RING
+#include <element/boxpoints.h>
 
 PetscErrorCode ElementCreate_Quad4_Axisymmetric(Element element)
 {

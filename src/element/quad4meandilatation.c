@@ -1,6 +1,6 @@
 /* quad4 with a mean dilatation. */
 #include <element/quad4.h>
-#include <element/meandilatationloops.h>
+#include <element/boxpoints.h>
 
 PetscErrorCode ElementCreate_Quad4_MeanDilatation(Element element)
 {

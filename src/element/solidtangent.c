@@ -1,6 +1,6 @@
 /*
-   The tangent and the viscosity of solid elements, one at a time: fully integrated, with a mean dilatation (meandilatationloops.h), and
-   rings (axisymmetricloops.h), whose strain along them is one more term.
+   The tangent and the viscosity of solid elements, one at a time: fully integrated, with a mean dilatation (dilatation.h), and
+   rings (boxpoints.h), whose strain along them is one more term.
 
    With D = F^-T : dF at a point and d theta = sum of w J D / V over the points, of weights w and volume V,
      dF' = r (dF + g F) with g = (d theta / theta - D) / 3,
@@ -116,8 +116,10 @@ static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscIn
   return theta;
 }
 
-/* dF' for the displacement of each degree of freedom: without a mean dilatation a row of it, and along rings F_33 */
-static void AddMaterialPart(Element element, PetscBool mean, const Point *point, const PetscReal tangent[81], PetscScalar K[])
+/* dF' for the displacement of each degree of freedom: without a mean dilatation a row of it, and along rings F_33. `mean` is known to the
+   compiler; `symmetric`: the upper half. */
+SIMD_INLINE void AddMaterialPart(PetscBool mean, PetscBool symmetric, Element element, const Point *point, const PetscReal tangent[81],
+                                 PetscScalar K[])
 {
   const PetscInt dim = element->dim, n = element->nodes * dim, length = mean ? 9 : 3;
   PetscReal      variation[MAX_DOFS][9], apart[MAX_DOFS];
@@ -140,7 +142,7 @@ static void AddMaterialPart(Element element, PetscBool mean, const Point *point,
       for (PetscInt l = start[j]; l < start[j] + length; l++) stress[k] += tangent[9 * k + l] * variation[j][l];
       stress[k] *= point->weight;
     }
-    for (PetscInt i = 0; i < n; i++) {
+    for (PetscInt i = 0; i < (symmetric ? j + 1 : n); i++) {
       PetscReal sum = apart[i] * stress[8];
 
       for (PetscInt k = start[i]; k < start[i] + length; k++) sum += variation[i][k] * stress[k];
@@ -150,21 +152,26 @@ static void AddMaterialPart(Element element, PetscBool mean, const Point *point,
 }
 
 /* What the second derivative of F' adds; pressure: sum of w pi / (3 theta V), times V */
-static void AddGeometricPart(Element element, const Point *point, PetscReal theta, PetscReal pressure, const PetscReal dtheta[],
-                             PetscScalar K[])
+static void AddGeometricPart(PetscBool symmetric, Element element, const Point *point, PetscReal theta, PetscReal pressure,
+                             const PetscReal dtheta[], PetscScalar K[])
 {
   const PetscInt  dim = element->dim, n = element->nodes * dim;
-  const PetscReal weight = point->weight, third = point->third;
+  const PetscReal weight = point->weight, third = point->third, square = 1 / (theta * theta);
 
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscReal trace = point->turned[i / dim * dim + j % dim] * point->turned[j / dim * dim + i % dim] +
-                              point->along[i] * point->along[j]; /* T */
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal *turned = point->turned + i / dim * dim;
+    const PetscInt   along  = i % dim;
 
-      K[i * n + j] += weight * (point->ratio * (point->work[i] * point->g[j] + point->g[i] * point->work[j]) +
-                                point->pi * point->g[i] * point->g[j] + third * (trace - dtheta[i] * dtheta[j] / (theta * theta)) +
-                                pressure * point->J * (point->D[i] * point->D[j] - trace));
-    }
+    for (PetscInt j = symmetric ? i / dim * dim : 0; j < n; j += dim)
+      for (PetscInt d = 0; d < dim; d++) {
+        const PetscInt  k     = j + d;
+        const PetscReal trace = turned[d] * point->turned[j + along] + point->along[i] * point->along[k]; /* T */
+
+        K[i * n + k] += weight * (point->ratio * (point->work[i] * point->g[k] + point->g[i] * point->work[k]) +
+                                  point->pi * point->g[i] * point->g[k] + third * (trace - dtheta[i] * dtheta[k] * square) +
+                                  pressure * point->J * (point->D[i] * point->D[k] - trace));
+      }
+  }
 }
 
 /* `viscous`: of the stress F' C : dE'/dt by the velocity */
@@ -173,6 +180,7 @@ PetscErrorCode ElementTangent_Solid(Element element, PetscInt e, PetscBool visco
   const Solid    *solid    = (const Solid *)element->data;
   const PetscInt  n_points = solid->shape->n_points, n = element->nodes * element->dim;
   const PetscBool finite = (PetscBool)(viscous || !solid->linear), mean = (PetscBool)(solid->mean_share > 0);
+  const PetscBool symmetric = (PetscBool)!solid->history->start; /* where nothing flows, and half of K is enough */
   Point           points[SOLID_MAX_POINTS];
   PetscReal       dtheta[MAX_DOFS], theta = 1, volume = 0, pressure = 0;
 
@@ -189,9 +197,12 @@ PetscErrorCode ElementTangent_Solid(Element element, PetscInt e, PetscBool visco
 
     SolidTangent(solid, e, g, points[g].H, tangent);
     if (viscous) SolidTurnTangent(points[g].H, tangent);
-    AddMaterialPart(element, mean, &points[g], tangent, K);
-    if (mean && finite && !viscous) AddGeometricPart(element, &points[g], theta, pressure / volume, dtheta, K);
+    if (mean) AddMaterialPart(PETSC_TRUE, symmetric, element, &points[g], tangent, K);
+    else AddMaterialPart(PETSC_FALSE, symmetric, element, &points[g], tangent, K);
+    if (mean && finite && !viscous) AddGeometricPart(symmetric, element, &points[g], theta, pressure / volume, dtheta, K);
   }
+  for (PetscInt i = 0; i < n && symmetric; i++)
+    for (PetscInt j = 0; j < i; j++) K[i * n + j] = K[j * n + i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,7 +3,7 @@
 #define NODES  10
 #define POINTS 4
 #define WEIGHT 1
-#include "compositeloops.h"
+#include "compositepoints.h"
 
 /* those at the corners; those of the faces between them and the octahedron that is left; those of its faces on the tetrahedron's */
 static const PetscInt parts[12][DIM + 1] = {{0, 4, 6, 7},  {4, 1, 5, 8},  {6, 5, 2, 9},  {7, 8, 9, 3},  {4, 6, 7, 10}, {5, 4, 8, 10},

@@ -2,7 +2,8 @@
 #include <element/tri3.h>
 #undef WEIGHT
 #define WEIGHT PETSC_PI
-#include <element/axisymmetricloops.h>
+#define RING
+#include <element/boxpoints.h>
 
 PetscErrorCode ElementCreate_Tri3_Axisymmetric(Element element)
 {

@@ -3,7 +3,7 @@
 #define NODES  6
 #define POINTS 3
 #define WEIGHT 1
-#include "compositeloops.h"
+#include "compositepoints.h"
 
 static const PetscInt parts[4][DIM + 1] = {{0, 3, 5}, {3, 1, 4}, {5, 4, 2}, {3, 4, 5}};
 

@@ -129,3 +129,29 @@ SIMD_INLINE void SolidCauchy(SimdReal H[9], SimdReal P[9], PetscBool linear, Pet
     sigma[5] = s * (P[0][p] * zx + P[1][p] * zy + P[2][p] * zz);
   }
 }
+
+/* rate = (F^T dH + dH^T F) / 2 with F = 1 + H */
+SIMD_INLINE void SolidRateOfStrain(const SimdReal H[9], const SimdReal dH[9], SimdReal rate[9])
+{
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++)
+    for (PetscInt i = 0; i < 3; i++)
+      for (PetscInt j = 0; j < 3; j++) {
+        PetscReal sum = dH[3 * i + j][p] + dH[3 * j + i][p];
+
+        for (PetscInt k = 0; k < 3; k++) sum += H[3 * k + i][p] * dH[3 * k + j][p] + H[3 * k + j][p] * dH[3 * k + i][p];
+        rate[3 * i + j][p] = 0.5 * sum;
+      }
+}
+
+/* P = F S with F = 1 + H */
+SIMD_INLINE void SolidPullBack(const SimdReal H[9], const SimdReal S[9], SimdReal P[9])
+{
+  for (PetscInt p = 0; p < SIMD_WIDTH; p++)
+    for (PetscInt i = 0; i < 3; i++)
+      for (PetscInt j = 0; j < 3; j++) {
+        PetscReal sum = S[3 * i + j][p];
+
+        for (PetscInt k = 0; k < 3; k++) sum += H[3 * i + k][p] * S[3 * k + j][p];
+        P[3 * i + j][p] = sum;
+      }
+}

@@ -211,29 +211,3 @@ SIMD_INLINE PetscInt FindNaN(const SimdReal values)
       if (isnan(values[p])) return p;
   return -1;
 }
-
-/* rate = (F^T dH + dH^T F) / 2 with F = 1 + H */
-SIMD_INLINE void RateOfStrain(const SimdReal H[9], const SimdReal dH[9], SimdReal rate[9])
-{
-  for (PetscInt p = 0; p < SIMD_WIDTH; p++)
-    for (PetscInt i = 0; i < 3; i++)
-      for (PetscInt j = 0; j < 3; j++) {
-        PetscReal sum = dH[3 * i + j][p] + dH[3 * j + i][p];
-
-        for (PetscInt k = 0; k < 3; k++) sum += H[3 * k + i][p] * dH[3 * k + j][p] + H[3 * k + j][p] * dH[3 * k + i][p];
-        rate[3 * i + j][p] = 0.5 * sum;
-      }
-}
-
-/* P = F S with F = 1 + H */
-SIMD_INLINE void PullBack(const SimdReal H[9], const SimdReal S[9], SimdReal P[9])
-{
-  for (PetscInt p = 0; p < SIMD_WIDTH; p++)
-    for (PetscInt i = 0; i < 3; i++)
-      for (PetscInt j = 0; j < 3; j++) {
-        PetscReal sum = S[3 * i + j][p];
-
-        for (PetscInt k = 0; k < 3; k++) sum += H[3 * i + k][p] * S[3 * k + j][p];
-        P[3 * i + j][p] = sum;
-      }
-}

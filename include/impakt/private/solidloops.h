@@ -74,9 +74,9 @@ SIMD_CLONES static void AddViscousForces(const Solid *solid, PetscReal scale, Pe
     for (PetscInt g = 0; g < POINTS; g++) {
       GetGradients(X, U, points[g], &at);
       GetGradients(X, V, points[g], &rate);
-      RateOfStrain(at.H, rate.H, strain);
+      SolidRateOfStrain(at.H, rate.H, strain);
       (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])strain, S);
-      PullBack(at.H, S, P);
+      SolidPullBack(at.H, S, P);
       for (PetscInt part = 0; part < SIMD_PARTS; part++) AddPointOfPart(part, P, at.cofactor[part], points[g], F[part]);
     }
     AddBatchForces(scale, connectivity, first, in_batch, F, f);
