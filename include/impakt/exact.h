@@ -13,8 +13,8 @@ PETSC_EXTERN PetscClassId EXACT_CLASSID;
    ExactType - kind of exact solution
 
    Values:
-+  `EXACT_IMPACT`          - the closed form for two equal bars, Hoy, Tezaur, Mota, eqs. (4.1) to (4.7)
--  `EXACT_CHARACTERISTICS` - the method of characteristics, for two bars of any lengths, materials and cross-sections
++  `EXACT_CHARACTERISTICS` - the method of characteristics, for two bars of any lengths, materials and cross-sections
+-  `EXACT_IMPACT`          - the same by the name that it has for equal bars: Hoy, Tezaur, Mota, eqs. (4.1) to (4.7)
 
    Options Database Key:
 .  -exact (none|impact|characteristics) - compare the run with it

@@ -105,7 +105,7 @@ static PetscErrorCode FindEvents(MPI_Comm comm, Characteristics *c, const ExactB
     time = PetscMin(closing, PetscMin(arrivals[0], arrivals[1]));
     if (time > c->end) break;
     PetscCheck(c->n < MAX_EVENTS, comm, PETSC_ERR_USER_INPUT,
-               "-exact characteristics: waves arrive at the contact more than %d times until %g s, and the run goes on to %g s; choose an "
+               "-exact: waves arrive at the contact more than %d times until %g s, and the run goes on to %g s; choose an "
                "earlier -time_end, or leave -exact out",
                MAX_EVENTS, (double)time, (double)c->end);
     for (PetscInt side = 0; side < 2; side++) {
@@ -162,7 +162,9 @@ static void Integrate(const Characteristics *c, PetscInt side, PetscReal time, P
   }
 }
 
-static PetscErrorCode ExactEvaluate_Characteristics(Exact exact, PetscInt side, PetscReal time, ExactSolution *solution)
+/* The exact solution at one time. `side`: 0 for the bar on the Dirichlet side, 1 for its partner; `time`: any time of the run [s]; at a
+   jump, or within round-off of one, the value before it is given */
+PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSolution *solution)
 {
   const Characteristics *c     = (const Characteristics *)exact->data;
   const PetscReal        small = ROUND_OFF * c->time_scale;
@@ -170,6 +172,8 @@ static PetscErrorCode ExactEvaluate_Characteristics(Exact exact, PetscInt side, 
   PetscReal              integrals[3];
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
+  PetscAssertPointer(solution, 4);
   PetscCheck(time >= exact->start - small && time <= c->end + small, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
              "The solution is known from %g to %g s, not at %g s", (double)exact->start, (double)c->end, (double)time);
   Integrate(c, side, time, integrals);
@@ -218,7 +222,7 @@ static PetscErrorCode TryPeak(Exact exact, PetscReal time)
 
   PetscFunctionBegin;
   if (time > ((const Characteristics *)exact->data)->end) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ExactEvaluate_Characteristics(exact, 0, time, &solution));
+  PetscCall(ExactEvaluate(exact, 0, time, &solution));
   if (solution.potential > exact->peak) {
     exact->peak = solution.potential;
     exact->turn = time;
@@ -242,18 +246,16 @@ static PetscErrorCode FindPeak(Exact exact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ExactDestroy_Characteristics(Exact exact)
+PetscErrorCode ExactDestroyCharacteristics(Exact exact)
 {
-  Characteristics *c = (Characteristics *)exact->data;
-
   PetscFunctionBegin;
-  PetscCall(PetscFree(c->events));
+  if (exact->data) PetscCall(PetscFree(((Characteristics *)exact->data)->events));
   PetscCall(PetscFree(exact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The solution for any two bars. Ends with an error if waves arrive at the contact too often in the run. */
-PetscErrorCode ExactCreate_Characteristics(Controller controller, Exact exact)
+/* Finds the solution. Ends with an error if waves arrive at the contact too often in the run. */
+PetscErrorCode ExactSetUpCharacteristics(Exact exact, Controller controller)
 {
   const ExactBar  *bars = exact->bars;
   MPI_Comm         comm = PetscObjectComm((PetscObject)controller);
@@ -270,13 +272,11 @@ PetscErrorCode ExactCreate_Characteristics(Controller controller, Exact exact)
     c->period[side]    = 2 * bars[side].length * PetscSqrtReal(bars[side].density / bars[side].modulus);
     c->before[side]    = 0.5 * bars[side].velocity;
   }
-  c->end               = exact->start + steps * step;
-  c->time_scale        = PetscMax(PetscAbsReal(exact->start), c->end - exact->start);
-  c->velocity_scale    = bars[0].velocity - bars[1].velocity;
-  c->length_scale      = length + PetscMax(PetscAbsReal(bars[0].upper), PetscAbsReal(bars[1].lower));
-  exact->data          = c;
-  exact->ops->evaluate = ExactEvaluate_Characteristics;
-  exact->ops->destroy  = ExactDestroy_Characteristics;
+  c->end            = exact->start + steps * step;
+  c->time_scale     = PetscMax(PetscAbsReal(exact->start), c->end - exact->start);
+  c->velocity_scale = bars[0].velocity - bars[1].velocity;
+  c->length_scale   = length + PetscMax(PetscAbsReal(bars[0].upper), PetscAbsReal(bars[1].lower));
+  exact->data       = c;
   PetscCall(FindEvents(comm, c, bars, exact->start));
   SummariseContact(exact, c);
   PetscCall(FindPeak(exact));

@@ -3,18 +3,9 @@
 #include "exactvisit.h"
 #include <sys/package.h>
 #include <math.h>
-#include <sys/names.h>
 #include <sys/units.h>
 
 PetscClassId EXACT_CLASSID = 0;
-
-static const struct {
-  ExactType type;
-  PetscErrorCode (*create)(Controller, Exact);
-} Types[] = {
-    {EXACT_IMPACT, ExactCreate_Impact},
-    {EXACT_CHARACTERISTICS, ExactCreate_Characteristics},
-};
 
 PetscErrorCode ExactInitializePackage(void)
 {
@@ -27,9 +18,8 @@ PetscErrorCode ExactInitializePackage(void)
    solution for these bodies. Collective */
 PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
 {
-  MPI_Comm       comm       = PetscObjectComm((PetscObject)controller);
-  char           known[256] = "none";
-  PetscInt       found      = -1;
+  MPI_Comm       comm = PetscObjectComm((PetscObject)controller);
+  PetscBool      impact, any;
   PetscErrorCode error;
 
   PetscFunctionBegin;
@@ -37,36 +27,20 @@ PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
   PetscAssertPointer(type, 2);
   PetscAssertPointer(exact, 3);
   PetscCall(ExactInitializePackage());
-  for (PetscInt i = 0; i < (PetscInt)PETSC_STATIC_ARRAY_LENGTH(Types); i++) {
-    PetscBool same;
-
-    PetscCall(PetscStrcmp(type, Types[i].type, &same));
-    if (same) found = i;
-    PetscCall(NamesAppend(known, sizeof(known), " ", Types[i].type));
-  }
-  PetscCheck(found >= 0, comm, PETSC_ERR_USER_INPUT, "Unknown -exact '%s'; known: %s", type, known);
+  PetscCall(PetscStrcmp(type, EXACT_IMPACT, &impact));
+  PetscCall(PetscStrcmp(type, EXACT_CHARACTERISTICS, &any));
+  PetscCheck(impact || any, comm, PETSC_ERR_USER_INPUT, "Unknown -exact '%s'; known: none %s %s", type, EXACT_IMPACT,
+             EXACT_CHARACTERISTICS);
   PetscCall(PetscHeaderCreate(*exact, EXACT_CLASSID, "Exact", "Exact solution", "Exact", comm, ExactDestroy, ExactView));
-  PetscCall(PetscObjectChangeTypeName((PetscObject)*exact, Types[found].type));
-  (*exact)->type         = Types[found].type;
+  (*exact)->type         = impact ? EXACT_IMPACT : EXACT_CHARACTERISTICS;
   (*exact)->last_contact = NAN;
   error                  = ExactSetUpBars(*exact, controller);
   if (!error) {
     (*exact)->last_time = (*exact)->start;
-    error               = (*Types[found].create)(controller, *exact);
+    error               = ExactSetUpCharacteristics(*exact, controller);
   }
   if (error) (void)ExactDestroy(exact); /* nothing is left to be freed by the caller */
   PetscCall(error);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The exact solution at one time. `side`: 0 for the bar on the Dirichlet side, 1 for its partner; `time`: any time of the run [s]; at a
- * jump, or within round-off of one, the value before it is given */
-PetscErrorCode ExactEvaluate(Exact exact, PetscInt side, PetscReal time, ExactSolution *solution)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(exact, EXACT_CLASSID, 1);
-  PetscAssertPointer(solution, 4);
-  PetscUseTypeMethod(exact, evaluate, side, time, solution);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,7 +93,7 @@ PetscErrorCode ExactDestroy(Exact *exact)
     *exact = NULL;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscTryTypeMethod(*exact, destroy);
+  PetscCall(ExactDestroyCharacteristics(*exact));
   PetscCall(PetscHeaderDestroy(exact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

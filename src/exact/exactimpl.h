@@ -5,11 +5,6 @@
 
 #define EXACT_QUANTITIES 6 /* members of ExactSolution */
 
-struct _ExactOps {
-  PetscErrorCode (*evaluate)(Exact, PetscInt, PetscReal, ExactSolution *);
-  PetscErrorCode (*destroy)(Exact);
-};
-
 /* A bar in its initial state, along the contact normal */
 typedef struct {
   const char *name;
@@ -26,9 +21,9 @@ typedef struct {
 } ExactDistance;
 
 struct _p_Exact {
-  PETSCHEADER(struct _ExactOps);
+  PETSCHEADER(int);
   ExactType type;
-  void     *data; /* what the type keeps */
+  void     *data; /* of the method of characteristics */
   /* the problem */
   PetscInt  body[2];         /* the bars on the Dirichlet and the Neumann side, among the controller's bodies */
   ExactBar  bars[2];         /* in the same order */
@@ -36,7 +31,7 @@ struct _p_Exact {
   PetscReal start;           /* s */
   PetscReal frame_velocity;  /* of the centre of mass [m/s] */
   PetscReal impact_position; /* where the bars meet, along the normal, as seen from the centre of mass at the start [m] */
-  /* figures of the solution, which each type fills in */
+  /* figures of the solution */
   PetscReal impact, release; /* first contact, end of the last contact [s] */
   PetscReal turn, peak;      /* when the potential energy of the bar on the Dirichlet side is largest [s], and how large it is then [J] */
   PetscReal force, impulse;  /* mean force over the middle three fifths of the time from impact to release [N]; impulse of the run [N s] */
@@ -47,6 +42,5 @@ struct _p_Exact {
 };
 
 PETSC_INTERN PetscErrorCode ExactSetUpBars(Exact, Controller);
-
-PETSC_INTERN PetscErrorCode ExactCreate_Impact(Controller, Exact);
-PETSC_INTERN PetscErrorCode ExactCreate_Characteristics(Controller, Exact);
+PETSC_INTERN PetscErrorCode ExactSetUpCharacteristics(Exact, Controller);
+PETSC_INTERN PetscErrorCode ExactDestroyCharacteristics(Exact);

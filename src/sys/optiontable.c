@@ -345,7 +345,7 @@ static const KnownOption options[] = {
     {"files", OPTION_OF_RUN, "max_wall_time", "t|h:mm:ss",
      "minutes, or hours, minutes and seconds, after which the run ends with a checkpoint"},
     {"files", OPTION_OF_RUN, "exact", "none|impact|characteristics",
-     "exact solution to compare with: of two equal bars, of any two bars; default none"},
+     "exact solution to compare with, of two bars by the method of characteristics, whichever name it has; default none"},
     {"files", OPTION_OF_BODY, "exact_displacement", "u[,u,u]",
      "displacement to compare with at the end of the run [m], formulas in x, y, z, t"},
     {"files", OPTION_OF_RUN, "monitor_interval", "n", "a line on the terminal every n controller steps, default 0: none"},
