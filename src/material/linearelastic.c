@@ -87,31 +87,15 @@ static PetscErrorCode MaterialKernels_LinearElastic(Material material, PetscBool
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialUniaxial_LinearElastic(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
+static PetscErrorCode MaterialUniaxial_LinearElastic(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[],
+                                                     PetscReal tangent[], PetscReal energy[])
 {
   const PetscReal youngs_modulus = ((const Isotropic *)material->data)->youngs_modulus;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) stress[i] = youngs_modulus * strain[i];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialUniaxialTangent_LinearElastic(Material material, PetscInt n, const PetscReal strain[], PetscReal tangent[])
-{
-  const PetscReal youngs_modulus = ((const Isotropic *)material->data)->youngs_modulus;
-
-  PetscFunctionBegin;
-  (void)strain;
-  for (PetscInt i = 0; i < n; i++) tangent[i] = youngs_modulus;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialUniaxialEnergy_LinearElastic(Material material, PetscInt n, const PetscReal strain[], PetscReal energy[])
-{
-  const PetscReal youngs_modulus = ((const Isotropic *)material->data)->youngs_modulus;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) energy[i] = 0.5 * youngs_modulus * strain[i] * strain[i];
+  for (PetscInt i = 0; i < n && stress; i++) stress[i] = youngs_modulus * strain[i];
+  for (PetscInt i = 0; i < n && tangent; i++) tangent[i] = youngs_modulus;
+  for (PetscInt i = 0; i < n && energy; i++) energy[i] = 0.5 * youngs_modulus * strain[i] * strain[i];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,10 +103,8 @@ PetscErrorCode MaterialCreate_LinearElastic(Material material)
 {
   PetscFunctionBegin;
   PetscCall(MaterialCreate_Isotropic(material));
-  material->linear               = PETSC_TRUE;
-  material->ops->kernels         = MaterialKernels_LinearElastic;
-  material->ops->uniaxial        = MaterialUniaxial_LinearElastic;
-  material->ops->uniaxialtangent = MaterialUniaxialTangent_LinearElastic;
-  material->ops->uniaxialenergy  = MaterialUniaxialEnergy_LinearElastic;
+  material->linear        = PETSC_TRUE;
+  material->ops->kernels  = MaterialKernels_LinearElastic;
+  material->ops->uniaxial = MaterialUniaxial_LinearElastic;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

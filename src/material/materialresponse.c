@@ -62,7 +62,7 @@ PetscErrorCode MaterialComputeUniaxial(Material material, PetscInt n, const Pets
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  PetscUseTypeMethod(material, uniaxial, n, strain, stress);
+  PetscUseTypeMethod(material, uniaxial, n, strain, stress, NULL, NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -72,7 +72,7 @@ PetscErrorCode MaterialComputeUniaxialTangent(Material material, PetscInt n, con
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  PetscUseTypeMethod(material, uniaxialtangent, n, strain, tangent);
+  PetscUseTypeMethod(material, uniaxial, n, strain, NULL, tangent, NULL);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -82,6 +82,6 @@ PetscErrorCode MaterialComputeUniaxialEnergy(Material material, PetscInt n, cons
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  PetscUseTypeMethod(material, uniaxialenergy, n, strain, energy);
+  PetscUseTypeMethod(material, uniaxial, n, strain, NULL, NULL, energy);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

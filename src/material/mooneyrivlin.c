@@ -253,38 +253,19 @@ static PetscReal SideStrain(const void *data, PetscReal strain, PetscReal H[9][8
   return NAN;
 }
 
-static PetscErrorCode MaterialUniaxial_MooneyRivlin(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
+static PetscErrorCode MaterialUniaxial_MooneyRivlin(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[],
+                                                    PetscReal tangent[], PetscReal energy[])
 {
-  PetscReal H[9][8], P[9][8], tangent[81];
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) stress[i] = PetscIsNanReal(SideStrain(material->data, strain[i], H, P, tangent)) ? NAN : P[0][0];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialUniaxialTangent_MooneyRivlin(Material material, PetscInt n, const PetscReal strain[], PetscReal modulus[])
-{
-  PetscReal H[9][8], P[9][8], tangent[81];
+  PetscReal H[9][8], P[9][8], W[8], A[81];
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; i++) {
-    const PetscReal side = SideStrain(material->data, strain[i], H, P, tangent);
+    const PetscReal defined = PetscIsNanReal(SideStrain(material->data, strain[i], H, P, A)) ? NAN : 1;
 
-    modulus[i] = PetscIsNanReal(side) ? NAN : tangent[0] - 2 * tangent[4] * tangent[36] / (tangent[40] + tangent[44]);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialUniaxialEnergy_MooneyRivlin(Material material, PetscInt n, const PetscReal strain[], PetscReal energy[])
-{
-  PetscReal H[9][8], P[9][8], W[8], tangent[81];
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal side = SideStrain(material->data, strain[i], H, P, tangent);
-
-    Energy(material->data, H, W);
-    energy[i] = PetscIsNanReal(side) ? NAN : W[0];
+    if (energy) Energy(material->data, H, W);
+    if (stress) stress[i] = defined * P[0][0];
+    if (tangent) tangent[i] = defined * (A[0] - 2 * A[4] * A[36] / (A[40] + A[44]));
+    if (energy) energy[i] = defined * W[0];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -324,12 +305,10 @@ PetscErrorCode MaterialCreate_MooneyRivlin(Material material)
   PetscCall(MaterialCreate_Isotropic(material));
   model->constants = *(const Isotropic *)material->data;
   PetscCall(PetscFree(material->data));
-  material->data                 = model;
-  material->ops->setfromoptions  = MaterialSetFromOptions_MooneyRivlin;
-  material->ops->view            = MaterialView_MooneyRivlin;
-  material->ops->kernels         = MaterialKernels_MooneyRivlin;
-  material->ops->uniaxial        = MaterialUniaxial_MooneyRivlin;
-  material->ops->uniaxialtangent = MaterialUniaxialTangent_MooneyRivlin;
-  material->ops->uniaxialenergy  = MaterialUniaxialEnergy_MooneyRivlin;
+  material->data                = model;
+  material->ops->setfromoptions = MaterialSetFromOptions_MooneyRivlin;
+  material->ops->view           = MaterialView_MooneyRivlin;
+  material->ops->kernels        = MaterialKernels_MooneyRivlin;
+  material->ops->uniaxial       = MaterialUniaxial_MooneyRivlin;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -120,32 +120,6 @@ SIMD_INLINE Bar BarAt(PetscReal lambda, PetscReal mu, PetscReal e)
   return (Bar){s, along, -lambda * along / (mu + lambda * s * s + root), root};
 }
 
-SIMD_CLONES static void Uniaxial(const Isotropic *constants, PetscInt n, const PetscReal strain[], PetscReal stress[])
-{
-  const PetscReal lambda = constants->lambda, mu = constants->mu;
-
-#pragma omp simd
-  for (PetscInt i = 0; i < n; i++) {
-    const Bar bar = BarAt(lambda, mu, strain[i]);
-
-    stress[i] = mu * (bar.along - bar.across) / bar.stretch;
-  }
-}
-
-/* The derivative of x follows from that of its equation, in which lambda s^2 x + mu is the root */
-SIMD_CLONES static void UniaxialTangent(const Isotropic *constants, PetscInt n, const PetscReal strain[], PetscReal tangent[])
-{
-  const PetscReal lambda = constants->lambda, mu = constants->mu;
-
-#pragma omp simd
-  for (PetscInt i = 0; i < n; i++) {
-    const Bar       bar = BarAt(lambda, mu, strain[i]);
-    const PetscReal x = 1 + bar.across, s = bar.stretch;
-
-    tangent[i] = mu * (2 + lambda * x * x / bar.root - (bar.along - bar.across) / (s * s));
-  }
-}
-
 static PetscReal UniaxialEnergy(PetscReal lambda, PetscReal mu, PetscReal e)
 {
   const Bar       bar = BarAt(lambda, mu, e);
@@ -156,26 +130,33 @@ static PetscReal UniaxialEnergy(PetscReal lambda, PetscReal mu, PetscReal e)
   return mu * (0.5 * e * e + t * t - q) + 0.25 * lambda * j * j + (mu + 0.5 * lambda) * remainder;
 }
 
-static PetscErrorCode MaterialUniaxial_NeoHookean(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
+/* The derivative of x follows from that of its equation, in which lambda s^2 x + mu is the root */
+SIMD_CLONES static void Uniaxial(const Isotropic *constants, PetscInt n, const PetscReal strain[], PetscReal stress[], PetscReal tangent[],
+                                 PetscReal energy[])
 {
-  PetscFunctionBegin;
-  Uniaxial((const Isotropic *)material->data, n, strain, stress);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const PetscReal lambda = constants->lambda, mu = constants->mu;
+
+#pragma omp simd
+  for (PetscInt i = 0; i < (stress ? n : 0); i++) {
+    const Bar bar = BarAt(lambda, mu, strain[i]);
+
+    stress[i] = mu * (bar.along - bar.across) / bar.stretch;
+  }
+#pragma omp simd
+  for (PetscInt i = 0; i < (tangent ? n : 0); i++) {
+    const Bar       bar = BarAt(lambda, mu, strain[i]);
+    const PetscReal x = 1 + bar.across, s = bar.stretch;
+
+    tangent[i] = mu * (2 + lambda * x * x / bar.root - (bar.along - bar.across) / (s * s));
+  }
+  for (PetscInt i = 0; i < n && energy; i++) energy[i] = UniaxialEnergy(lambda, mu, strain[i]);
 }
 
-static PetscErrorCode MaterialUniaxialTangent_NeoHookean(Material material, PetscInt n, const PetscReal strain[], PetscReal tangent[])
+static PetscErrorCode MaterialUniaxial_NeoHookean(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[],
+                                                  PetscReal tangent[], PetscReal energy[])
 {
   PetscFunctionBegin;
-  UniaxialTangent((const Isotropic *)material->data, n, strain, tangent);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialUniaxialEnergy_NeoHookean(Material material, PetscInt n, const PetscReal strain[], PetscReal energy[])
-{
-  const Isotropic *constants = (const Isotropic *)material->data;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) energy[i] = UniaxialEnergy(constants->lambda, constants->mu, strain[i]);
+  Uniaxial((const Isotropic *)material->data, n, strain, stress, tangent, energy);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -183,9 +164,7 @@ PetscErrorCode MaterialCreate_NeoHookean(Material material)
 {
   PetscFunctionBegin;
   PetscCall(MaterialCreate_Isotropic(material));
-  material->ops->kernels         = MaterialKernels_NeoHookean;
-  material->ops->uniaxial        = MaterialUniaxial_NeoHookean;
-  material->ops->uniaxialtangent = MaterialUniaxialTangent_NeoHookean;
-  material->ops->uniaxialenergy  = MaterialUniaxialEnergy_NeoHookean;
+  material->ops->kernels  = MaterialKernels_NeoHookean;
+  material->ops->uniaxial = MaterialUniaxial_NeoHookean;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -113,54 +113,25 @@ SIMD_INLINE PetscReal UniaxialStrain(PetscReal poissons_ratio, PetscReal e)
   return TensorDefined(1 + e) * TensorDefined(1 - 2 * poissons_ratio * E) * E;
 }
 
-SIMD_CLONES static void Uniaxial(const Isotropic *constants, PetscInt n, const PetscReal strain[], PetscReal stress[])
+SIMD_CLONES static void Uniaxial(const Isotropic *constants, PetscInt n, const PetscReal strain[], PetscReal stress[], PetscReal tangent[],
+                                 PetscReal energy[])
 {
   const PetscReal modulus = constants->youngs_modulus, nu = constants->poissons_ratio;
 
 #pragma omp simd
-  for (PetscInt i = 0; i < n; i++) stress[i] = (1 + strain[i]) * modulus * UniaxialStrain(nu, strain[i]);
-}
-
-SIMD_CLONES static void UniaxialTangent(const Isotropic *constants, PetscInt n, const PetscReal strain[], PetscReal tangent[])
-{
-  const PetscReal modulus = constants->youngs_modulus, nu = constants->poissons_ratio;
-
+  for (PetscInt i = 0; i < (stress ? n : 0); i++) stress[i] = (1 + strain[i]) * modulus * UniaxialStrain(nu, strain[i]);
 #pragma omp simd
-  for (PetscInt i = 0; i < n; i++) tangent[i] = modulus * (UniaxialStrain(nu, strain[i]) + (1 + strain[i]) * (1 + strain[i]));
-}
-
-SIMD_CLONES static void UniaxialEnergy(const Isotropic *constants, PetscInt n, const PetscReal strain[], PetscReal energy[])
-{
-  const PetscReal modulus = constants->youngs_modulus, nu = constants->poissons_ratio;
-
+  for (PetscInt i = 0; i < (tangent ? n : 0); i++)
+    tangent[i] = modulus * (UniaxialStrain(nu, strain[i]) + (1 + strain[i]) * (1 + strain[i]));
 #pragma omp simd
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscReal E = UniaxialStrain(nu, strain[i]);
-
-    energy[i] = 0.5 * modulus * E * E;
-  }
+  for (PetscInt i = 0; i < (energy ? n : 0); i++) energy[i] = 0.5 * modulus * UniaxialStrain(nu, strain[i]) * UniaxialStrain(nu, strain[i]);
 }
 
-static PetscErrorCode MaterialUniaxial_SaintVenantKirchhoff(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[])
+static PetscErrorCode MaterialUniaxial_SaintVenantKirchhoff(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[],
+                                                            PetscReal tangent[], PetscReal energy[])
 {
   PetscFunctionBegin;
-  Uniaxial((const Isotropic *)material->data, n, strain, stress);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialUniaxialTangent_SaintVenantKirchhoff(Material material, PetscInt n, const PetscReal strain[],
-                                                                   PetscReal tangent[])
-{
-  PetscFunctionBegin;
-  UniaxialTangent((const Isotropic *)material->data, n, strain, tangent);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialUniaxialEnergy_SaintVenantKirchhoff(Material material, PetscInt n, const PetscReal strain[],
-                                                                  PetscReal energy[])
-{
-  PetscFunctionBegin;
-  UniaxialEnergy((const Isotropic *)material->data, n, strain, energy);
+  Uniaxial((const Isotropic *)material->data, n, strain, stress, tangent, energy);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -168,9 +139,7 @@ PetscErrorCode MaterialCreate_SaintVenantKirchhoff(Material material)
 {
   PetscFunctionBegin;
   PetscCall(MaterialCreate_Isotropic(material));
-  material->ops->kernels         = MaterialKernels_SaintVenantKirchhoff;
-  material->ops->uniaxial        = MaterialUniaxial_SaintVenantKirchhoff;
-  material->ops->uniaxialtangent = MaterialUniaxialTangent_SaintVenantKirchhoff;
-  material->ops->uniaxialenergy  = MaterialUniaxialEnergy_SaintVenantKirchhoff;
+  material->ops->kernels  = MaterialKernels_SaintVenantKirchhoff;
+  material->ops->uniaxial = MaterialUniaxial_SaintVenantKirchhoff;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,12 +12,11 @@ struct _MaterialOps {
   PetscErrorCode (*setup)(Material); /* an error where a constant is missing */
   PetscErrorCode (*view)(Material, PetscViewer);
   PetscErrorCode (*destroy)(Material);
-  PetscErrorCode (*kernels)(Material, PetscBool, MaterialKernels *);                     /* in plane stress, or not */
-  PetscErrorCode (*wavemodulus)(Material, PetscBool, PetscReal *);                       /* at zero strain; in plane stress, or not */
-  PetscErrorCode (*uniaxialmodulus)(Material, PetscReal *);                              /* at zero strain */
-  PetscErrorCode (*uniaxial)(Material, PetscInt, const PetscReal[], PetscReal[]);        /* strain -> stress, a batch of points */
-  PetscErrorCode (*uniaxialtangent)(Material, PetscInt, const PetscReal[], PetscReal[]); /* strain -> its derivative */
-  PetscErrorCode (*uniaxialenergy)(Material, PetscInt, const PetscReal[], PetscReal[]);  /* strain -> its integral */
+  PetscErrorCode (*kernels)(Material, PetscBool, MaterialKernels *); /* in plane stress, or not */
+  PetscErrorCode (*wavemodulus)(Material, PetscBool, PetscReal *);   /* at zero strain; in plane stress, or not */
+  PetscErrorCode (*uniaxialmodulus)(Material, PetscReal *);          /* at zero strain */
+  /* of bars, a batch of points: strain -> stress, its derivative, its integral, of which any may be NULL */
+  PetscErrorCode (*uniaxial)(Material, PetscInt, const PetscReal[], PetscReal[], PetscReal[], PetscReal[]);
 };
 
 /* What kernels of plane stress need of the solid */
