@@ -45,13 +45,13 @@ typedef const char *ContactType;
                                displacement since then are equal
 . `CONTACT_LAW_BONDED`       - they slide without resistance until they meet; a node that has been pushed against the partner stays there
                                from the next controller step on
-. `CONTACT_LAW_GLUE`         - nodes that lie on the partner at the start are glued to it, by the law that `ContactSetGlueLaw()` names:
+. `CONTACT_LAW_GLUE`         - nodes that lie on the partner at the start are glued to it, by a law of glue that has a name of its own:
                                springs in all directions, which may break
-- `CONTACT_LAW_FRICTION`     - they resist sliding, by the law that `ContactSetFrictionLaw()` names
+- `CONTACT_LAW_FRICTION`     - they resist sliding, by a law of friction that has a name of its own
 
    Level: beginner
 
-.seealso: `ContactSetLaw()`, `ContactSetPairLaw()`, `ContactSetGlueLaw()`, `ContactSetFrictionLaw()`
+.seealso: `ContactSetLaw()`, `ContactGetPairLaw()`, `ContactHasLaw()`
 E*/
 typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED, CONTACT_LAW_GLUE, CONTACT_LAW_FRICTION } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
@@ -170,21 +170,11 @@ PETSC_EXTERN PetscErrorCode ContactGetPairRowSide(Contact, PetscInt, PetscInt *)
 PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
 PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);
 PETSC_EXTERN PetscErrorCode ContactGetEnergyTolerance(Contact, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactSetLaw(Contact, ContactLaw);
-PETSC_EXTERN PetscErrorCode ContactGetLaw(Contact, ContactLaw *);
-PETSC_EXTERN PetscErrorCode ContactSetPairLaw(Contact, PetscInt, ContactLaw);
+PETSC_EXTERN PetscErrorCode ContactSetLaw(Contact, PetscInt, const char[]);
+PETSC_EXTERN PetscErrorCode ContactSetLawParameter(Contact, PetscInt, const char[], const char[], PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetPairLaw(Contact, PetscInt, ContactLaw *);
 PETSC_EXTERN PetscErrorCode ContactHasLaw(Contact, ContactLaw, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactSetGlueLaw(Contact, const char[]);
-PETSC_EXTERN PetscErrorCode ContactSetPairGlueLaw(Contact, PetscInt, const char[]);
-PETSC_EXTERN PetscErrorCode ContactSetGlueParameter(Contact, const char[], const char[], PetscReal);
-PETSC_EXTERN PetscErrorCode ContactSetPairGlueParameter(Contact, PetscInt, const char[], PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGlueBreaks(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactSetFrictionLaw(Contact, const char[]);
-PETSC_EXTERN PetscErrorCode ContactSetPairFrictionLaw(Contact, PetscInt, const char[]);
-PETSC_EXTERN PetscErrorCode ContactSetFriction(Contact, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactSetPairFriction(Contact, PetscInt, PetscReal);
-PETSC_EXTERN PetscErrorCode ContactSetKineticFriction(Contact, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetBalance(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactGetUnlimitedReason(Contact, const char *[], const char *[]);
 PETSC_EXTERN PetscErrorCode ContactGetLossReason(Contact, const char *[]);

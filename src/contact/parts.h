@@ -55,7 +55,7 @@ static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pa
 }
 
 PETSC_INTERN PetscErrorCode    ContactWarnOfStages(Contact, PetscBool);
-PETSC_INTERN PetscFunctionList ContactList, ContactLawList;
+PETSC_INTERN PetscFunctionList ContactList;
 
 PETSC_INTERN PetscErrorCode ContactGetTime(Contact, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactSetUpScales(Contact);
@@ -124,9 +124,9 @@ PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, Pet
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
 PETSC_INTERN const char    *ContactNameLaw(Contact, const ContactPair *);
-PETSC_INTERN void           ContactSpreadLaw(Contact, ContactLaw);
 PETSC_INTERN PetscErrorCode ContactReadLaw(Contact, PetscInt);
-PETSC_INTERN PetscErrorCode ContactReadGlue(Contact);
+PETSC_INTERN PetscErrorCode ContactReadLawParameters(Contact);
+PETSC_INTERN PetscErrorCode ContactViewLawParameters(Contact, PetscViewer);
 PETSC_INTERN PetscErrorCode ContactCheckLaws(Contact);
 PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN void           ContactHoldTogether(Contact);
@@ -192,8 +192,6 @@ PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactLoadRows(Contact, PetscInt, const PetscReal[]);
 
-PETSC_INTERN PetscErrorCode ContactReadFriction(Contact);
-PETSC_INTERN PetscErrorCode ContactDestroyFrictionLaw(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpFriction(Contact);
 PETSC_INTERN void           ContactAlignRubbingRows(Contact);
 PETSC_INTERN void           ContactCarryFriction(Contact);
@@ -203,7 +201,8 @@ PETSC_INTERN PetscErrorCode ContactAcceptFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactNoteTilt(Contact);
 PETSC_INTERN PetscErrorCode ContactRefuseFriction(Contact, const char[]);
 PETSC_INTERN PetscErrorCode ContactDestroyFriction(Contact);
-PETSC_INTERN PetscErrorCode ContactLawRegisterAll(void);
+PETSC_INTERN void           ContactGetFrictionLimit(Contact, PetscInt, PetscReal, PetscReal[2]);
+PETSC_INTERN PetscErrorCode ContactComputeSlips(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);

@@ -19,7 +19,7 @@
   Bodies feel it by friction alone. The place of the obstacle stays: a velocity with a part across the surface is an error, where a body
   touches.
 
-.seealso: `Obstacle`, `ObstacleGetVelocity()`, `ContactSetFrictionLaw()`
+.seealso: `Obstacle`, `ObstacleGetVelocity()`, `ContactSetLaw()`
 @*/
 PetscErrorCode ObstacleSetVelocity(Obstacle obstacle, const char components[])
 {

@@ -230,7 +230,7 @@ static void plate(void **state)
   ok(ContactAddPair(contact, "plate.xmax:disc"));
   ok(PetscOptionsInsertString(NULL, "-contact_slip_bound 0.3 -contact_angle_bound 0.2 -contact_facing false"));
   ok(ContactSetFromOptions(contact));
-  ok(ContactGetLaw(contact, &law));
+  ok(ContactGetPairLaw(contact, 0, &law));
   assert_int_equal(law, CONTACT_LAW_FRICTIONLESS);
   ok(ControllerSetUp(controller));
   run(controller, &code);
@@ -278,22 +278,21 @@ static void laws_of_pairs(void **state)
   ok(ContactSetType(contact, CONTACT_FORCE));
   ok(ContactAddPair(contact, "low.ymax:high.ymin"));
   ok(ContactAddPair(contact, "low.ymin:floor"));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 2", ContactSetPairLaw(contact, 2, CONTACT_LAW_TIED));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no contact law", ContactSetPairLaw(contact, 0, CONTACT_LAW_FRICTION));
-  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'sand'|coulomb", ContactSetPairFrictionLaw(contact, 1, "sand"));
-  refused(PETSC_ERR_ARG_WRONGSTATE, "low.ymax:high.ymin|ContactSetPairGlueLaw", ContactSetPairGlueParameter(contact, 0, "stiffness", 1));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no contact law", ContactSetPairLaw(contact, 0, CONTACT_LAW_GLUE));
-  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'sand'|spring", ContactSetPairGlueLaw(contact, 0, "sand"));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "'tie'|no glue", ContactSetPairGlueLaw(contact, 0, "tie"));
-  ok(ContactSetPairGlueLaw(contact, 0, "spring"));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness_low.ymax:high.ymin -1|positive", ContactSetPairGlueParameter(contact, 0, "stiffness", -1));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness 0|positive", ContactSetGlueParameter(contact, "spring", "stiffness", 0));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "spring|no parameter 'length'", ContactSetGlueParameter(contact, "spring", "length", 1));
-  ok(ContactSetGlueParameter(contact, "spring", "stiffness", 1));
-  ok(ContactSetPairGlueParameter(contact, 0, "stiffness", 1e4));
-  ok(ContactSetPairFrictionLaw(contact, 1, "coulomb"));
-  ok(ContactSetFriction(contact, 0.3));
-  ok(ContactSetLaw(contact, CONTACT_LAW_TIED)); /* of pairs that have none of their own: there are none */
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 2", ContactSetLaw(contact, 2, "tied"));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'sand'|coulomb|spring", ContactSetLaw(contact, 1, "sand"));
+  refused(PETSC_ERR_ARG_UNKNOWN_TYPE, "'tie'|tied", ContactSetLaw(contact, 0, "tie"));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "low.ymax:high.ymin|ContactSetLaw", ContactSetLawParameter(contact, 0, "spring", "stiffness", 1));
+  ok(ContactSetLaw(contact, 0, "spring"));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness_low.ymax:high.ymin -1|positive",
+          ContactSetLawParameter(contact, 0, "spring", "stiffness", -1));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "stiffness 0|positive", ContactSetLawParameter(contact, -1, "spring", "stiffness", 0));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "spring|no parameter 'length'", ContactSetLawParameter(contact, -1, "spring", "length", 1));
+  ok(ContactSetLawParameter(contact, -1, "spring", "stiffness", 1));
+  ok(ContactSetLawParameter(contact, 0, "spring", "stiffness", 1e4));
+  ok(ContactSetLaw(contact, 1, "coulomb"));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "friction_decay|all pairs", ContactSetLawParameter(contact, 1, "coulomb", "friction_decay", 1));
+  ok(ContactSetLawParameter(contact, -1, "coulomb", "friction", 0.3));
+  ok(ContactSetLaw(contact, -1, "tied")); /* of pairs that have none of their own: there are none */
   ok(ContactGetPairLaw(contact, 0, &law));
   assert_int_equal(law, CONTACT_LAW_GLUE);
   ok(ContactGetPairLaw(contact, 1, &law));
@@ -407,7 +406,7 @@ static void what_comes_too_late_is_refused(void **state)
   refused(PETSC_ERR_ARG_WRONGSTATE, "'bar'|before BodySetUp()", BodySetGravity(b, zero));
   refused(PETSC_ERR_ARG_WRONGSTATE, "'bar'|BodySetInitialState()", BodySetInitialVelocity(b, zero));
   ok(ControllerGetContact(controller, &contact));
-  refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetLaw()|before ContactSetUp()", ContactSetLaw(contact, CONTACT_LAW_TIED));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetLaw()|before ContactSetUp()", ContactSetLaw(contact, -1, "tied"));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 0; there are 0", ContactGetPairState(contact, 0, &end));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "interval of 0 steps must be positive", ControllerSetMonitorInterval(controller, 0));
   ok(BodyGetReferencePositions(b, &positions));

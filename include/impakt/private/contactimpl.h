@@ -8,11 +8,11 @@
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h>
 
-typedef struct _n_Checkpoint *Checkpoint;  /* src/checkpoint/checkpoint.h */
-typedef struct _n_Tables     *Tables;      /* src/checkpoint/tables.h */
-typedef struct _n_ContactGlue ContactGlue; /* src/contact/laws/glue.h */
+typedef struct _n_Checkpoint     *Checkpoint;      /* src/checkpoint/checkpoint.h */
+typedef struct _n_Tables         *Tables;          /* src/checkpoint/tables.h */
+typedef struct _n_ContactNamedLaw ContactNamedLaw; /* src/contact/laws/pairlaws.h */
 
-#define CONTACT_GLUE_PARAMETERS 4 /* of a law of glue, at most */
+#define CONTACT_LAW_PARAMETERS 4 /* of a law of glue or friction, at most */
 
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
@@ -83,17 +83,15 @@ typedef struct {
   PetscInt       acts_begin, acts_end; /* of these those that act, in rows.acting */
   PetscInt       shift[2];             /* row i of this rank has the number i - shift[side] among those of the body on that side */
   PetscReal      normal[3];            /* mean outward normal of the body that has the rows */
-  PetscBool      bonded;       /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
-  PetscBool      keeps_mass;   /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
-  PetscBool      rests;        /* one of its bodies has no inertia */
-  PetscBool      ahead;        /* its rows are laid where the last attempt at the step has ended, see src/contact/rows/layahead.c */
-  PetscInt       intervals;    /* of the controller step, between whose ends its force is linear */
-  PetscBool      own_friction; /* it has a coefficient of friction of its own */
-  PetscReal      friction;     /* that */
-  PetscBool      own_law;      /* it has a law of its own */
-  ContactLaw     law;          /* what its surfaces do to each other */
-  PetscInt       glue;         /* that of glue, in contact->glues */
-  PetscReal      glue_parameters[CONTACT_GLUE_PARAMETERS]; /* its own; less than 0: those of all pairs */
+  PetscBool      bonded;     /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
+  PetscBool      keeps_mass; /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
+  PetscBool      rests;      /* one of its bodies has no inertia */
+  PetscBool      ahead;      /* its rows are laid where the last attempt at the step has ended, see src/contact/rows/layahead.c */
+  PetscInt       intervals;  /* of the controller step, between whose ends its force is linear */
+  PetscBool      own_law;    /* it has a law of its own */
+  ContactLaw     law;        /* what its surfaces do to each other */
+  PetscInt       named;      /* that of glue or friction, in contact->laws */
+  PetscReal      parameters[CONTACT_LAW_PARAMETERS]; /* its own; less than 0: those of all pairs */
 } ContactPair;
 
 /* A surface of a body, for all pairs that have the same */
@@ -144,10 +142,7 @@ typedef struct {
   PetscReal            energy_excess;    /* part of the energy that contact may bring out of nothing in the whole run */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
-  PetscReal            friction;         /* coefficient of friction of nodes that stick; less than 0: not set */
-  PetscReal            friction_kinetic; /* of those that slide fast; less than 0: the same */
-  PetscReal            friction_decay;   /* how fast it falls to that with the speed [s/m] */
-  PetscInt             glue;             /* law of glue of pairs that have none of their own, in contact->glues */
+  PetscInt             named;            /* law of glue or friction of pairs that have none of their own, in contact->laws */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -326,29 +321,17 @@ typedef struct {
   BodyMeasures  *measures;                /* work space, per body */
 } ContactEnergy;
 
-/* What a friction law tells. The force across the normal of a node is at most a cohesion [N] plus a coefficient times its normal force. */
-typedef struct {
-  PetscErrorCode (*setup)(Contact, void *); /* (NULL) once the pairs are known: checks what the user has set */
-  /* cohesion and coefficient for the node that has this row, from the speed [m/s] at which it has slid in the last step */
-  void (*getlimit)(Contact, const void *, PetscInt, PetscReal, PetscReal *, PetscReal *);
-  PetscErrorCode (*view)(Contact, const void *, PetscViewer); /* (NULL) */
-  PetscErrorCode (*destroy)(void *);                          /* (NULL) */
-  void     *data;                                             /* handed to all of these */
-  PetscBool ignores_speed;                                    /* getlimit takes no speed */
-} ContactFrictionLaw;
-
 /* Friction, see src/contact/laws/README.md. Arrays have a number for each row: what concerns a node is at its first one. */
 typedef struct {
-  ContactFrictionLaw law;
-  char              *name;            /* NULL: none */
-  PetscReal         *slip;            /* of rows across the normal: in the present step [m] */
-  PetscReal         *drive;           /* the same: the part of it that the surface of an obstacle goes along itself [m] */
-  PetscReal         *step_loss;       /* the same: energy that the present step loses by friction [J] */
-  PetscReal         *loss;            /* of nodes: the same in all accepted steps */
-  PetscReal         *distance;        /* of nodes: way that they have slid [m] */
-  PetscReal         *speed;           /* of nodes: at which they have slid in the last accepted step [m/s] */
-  PetscReal         *pair_step;       /* per pair, of all ranks: energy that the present step loses by friction [J] */
-  PetscReal         *pair_loss;       /* the same in all accepted steps */
+  PetscBool  by_speed;                /* bounds depend on the speed at which nodes slide: so slips count before they touch */
+  PetscReal *slip;                    /* of rows across the normal: in the present step [m] */
+  PetscReal *drive;                   /* the same: the part of it that the surface of an obstacle goes along itself [m] */
+  PetscReal *step_loss;               /* the same: energy that the present step loses by friction [J] */
+  PetscReal *loss;                    /* of nodes: the same in all accepted steps */
+  PetscReal *distance;                /* of nodes: way that they have slid [m] */
+  PetscReal *speed;                   /* of nodes: at which they have slid in the last accepted step [m/s] */
+  PetscReal *pair_step;               /* per pair, of all ranks: energy that the present step loses by friction [J] */
+  PetscReal *pair_loss;               /* the same in all accepted steps */
   PetscReal *pair_work, *pair_driven; /* per pair, of all ranks: work of an obstacle whose surface moves, in the step, and in all [J] */
   PetscBool *slides;                  /* of nodes, at the end of the present step */
 } ContactFriction;
@@ -510,8 +493,8 @@ struct _p_Contact {
   ContactAttempt    attempt;
   ContactFloating   floating;
   ContactFriction   friction;
-  PetscInt          n_glues;
-  ContactGlue      *glues; /* laws of glue that have been named, see src/contact/laws/glue.h */
+  PetscInt          n_laws;
+  ContactNamedLaw  *laws; /* of glue and friction, that have been named, see src/contact/laws/pairlaws.h */
   ContactWork       work;
   ContactNeighbours neighbours;
   ContactReach      reach;
@@ -572,8 +555,6 @@ static inline PetscBool ContactAllPairsTie(Contact contact)
 }
 
 PETSC_EXTERN PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;
-
-PETSC_EXTERN PetscErrorCode ContactLawRegister(const char[], PetscErrorCode (*)(Contact, ContactFrictionLaw *));
 
 /* What a method calls in a controller step. After a failure there is nothing to be had from the bodies, and the step returns as soon as it
    can: ContactFailed() tells. */

@@ -55,8 +55,6 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
       .angle_bound      = ANGLE_BOUND,
       .tolerance        = PETSC_DEFAULT,
       .tie_distance     = TIE_DISTANCE,
-      .friction         = -1,
-      .friction_kinetic = -1,
   };
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -329,7 +327,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));
   PetscCall(ContactDestroyFriction(c));
-  PetscCall(PetscFree(c->glues));
+  PetscCall(PetscFree(c->laws));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

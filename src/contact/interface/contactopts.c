@@ -230,7 +230,7 @@ static PetscErrorCode TakeAlternation(Contact contact, size_t size, char type[])
   What the program has set before holds where the options are silent: pairs of the options come after those that have been added, and
   the two bodies are a pair by themselves only where none has been. A program gives options of its own by `PetscOptionsSetValue()` before.
 
-.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`, `ContactSetPairLaw()`
+.seealso: `Contact`, `ContactSetType()`, `ContactAddPair()`, `ContactAddObstacle()`, `ContactSetLaw()`
 @*/
 PetscErrorCode ContactSetFromOptions(Contact contact)
 {
@@ -248,8 +248,7 @@ PetscErrorCode ContactSetFromOptions(Contact contact)
   PetscCall(ReadPairs(contact));
   PetscCall(ReadRowSides(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ContactReadLaw(contact, p));
-  PetscCall(ContactReadFriction(contact));
-  PetscCall(ContactReadGlue(contact));
+  PetscCall(ContactReadLawParameters(contact));
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscCall(TakeAlternation(contact, sizeof(type), type));
   PetscCall(ContactSetType(contact, type));
   PetscTryTypeMethod(contact, setfromoptions);

@@ -52,9 +52,9 @@ static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair
   *pair = &contact->pairs[contact->n_pairs++];
   PetscCall(PetscMemzero(*pair, sizeof(**pair)));
   PetscCall(PetscStrallocpy(name, &(*pair)->name));
-  (*pair)->law  = contact->options.law;
-  (*pair)->glue = contact->options.glue;
-  for (PetscInt k = 0; k < CONTACT_GLUE_PARAMETERS; k++) (*pair)->glue_parameters[k] = -1;
+  (*pair)->law   = contact->options.law;
+  (*pair)->named = contact->options.named;
+  for (PetscInt k = 0; k < CONTACT_LAW_PARAMETERS; k++) (*pair)->parameters[k] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

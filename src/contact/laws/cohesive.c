@@ -117,10 +117,14 @@ PetscErrorCode RowLawCreate_cohesive(RowLaw *law)
   law->n_parameters = 3;
 
   law->parameters[STIFFNESS] = (RowLawParameter){
-      "stiffness", "Stiffness of unbroken glue per unit of area", UNIT_STIFFNESS_ON_AREA,
-      "a layer of the modulus E and the thickness t has E/t; 50 E/h, with the height h of the part that is glued, hardly gives way"};
-  law->parameters[STRENGTH]  = (RowLawParameter){"strength", "Largest traction of glue that breaks", UNIT_STRESS, NULL};
-  law->parameters[TOUGHNESS] = (RowLawParameter){"toughness", "Energy that breaking takes per unit of area", UNIT_ENERGY_ON_AREA, NULL};
+      .name = "stiffness",
+      .what = "stiffness of unbroken glue per unit of area",
+      .unit = UNIT_STIFFNESS_ON_AREA,
+      .hint =
+          "a layer of the modulus E and the thickness t has E/t; 50 E/h, with the height h of the part that is glued, hardly gives way"};
+  law->parameters[STRENGTH]  = (RowLawParameter){.name = "strength", .what = "largest traction of glue that breaks", .unit = UNIT_STRESS};
+  law->parameters[TOUGHNESS] = (RowLawParameter){
+      .name = "toughness", .what = "energy that breaking takes per unit of area", .unit = UNIT_ENERGY_ON_AREA};
 
   law->check     = Check;
   law->stiffness = Stiffness;

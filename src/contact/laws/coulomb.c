@@ -1,77 +1,41 @@
 /* Coulomb's law: the force across the normal is at most a coefficient times the normal force. The coefficient may fall with the speed of
    sliding. */
-#include "friction.h"
 #include "rowlaw.h"
-#include <sys/units.h>
+#include <petscmath.h>
 
-/* Of nodes of a pair that stick */
-static PetscReal GetStatic(Contact contact, const ContactPair *pair)
+enum { STATIC, KINETIC, DECAY };
+
+static const char *Check(const PetscReal mu[])
 {
-  return pair->own_friction ? pair->friction : contact->options.friction;
+  if ((mu[KINETIC] < 0) != (mu[DECAY] < 0))
+    return "-contact_friction_kinetic and -contact_friction_decay go together: the coefficient is mu_k + (mu_s - mu_k) exp(-d |v|)";
+  if (mu[KINETIC] > mu[STATIC]) return "-contact_friction_kinetic is above the coefficient with which nodes stick";
+  return NULL;
 }
 
-static PetscErrorCode SetUp(Contact contact, void *data)
+static void Bound(const PetscReal mu[], PetscReal speed, PetscReal limit[2])
 {
-  const PetscReal kinetic = contact->options.friction_kinetic;
-
-  PetscFunctionBegin;
-  (void)data;
-  contact->friction.law.ignores_speed = (PetscBool)(kinetic < 0);
-  if (contact->neighbours.come_and_go) { /* pairs that come later have the same coefficient */
-    PetscCheck(contact->options.friction >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_law coulomb needs a coefficient of friction: set -contact_friction mu for all pairs");
-    PetscCheck(kinetic <= contact->options.friction, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_friction_kinetic %g is above the coefficient %g with which nodes stick", (double)kinetic,
-               (double)contact->options.friction);
-  }
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    if (pair->law != CONTACT_LAW_FRICTION) continue;
-    PetscCheck(GetStatic(contact, pair) >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_law coulomb needs the coefficient of friction of the pair %s: set -contact_friction mu for all pairs, or "
-               "-contact_friction_%s mu for this one",
-               pair->name, pair->name);
-    PetscCheck(kinetic <= GetStatic(contact, pair), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_friction_kinetic %g is above the coefficient %g with which nodes of the pair %s stick", (double)kinetic,
-               (double)GetStatic(contact, pair), pair->name);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  limit[0] = 0;
+  limit[1] = mu[KINETIC] < 0 ? mu[STATIC] : mu[KINETIC] + (mu[STATIC] - mu[KINETIC]) * PetscExpReal(-mu[DECAY] * speed);
 }
 
-/* The coefficient of the node that has the row, from the speed at which it has slid in the last step */
-static void GetLimit(Contact contact, const void *data, PetscInt row, PetscReal speed, PetscReal *cohesion, PetscReal *coefficient)
-{
-  const PetscReal mu = GetStatic(contact, &contact->pairs[contact->rows.pair[row]]), kinetic = contact->options.friction_kinetic;
-
-  (void)data;
-  *cohesion    = 0;
-  *coefficient = kinetic < 0 ? mu : kinetic + (mu - kinetic) * PetscExpReal(-contact->options.friction_decay * speed);
-}
-
-static PetscErrorCode View(Contact contact, const void *data, PetscViewer viewer)
-{
-
-  PetscFunctionBegin;
-  (void)data;
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (contact->pairs[p].law == CONTACT_LAW_FRICTION)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "  coefficient of friction of %s: %g\n", contact->pairs[p].name,
-                                       (double)GetStatic(contact, &contact->pairs[p])));
-  if (contact->options.friction_kinetic >= 0)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  falls to %g as exp(-%g%s times the speed of sliding)\n",
-                                     (double)contact->options.friction_kinetic, (double)contact->options.friction_decay,
-                                     UnitsOf((PetscObject)contact, UNIT_SLOWNESS)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContactLawCreate_Coulomb(Contact contact, ContactFrictionLaw *law)
+PetscErrorCode RowLawCreate_coulomb(RowLaw *law)
 {
   PetscFunctionBegin;
-  (void)contact;
-  law->setup    = SetUp;
-  law->getlimit = GetLimit;
-  law->view     = View;
+  PetscCall(RowLawCreate_unilateral(law));
+  law->check        = Check;
+  law->bound        = Bound;
+  law->n_parameters = 3;
+
+  law->parameters[STATIC] = (RowLawParameter){
+      .name = "friction", .what = "coefficient of friction", .unit = UNIT_ONE, .may_be_zero = PETSC_TRUE};
+  law->parameters[KINETIC] = (RowLawParameter){.name        = "friction_kinetic",
+                                               .what        = "coefficient of fast sliding",
+                                               .unit        = UNIT_ONE,
+                                               .may_be_zero = PETSC_TRUE,
+                                               .optional    = PETSC_TRUE};
+  law->parameters[DECAY]   = (RowLawParameter){
+      .name = "friction_decay", .what = "decay to that with the speed of sliding", .unit = UNIT_SLOWNESS, .optional = PETSC_TRUE};
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

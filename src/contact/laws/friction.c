@@ -6,20 +6,22 @@
    change of B u over the controller step with the rows as the step has them. Where both bodies move as one rigid body, a closed row has the
    same material points on both sides, and no slip.
 */
-#include "friction.h"
+#include "pairlaws.h"
 #include <sys/units.h>
 #include <impakt/private/bodystep.h>
 
 /* Round-off of normals that a velocity may have a part along */
 #define ACROSS 1e-6
 
-/* A method that has no friction ends the run with words; `why`: what is in its way, and what to choose */
-PetscErrorCode ContactRefuseFriction(Contact contact, const char why[])
+/* The bound of the force across the normal of the node that has row i, from the speed at which it has slid in the last step: a force [N],
+   and a part of the normal force more */
+void ContactGetFrictionLimit(Contact contact, PetscInt i, PetscReal speed, PetscReal limit[2])
 {
-  PetscFunctionBegin;
-  PetscCheck(!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_law %s: %s",
-             contact->friction.name, why);
-  PetscFunctionReturn(PETSC_SUCCESS);
+  const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+  PetscReal          parameters[ROW_LAW_PARAMETERS];
+
+  ContactGetLawParameters(contact, pair, parameters);
+  (*contact->laws[pair->named].law.bound)(parameters, speed, limit);
 }
 
 static PetscErrorCode DestroyRows(ContactFriction *friction)
@@ -41,6 +43,14 @@ PetscErrorCode ContactSetUpFriction(Contact contact)
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || (!contact->n_pairs && !contact->neighbours.come_and_go))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DestroyRows(friction));
+  for (PetscInt g = 0; g < contact->n_laws; g++) {
+    PetscReal rests[2], flies[2];
+
+    if (!contact->laws[g].law.bound) continue;
+    (*contact->laws[g].law.bound)(contact->laws[g].parameters, 0, rests);
+    (*contact->laws[g].law.bound)(contact->laws[g].parameters, PETSC_MAX_REAL, flies);
+    if (rests[0] != flies[0] || rests[1] != flies[1]) friction->by_speed = PETSC_TRUE;
+  }
   PetscCall(PetscCalloc7(PetscMax(n, 1), &friction->slip, n, &friction->drive, n, &friction->step_loss, n, &friction->loss, n,
                          &friction->distance, n, &friction->speed, n, &friction->slides));
   PetscCall(PetscCalloc4(contact->n_pairs, &friction->pair_step, contact->n_pairs, &friction->pair_loss, contact->n_pairs,
@@ -51,7 +61,6 @@ PetscErrorCode ContactSetUpFriction(Contact contact)
 PetscErrorCode ContactDestroyFriction(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(ContactDestroyFrictionLaw(contact));
   PetscCall(DestroyRows(&contact->friction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -174,19 +183,13 @@ PetscErrorCode ContactDriveFriction(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the law takes the speed at which nodes have slid before they touch: then slips count on all near rows, else where forces act */
-static PetscBool ContactSpeedCounts(Contact contact)
-{
-  return (PetscBool)(contact->friction.slip && !contact->friction.law.ignores_speed);
-}
-
 /* Slips over the controller step, from the bodies' traces */
 PetscErrorCode ContactComputeSlips(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    const PetscBool    all  = ContactSpeedCounts(contact);
+    const PetscBool    all  = contact->friction.by_speed;
     const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, last = all ? pair->near_end : pair->acts_end;
     PetscScalar       *start[2], *end[2];
 
@@ -294,7 +297,7 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    const PetscBool    all  = ContactSpeedCounts(contact);
+    const PetscBool    all  = contact->friction.by_speed;
     const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, end = all ? pair->near_end : pair->acts_end;
 
     friction->pair_loss[p] += friction->pair_step[p];

@@ -7,7 +7,7 @@
    are as they were built, until the surfaces have turned by -contact_angle_bound. A linear body bears forces as if it had not turned: those
    along rows that are right where the body is now are off by the angle by which it has turned.
 */
-#include "friction.h"
+#include <contact/parts.h>
 
 /* The most by which a linear body of a pair has turned [rad] */
 static PetscErrorCode GetLinearTurn(Contact contact, const ContactPair *pair, PetscReal *turn)
@@ -28,15 +28,13 @@ static PetscErrorCode GetLinearTurn(Contact contact, const ContactPair *pair, Pe
    are tilted in any case [rad] */
 static void AddTilts(Contact contact, const ContactPair *pair, PetscReal turn, const PetscReal tilts[], PetscReal sums[2])
 {
-  const ContactFrictionLaw *law = &contact->friction.law;
-
   for (PetscInt first = pair->begin, k = 0; first < pair->end; first += pair->components, k++) {
-    PetscReal cohesion, coefficient;
+    PetscReal limit[2];
 
     if (!(contact->end.force[first] > 0) || !contact->rows.opposite[first]) continue;
-    (*law->getlimit)(contact, law->data, first, 0, &cohesion, &coefficient);
+    ContactGetFrictionLimit(contact, first, 0, limit);
     sums[0] += (turn + tilts[k]) * contact->end.force[first];
-    sums[1] += cohesion + coefficient * contact->end.force[first];
+    sums[1] += limit[0] + limit[1] * contact->end.force[first];
   }
 }
 

@@ -46,8 +46,8 @@ PetscErrorCode RowLawCreate(const char name[], RowLaw *law)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The names of the laws of glue, which users give, in the order in which these have been registered. The registry owns them. */
-PetscErrorCode RowLawListGlue(PetscInt room, const char *names[], PetscInt *n)
+/* The names of the laws with parameters, which users give, in the order in which these have been registered. The registry owns them. */
+PetscErrorCode RowLawListNamed(PetscInt room, const char *names[], PetscInt *n)
 {
   const char **all;
   int          n_all;
@@ -59,7 +59,7 @@ PetscErrorCode RowLawListGlue(PetscInt room, const char *names[], PetscInt *n)
     RowLaw law;
 
     PetscCall(RowLawCreate(all[k], &law));
-    if (law.stiffness) names[(*n)++] = all[k];
+    if (law.n_parameters) names[(*n)++] = all[k];
   }
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);

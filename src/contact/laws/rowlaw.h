@@ -2,8 +2,9 @@
    Laws of the one contact step: the relation between the forces on the rows of a node and what these rows read. A law is a projection,
    lambda = P(lambda - r y), with its derivative; y is what it reads. Nobody asks for the name of a law.
 
-   A law of glue has a stiffness, parameters that users give, and may have numbers that it keeps of each node, as damage. Users name it in
-   -contact_law, and its parameters in -contact_<law>_<parameter>.
+   Laws of glue and of friction have parameters that users give. Users name them in -contact_law, and their parameters in
+   -contact_<law>_<parameter>, of friction in -contact_<parameter>. Glue has a stiffness, and may have numbers that it keeps of each node,
+   as damage. Friction has a bound.
 */
 #pragma once
 #include <petscsys.h>
@@ -19,11 +20,13 @@ typedef enum {
   ROW_LAW_READS_MEAN    /* a multiple of the gap that the force of the step does its work on: at its end, or the mean of the step */
 } RowLawReads;
 
-/* A number that users give to a law of glue; all are positive */
+/* A number that users give to a law of glue or friction; positive, unless it may be zero */
 typedef struct {
   const char   *name, *what; /* in options; in words */
   UnitDimension unit;
   const char   *hint; /* (NULL) for those who have not set it */
+  PetscBool     may_be_zero;
+  PetscBool     optional; /* it may be left out, and pairs have no option for one of their own */
 } RowLawParameter;
 
 /* What glue knows of a node. Its rows are along the axes, and the gap is a vector by which the second body has gone from the first. */
@@ -44,11 +47,13 @@ typedef struct {
   /* P(p) of the rows of a node, and dP_i/dp_j at [i * n + j]; the force across the normal is at most limit[0] [N], and limit[1] times the
      normal force more. Of glue r is the same for all rows: the force is that which a gap m has with force + r m = -p, and - r m - p. */
   void (*project)(PetscInt n, const PetscReal limit[2], const RowLawGlue *, const PetscReal p[], PetscReal force[], PetscReal derivative[]);
+  PetscInt        n_parameters;
+  RowLawParameter parameters[ROW_LAW_PARAMETERS];     /* those that are not set are less than 0 in what follows */
+  const char *(*check)(const PetscReal parameters[]); /* (NULL) what is wrong with them together; NULL: nothing */
+  /* (NULL: it is no friction) `limit` of a node that has slid at this speed [m/s] in the last step */
+  void (*bound)(const PetscReal parameters[], PetscReal speed, PetscReal limit[2]);
   /* The rest is of glue. Its force is stiffness times gap, beside contact; so it stores half of that times the gap, and damage, by which
      the stiffness falls, takes what is missing then. */
-  PetscInt        n_parameters;
-  RowLawParameter parameters[ROW_LAW_PARAMETERS];
-  const char *(*check)(const PetscReal parameters[]); /* (NULL) what is wrong with them together; NULL: nothing */
   PetscReal (*stiffness)(const PetscReal parameters[], const PetscReal history[]); /* per unit of area [N/m^3]; NULL: it is no glue */
   PetscReal (*softening)(const PetscReal parameters[]); /* (NULL) by how much force falls as the gap grows, at most [N/m^3] */
   PetscInt n_history;                                   /* numbers that it keeps of each node, zeros at the start */
@@ -60,12 +65,13 @@ PETSC_INTERN PetscErrorCode RowLawRegister(const char[], PetscErrorCode (*)(RowL
 PETSC_INTERN PetscErrorCode RowLawRegisterAll(void);
 PETSC_INTERN PetscErrorCode RowLawDestroyList(void);
 PETSC_INTERN PetscErrorCode RowLawCreate(const char[], RowLaw *);
-PETSC_INTERN PetscErrorCode RowLawListGlue(PetscInt, const char *[], PetscInt *);
+PETSC_INTERN PetscErrorCode RowLawListNamed(PetscInt, const char *[], PetscInt *);
 PETSC_INTERN PetscReal      CoulombGetResidual(PetscInt, PetscReal, PetscReal, const PetscScalar[], const PetscScalar[]);
 
 /* The laws that Impakt brings. To add one: its file, and a line here. */
 #define ROW_LAWS(LAW)                                                                                                                      \
   LAW(cohesive)                                                                                                                            \
+  LAW(coulomb)                                                                                                                             \
   LAW(hold)                                                                                                                                \
   LAW(spring)                                                                                                                              \
   LAW(tie)                                                                                                                                 \

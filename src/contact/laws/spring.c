@@ -32,7 +32,7 @@ PetscErrorCode RowLawCreate_spring(RowLaw *law)
   law->stiffness     = Stiffness;
   law->n_parameters  = 1;
   law->parameters[0] = (RowLawParameter){.name = "stiffness",
-                                         .what = "Stiffness of springs per unit of area",
+                                         .what = "stiffness of springs per unit of area",
                                          .unit = UNIT_STIFFNESS_ON_AREA,
                                          .hint = "glue of the modulus E and the thickness t has about E/t; -contact_law tied is rigid"};
   PetscFunctionReturn(PETSC_SUCCESS);

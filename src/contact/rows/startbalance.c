@@ -129,9 +129,8 @@ static PetscReal SpringCompliance(Contact contact, PetscInt i)
 /* Those rows make up the problem that take part and have a partner, with those across their normals */
 static void Tell(StartBalance *start)
 {
-  const Contact             contact = start->contact;
-  const ContactFrictionLaw *law     = &contact->friction.law;
-  PetscInt                  first   = 0;
+  const Contact contact = start->contact;
+  PetscInt      first   = 0;
 
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscBool rubs = ContactRowRubs(contact, i);
@@ -145,7 +144,7 @@ static void Tell(StartBalance *start)
     told[TOLD_FORCE]    = contact->end.force[i];
     told[TOLD_COHESION] = told[TOLD_COEFFICIENT] = 0;
     if (i + 1 < contact->rows.n && !rubs && ContactRowRubs(contact, i + 1))
-      (*law->getlimit)(contact, law->data, i, contact->friction.speed[i], &told[TOLD_COHESION], &told[TOLD_COEFFICIENT]);
+      ContactGetFrictionLimit(contact, i, contact->friction.speed[i], &told[TOLD_COHESION]);
   }
 }
 

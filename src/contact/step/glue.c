@@ -8,7 +8,6 @@
 */
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
-#include <sys/units.h>
 #include <impakt/private/bodyforces.h>
 
 /* Whether a law of glue holds a row */
@@ -55,7 +54,8 @@ PetscErrorCode ContactStepperSetUpGlue(Contact contact, ContactStepper *stepper)
   PetscCall(PetscCalloc3(ROW_LAW_PARAMETERS * contact->n_pairs, &stepper->parameters, ROW_LAW_HISTORY * contact->rows.n, &stepper->history,
                          ROW_LAW_HISTORY * contact->rows.n, &stepper->grown));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (contact->pairs[p].law == CONTACT_LAW_GLUE) ContactGetGlueParameters(contact, p, stepper->parameters + ROW_LAW_PARAMETERS * p);
+    if (contact->pairs[p].law == CONTACT_LAW_GLUE)
+      ContactGetLawParameters(contact, &contact->pairs[p], stepper->parameters + ROW_LAW_PARAMETERS * p);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,19 +193,5 @@ PetscErrorCode ContactStepperVisitGlue(Contact contact, ContactStepper *stepper,
   if (!stepper->glued) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckpointVisitReals(checkpoint, "history of glue", ROW_LAW_HISTORY * contact->rows.n, stepper->history));
   if (CheckpointLoads(checkpoint)) PetscCall(PetscArraycpy(stepper->grown, stepper->history, ROW_LAW_HISTORY * contact->rows.n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContactStepperViewGlue(Contact contact, const ContactStepper *stepper, PetscViewer viewer)
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const RowLaw *law = &stepper->laws[2 * p + 1];
-
-    for (PetscInt k = 0; k < law->n_parameters; k++)
-      PetscCall(PetscViewerASCIIPrintf(viewer, "  %s of the glue of %s: %g%s\n", law->parameters[k].name, contact->pairs[p].name,
-                                       (double)stepper->parameters[ROW_LAW_PARAMETERS * p + k],
-                                       UnitsOf((PetscObject)contact, law->parameters[k].unit)));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

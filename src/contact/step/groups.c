@@ -4,7 +4,6 @@
    keeps its forces to the last bit, and a body rests, where the forces on its rows are those that it was advanced under.
 */
 #include "stepimpl.h"
-#include <contact/laws/friction.h>
 #include <impakt/private/bodyforces.h>
 
 /* The rule of each set: contact nodes without mass have no impulse to lose; those with mass would swing if their gap were closed */

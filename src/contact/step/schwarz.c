@@ -47,17 +47,6 @@ static PetscErrorCode SetFromOptions(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the step cannot do yet is refused, rather than done wrong */
-static PetscErrorCode Check(Contact contact)
-{
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
-
-  PetscFunctionBegin;
-  PetscCheck(contact->dim > 1 || !ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), comm, PETSC_ERR_SUP,
-             "-contact_law %s: bars of one dimension cannot slide; choose frictionless", contact->friction.name);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The laws of the nodes of each pair: while they may open, and once they are held */
 static PetscErrorCode ChooseLaws(Contact contact, ContactStepper *stepper)
 {
@@ -90,7 +79,7 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SCHWARZ));
-  PetscCall(Check(contact));
+  if (contact->dim == 1) PetscCall(ContactRefuseFriction(contact, "bars of one dimension cannot slide; choose frictionless"));
   floating = (PetscBool)(contact->floating.n > 0);
   for (PetscInt k = 0; k < contact->floating.n; k++) floating = (PetscBool)(floating && contact->floating.states[k].linear);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -122,8 +111,6 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   stepper->atol               = (floating ? ATOL_FLOATING * CONTACT_POSITION_TOLERANCE : RESOLUTION) * contact->scale.length;
   stepper->assembled          = -1;
   stepper->problem.resolution = RESOLUTION * contact->scale.length;
-  if (contact->friction.law.setup && ContactAnyPairHas(contact, CONTACT_LAW_FRICTION))
-    PetscCall((*contact->friction.law.setup)(contact, contact->friction.law.data));
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
   PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperCreateOuter(contact, stepper));
@@ -246,9 +233,7 @@ PetscErrorCode ContactStepperView(Contact contact, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  rule of body '%s' and what it may touch: %s\n", ((PetscObject)contact->bodies[b])->name,
                                      stepper->rules[b]->name));
   PetscCall(ViewMass(contact, viewer));
-  if (ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) && contact->friction.law.view)
-    PetscCall((*contact->friction.law.view)(contact, contact->friction.law.data, viewer));
-  PetscCall(ContactStepperViewGlue(contact, stepper, viewer));
+  PetscCall(ContactViewLawParameters(contact, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -5,7 +5,6 @@
    are one evaluation of the outer SNES, F = lambda - (2)(lambda), and (2) is the SNES of solve/.
 */
 #include "stepimpl.h"
-#include <contact/laws/friction.h>
 
 static ContactStepper *Stepper(Contact contact)
 {
@@ -46,9 +45,11 @@ static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
 
     for (PetscInt k = pair->acts_begin; k < pair->acts_end && pair->law == CONTACT_LAW_FRICTION; k += contact->dim) {
       const PetscInt i = contact->rows.acting[k];
+      PetscReal      limit[2];
 
-      (*contact->friction.law.getlimit)(contact, contact->friction.law.data, i, contact->friction.speed[i], &stepper->mine[i],
-                                        &stepper->before[i]);
+      ContactGetFrictionLimit(contact, i, contact->friction.speed[i], limit);
+      stepper->mine[i]   = limit[0];
+      stepper->before[i] = limit[1];
     }
   }
   for (PetscInt k = 0; k < 2; k++) {

@@ -2,7 +2,7 @@
 #pragma once
 #include <contact/parts.h>
 #include <contact/solve/lawproblem.h>
-#include <contact/laws/glue.h>
+#include <contact/laws/pairlaws.h>
 #include <impakt/private/bodyforces.h>
 
 typedef struct _ContactStepper ContactStepper;
@@ -172,7 +172,6 @@ PETSC_INTERN PetscErrorCode ContactStepperBeginGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperEndGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperAcceptGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperVisitGlue(Contact, ContactStepper *, Checkpoint);
-PETSC_INTERN PetscErrorCode ContactStepperViewGlue(Contact, const ContactStepper *, PetscViewer);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyGlue(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor *);
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);

@@ -107,9 +107,6 @@ static PetscErrorCode ContactSetUp_Alternation(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_SCHWARZ));
-  PetscCheck(!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION), PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
-             "-contact_law %s: -contact_type alternation has no friction; choose -contact_type schwarz, which is the default",
-             contact->friction.name);
   PetscCheck(
       contact->options.constraint != CONTACT_CONSTRAINT_BOTH, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
       "-contact_constraint both: with -contact_type alternation a closed gap has no rate already, since contact nodes with mass take "

@@ -56,20 +56,17 @@ PetscErrorCode StepperCheckBodies(Contact contact)
 /* StepperCheckFriction - what friction needs of bodies and options */
 PetscErrorCode StepperCheckFriction(Contact contact)
 {
-  MPI_Comm  comm = PetscObjectComm((PetscObject)contact);
   PetscBool has_mass;
 
   PetscFunctionBegin;
-  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactHasMass(contact, PETSC_FALSE, &has_mass));
-  PetscCheck(!has_mass, comm, PETSC_ERR_SUP,
-             "-contact_law %s needs massless contact nodes with -contact_type %s: with mass the forces of friction ring from step to step; "
-             "leave -<body>_mass_redistribute at true, or choose -contact_type schwarz",
-             contact->friction.name, ((PetscObject)contact)->type_name);
-  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, comm, PETSC_ERR_SUP,
-             "-contact_law %s closes gaps; leave -contact_constraint at gap", contact->friction.name);
-  PetscCheck(contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm, PETSC_ERR_SUP,
-             "-contact_law %s has massless contact nodes, which do not chatter; leave -contact_stabilization at none",
-             contact->friction.name);
+  if (has_mass)
+    PetscCall(ContactRefuseFriction(contact,
+                                    "it needs massless contact nodes with this -contact_type: with mass the forces of friction ring "
+                                    "from step to step; leave -<body>_mass_redistribute at true, or choose -contact_type schwarz"));
+  if (contact->options.constraint != CONTACT_CONSTRAINT_GAP)
+    PetscCall(ContactRefuseFriction(contact, "friction closes gaps; leave -contact_constraint at gap"));
+  if (contact->options.stabilization != CONTACT_STABILIZATION_NONE)
+    PetscCall(ContactRefuseFriction(contact, "massless contact nodes do not chatter; leave -contact_stabilization at none"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
