@@ -116,7 +116,7 @@ typedef struct {
   PetscInt64 total_sweeps;
   PetscInt   unconverged_steps; /* accepted by -schwarz_unconverged accept */
   PetscInt   set_changes;       /* rounds of the active set beyond the first, all steps */
-  PetscInt   set_cycles;        /* steps in which a set came up twice and a rule ended the alternation */
+  PetscInt   set_cycles;        /* steps in which a row joined again after it had left, and was kept */
   PetscInt   limited_steps;     /* made again since contact would have gained energy in them */
   PetscInt   unlimited_steps;   /* of these, in which it gained energy all the same */
   PetscInt64 energy_attempts;   /* how often these were made again */

@@ -7,7 +7,5 @@ PETSC_EXTERN PetscErrorCode BodySetRowWeights(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetRobin(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyComputeRowStiffness(Body, PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetNewmark(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyKeep(Body);
-PETSC_EXTERN PetscErrorCode BodyReinstate(Body);
 PETSC_EXTERN PetscErrorCode BodyResetTraces(Body);
 PETSC_EXTERN PetscErrorCode BodyGetPositionChange(Body, PetscReal *, PetscReal *);

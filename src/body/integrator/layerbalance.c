@@ -53,7 +53,7 @@ struct _n_LayerBalance {
   VecScatter scatter;       /* from a vector of the body */
   LayerRows  rows;
   PetscReal  reach; /* norm of the reference positions of all nodes [m] */
-  Factors    now, aside[BODY_SLOTS];
+  Factors    now, aside;
   PetscInt   n_made;
   PetscInt   n_history; /* numbers of that history */
 };
@@ -101,15 +101,14 @@ static PetscErrorCode RefactorAt(LayerBalance layer, Body body, Vec u)
 }
 
 /* The state of the body has been put aside. That of an accepted step is where slow factors are made anew, for all that starts there. */
-PetscErrorCode LayerBalanceSave(Body body, BodySlot slot)
+PetscErrorCode LayerBalanceSave(Body body)
 {
   LayerBalance layer = GetLayerBalance(body);
-  Factors     *aside = &layer->aside[slot];
+  Factors     *aside = &layer->aside;
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  if (slot == BODY_SLOT_SAVED && layer->now.rounds >= (body->mesh.dim == 2 ? SLOW_ROUNDS_PLANE : SLOW_ROUNDS_SPACE))
-    PetscCall(RefactorAt(layer, body, body->state.u));
+  if (layer->now.rounds >= (body->mesh.dim == 2 ? SLOW_ROUNDS_PLANE : SLOW_ROUNDS_SPACE)) PetscCall(RefactorAt(layer, body, body->state.u));
   if (aside->number != layer->now.number) PetscCall(CopyOrigin(layer, &layer->now, aside));
   aside->number = layer->now.number;
   aside->rounds = layer->now.rounds;
@@ -120,34 +119,30 @@ PetscErrorCode LayerBalanceSave(Body body, BodySlot slot)
 PetscErrorCode LayerBalanceAgree(Body body)
 {
   LayerBalance layer = GetLayerBalance(body);
-  PetscInt     told[3 + 2 * BODY_SLOTS];
+  PetscInt     told[5];
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
   told[0] = layer->n_made;
   told[1] = layer->now.number;
   told[2] = layer->now.rounds;
-  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
-    told[3 + 2 * slot] = layer->aside[slot].number;
-    told[4 + 2 * slot] = layer->aside[slot].rounds;
-  }
+  told[3] = layer->aside.number;
+  told[4] = layer->aside.rounds;
   PetscCallMPI(
       MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(told), MPIU_INT, body->mesh.owner, PetscObjectComm((PetscObject)body)));
-  layer->n_made     = told[0];
-  layer->now.number = told[1];
-  layer->now.rounds = told[2];
-  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
-    layer->aside[slot].number = told[3 + 2 * slot];
-    layer->aside[slot].rounds = told[4 + 2 * slot];
-  }
+  layer->n_made       = told[0];
+  layer->now.number   = told[1];
+  layer->now.rounds   = told[2];
+  layer->aside.number = told[3];
+  layer->aside.rounds = told[4];
   PetscCall(ConstrainedSolverForgetColumns(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode LayerBalanceRestore(Body body, BodySlot slot)
+PetscErrorCode LayerBalanceRestore(Body body)
 {
   LayerBalance   layer = GetLayerBalance(body);
-  const Factors *aside = &layer->aside[slot];
+  const Factors *aside = &layer->aside;
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
@@ -313,11 +308,9 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
     PetscCall(BodyCreateLayerVec(body, &layer->now.point));
     PetscCall(VecZeroEntries(layer->now.point));
     PetscCall(BodyLayerCreateHistory(body, &layer->n_history, &layer->now.memory, &layer->now.history));
-    for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
-      PetscCall(BodyLayerCreateHistory(body, NULL, &layer->aside[slot].memory, &layer->aside[slot].history));
-      PetscCall(VecDuplicate(layer->now.point, &layer->aside[slot].point));
-      PetscCall(VecZeroEntries(layer->aside[slot].point));
-    }
+    PetscCall(BodyLayerCreateHistory(body, NULL, &layer->aside.memory, &layer->aside.history));
+    PetscCall(VecDuplicate(layer->now.point, &layer->aside.point));
+    PetscCall(VecZeroEntries(layer->aside.point));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -327,11 +320,9 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
 static PetscErrorCode TakeFactors(LayerBalance layer, Body body, PetscBool others)
 {
   PetscFunctionBegin;
-  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
-    layer->aside[slot].number = layer->now.number;
-    layer->aside[slot].rounds = layer->now.rounds;
-    PetscCall(CopyOrigin(layer, &layer->now, &layer->aside[slot]));
-  }
+  layer->aside.number = layer->now.number;
+  layer->aside.rounds = layer->now.rounds;
+  PetscCall(CopyOrigin(layer, &layer->now, &layer->aside));
   if (others) PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -388,10 +379,8 @@ PetscErrorCode LayerBalanceDestroy(LayerBalance *layer)
   PetscCall(VecDestroy(&(*layer)->solution));
   PetscCall(VecDestroy(&(*layer)->now.point));
   PetscCall(PetscFree((*layer)->now.memory));
-  for (PetscInt slot = 0; slot < BODY_SLOTS; slot++) {
-    PetscCall(VecDestroy(&(*layer)->aside[slot].point));
-    PetscCall(PetscFree((*layer)->aside[slot].memory));
-  }
+  PetscCall(VecDestroy(&(*layer)->aside.point));
+  PetscCall(PetscFree((*layer)->aside.memory));
   PetscCall(VecScatterDestroy(&(*layer)->scatter));
   PetscCall(LayerRowsDestroy(&(*layer)->rows));
   PetscCall(PetscFree(*layer));

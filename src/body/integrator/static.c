@@ -115,10 +115,10 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
 }
 
 /* The springs of a floating body are at rest where it starts from */
-static PetscErrorCode Save(Body body, BodySlot slot)
+static PetscErrorCode Save(Body body)
 {
   PetscFunctionBegin;
-  if (slot == BODY_SLOT_SAVED) PetscCall(BodyResetSprings(body));
+  PetscCall(BodyResetSprings(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -151,10 +151,7 @@ PetscErrorCode BodySetUpSteps(Body body)
   PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->state));
   PetscCall(BodyStateCreate(body, PETSC_FALSE, &body->saved));
   for (PetscInt k = 0; k < 3; k++) PetscCall(BodyCreateVec(body, &body->work.nodes[k]));
-  if (body->rows.global || body->rows.expected) { /* else nobody repeats a step */
-    PetscCall(BodyStateCreate(body, PETSC_TRUE, &body->kept));
-    PetscCall(BodyCreateVec(body, &body->iterate.u));
-  }
+  if (body->rows.global || body->rows.expected) PetscCall(BodyCreateVec(body, &body->iterate.u)); /* else nobody repeats a step */
   PetscCall(BodySetUpFreeRows(body));
   PetscCall(BodySetUpMass(body));
   PetscCall(BodyCheckHeld(body));
@@ -290,7 +287,7 @@ PetscErrorCode BodyDestroy(Body *body)
   {
     Vec *vecs[] = {&b->start.a,      &b->iterate.u,     &b->rows.stage_balance, &b->mesh.positions, &b->mass.row_sum, &b->mass.diagonal,
                    &b->mass.inverse, &b->work.nodes[0], &b->work.nodes[1],      &b->work.nodes[2],  &b->start.change};
-    BodyState *states[] = {&b->state, &b->saved, &b->kept, &b->substep_start};
+    BodyState *states[] = {&b->state, &b->saved, &b->substep_start};
 
     PetscCall(BodyDestroyHistory(b));
     PetscCall(BodyDestroyRepeat(b));

@@ -164,7 +164,7 @@ PetscErrorCode BodyUnpack(Body body, Tables tables)
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   PetscCall(UnpackPoint(body, rows, tables));
   PetscCall(PetscFree(rows));
-  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
+  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,4 +1,4 @@
-/* States that a body goes back to: the start of a controller step, and an end of it that is kept. */
+/* The state that a body goes back to: the start of a controller step. */
 #include <body/layout/bodyimpl.h>
 
 /* Takes the current state as the start of the next controller step. Collective. */
@@ -31,52 +31,11 @@ PetscErrorCode BodySave(Body body)
   body->start.changed = PETSC_FALSE;
   /* The TS has added up its substeps, with another round-off than the state. Loads are to see the same time whenever the step is made. */
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  if (here && body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_SAVED));
+  if (here && body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
   PetscCall(BodyHandoverEnd(body));
   body->iterate.known = PETSC_FALSE;
   body->repeats       = PETSC_FALSE;
   if (stepped) body->time.accepted_level = body->time.level;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All levels but the first, which belongs to the saved state */
-static PetscErrorCode CopyOutputTraces(Body body, PetscBool keep)
-{
-  const Trace    traces[] = {body->traces.displacement, body->traces.velocity, body->traces.acceleration, body->traces.reaction};
-  const PetscInt n        = body->time.substeps * body->rows.local;
-  PetscScalar   *values;
-
-  PetscFunctionBegin;
-  for (PetscInt t = 0; t < 4; t++) {
-    PetscCall(TraceGetLevel(traces[t], 1, &values));
-    if (keep) PetscCall(PetscArraycpy(body->rows.kept_traces + t * n, values, n));
-    else PetscCall(PetscArraycpy(values, body->rows.kept_traces + t * n, n));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Puts the state at the end of the controller step aside while the step is tried under other conditions. Collective. */
-PetscErrorCode BodyKeep(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyStateCopy(body, &body->state, &body->kept));
-  if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyHistoryKeep(body, PETSC_FALSE));
-  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body, BODY_SLOT_KEPT));
-  PetscCall(CopyOutputTraces(body, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Brings state and output traces of the last BodyKeep() back, in the same controller step. Collective. */
-PetscErrorCode BodyReinstate(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyStateCopy(body, &body->kept, &body->state));
-  body->repeats = PETSC_FALSE;
-  if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyHistoryKeep(body, PETSC_TRUE));
-  if (body->integrator->ops.restore) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_KEPT));
-  PetscCall(CopyOutputTraces(body, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

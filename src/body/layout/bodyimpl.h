@@ -213,7 +213,6 @@ typedef struct {
   /* of a nonlinear body whose equations hold at a stage within the substep: forces are what they are there, and those at the end follow */
   PetscReal    stage;         /* where it is, as a part of the substep */
   Vec          stage_balance; /* forces that hold rows and held dofs at the stage; NULL: they are those at the end [N] */
-  PetscScalar *kept_traces;   /* output traces put aside by BodyKeep() */
   BodyHandover handover;
   BodyExchange exchange;
   /* rows that anything happens to, see BodySetNearRows() */
@@ -271,7 +270,6 @@ struct _p_Body {
   BodyIntegrator    integrator;
   ConstrainedSolver solver; /* with the matrix that contact forces on the rows go through: the integrator's, made at set-up, or NULL */
   BodyState         state, saved; /* as it is; at the start of the controller step */
-  BodyState         kept;         /* put aside by BodyKeep() */
   BodyHistory       history;      /* of the material at the points of integration; NULL where it has none */
   /* the last sums that measures are made of, and the states that they were found from */
   struct {
@@ -443,7 +441,6 @@ PETSC_INTERN PetscErrorCode BodyHistoryNote(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyHistoryEnd(Body);
 PETSC_INTERN void           BodyHistorySave(Body);
 PETSC_INTERN void           BodyHistoryRestore(Body);
-PETSC_INTERN PetscErrorCode BodyHistoryKeep(Body, PetscBool);
 PETSC_INTERN void           BodyHistoryLook(Body, ElementHistory *);
 PETSC_INTERN void           BodyHistoryForget(Body, ElementHistory *);
 PETSC_INTERN void           BodyHistoryLookBack(Body, const ElementHistory *);

@@ -9,9 +9,6 @@
 
 typedef struct _n_BodyIntegrator *BodyIntegrator;
 
-/* Where a state is put aside: the start of the controller step, or the end of one, while another is tried */
-typedef enum { BODY_SLOT_SAVED, BODY_SLOT_KEPT, BODY_SLOTS } BodySlot;
-
 /* Those marked (NULL) may be missing */
 typedef struct {
   PetscErrorCode (*setdefaults)(Body);   /* (NULL) gives a TS that has just been made the parameters that are Impakt's default */
@@ -35,8 +32,8 @@ typedef struct {
   /* (NULL) finds what TSStep() and repeat() have left out of the state, since rows do not depend on it, where they have marked it as
      incomplete; may be set in setup() */
   PetscErrorCode (*complete)(Body);
-  PetscErrorCode (*save)(Body, BodySlot);    /* (NULL) the state has been put aside: so is to be what the integrator remembers beside it */
-  PetscErrorCode (*restore)(Body, BodySlot); /* (NULL) the state has been brought back: what the integrator remembers must be as it was
+  PetscErrorCode (*save)(Body);    /* (NULL) the state has been put aside: so is to be what the integrator remembers beside it */
+  PetscErrorCode (*restore)(Body); /* (NULL) the state has been brought back: what the integrator remembers must be as it was
                                                 then, so that the same integration gives the same bits */
   /* (NULL) what the integrator remembers from step to step, to or from a checkpoint, for a level of cut steps; loading, that level is
    * present

@@ -25,7 +25,6 @@ PetscErrorCode BodyCreateTraces(Body body)
   PetscFunctionBegin;
   ListTraces(body, traces);
   for (PetscInt t = 0; t < N_TRACES; t++) PetscCall(TraceCreate(body->rows.local, body->time.substeps, traces[t]));
-  PetscCall(PetscCalloc1(4 * body->time.substeps * body->rows.local, &body->rows.kept_traces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,7 +35,6 @@ PetscErrorCode BodyDestroyTraces(Body body)
   PetscFunctionBegin;
   ListTraces(body, traces);
   for (PetscInt t = 0; t < N_TRACES; t++) PetscCall(TraceDestroy(traces[t]));
-  PetscCall(PetscFree(body->rows.kept_traces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,7 +97,6 @@ static PetscErrorCode MoveTraces(Body body, const PetscInt from[])
     old[t]     = *traces[t];
     *traces[t] = NULL;
   }
-  PetscCall(PetscFree(body->rows.kept_traces));
   PetscCall(BodyCreateTraces(body));
   for (PetscInt t = 0; t < N_TRACES; t++) {
     for (PetscInt level = 0; level <= body->time.substeps; level++) {

@@ -7,14 +7,14 @@
 */
 #include <body/layout/bodyimpl.h>
 
-enum { N_BUFFERS = 4 };
+enum { N_BUFFERS = 3 };
 
 #define ALIGNMENT 64 /* bytes, as vectors of element loops want it */
 
 struct _n_BodyHistory {
   size_t           size; /* numbers of all points */
   char            *memory;
-  PetscReal       *buffers[N_BUFFERS];  /* the last is for BodyKeep() */
+  PetscReal       *buffers[N_BUFFERS];
   PetscReal       *saved, *start, *end; /* some of them: of the saved state, of the start of the substep, and of its end */
   PetscReal       *now;                 /* of the present state: one of these */
   PetscObjectId    id;                  /* the displacement that `end` belongs to */
@@ -56,7 +56,7 @@ static void Open(Body body)
 /* Where the end of a substep can be written */
 static PetscReal *FindFree(const struct _n_BodyHistory *history)
 {
-  for (PetscInt k = 0; k < N_BUFFERS - 1; k++)
+  for (PetscInt k = 0; k < N_BUFFERS; k++)
     if (history->buffers[k] != history->saved && history->buffers[k] != history->start) return history->buffers[k];
   return NULL;
 }
@@ -157,30 +157,6 @@ void BodyHistoryRestore(Body body)
   history->end                  = FindFree(history);
   history->epoch++;
   Hold(body, history->now);
-}
-
-/* BodyHistoryKeep - the state has been put aside, or, `back`, brought back */
-PetscErrorCode BodyHistoryKeep(Body body, PetscBool back)
-{
-  struct _n_BodyHistory *history = body->history;
-  PetscReal             *kept    = history ? history->buffers[N_BUFFERS - 1] : NULL;
-
-  PetscFunctionBegin;
-  if (!HasHistory(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!back) {
-    PetscCall(PetscArraycpy(kept, history->now, history->size));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  /* a step of one substep may go on to be completed; the start of the last one of several is gone, and nobody asks for it */
-  history->start = history->saved;
-  history->end   = FindFree(history);
-  history->id    = 0;
-  history->epoch++;
-  PetscCall(PetscArraycpy(history->end, kept, history->size));
-  history->now = history->end;
-  if (body->time.substeps == 1) Open(body);
-  else Hold(body, history->now);
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* BodyHistoryLook - elements answer for the present state, with its history as it is; `before`: for BodyHistoryLookBack() */

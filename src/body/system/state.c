@@ -54,6 +54,6 @@ PetscErrorCode BodyRestore(Body body)
   BodyHistoryRestore(body);
   body->repeats = PETSC_FALSE;
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  if (body->integrator->ops.restore && !BodyIsElsewhere(body)) PetscCall((*body->integrator->ops.restore)(body, BODY_SLOT_SAVED));
+  if (body->integrator->ops.restore && !BodyIsElsewhere(body)) PetscCall((*body->integrator->ops.restore)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -79,10 +79,8 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
     alternation->offset[i] = *unknowns;
     *unknowns += alternation->room[contact->rows.pair[i]];
   }
-  PetscCall(PetscMalloc3(contact->rows.n, &alternation->kept_force, 2 * contact->rows.n, &alternation->stall.force, 2 * contact->rows.n,
+  PetscCall(PetscMalloc3(contact->rows.n, &alternation->left, 2 * contact->rows.n, &alternation->stall.force, 2 * contact->rows.n,
                          &alternation->previous));
-  PetscCall(RoundsCreate(contact, &alternation->rounds));
-  alternation->rounds.recheck = alternation->recheck;
   PetscCall(PetscMalloc1(contact->rows.n, &alternation->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,8 +189,7 @@ static PetscErrorCode ContactReset_Alternation(Contact contact)
   PetscCall(PetscFree5(alternation->levels[0], alternation->levels[1], alternation->trace, alternation->room, alternation->kinematic));
   PetscCall(PetscFree2(alternation->exchange, alternation->offset));
   PetscCall(PetscFree3(alternation->weight, alternation->mass[0], alternation->mass[1]));
-  PetscCall(PetscFree3(alternation->kept_force, alternation->stall.force, alternation->previous));
-  PetscCall(RoundsDestroy(&alternation->rounds));
+  PetscCall(PetscFree3(alternation->left, alternation->stall.force, alternation->previous));
   PetscCall(PetscFree(alternation->row_work));
   PetscCall(PetscMemzero((char *)alternation + offsetof(Alternation, mass_prescribed),
                          sizeof(*alternation) - offsetof(Alternation, mass_prescribed)));

@@ -1,5 +1,5 @@
 #pragma once
-#include <contact/activeset/rounds.h>
+#include <contact/parts.h>
 #include <petscsnes.h>
 
 /* What both sides of the contact boundary get: displacements one way, tractions the other; or both ways traction and displacement, weighted
@@ -67,7 +67,8 @@ typedef struct {
   PetscReal damping; /* relaxation of the last iteration */
   Vec       last_residual;
   /* the controller step under way */
-  Rounds    rounds;
+  PetscInt *left;             /* per row: 1 once it has left in this step, 2 once it has joined again */
+  PetscBool cycled;           /* one has joined again */
   PetscBool swept;            /* `previous` is of this step */
   PetscReal change, position; /* of the last sweep: the body with the worst ratio */
   PetscReal growth;           /* of the change over that of the sweep before */
@@ -78,9 +79,8 @@ typedef struct {
   } stall;
   PetscBool converged;
   /* work space */
-  PetscScalar *previous;   /* displacements of the rows of both bodies of each pair in the last sweep */
-  PetscScalar *row_work;   /* one for each row */
-  PetscReal   *kept_force; /* of the contact solution, during a free trial after it */
+  PetscScalar *previous; /* displacements of the rows of both bodies of each pair in the last sweep */
+  PetscScalar *row_work; /* one for each row */
 } Alternation;
 
 /* The bodies of a pair by what they take in this controller step */

@@ -38,63 +38,69 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Free trial, where no pair is pushed together already; the rows that penetrate at its end become active */
+/* Rows that penetrate join, rows that are pulled leave; whether there are any. One that joins again after it has left in this step is kept
+   to its end, since over the substeps of bodies a row may be pulled while it is held and penetrate when it is not: so no set comes up for
+   ever. Collective. */
+static PetscErrorCode ChangeSet(Contact contact, PetscBool *changed)
+{
+  Alternation *alternation = (Alternation *)contact->data;
+  int          any         = 0; /* 2: one joins again */
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    PetscBool *active = &contact->end.active[i];
+    PetscInt  *left   = &alternation->left[i];
+
+    if (*active ? alternation->recheck && contact->end.force[i] < 0 && !contact->rows.tied[i] && *left < 2
+                : contact->end.gap[i] < -contact->options.tolerance) {
+      if (*active || *left) ++*left;
+      any     = PetscMax(any, PetscMax(1, (int)*left));
+      *active = (PetscBool) !*active;
+    }
+  }
+  PetscCall(ContactOr(contact, &any));
+  *changed = (PetscBool)(any > 0);
+  if (any > 1 && !alternation->cycled) contact->counts.set_cycles++;
+  if (any > 1) alternation->cycled = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Free trial, where no pair is pushed together; the rows that penetrate at its end become active */
 static PetscErrorCode Trial(Contact contact, PetscBool *in_contact)
 {
   PetscBool changed;
 
   PetscFunctionBegin;
   PetscCall(ContactIntegrateFree(contact, in_contact));
-  if (*in_contact) PetscCall(RoundsChange(&((Alternation *)contact->data)->rounds, &changed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The free trial after all nodes have been let go, being pulled. If it ends in penetration by the same nodes as were held,
-   the contact solution is the better of both, and is taken back. */
-static PetscErrorCode TrialAfterContact(Contact contact, PetscBool *in_contact, PetscBool *taken_back)
-{
-  Alternation *alternation = (Alternation *)contact->data;
-  PetscBool    flips;
-
-  PetscFunctionBegin;
-  *taken_back = PETSC_FALSE;
-  PetscCall(RoundsNext(&alternation->rounds));
-  if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyKeep(contact->bodies[b]));
-  PetscCall(PetscArraycpy(alternation->kept_force, contact->end.force, contact->rows.n));
-  PetscCall(Trial(contact, in_contact));
-  if (!*in_contact) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(RoundsBreakCycle(&alternation->rounds, &flips));
-  if (!flips) PetscFunctionReturn(PETSC_SUCCESS);
-  *taken_back = PETSC_TRUE;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyReinstate(contact->bodies[b]));
-  PetscCall(PetscArraycpy(contact->end.force, alternation->kept_force, contact->rows.n));
-  PetscCall(ContactComputeGaps(contact));
+  if (*in_contact) PetscCall(ChangeSet(contact, &changed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ContactStep_Alternation(Contact contact)
 {
   Alternation *alternation = (Alternation *)contact->data;
-  PetscBool    in_contact, changed, flips, taken_back = PETSC_FALSE;
+  PetscBool    in_contact, changed;
 
   PetscFunctionBegin;
-  PetscCall(RoundsBegin(&alternation->rounds));
+  PetscCall(PetscArrayzero(alternation->left, contact->rows.n));
+  alternation->cycled = PETSC_FALSE;
   /* push: in contact in the last step (sustainability), with compressive traction at its end (compression) */
   for (PetscInt i = 0; i < contact->rows.n; i++)
     contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || (contact->start.active[i] && contact->start.force[i] > 0));
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscCall(Trial(contact, &in_contact));
-  while (in_contact && !taken_back) {
-    PetscCall(RoundsNext(&alternation->rounds));
-    if (!ContactFailed(contact)) PetscCall(SolveActive(contact));
+  while (in_contact) {
+    const PetscInt sweeps = contact->counts.sweeps;
+
+    PetscCall(SolveActive(contact));
     if (ContactFailed(contact)) break;
-    PetscCall(RoundsChange(&alternation->rounds, &changed));
+    PetscCall(ChangeSet(contact, &changed));
     if (!changed) break;
     contact->counts.set_changes++;
     PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
-    if (in_contact) PetscCall(RoundsBreakCycle(&alternation->rounds, &flips));
-    else PetscCall(TrialAfterContact(contact, &in_contact, &taken_back));
+    if (in_contact) continue;
+    PetscCall(Trial(contact, &in_contact));
+    if (in_contact && alternation->cycled) contact->counts.sweeps = sweeps; /* the solution that is made again counts once */
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
