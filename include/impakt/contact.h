@@ -51,7 +51,7 @@ typedef const char *ContactType;
 
    Level: beginner
 
-.seealso: `ContactSetLaw()`, `ContactGetPairLaw()`, `ContactHasLaw()`
+.seealso: `ContactSetLaw()`, `ContactGetPairLaw()`, `ContactGetTraits()`
 E*/
 typedef enum { CONTACT_LAW_FRICTIONLESS, CONTACT_LAW_TIED, CONTACT_LAW_BONDED, CONTACT_LAW_GLUE, CONTACT_LAW_FRICTION } ContactLaw;
 PETSC_EXTERN const char *const ContactLaws[];
@@ -125,8 +125,8 @@ typedef struct {
   PetscInt   ambiguous_steps;   /* in which friction may have had more than one solution */
   PetscReal  friction_tilt;     /* most by which normal forces were off along surfaces, in parts of what friction can bear; statics */
   PetscReal  friction_residual; /* most by which a step has missed the law of friction, de Saxce's residual [m] */
-  PetscReal  contact_loss;      /* energy that contact has taken, friction apart, where `ContactGetLossReason()` has one [J] */
-  PetscReal  glue_loss;         /* energy that damage of glue has taken, see `ContactGlueBreaks()` [J] */
+  PetscReal  contact_loss;      /* energy that contact has taken, friction apart, where `ContactTraits` have a reason [J] */
+  PetscReal  glue_loss;         /* energy that damage of glue has taken [J] */
   PetscReal  spring_energy;     /* stored in springs between surfaces, of penalty methods and of `CONTACT_LAW_GLUE` [J] */
   /* energy that friction has taken: work of the forces across normals, by the rule of the integrators, half the sum of the forces at both
      ends of a substep times the displacement in it, less what penalty springs there have of it [J] */
@@ -135,6 +135,26 @@ typedef struct {
   PetscInt       rebuilds;      /* of the operators between contact surfaces, beyond the first */
   PetscLogDouble seconds;       /* in sweeps */
 } ContactCounts;
+
+/*S
+   ContactTraits - what laws and options let contact do
+
+   Level: intermediate
+
+.seealso: `ContactGetTraits()`
+S*/
+typedef struct {
+  PetscBool   friction, glue, breaks; /* whether any pair has such a law, with damage; where pairs come and go, those to come */
+  PetscBool   pulls;                  /* any pair has another law than the frictionless one */
+  PetscBool   separation;             /* surfaces that have met may come apart again */
+  PetscBool   balance;                /* forces have the same sum along the normals of both surfaces */
+  PetscBool   energy_cap;             /* steps in which contact would gain energy are made again */
+  PetscReal   energy_excess;          /* how much it may gain all the same [parts of the system's] */
+  PetscReal   energy_tolerance;       /* what it may take or bring in a step before that is made again in halves [parts of the same] */
+  const char *unlimited;              /* why no step is kept from gaining energy; or NULL, as where contact never gains any */
+  const char *not_always;             /* why some steps are not, or NULL */
+  const char *takes; /* what energy contact takes by its rule, which lets it gain none, and what makes that less; or NULL */
+} ContactTraits;
 
 /* What ContactFieldsCompute() gives for each node */
 #define CONTACT_FIELDS_FORCE         0  /* three components [N] */
@@ -161,32 +181,18 @@ PETSC_EXTERN PetscErrorCode ContactRegister(const char[], PetscErrorCode (*)(Con
 PETSC_EXTERN PetscErrorCode ContactCreate(MPI_Comm, Contact *);
 PETSC_EXTERN PetscErrorCode ContactSetBodies(Contact, PetscInt, const Body[]);
 PETSC_EXTERN PetscErrorCode ContactAddObstacle(Contact, Obstacle);
-PETSC_EXTERN PetscErrorCode ContactGetNumObstacles(Contact, PetscInt *);
-PETSC_EXTERN PetscErrorCode ContactGetObstacle(Contact, PetscInt, Obstacle *);
-PETSC_EXTERN PetscErrorCode ContactGetPairObstacle(Contact, PetscInt, PetscInt *);
-PETSC_EXTERN PetscErrorCode ContactPairIsNamed(Contact, PetscInt, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactAddPair(Contact, const char[]);
 PETSC_EXTERN PetscErrorCode ContactGetPairRowSide(Contact, PetscInt, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactSetType(Contact, ContactType);
 PETSC_EXTERN PetscErrorCode ContactGetType(Contact, ContactType *);
-PETSC_EXTERN PetscErrorCode ContactGetEnergyTolerance(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetLaw(Contact, PetscInt, const char[]);
 PETSC_EXTERN PetscErrorCode ContactSetLawParameter(Contact, PetscInt, const char[], const char[], PetscReal);
 PETSC_EXTERN PetscErrorCode ContactGetPairLaw(Contact, PetscInt, ContactLaw *);
-PETSC_EXTERN PetscErrorCode ContactHasLaw(Contact, ContactLaw, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactGlueBreaks(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactGetBalance(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactGetUnlimitedReason(Contact, const char *[], const char *[]);
-PETSC_EXTERN PetscErrorCode ContactGetLossReason(Contact, const char *[]);
-PETSC_EXTERN PetscErrorCode ContactGetEnergyCap(Contact, PetscBool *, PetscReal *);
-PETSC_EXTERN PetscErrorCode ContactGetSeparation(Contact, PetscBool *);
+PETSC_EXTERN PetscErrorCode ContactGetTraits(Contact, ContactTraits *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
-PETSC_EXTERN PetscErrorCode ContactSetUpSurfaces(Contact);
 PETSC_EXTERN PetscErrorCode ContactStep(Contact);
-PETSC_EXTERN PetscErrorCode ContactAccept(Contact);
 PETSC_EXTERN PetscErrorCode ContactGetOverlaps(Contact, ContactOverlap[]);
-PETSC_EXTERN PetscErrorCode ContactGetOverlapName(Contact, const ContactOverlap *, const char *[]);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
@@ -197,7 +203,6 @@ PETSC_EXTERN PetscErrorCode ContactGetPairNormal(Contact, PetscInt, PetscReal[])
 PETSC_EXTERN PetscErrorCode ContactGetPairState(Contact, PetscInt, ContactPairState *);
 PETSC_EXTERN PetscErrorCode ContactGetPairStates(Contact, ContactPairState[]);
 PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);
-PETSC_EXTERN PetscErrorCode ContactGetBodyTraces(Contact, PetscReal[], PetscReal[]);
 
 PETSC_EXTERN PetscErrorCode ContactFieldsCreate(Contact, ContactFields *);
 PETSC_EXTERN PetscErrorCode ContactFieldsCompute(ContactFields, PetscInt, PetscReal[]);

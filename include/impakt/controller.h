@@ -69,8 +69,8 @@ typedef struct {
   PetscReal uncounted_energy; /* that part of it which `energy_change` leaves out: of penalty springs, which are no glue [J] */
   PetscReal obstacle_work;    /* work of obstacles whose surface moves, see ContactCounts [J] */
   PetscReal friction_loss;    /* energy that friction has taken so far, see ContactCounts [J] */
-  PetscReal glue_loss;        /* energy that damage of glue has taken so far, see ContactGlueBreaks() [J] */
-  PetscReal contact_loss;     /* energy that contact has taken so far by its rule, see ContactGetLossReason() [J] */
+  PetscReal glue_loss;        /* energy that damage of glue has taken so far [J] */
+  PetscReal contact_loss;     /* energy that contact has taken so far by its rule, see `ContactTraits` [J] */
   PetscReal energy_change;    /* of all bodies since the start, less work done on them, with what friction, damage of glue, damping and
                                  plastic flow have taken [J] */
   PetscReal energy_scale;     /* what that is relative to: the largest so far of kinetic energy, without that of the common motion
@@ -90,10 +90,9 @@ typedef struct {
 .seealso: `ControllerGetCuts()`, `ControllerSetStepCuts()`
 S*/
 typedef struct {
-  PetscInt cuts;  /* steps, whole or cut before, that were made again in halves */
-  PetscInt steps; /* controller steps with cuts */
-  PetscInt
-      lossy_steps; /* accepted after the last cut although contact took or brought more energy than `ContactGetEnergyTolerance()` allows */
+  PetscInt cuts;        /* steps, whole or cut before, that were made again in halves */
+  PetscInt steps;       /* controller steps with cuts */
+  PetscInt lossy_steps; /* accepted after the last cut although contact took or brought more energy than the tolerance of `ContactTraits` */
   PetscReal smallest_step; /* that has been made; the controller step if none was cut [s] */
 } ControllerCuts;
 

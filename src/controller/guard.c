@@ -25,7 +25,7 @@
   displacements, at the end of each controller step. There is no guard where nothing can touch, nor where a body is static: what its contact
   forces have done is known up to their lag behind it by a step.
 
-.seealso: `Controller`, `ContactGetEnergyCap()`
+.seealso: `Controller`, `ContactGetTraits()`
 @*/
 PetscErrorCode ControllerSetEnergyGuard(Controller controller, PetscReal part)
 {
@@ -57,9 +57,9 @@ PetscErrorCode ControllerReadEnergyGuard(Controller controller)
 /* The body that has gained most since the start, and the pair with the largest force, for whoever looks for the cause */
 static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame, PetscReal gain)
 {
-  PetscInt    body = 0, pair = 0;
-  const char *pair_name = "none", *body_name, *always;
-  PetscBool   cap, balance;
+  PetscInt      body = 0, pair = 0;
+  const char   *pair_name = "none", *body_name;
+  ContactTraits traits;
 
   PetscFunctionBegin;
   for (PetscInt b = 1; b < frame->n_bodies; b++)
@@ -70,22 +70,21 @@ static PetscErrorCode EndRun(Controller controller, const ControllerFrame *frame
     if (PetscAbsReal(frame->pairs[p].force) > PetscAbsReal(frame->pairs[pair].force)) pair = p;
   if (frame->n_pairs) PetscCall(ContactGetPair(controller->contact, pair, &pair_name, NULL, NULL));
   PetscCall(PetscObjectGetName((PetscObject)controller->bodies[body], &body_name));
-  PetscCall(ContactGetUnlimitedReason(controller->contact, &always, NULL));
+  PetscCall(ContactGetTraits(controller->contact, &traits));
   PetscCheck(
-      !always, PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
+      !traits.unlimited, PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
       "The energy has grown by %.3g %% at time %.9g s (controller step %" PetscInt_FMT
       "), most of it in body '%s'; the pair with the largest force is %s. Contact cannot be kept from it here, since %s: let contact "
       "nodes be massless (-<body>_mass_redistribute true), or choose a smaller -time_step; -energy_guard %g ends runs that gain more "
       "than this part of their energy, 0 none",
-      (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, always, (double)controller->guard.part);
-  PetscCall(ContactGetEnergyCap(controller->contact, &cap, NULL));
-  PetscCall(ContactGetBalance(controller->contact, &balance));
+      (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, traits.unlimited, (double)controller->guard.part);
   SETERRQ(PetscObjectComm((PetscObject)controller), PETSC_ERR_NOT_CONVERGED,
           "The energy has grown by %.3g %% at time %.9g s (controller step %" PetscInt_FMT
           "), most of it in body '%s'; the pair with the largest force is %s. Choose a smaller -time_step%s%s; -energy_guard %g ends "
           "runs that gain more than this part of their energy, 0 none",
-          (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name, cap ? "" : ", or let -contact_energy_cap be true",
-          balance ? ", or -contact_balance false" : "", (double)controller->guard.part);
+          (double)(100 * gain), (double)frame->time, frame->step, body_name, pair_name,
+          traits.energy_cap ? "" : ", or let -contact_energy_cap be true", traits.balance ? ", or -contact_balance false" : "",
+          (double)controller->guard.part);
 }
 
 /* Ends the run where the energy of a body is no number: squares of its velocity or displacement are beyond all numbers */

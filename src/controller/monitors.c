@@ -46,7 +46,8 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
                            .n_probes           = controller->n_probes,
                            .probes             = controller->probes};
   ContactCounts   counts;
-  PetscBool       logged, glued;
+  PetscBool       logged;
+  ContactTraits   traits;
 
   PetscFunctionBegin;
   PetscCall(StageBegin(STAGE_OUTPUT, &logged));
@@ -65,8 +66,8 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   frame.step_cuts = step ? controller->step_cuts : 0;
   PetscCall(ContactGetCounts(controller->contact, &counts));
   frame.penalty_energy = counts.spring_energy;
-  PetscCall(ContactHasLaw(controller->contact, CONTACT_LAW_GLUE, &glued));
-  frame.uncounted_energy = glued ? 0 : frame.penalty_energy;
+  PetscCall(ContactGetTraits(controller->contact, &traits));
+  frame.uncounted_energy = traits.glue ? 0 : frame.penalty_energy;
   frame.friction_loss    = counts.friction_loss;
   frame.obstacle_work    = counts.obstacle_work;
   frame.contact_loss     = counts.contact_loss;

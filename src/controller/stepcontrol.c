@@ -40,7 +40,7 @@ energy is accepted, and counted: `ControllerGetCuts()`.
 
   Forward-increment Lagrange multipliers and the contact-stabilised method change the start of their steps, which are never cut.
 
-.seealso: `Controller`, `ControllerGetCuts()`, `ContactGetEnergyTolerance()`, `StepConvergedReason`
+.seealso: `Controller`, `ControllerGetCuts()`, `ContactGetTraits()`, `StepConvergedReason`
 @*/
 PetscErrorCode ControllerSetStepCuts(Controller controller, PetscInt cuts)
 {
@@ -149,11 +149,11 @@ PetscErrorCode ControllerNoteEnergies(Controller controller)
 /* Energy that contact may take or bring in a step, part of what the errors of the summary are compared with [J] */
 static PetscErrorCode GetMostLoss(Controller controller, PetscReal *most)
 {
-  PetscReal tolerance;
+  ContactTraits traits;
 
   PetscFunctionBegin;
-  PetscCall(ContactGetEnergyTolerance(controller->contact, &tolerance));
-  *most = tolerance * controller->scale.largest;
+  PetscCall(ContactGetTraits(controller->contact, &traits));
+  *most = traits.energy_tolerance * controller->scale.largest;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

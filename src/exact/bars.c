@@ -165,16 +165,16 @@ static PetscErrorCode CheckFaces(MPI_Comm comm, Exact exact, const Body sides[2]
 /* Finds the two bars, where and when they first touch, and the velocity of their centre of mass */
 PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
 {
-  MPI_Comm     comm = PetscObjectComm((PetscObject)controller);
-  PetscInt     n_bodies, n_pairs;
-  const Body  *bodies;
-  Body         sides[2];
-  Contact      contact;
-  ContactLaw   law;
-  PetscBool    separation;
-  const char  *pair;
-  BodyMeasures measures[2];
-  ExactBar    *bars = exact->bars;
+  MPI_Comm      comm = PetscObjectComm((PetscObject)controller);
+  PetscInt      n_bodies, n_pairs;
+  const Body   *bodies;
+  Body          sides[2];
+  Contact       contact;
+  ContactLaw    law;
+  const char   *pair;
+  ContactTraits traits;
+  BodyMeasures  measures[2];
+  ExactBar     *bars = exact->bars;
 
   PetscFunctionBegin;
   PetscCall(ControllerGetBodies(controller, &n_bodies, &bodies));
@@ -196,8 +196,8 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
   PetscCheck(law == CONTACT_LAW_FRICTIONLESS || law == CONTACT_LAW_FRICTION, comm, PETSC_ERR_USER_INPUT,
              "-exact %s is known for bars that part again, and -contact_law %s does not let them; leave one of the options out",
              exact->type, ContactLaws[law]);
-  PetscCall(ContactGetSeparation(contact, &separation));
-  PetscCheck(separation, comm, PETSC_ERR_USER_INPUT,
+  PetscCall(ContactGetTraits(contact, &traits));
+  PetscCheck(traits.separation, comm, PETSC_ERR_USER_INPUT,
              "-exact %s is known for bars that part again, and -contact_separation false does not let them; leave one of the options out",
              exact->type);
   PetscCall(ControllerGetTimes(controller, &exact->start, NULL, NULL));

@@ -81,12 +81,13 @@ static PetscErrorCode CreateBuffers(Fields fields)
    most 100 frames. Collective */
 PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt interval, OutputPrecision precision, Fields *fields)
 {
-  const Body *bodies;
-  Contact     contact;
-  PetscInt    steps, n_bodies, n_pairs;
-  PetscMPIInt rank;
-  PetscBool   plastic = PETSC_FALSE, blocks = PETSC_FALSE, friction;
-  Fields      f;
+  const Body   *bodies;
+  Contact       contact;
+  PetscInt      steps, n_bodies, n_pairs;
+  PetscMPIInt   rank;
+  PetscBool     plastic = PETSC_FALSE, blocks = PETSC_FALSE;
+  ContactTraits traits;
+  Fields        f;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&f));
@@ -112,8 +113,8 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   f->problem = contact;
   PetscCall(FieldsObstaclesCheckPath(contact, path));
   PetscCall(ContactGetNumPairs(contact, &n_pairs));
-  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
-  f->set = (1u << (!n_pairs ? FIELDS_FIRST_OF_CONTACT : friction ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_FRICTION)) - 1;
+  PetscCall(ContactGetTraits(contact, &traits));
+  f->set = (1u << (!n_pairs ? FIELDS_FIRST_OF_CONTACT : traits.friction ? FIELDS_PER_FRAME : FIELDS_FIRST_OF_FRICTION)) - 1;
   for (PetscInt i = 0; i < n_bodies && !plastic; i++) PetscCall(BodyHasHistory(bodies[i], &plastic));
   if (!plastic) f->set &= ~(1u << FIELDS_PLASTIC_STRAIN);
   for (PetscInt i = 0; i < n_bodies && !blocks; i++) {

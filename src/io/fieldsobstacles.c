@@ -8,6 +8,7 @@
 #include "outputfile.h"
 #include "xdmf.h"
 #include <impakt/private/bodymesh.h>
+#include <impakt/private/contactsteps.h>
 
 #define SIZE        1.5  /* of a plane, and length of a cylinder, in diagonals of the box of all bodies */
 #define FLAT_CELLS  8    /* along each side of a plane, and along a cylinder */

@@ -134,16 +134,14 @@ static PetscErrorCode AddSeries(History history, const char owner[], PetscInt n,
 /* What contact has of the quantities that not every run has */
 static PetscErrorCode FindContactNeeds(Contact contact, int *has)
 {
-  const char *reason;
-  PetscBool   friction, springs, breaks;
+  ContactTraits traits;
+  PetscBool     penalty;
 
   PetscFunctionBegin;
-  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
-  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &springs));
-  if (!springs) PetscCall(ContactHasLaw(contact, CONTACT_LAW_GLUE, &springs));
-  PetscCall(ContactGlueBreaks(contact, &breaks));
-  PetscCall(ContactGetLossReason(contact, &reason));
-  *has = (friction ? FRICTION : 0) | (springs ? SPRINGS : 0) | (breaks ? BREAKS : 0) | (reason ? TAKES : 0);
+  PetscCall(ContactGetTraits(contact, &traits));
+  PetscCall(PetscObjectTypeCompare((PetscObject)contact, CONTACT_PENALTY, &penalty));
+  *has = (traits.friction ? FRICTION : 0) | (penalty || traits.glue ? SPRINGS : 0) | (traits.breaks ? BREAKS : 0) |
+         (traits.takes ? TAKES : 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

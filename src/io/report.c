@@ -79,23 +79,20 @@ static PetscErrorCode ViewContact(const Report *report, Contact contact)
 {
   const ContactStatistics *c = &report->results->contact;
   ContactType              type;
-  PetscBool                pulls = PETSC_FALSE, friction, breaks;
   ContactCounts            counts;
+  ContactTraits            traits;
 
   PetscFunctionBegin;
   PetscCall(ContactGetType(contact, &type));
-  for (ContactLaw law = CONTACT_LAW_TIED; law <= CONTACT_LAW_FRICTION && !pulls; law = (ContactLaw)(law + 1))
-    PetscCall(ContactHasLaw(contact, law, &pulls));
-  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
+  PetscCall(ContactGetTraits(contact, &traits));
   PetscCall(PetscViewerASCIIPrintf(report->viewer, "contact (%s)\n", type));
   PetscCall(ViewTimes(report));
-  if (pulls) PetscCall(PrintValue(report, "tension of a node, peak", c->tension_max, UNIT_FORCE, NAN));
+  if (traits.pulls) PetscCall(PrintValue(report, "tension of a node, peak", c->tension_max, UNIT_FORCE, NAN));
   if (!report->statics.all) PetscCall(PrintValue(report, "impulse along the normals", c->impulse, UNIT_IMPULSE, report->exact.impulse));
   PetscCall(PrintValue(report, "largest penetration", PetscMax(0, -c->gap_min), UNIT_LENGTH, NAN));
-  if (friction) PetscCall(PrintValue(report, "energy taken by friction", c->friction_loss, UNIT_ENERGY, NAN));
-  PetscCall(ContactGlueBreaks(contact, &breaks));
+  if (traits.friction) PetscCall(PrintValue(report, "energy taken by friction", c->friction_loss, UNIT_ENERGY, NAN));
   PetscCall(ContactGetCounts(contact, &counts));
-  if (breaks) PetscCall(PrintValue(report, "energy taken by damage of glue", counts.glue_loss, UNIT_ENERGY, NAN));
+  if (traits.breaks) PetscCall(PrintValue(report, "energy taken by damage of glue", counts.glue_loss, UNIT_ENERGY, NAN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

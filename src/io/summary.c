@@ -5,6 +5,7 @@
 #include "summaryimpl.h"
 #include <math.h>
 #include <sys/units.h>
+#include <impakt/private/contactsteps.h>
 
 static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatistics *contact, PetscBool friction)
 {
@@ -72,22 +73,20 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
   json_t       *object, *pair;
   ContactType   type;
   ContactCounts counts;
-  PetscBool     friction, breaks;
-  const char   *name, *takes;
+  ContactTraits traits;
+  const char   *name;
 
   PetscFunctionBegin;
   PetscCall(ContactGetType(contact, &type));
-  PetscCall(ContactHasLaw(contact, CONTACT_LAW_FRICTION, &friction));
+  PetscCall(ContactGetTraits(contact, &traits));
   PetscCall(SummarySetObject(root, "contact", &object));
   PetscCall(SummarySetMember(object, "type", json_string(type)));
-  PetscCall(SetContactStatistics(object, &results->contact, friction));
+  PetscCall(SetContactStatistics(object, &results->contact, traits.friction));
   PetscCall(AddOverlap(object, controller, contact, results));
   PetscCall(ContactGetCounts(contact, &counts));
-  PetscCall(ContactGetLossReason(contact, &takes));
-  PetscCall(ContactGlueBreaks(contact, &breaks));
-  if (breaks) PetscCall(SummarySetReal(object, "glue_loss", counts.glue_loss));
-  if (takes) PetscCall(SummarySetReal(object, "contact_loss", counts.contact_loss));
-  if (friction) {
+  if (traits.breaks) PetscCall(SummarySetReal(object, "glue_loss", counts.glue_loss));
+  if (traits.takes) PetscCall(SummarySetReal(object, "contact_loss", counts.contact_loss));
+  if (traits.friction) {
     PetscCall(SummarySetReal(object, "friction_least", counts.friction_least));
     PetscCall(SummarySetReal(object, "friction_residual", counts.friction_residual));
     PetscCall(SummarySetInteger(object, "ambiguous_steps", counts.ambiguous_steps));
@@ -97,7 +96,7 @@ static PetscErrorCode AddContact(json_t *root, Controller controller, Contact co
   for (PetscInt i = 0; i < results->n_pairs; i++) {
     PetscCall(ContactGetPair(contact, i, &name, NULL, NULL));
     PetscCall(SummarySetObject(object, name, &pair));
-    PetscCall(SetContactStatistics(pair, &results->pairs[i], friction));
+    PetscCall(SetContactStatistics(pair, &results->pairs[i], traits.friction));
     PetscCall(SummarySetVector(pair, "resultant", results->pairs[i].resultant));
     PetscCall(SummarySetVector(pair, "impulse_vector", results->pairs[i].impulse_vector));
   }

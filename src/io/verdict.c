@@ -97,13 +97,12 @@ static PetscErrorCode AddNumbers(Verdict *verdict)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `always`: why contact cannot be kept from taking or bringing energy, or NULL; gain and loss are parts of `scale` [J] */
-static PetscErrorCode LookAtEnergy(Controller controller, Contact contact, const char *always, PetscReal gain, PetscReal loss,
+/* Gain and loss are parts of `scale` [J] */
+static PetscErrorCode LookAtEnergy(Controller controller, Contact contact, const ContactTraits *traits, PetscReal gain, PetscReal loss,
                                    PetscReal scale, Verdict *verdict)
 {
   const PetscBool lost    = (PetscBool)(loss > ENERGY_LOSS && loss > gain);
   const double    percent = (double)(100 * (lost ? -loss : gain));
-  const char     *takes;
   PetscReal       step, resolved, unresolved;
 
   PetscFunctionBegin;
@@ -120,13 +119,12 @@ static PetscErrorCode LookAtEnergy(Controller controller, Contact contact, const
   }
   PetscCall(ControllerGetTimes(controller, NULL, &step, NULL));
   PetscCall(ControllerGetResolvedStep(controller, &resolved));
-  PetscCall(ContactGetLossReason(contact, &takes));
-  if (takes && lost) PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst: %s", percent, takes));
-  else if (always)
+  if (traits->takes && lost) PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst: %s", percent, traits->takes));
+  else if (traits->unlimited)
     PetscCall(Add(verdict,
                   "the energy error is %+.3g %% at its worst, and contact may bring or take some, since %s; massless contact nodes "
                   "(-<body>_mass_redistribute, the default) keep it",
-                  percent, always));
+                  percent, traits->unlimited));
   else
     PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst; %s", percent,
                   resolved > 0 && resolved < step
@@ -140,18 +138,18 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   /* what penalty springs hold they give back */
   const PetscReal in_springs = results->energy_scale > 0 ? results->uncounted_energy_max / results->energy_scale : 0;
   const PetscReal gain = results->energy_error_max, loss = -results->energy_error_min - in_springs;
-  const char     *reason = NULL, *always = NULL;
-  PetscReal       excess, tolerance;
+  const char     *reason, *always;
+  ContactTraits   traits;
   ContactCounts   counts;
   ControllerCuts  cuts;
 
   PetscFunctionBegin;
   PetscCall(ContactGetCounts(contact, &counts));
   PetscCall(ControllerGetCuts(controller, &cuts));
-  PetscCall(ContactGetEnergyCap(contact, NULL, &excess));
-  PetscCall(ContactGetEnergyTolerance(contact, &tolerance));
-  PetscCall(ContactGetUnlimitedReason(contact, &always, &reason));
-  PetscCall(LookAtEnergy(controller, contact, always, gain, loss, results->energy_scale, verdict));
+  PetscCall(ContactGetTraits(contact, &traits));
+  always = traits.unlimited;
+  reason = traits.not_always;
+  PetscCall(LookAtEnergy(controller, contact, &traits, gain, loss, results->energy_scale, verdict));
   if (reason && results->momentum_error_max > MOMENTUM_ERROR)
     PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or leave -schwarz_transmission out",
                   (double)(100 * results->momentum_error_max), reason));
@@ -171,7 +169,7 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
                   "the angular momentum error is %.3g %%; it is less with nonlinear materials where bodies turn, and with a smaller "
                   "-contact_slip_bound or finer surfaces where they slide",
                   (double)(100 * results->angular_momentum_error_max)));
-  if (counts.unlimited_steps && !(gain <= excess))
+  if (counts.unlimited_steps && !(gain <= traits.energy_excess))
     PetscCall(Add(verdict, "%" PetscInt_FMT " step%s gained more energy at contact than -contact_energy_excess allows%s%s",
                   counts.unlimited_steps, counts.unlimited_steps == 1 ? "" : "s", reason ? ", since " : "", reason ? reason : ""));
   if (counts.ambiguous_steps)
@@ -188,7 +186,7 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   if (counts.unconverged_steps)
     PetscCall(Add(verdict, "%" PetscInt_FMT " step%s accepted without having converged (-schwarz_unconverged accept)",
                   counts.unconverged_steps, counts.unconverged_steps == 1 ? " was" : "s were"));
-  if (cuts.lossy_steps && !(gain <= tolerance && loss <= tolerance))
+  if (cuts.lossy_steps && !(gain <= traits.energy_tolerance && loss <= traits.energy_tolerance))
     PetscCall(Add(verdict,
                   "%" PetscInt_FMT " step%s accepted although contact took or brought more energy than -contact_energy_tolerance after "
                   "the last cut, to %.3g%s; a smaller -time_step, or more -controller_step_cuts, makes it less",

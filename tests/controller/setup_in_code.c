@@ -247,7 +247,7 @@ static void laws_of_pairs(void **state)
   Contact         contact;
   Obstacle        floor_plane;
   ContactLaw      law;
-  PetscBool       has;
+  ContactTraits   traits;
   End             options, code;
   Body            low, high;
 
@@ -297,8 +297,8 @@ static void laws_of_pairs(void **state)
   assert_int_equal(law, CONTACT_LAW_GLUE);
   ok(ContactGetPairLaw(contact, 1, &law));
   assert_int_equal(law, CONTACT_LAW_FRICTION);
-  ok(ContactHasLaw(contact, CONTACT_LAW_TIED, &has));
-  assert_false(has);
+  ok(ContactGetTraits(contact, &traits));
+  assert_true(traits.friction && traits.glue && traits.pulls && !traits.breaks);
   ok(ControllerSetUp(controller));
   run(controller, &code);
   expect_equal(&options, &code);

@@ -23,11 +23,8 @@ struct _ContactOps {
   /* (NULL) energy that the method's springs store on a row at a gap [J]; without it nobody knows what contact gains, and it is not limited
    */
   PetscReal (*stored)(Contact, PetscInt, PetscReal);
-  PetscErrorCode (*stepback)(Contact); /* a step has failed: what the bodies have told of their compliance in it is forgotten */
-  /* the controller step is contact->step from now on, that of the set-up cut in halves so many times; what the bodies tell of their
-     compliance is another. What is remembered of earlier steps at this level goes on (true) or not. */
-  PetscErrorCode (*steplevel)(Contact, PetscInt, PetscBool);
-  PetscErrorCode (*accept)(Contact); /* corrects the states at the end of a step, before the next step starts from them */
+  PetscErrorCode (*steplevel)(Contact); /* the controller step is contact->step from now on, and so is the bodies' compliance another */
+  PetscErrorCode (*accept)(Contact);    /* corrects the states at the end of a step, before the next step starts from them */
   /* what the method remembers from step to step, to or from a checkpoint; NULL: runs with it have no checkpoints */
   PetscErrorCode (*visit)(Contact, Checkpoint);
   /* (NULL) what the method remembers from step to step that no solver finds anew to round-off, to tables by which a run is continued on

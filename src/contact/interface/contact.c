@@ -237,18 +237,7 @@ PetscErrorCode ContactStep(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactAccept - takes the states at the end of the controller step as the start of the next one
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, after `ContactStep()`
-
-  Level: developer
-
-.seealso: `Contact`, `ContactStep()`, `BodySave()`
-@*/
+/* Takes the states at the end of a controller step, made by ContactStep(), as the start of the next one. Collective. */
 PetscErrorCode ContactAccept(Contact contact)
 {
   PetscFunctionBegin;

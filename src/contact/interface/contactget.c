@@ -1,5 +1,5 @@
 /* What contact tells of itself. */
-#include <contact/parts.h>
+#include <contact/laws/pairlaws.h>
 
 /*@
   ContactGetNumPairs - number of contact pairs
@@ -74,22 +74,7 @@ PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactPairIsNamed - whether the user has named a pair
-
-  Not Collective
-
-  Input Parameters:
-+ contact - the `Contact`
-- pair    - 0 to the number of pairs - 1
-
-  Output Parameter:
-. named - false where the program has chosen it, as one of all bodies with each other
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetPair()`
-@*/
+/* Whether the user has named a pair, not the program chosen it as one of all bodies with each other */
 PetscErrorCode ContactPairIsNamed(Contact contact, PetscInt pair, PetscBool *named)
 {
   PetscFunctionBegin;
@@ -127,6 +112,44 @@ PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal no
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt d = 0; d < 3; d++) normal[d] = ContactPairSign(&contact->pairs[pair]) * contact->pairs[pair].normal[d];
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetTraits - what laws and options let contact do
+
+  Not Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameter:
+. traits - see `ContactTraits`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPairLaw()`, `ContactGetCounts()`
+@*/
+PetscErrorCode ContactGetTraits(Contact contact, ContactTraits *traits)
+{
+  const ContactOptions *options = &contact->options;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(traits, 2);
+  *traits       = (ContactTraits){.friction         = ContactAnyPairHas(contact, CONTACT_LAW_FRICTION),
+                                  .glue             = ContactAnyPairHas(contact, CONTACT_LAW_GLUE),
+                                  .breaks           = ContactGlueBreaks(contact),
+                                  .separation       = options->separation,
+                                  .balance          = options->balance,
+                                  .energy_cap       = options->energy_cap,
+                                  .energy_excess    = options->energy_excess,
+                                  .energy_tolerance = options->energy_tolerance,
+                                  .unlimited        = contact->energy.takes ? NULL : contact->energy.unlimited,
+                                  .not_always       = contact->energy.not_always,
+                                  .takes            = contact->energy.takes};
+  traits->pulls = (PetscBool)(traits->friction || traits->glue || ContactAnyPairHas(contact, CONTACT_LAW_TIED) ||
+                              ContactAnyPairHas(contact, CONTACT_LAW_BONDED));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,22 +216,9 @@ static PetscErrorCode SumBodyTrace(Contact contact, PetscInt body, PetscReal sum
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetBodyTraces - mean position and velocity of the contact nodes of each body, in the first pair it takes part in
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up
-
-  Output Parameters:
-+ positions  - 3 numbers for each body [m]
-- velocities - 3 numbers for each body [m/s]
-
-  Level: intermediate
-
-.seealso: `Contact`
-@*/
+/* Mean position [m] and velocity [m/s] of the contact nodes of each body, in the first pair it takes part in: 3 numbers for each.
+ * Collective.
+ */
 PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], PetscReal velocities[])
 {
   const PetscInt n    = contact->n_bodies;

@@ -58,21 +58,7 @@ PetscErrorCode ContactAddObstacle(Contact contact, Obstacle obstacle)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetNumObstacles - the number of obstacles
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. n - the number
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetObstacle()`, `ContactAddObstacle()`
-@*/
+/* The number of obstacles */
 PetscErrorCode ContactGetNumObstacles(Contact contact, PetscInt *n)
 {
   PetscFunctionBegin;
@@ -82,22 +68,7 @@ PetscErrorCode ContactGetNumObstacles(Contact contact, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetObstacle - an obstacle by its number
-
-  Not Collective
-
-  Input Parameters:
-+ contact - the `Contact`
-- i       - 0 to the number of obstacles - 1, in the order in which they were added
-
-  Output Parameter:
-. obstacle - owned by the contact
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetNumObstacles()`, `ContactGetPairObstacle()`
-@*/
+/* An obstacle by its number, in the order in which they were added; owned by the contact */
 PetscErrorCode ContactGetObstacle(Contact contact, PetscInt i, Obstacle *obstacle)
 {
   PetscFunctionBegin;
@@ -109,22 +80,7 @@ PetscErrorCode ContactGetObstacle(Contact contact, PetscInt i, Obstacle *obstacl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetPairObstacle - the obstacle that a pair has for its second side
-
-  Not Collective
-
-  Input Parameters:
-+ contact - the `Contact`
-- pair    - 0 to the number of pairs - 1
-
-  Output Parameter:
-. i - number of the obstacle, -1 where both sides are bodies
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetObstacle()`, `ContactGetPair()`
-@*/
+/* Number of the obstacle that a pair has for its second side, -1 where both sides are bodies */
 PetscErrorCode ContactGetPairObstacle(Contact contact, PetscInt pair, PetscInt *i)
 {
   PetscFunctionBegin;

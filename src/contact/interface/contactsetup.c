@@ -140,21 +140,8 @@ static PetscErrorCode ChooseMethod(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactSetUpSurfaces - finds the contact surfaces and rows, the first part of `ContactSetUp()`
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, with bodies, pairs and type
-
-  Level: developer
-
-  Note:
-  What the controller has to know of contact before it can choose its step. Calls beyond the first cost nothing.
-
-.seealso: `Contact`, `ContactSetUp()`, `ContactGetResolvedStep()`
-@*/
+/* Finds the contact surfaces and rows, the first part of ContactSetUp(): what the controller has to know of contact before it can choose
+   its step. Calls beyond the first cost nothing. Collective. */
 PetscErrorCode ContactSetUpSurfaces(Contact contact)
 {
   PetscReal extent;

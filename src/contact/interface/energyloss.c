@@ -51,27 +51,3 @@ PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
   if (!contact->energy.at_rest || PetscAbsReal(contact->energy.step_work) > unresolved) *loss = -contact->energy.step_work;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/*@
-  ContactGetEnergyTolerance - how much energy contact may take or bring in a controller step before it is made again in halves
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. tolerance - part of the energy of the system
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetEnergyLoss()`, `ControllerSetStepCuts()`
-@*/
-PetscErrorCode ContactGetEnergyTolerance(Contact contact, PetscReal *tolerance)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(tolerance, 2);
-  *tolerance = contact->options.energy_tolerance;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -295,22 +295,7 @@ PetscErrorCode ContactGetOverlaps(Contact contact, ContactOverlap overlaps[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  ContactGetOverlapName - name of the other body, or of the obstacle, of an overlap
-
-  Not Collective
-
-  Input Parameters:
-+ contact - the `Contact`
-- overlap - the overlap
-
-  Output Parameter:
-. name - the name; `NULL` where nothing overlaps
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetOverlaps()`
-@*/
+/* Name of the other body, or of the obstacle, of an overlap; `NULL` where nothing overlaps */
 PetscErrorCode ContactGetOverlapName(Contact contact, const ContactOverlap *overlap, const char *name[])
 {
   PetscFunctionBegin;

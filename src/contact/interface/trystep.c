@@ -108,7 +108,6 @@ PetscErrorCode ContactStepBack(Contact contact)
   PetscCall(PetscArraycpy(contact->end.gap, contact->start.gap, contact->rows.n));
   PetscCall(PetscArraycpy(contact->end.active, contact->start.active, contact->rows.n));
   contact->attempt.again = PETSC_TRUE;
-  if (contact->rows.n_all) PetscTryTypeMethod(contact, stepback);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -125,7 +124,7 @@ PetscErrorCode ContactSetStepLevel(Contact contact, PetscInt level)
   attempt->level = level;
   contact->step  = attempt->whole_step / PetscPowRealInt(2, level);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetStepLevel(contact->bodies[b], level));
-  if (contact->rows.n_all) PetscTryTypeMethod(contact, steplevel, level, (PetscBool)(attempt->accepted_level == level));
+  if (contact->rows.n_all) PetscTryTypeMethod(contact, steplevel);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

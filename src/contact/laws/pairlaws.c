@@ -133,7 +133,7 @@ PetscErrorCode ContactSetLaw(Contact contact, PetscInt pair, const char law[])
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactSetLaw()`, `ContactHasLaw()`
+.seealso: `Contact`, `ContactSetLaw()`, `ContactGetTraits()`
 @*/
 PetscErrorCode ContactGetPairLaw(Contact contact, PetscInt pair, ContactLaw *law)
 {
@@ -145,55 +145,12 @@ PetscErrorCode ContactGetPairLaw(Contact contact, PetscInt pair, ContactLaw *law
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactHasLaw - whether any pair has a law
-
-  Not Collective
-
-  Input Parameters:
-+ contact - the `Contact`
-- law     - the law
-
-  Output Parameter:
-. has - whether a pair has it; where pairs come and go, whether those to come have it
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetPairLaw()`
-@*/
-PetscErrorCode ContactHasLaw(Contact contact, ContactLaw law, PetscBool *has)
+/* Whether any pair is glued by a law with damage */
+PetscBool ContactGlueBreaks(Contact contact)
 {
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(has, 3);
-  *has = ContactAnyPairHas(contact, law);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactGlueBreaks - whether any pair is glued by a law with damage
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. breaks - whether glue may take energy by damage, which `ContactGetCounts()` has
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetLaw()`, `ContactCounts`
-@*/
-PetscErrorCode ContactGlueBreaks(Contact contact, PetscBool *breaks)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(breaks, 2);
-  *breaks = PETSC_FALSE;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (contact->pairs[p].law == CONTACT_LAW_GLUE && contact->laws[contact->pairs[p].named].law.n_history) *breaks = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
+    if (contact->pairs[p].law == CONTACT_LAW_GLUE && contact->laws[contact->pairs[p].named].law.n_history) return PETSC_TRUE;
+  return PETSC_FALSE;
 }
 
 /* Of a parameter, with a space before it, or nothing */

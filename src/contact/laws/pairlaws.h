@@ -9,4 +9,5 @@ struct _n_ContactNamedLaw {
   PetscReal parameters[ROW_LAW_PARAMETERS]; /* of pairs that have none of their own; less than 0: not set */
 };
 
-PETSC_INTERN void ContactGetLawParameters(Contact, const ContactPair *, PetscReal[]);
+PETSC_INTERN PetscBool ContactGlueBreaks(Contact);
+PETSC_INTERN void      ContactGetLawParameters(Contact, const ContactPair *, PetscReal[]);

@@ -30,30 +30,6 @@
 /* Pairs whose gaps are turned unasked, at most: the turns of all are unknowns of one dense matrix */
 #define MOST_PAIRS 100
 
-/*@
-  ContactGetBalance - whether the forces of a pair have the same sum along the normals of both of its surfaces
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. balance - whether they have; `PETSC_FALSE` before the set-up where that chooses
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetFromOptions()`
-@*/
-PetscErrorCode ContactGetBalance(Contact contact, PetscBool *balance)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(balance, 2);
-  *balance = contact->options.balance;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The largest bend of a face of one side of a pair, as a chord, without those that are `edge` or more */
 static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt side, PetscReal edge, PetscReal *bend)
 {

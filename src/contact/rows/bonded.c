@@ -71,31 +71,6 @@ PetscErrorCode ContactBond(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetSeparation - whether surfaces that have met may come apart again
-
-  Not Collective
-
-  Input Parameter:
-. contact - the `Contact`
-
-  Output Parameter:
-. separation - `PETSC_FALSE` under `-contact_separation false`: nodes that have been in contact at the end of a controller step slide on
-               along the partner from then on, pushed or pulled, until there is no partner opposite any more
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactSetFromOptions()`
-@*/
-PetscErrorCode ContactGetSeparation(Contact contact, PetscBool *separation)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(separation, 2);
-  *separation = contact->options.separation;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* At the start of a controller step, with its rows: those that were in contact at the end of the last one are held from now on, pushed or
    pulled, along their normal alone. A row that has no partner opposite any more has been let go. */
 void ContactHoldTogether(Contact contact)

@@ -173,11 +173,9 @@ PetscErrorCode ContactStepperEndGlue(Contact contact, ContactStepper *stepper)
 PetscErrorCode ContactStepperAcceptGlue(Contact contact, ContactStepper *stepper)
 {
   PetscReal sum = 0;
-  PetscBool breaks;
 
   PetscFunctionBegin;
-  PetscCall(ContactGlueBreaks(contact, &breaks));
-  if (!breaks) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!ContactGlueBreaks(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(stepper->history, stepper->grown, ROW_LAW_HISTORY * contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) sum += contact->energy.broken[i];
   if (contact->ranks.size > 1)

@@ -150,11 +150,9 @@ PetscErrorCode ContactStepperRowsChanged(Contact contact)
 }
 
 /* The bodies answer otherwise */
-static PetscErrorCode SetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+static PetscErrorCode SetStepLevel(Contact contact)
 {
   PetscFunctionBegin;
-  (void)level;
-  (void)goes_on;
   Stepper(contact)->state++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -300,7 +298,7 @@ PetscErrorCode ContactStepperDestroy(Contact contact)
 .  * - V. Acary, Energy conservation and dissipation properties of time-integration methods for nonsmooth elastodynamics with contact, ZAMM
        96 (2016) 585-603
 
-.seealso: `ContactSetType()`, `CONTACT_ALTERNATION`, `ContactGetLossReason()`
+.seealso: `ContactSetType()`, `CONTACT_ALTERNATION`, `ContactGetTraits()`
 M*/
 PetscErrorCode ContactCreate_Schwarz(Contact contact)
 {

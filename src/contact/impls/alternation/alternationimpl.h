@@ -127,7 +127,7 @@ PETSC_INTERN PetscErrorCode AlternationSweep(SNES, Vec, Vec, void *);
 PETSC_INTERN PetscReal      AlternationOffset(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscErrorCode AlternationPredict(Contact);
 PETSC_INTERN PetscErrorCode AlternationSetUpTransmission(Contact);
-PETSC_INTERN PetscErrorCode AlternationSetStepLevel(Contact, PetscInt, PetscBool);
+PETSC_INTERN PetscErrorCode AlternationSetStepLevel(Contact);
 PETSC_INTERN PetscReal      AlternationResidualScale(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode AlternationSetUpSides(Contact);
 PETSC_INTERN PetscErrorCode AlternationSwapSides(Contact);

@@ -184,14 +184,12 @@ PetscErrorCode AlternationSetUpTransmission(Contact contact)
 }
 
 /* The controller step is another: so are the weights of impedances */
-PetscErrorCode AlternationSetStepLevel(Contact contact, PetscInt level, PetscBool goes_on)
+PetscErrorCode AlternationSetStepLevel(Contact contact)
 {
   Alternation    *alternation = (Alternation *)contact->data;
   const PetscReal ratio       = alternation->controller_step / contact->step; /* a power of two */
 
   PetscFunctionBegin;
-  (void)level;
-  (void)goes_on;
   alternation->controller_step = contact->step;
   if (alternation->transmission != SCHWARZ_TRANSMISSION_IMPEDANCE) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) alternation->weight[i] *= ratio;
