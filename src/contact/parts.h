@@ -152,6 +152,7 @@ PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactNumberBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderVisits(Contact);
+PETSC_INTERN PetscErrorCode ContactGatherRows(Contact, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactIsAtHome(Contact, PetscInt, PetscMPIInt *, PetscBool *);
 PETSC_INTERN void           ContactAffectAll(Contact);
 PETSC_INTERN void           ContactForgetMatrices(Contact);

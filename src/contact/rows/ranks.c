@@ -9,6 +9,15 @@ PetscErrorCode ContactOr(Contact contact, int *flag)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A number of each row of all ranks, from those of this rank's rows. Collective. */
+PetscErrorCode ContactGatherRows(Contact contact, const PetscReal mine[], PetscReal all[])
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->rows.n, MPIU_REAL, all, contact->ranks.counts, contact->ranks.offsets, MPIU_REAL,
+                              PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Which rank has all of a body, or a negative number; and whether all of its rows are there too. The same on every rank. */
 PetscErrorCode ContactIsAtHome(Contact contact, PetscInt b, PetscMPIInt *rank, PetscBool *at_home)
 {

@@ -1,4 +1,4 @@
-/* Vectors of rows: each rank has a number for each row that it owns; a scatter brings them to all ranks, which all solve the law. */
+/* Numbers of rows: each rank has one for each row that it owns, and all ranks, which all solve the law, get those of touching rows. */
 #include "stepimpl.h"
 
 PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper)
@@ -8,9 +8,7 @@ PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper
   PetscFunctionBegin;
   PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)contact), contact->rows.n, PETSC_DETERMINE, &stepper->x));
   PetscCall(VecDuplicate(stepper->x, &stepper->f));
-  PetscCall(VecDuplicate(stepper->x, &stepper->field));
-  PetscCall(VecScatterCreateToAll(stepper->x, &stepper->to_all, &stepper->of_all));
-  PetscCall(PetscMalloc3(n_all, &stepper->rows, n_all, &stepper->gathered, n_all, &stepper->of_assembled));
+  PetscCall(PetscMalloc4(n_all, &stepper->rows, n_all, &stepper->gathered, n_all, &stepper->of_assembled, n_all, &stepper->all));
   PetscCall(PetscMalloc2(3 * n_all, &stepper->told, 2 * n_all, &stepper->ends));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -20,53 +18,30 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
   PetscFunctionBegin;
   PetscCall(VecDestroy(&stepper->x));
   PetscCall(VecDestroy(&stepper->f));
-  PetscCall(VecDestroy(&stepper->field));
-  PetscCall(VecDestroy(&stepper->of_all));
-  PetscCall(VecScatterDestroy(&stepper->to_all));
-  PetscCall(PetscFree3(stepper->rows, stepper->gathered, stepper->of_assembled));
+  PetscCall(PetscFree4(stepper->rows, stepper->gathered, stepper->of_assembled, stepper->all));
   PetscCall(PetscFree2(stepper->told, stepper->ends));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The numbers of all rows, in `of_all`, from those of this rank */
-PetscErrorCode ContactStepperScatter(Contact contact, ContactStepper *stepper, const PetscReal mine[])
-{
-  PetscScalar *values;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(stepper->field, &values));
-  for (PetscInt i = 0; i < contact->rows.n; i++) values[i] = mine[i];
-  PetscCall(VecRestoreArrayWrite(stepper->field, &values));
-  PetscCall(VecScatterBegin(stepper->to_all, stepper->field, stepper->of_all, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(stepper->to_all, stepper->field, stepper->of_all, INSERT_VALUES, SCATTER_FORWARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Numbers of the touching rows of all ranks, from those of this rank's rows */
 PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, const PetscReal mine[], PetscScalar all[])
 {
-  const PetscScalar *values;
+  const PetscBool alone = (PetscBool)(contact->ranks.size == 1); /* all rows are here */
 
   PetscFunctionBegin;
-  if (contact->ranks.size == 1) { /* all rows are here */
-    for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = mine[stepper->rows[k]];
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(ContactStepperScatter(contact, stepper, mine));
-  PetscCall(VecGetArrayRead(stepper->of_all, &values));
-  for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = values[stepper->rows[k]];
-  PetscCall(VecRestoreArrayRead(stepper->of_all, &values));
+  if (!alone) PetscCall(ContactGatherRows(contact, mine, stepper->all));
+  for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = (alone ? mine : stepper->all)[stepper->rows[k]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Lists the touching rows of all ranks, by their numbers, and the nodes that have them */
 PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
 {
-  LawProblem        *problem = &stepper->problem;
-  const PetscBool    alone   = (PetscBool)(contact->ranks.size == 1);
-  const PetscInt     n_look  = alone ? contact->rows.n_acting : contact->rows.n_all;
-  const PetscScalar *touches = stepper->mine;
-  PetscInt           n       = 0;
+  LawProblem      *problem = &stepper->problem;
+  const PetscBool  alone   = (PetscBool)(contact->ranks.size == 1);
+  const PetscInt   n_look  = alone ? contact->rows.n_acting : contact->rows.n_all;
+  const PetscReal *touches = stepper->mine;
+  PetscInt         n       = 0;
 
   PetscFunctionBegin;
   if (!alone) PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
@@ -76,8 +51,8 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
     stepper->mine[i] = stepper->touches[i] ? 1 + contact->rows.tied[ContactFirstRow(contact, i)] : 0; /* which law it has */
   }
   if (!alone) {
-    PetscCall(ContactStepperScatter(contact, stepper, stepper->mine));
-    PetscCall(VecGetArrayRead(stepper->of_all, &touches));
+    PetscCall(ContactGatherRows(contact, stepper->mine, stepper->all));
+    touches = stepper->all;
   }
   for (PetscInt k = 0; k < n_look; k++) n += touches[alone ? contact->rows.acting[k] : k] != 0;
   PetscCall(LawProblemResize(problem, n));
@@ -96,7 +71,6 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
     stepper->rows[n++] = i;
   }
   problem->begin[problem->n_nodes] = n;
-  if (!alone) PetscCall(VecRestoreArrayRead(stepper->of_all, &touches));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,25 +11,6 @@ static ContactStepper *Stepper(Contact contact)
   return (ContactStepper *)contact->data;
 }
 
-/* Rates of rows as the step begins */
-PetscErrorCode ContactStepperComputeRates(Contact contact, PetscReal rate[])
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscScalar       *v[2];
-
-    for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].velocity, 0, &v[side]));
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-      const PetscInt i = contact->rows.near[k];
-
-      rate[i] = PetscRealPart(v[1][i - pair->shift[1]] - v[0][i - pair->shift[0]]);
-      if (contact->friction.drive) rate[i] += contact->friction.drive[i] / contact->step;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Bounds that the law of friction has for touching nodes, on all ranks */
 static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
 {
@@ -157,7 +138,8 @@ PetscErrorCode ContactStepperStep(Contact contact)
   if (stepper->has_rigid || stepper->forms) stepper->state++;
   stepper->forms = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
-  PetscCall(ContactStepperComputeRates(contact, stepper->rate));
+  PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, stepper->rate));
+  for (PetscInt i = 0; i < contact->rows.n && contact->friction.drive; i++) stepper->rate[i] += contact->friction.drive[i] / contact->step;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
   PetscCall(ContactStepperGuess(contact, stepper));

@@ -114,7 +114,6 @@ struct _ContactStepper {
   PetscBool           glued;      /* a law is of glue */
   PetscReal          *parameters; /* ROW_LAW_PARAMETERS per pair: of its glue */
   PetscBool           has_rigid;  /* bodies whose compliance is another in each step, as they turn */
-  VecScatter          to_all;
   /* state between steps, per row of this rank */
   PetscBool *joined;  /* its node has touched first in the last accepted step */
   PetscReal *history; /* of a node, at its first row: ROW_LAW_HISTORY numbers of its law of glue, as the step begins, */
@@ -148,7 +147,8 @@ struct _ContactStepper {
   StepperTurns    turns;    /* what it has of turns */
   StepperSprings  springs;  /* what it has of springs between the surfaces */
   /* work space */
-  Vec          x, f, field, of_all;
+  Vec          x, f;
+  PetscReal   *all;      /* a number per row of all ranks */
   PetscScalar *gathered; /* a number per touching row */
   PetscScalar *ends;     /* two: how its first body has gone along it in the last pass, and its second one [m] */
   PetscReal   *none;     /* zeros */
@@ -176,7 +176,6 @@ PETSC_INTERN PetscErrorCode ContactStepperDestroyGlue(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor *);
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
-PETSC_INTERN PetscErrorCode ContactStepperComputeRates(Contact, PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperGuess(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperPack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
@@ -217,7 +216,6 @@ PETSC_INTERN PetscErrorCode ContactStepperEndSprings(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroySprings(StepperSprings *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperScatter(Contact, ContactStepper *, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, const PetscReal[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode ContactStepperListRows(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperListBodyRows(Contact, ContactStepper *);

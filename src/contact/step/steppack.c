@@ -124,20 +124,12 @@ static PetscErrorCode UnpackSecants(Contact contact, PetscInt b, PetscReal *cons
 /* The same, of all bodies, from the places of this rank's rows */
 static PetscErrorCode UnpackAllSecants(Contact contact, PetscReal *const mine[2], Tables tables)
 {
-  ContactStepper *stepper = (ContactStepper *)contact->data;
-  const PetscInt  n_all   = contact->rows.n_all;
-  PetscReal      *places[2];
+  const PetscInt n_all = contact->rows.n_all;
+  PetscReal     *places[2];
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(n_all, &places[0], n_all, &places[1]));
-  for (PetscInt side = 0; side < 2; side++) {
-    const PetscScalar *all;
-
-    PetscCall(ContactStepperScatter(contact, stepper, mine[side]));
-    PetscCall(VecGetArrayRead(stepper->of_all, &all));
-    for (PetscInt i = 0; i < n_all; i++) places[side][i] = PetscRealPart(all[i]);
-    PetscCall(VecRestoreArrayRead(stepper->of_all, &all));
-  }
+  for (PetscInt side = 0; side < 2; side++) PetscCall(ContactGatherRows(contact, mine[side], places[side]));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(UnpackSecants(contact, b, places, tables));
   PetscCall(PetscFree2(places[0], places[1]));
   PetscFunctionReturn(PETSC_SUCCESS);

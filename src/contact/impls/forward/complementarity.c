@@ -10,9 +10,7 @@ PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
   PetscCall(RowLawCreate("unilateral", &problem->open));
   PetscCall(RowLawCreate("tie", &problem->held));
   PetscCall(PetscCalloc4(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine));
-  PetscCall(PetscMalloc1(contact->rows.n_all, &problem->rows));
-  PetscCall(ContactCreateRowVec(contact, &problem->field));
-  PetscCall(VecScatterCreateToAll(problem->field, &problem->to_all, &problem->all));
+  PetscCall(PetscMalloc2(contact->rows.n_all, &problem->rows, contact->rows.n_all, &problem->all));
   PetscCall(LawProblemSetUp(&problem->problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -23,10 +21,7 @@ PetscErrorCode ComplementarityDestroy(Complementarity *problem)
   PetscCall(LawProblemDestroy(&problem->problem));
   PetscCall(MatDestroy(&problem->compliance));
   PetscCall(PetscFree4(problem->gaps, problem->forces, problem->active, problem->mine));
-  PetscCall(PetscFree(problem->rows));
-  PetscCall(VecDestroy(&problem->field));
-  PetscCall(VecDestroy(&problem->all));
-  PetscCall(VecScatterDestroy(&problem->to_all));
+  PetscCall(PetscFree2(problem->rows, problem->all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,36 +45,19 @@ PetscErrorCode ComplementaritySetCompliance(Contact contact, PetscReal scale, Co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers of the rows of all ranks, from those of this rank's rows in `mine`, until they are given back */
-static PetscErrorCode GetAll(Complementarity *problem, const PetscScalar *all[])
-{
-  PetscScalar *values;
-  PetscInt     n;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(problem->field, &n));
-  PetscCall(VecGetArrayWrite(problem->field, &values));
-  for (PetscInt i = 0; i < n; i++) values[i] = problem->mine[i];
-  PetscCall(VecRestoreArrayWrite(problem->field, &values));
-  PetscCall(VecScatterBegin(problem->to_all, problem->field, problem->all, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(problem->to_all, problem->field, problem->all, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecGetArrayRead(problem->all, all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The rows of the problem, all that `mine` has a number for, with C of these unless it is there: 1 for rows that push, 2 for rows that pull
    as well */
 static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
 {
-  LawProblem        *law  = &problem->problem;
-  PetscBool          same = problem->current;
-  PetscInt           n    = 0;
-  const PetscScalar *kind;
-  IS                 rows;
-  Mat               *C, S;
+  LawProblem      *law  = &problem->problem;
+  PetscBool        same = problem->current;
+  PetscInt         n    = 0;
+  const PetscReal *kind = problem->all;
+  IS               rows;
+  Mat             *C, S;
 
   PetscFunctionBegin;
-  PetscCall(GetAll(problem, &kind));
+  PetscCall(ContactGatherRows(contact, problem->mine, problem->all));
   for (PetscInt i = 0; i < contact->rows.n_all; i++) {
     if (kind[i] == 0) continue;
     same               = (PetscBool)(same && n < problem->n && problem->rows[n] == i);
@@ -92,9 +70,8 @@ static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
   law->begin[n] = n;
   for (PetscInt k = 0; k < n; k++) {
     law->begin[k] = k;
-    law->law[k]   = PetscRealPart(kind[problem->rows[k]]) > 1 ? &problem->held : &problem->open;
+    law->law[k]   = kind[problem->rows[k]] > 1 ? &problem->held : &problem->open;
   }
-  PetscCall(VecRestoreArrayRead(problem->all, &kind));
   PetscCall(PetscArrayzero(law->limit, 2 * n));
   if (same || !n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, problem->rows, PETSC_USE_POINTER, &rows));
@@ -111,19 +88,16 @@ static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
 /* Forces of the rows of the problem, zero for the others; ContactFailed() tells where there are none */
 static PetscErrorCode Solve(Contact contact, Complementarity *problem)
 {
-  LawProblem        *law = &problem->problem;
-  const PetscScalar *gaps;
+  LawProblem *law = &problem->problem;
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(problem->forces, contact->rows.n));
   if (!problem->n) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = problem->gaps[i];
-  PetscCall(GetAll(problem, &gaps));
+  PetscCall(ContactGatherRows(contact, problem->gaps, problem->all));
   for (PetscInt k = 0; k < problem->n; k++) {
-    law->read[k] = gaps[problem->rows[k]];
+    law->read[k] = problem->all[problem->rows[k]];
     law->base[k] = law->force[k] = 0;
   }
-  PetscCall(VecRestoreArrayRead(problem->all, &gaps));
   PetscCall(LawProblemSolve(law));
   contact->counts.inner_iterations += law->iterations;
   if (!law->solved) {

@@ -13,8 +13,7 @@ typedef struct {
   PetscReal *forces;     /* per row of this rank: what goes out [N, or N s] */
   PetscBool *active;     /* per row of this rank: it has a force */
   PetscReal *mine;       /* work space, per row of this rank */
-  Vec        field, all; /* work space: a number per row of this rank; of all ranks */
-  VecScatter to_all;
+  PetscReal *all;        /* work space, per row of all ranks */
 } Complementarity;
 
 PETSC_INTERN PetscErrorCode ComplementarityCreate(Contact, Complementarity *);
