@@ -60,45 +60,23 @@ PetscErrorCode ContactDestroyResultants(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's share of the resultant of a pair on the partner of the body that has the rows [N] */
-static void SumForces(Contact contact, const ContactPair *pair, const PetscReal rows[], PetscReal force[])
-{
-  for (PetscInt d = 0; d < 3; d++) force[d] = 0;
-  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
-    const PetscInt i = contact->rows.acting[k];
+/* This rank's shares of what the forces of the rows of a pair amount to [N]: the three components of their sum on the partner of the body
+   that has the rows, the sum of the normal ones, and that of those on nodes beyond the end of the partner */
+enum { OF_NORMAL = 3, OF_BEYOND, N_FORCES };
 
-    for (PetscInt d = 0; d < 3; d++) force[d] += rows[i] * contact->rows.normal[3 * i + d];
-  }
-}
-
-/* This rank's share of the resultant of the normal forces of a pair [N] */
-static PetscErrorCode SumNormalForces(Contact contact, const ContactPair *pair, const PetscReal row[], PetscReal *force)
+static PetscErrorCode SumForces(Contact contact, const ContactPair *pair, const PetscReal row[], PetscReal sums[N_FORCES])
 {
   TransferRows rows;
 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  *force = 0;
+  PetscCall(PetscArrayzero(sums, N_FORCES));
   for (PetscInt j = pair->acts_begin; j < pair->acts_end; j++) {
     const PetscInt i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
 
-    *force += (ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0) * row[i];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* This rank's share of the normal forces of a pair on nodes that lie beyond the end of the partner [N] */
-static PetscErrorCode SumBeyond(Contact contact, const ContactPair *pair, PetscReal *force)
-{
-  TransferRows rows;
-
-  PetscFunctionBegin;
-  PetscCall(TransferGetRows(pair->transfer, &rows));
-  *force = 0;
-  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k += pair->components) {
-    const PetscInt i = contact->rows.acting[k];
-
-    if (rows.beyond[(i - pair->begin) / pair->components]) *force += contact->end.force[i];
+    for (PetscInt d = 0; d < 3; d++) sums[d] += row[i] * contact->rows.normal[3 * i + d];
+    sums[OF_NORMAL] += (ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0) * row[i];
+    if (k == 0 && rows.beyond[node]) sums[OF_BEYOND] += row[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -108,10 +86,11 @@ PetscErrorCode ContactStartImpulses(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscReal *impulse = contact->resultants.impulse + N_KEPT * p;
+    PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, sums[N_FORCES];
 
-    SumForces(contact, &contact->pairs[p], contact->end.force, impulse + 3);
-    PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->end.force, impulse + 7));
+    PetscCall(SumForces(contact, &contact->pairs[p], contact->end.force, sums));
+    PetscCall(PetscArraycpy(impulse + 3, sums, 3));
+    impulse[7] = sums[OF_NORMAL];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -129,23 +108,21 @@ PetscErrorCode ContactAddImpulses(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, *last = impulse + 3, *normal = impulse + 6, force[3], now = 0;
+    PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, *last = impulse + 3, *normal = impulse + 6, first[N_FORCES],
+              end[N_FORCES];
 
     /* nothing is added */
     if (last[0] == 0 && last[1] == 0 && last[2] == 0 && normal[1] == 0 && (contact->pairs[p].far || !HasForce(contact, &contact->pairs[p])))
       continue;
-    if (contact->energy.changed) SumForces(contact, &contact->pairs[p], contact->start.force, last);
-    SumForces(contact, &contact->pairs[p], contact->end.force, force);
-    for (PetscInt d = 0; d < 3; d++) {
-      impulse[d] += 0.5 * contact->step * (last[d] + force[d]);
-      last[d] = force[d];
-    }
-    if (contact->energy.changed) PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->start.force, &normal[1]));
-    PetscCall(SumNormalForces(contact, &contact->pairs[p], contact->end.force, &now));
-    normal[0] += 0.5 * contact->step * (normal[1] + now);
-    normal[1] = now;
-    PetscCall(SumBeyond(contact, &contact->pairs[p], &now));
-    impulse[8] += contact->step * now;
+    PetscCall(PetscArraycpy(first, last, 3));
+    first[OF_NORMAL] = normal[1];
+    if (contact->energy.changed) PetscCall(SumForces(contact, &contact->pairs[p], contact->start.force, first));
+    PetscCall(SumForces(contact, &contact->pairs[p], contact->end.force, end));
+    for (PetscInt d = 0; d < 3; d++) impulse[d] += 0.5 * contact->step * (first[d] + end[d]);
+    PetscCall(PetscArraycpy(last, end, 3));
+    normal[0] += 0.5 * contact->step * (first[OF_NORMAL] + end[OF_NORMAL]);
+    normal[1] = end[OF_NORMAL];
+    impulse[8] += contact->step * end[OF_BEYOND];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -205,6 +182,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   const ContactPair *pair    = &contact->pairs[p];
   PetscInt           counted = -1; /* the node that was counted last: the rows of a tied node follow each other */
   PetscReal          normal  = 0;  /* force along the normal of the rows of a node so far [N] */
+  PetscReal          forces[N_FORCES];
   TransferRows       rows;
 
   PetscFunctionBegin;
@@ -223,7 +201,6 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
     const PetscInt  i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
     const PetscReal along = ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0;
 
-    sums[SUM_FORCE] += along * contact->end.force[i];
     normal = (k ? normal : 0) + along * contact->end.force[i];
     if (k == pair->components - 1) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -normal);
     if (!contact->end.active[i]) continue;
@@ -235,7 +212,9 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
     if (!contact->held.merger) sums[SUM_AREA] += contact->rows.area[i] * contact->resultants.cross_section[p];
     counted = contact->rows.dof[i];
   }
-  SumForces(contact, pair, contact->end.force, sums + SUM_VECTOR);
+  PetscCall(SumForces(contact, pair, contact->end.force, forces));
+  PetscCall(PetscArraycpy(sums + SUM_VECTOR, forces, 3));
+  sums[SUM_FORCE] = forces[OF_NORMAL];
   PetscCall(SumMoments(contact, pair, sums + SUM_MOMENT));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
