@@ -3,7 +3,6 @@
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
 #include <sys/petsccompat.h>
-#include <stddef.h>
 #include <sys/units.h>
 #include <impakt/private/bodysweeps.h>
 
@@ -165,19 +164,12 @@ static PetscErrorCode ContactView_Alternation(Contact contact, PetscViewer viewe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sides that change with every step would have to go over to other pairs */
-static PetscBool MayReplaceRows(Contact contact)
-{
-  return (PetscBool) !((Alternation *)contact->data)->swap;
-}
-
-/* All but the options */
-static PetscErrorCode ContactReset_Alternation(Contact contact)
+static PetscErrorCode ContactDestroy_Alternation(Contact contact)
 {
   Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; alternation->trace && p < alternation->n_traces; p++) PetscCall(TraceDestroy(&alternation->trace[p]));
+  for (PetscInt p = 0; alternation->trace && p < 2 * contact->n_pairs; p++) PetscCall(TraceDestroy(&alternation->trace[p]));
   for (PetscInt b = 0; alternation->exchange && b < contact->n_bodies; b++) PetscCall(TraceDestroy(&alternation->exchange[b]));
   for (PetscInt k = 0; k < 2; k++) PetscCall(TraceDestroy(&alternation->rate[k]));
   PetscCall(SNESDestroy(&alternation->snes));
@@ -191,15 +183,6 @@ static PetscErrorCode ContactReset_Alternation(Contact contact)
   PetscCall(PetscFree3(alternation->weight, alternation->mass[0], alternation->mass[1]));
   PetscCall(PetscFree3(alternation->left, alternation->stall.force, alternation->previous));
   PetscCall(PetscFree(alternation->row_work));
-  PetscCall(PetscMemzero((char *)alternation + offsetof(Alternation, mass_prescribed),
-                         sizeof(*alternation) - offsetof(Alternation, mass_prescribed)));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ContactDestroy_Alternation(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(ContactReset_Alternation(contact));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -262,8 +245,6 @@ PetscErrorCode ContactCreate_Alternation(Contact contact)
   contact->ops->rowschanged    = ContactRowsChanged_Alternation;
   contact->ops->steplevel      = AlternationSetStepLevel;
   contact->ops->accept         = ContactAccept_Alternation;
-  contact->ops->mayreplacerows = MayReplaceRows;
-  contact->ops->reset          = ContactReset_Alternation;
   contact->ops->view           = ContactView_Alternation;
   contact->ops->visit          = ContactVisit_Alternation;
   contact->ops->destroy        = ContactDestroy_Alternation;

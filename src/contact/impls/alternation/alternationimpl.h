@@ -44,7 +44,7 @@ typedef struct {
   PetscBool           recheck;         /* tensile reactions leave the active set within the step */
   PetscBool           swap;            /* sides change with every controller step */
   PetscReal           atol, rtol;      /* on the change of position [m], relative */
-  /* chosen at set-up; what follows is gone after a reset */
+  /* chosen at set-up */
   PetscBool mass_prescribed; /* contact nodes of a Dirichlet side have mass: they take velocity and acceleration from their partner */
   PetscReal controller_step; /* [s]; of the present level */
   /* unknowns of the outer iteration */
@@ -54,7 +54,6 @@ typedef struct {
   PetscInt *room;      /* per pair: unknowns that each of its rows has room for */
   PetscInt *offset;    /* per row: its first unknown on this rank */
   /* what goes back and forth */
-  PetscInt   n_traces;  /* of `trace`: two for each pair */
   Trace     *trace;     /* per pair and side, of its rows: what its unknowns put on the Dirichlet side */
   Trace     *exchange;  /* per body: what it hands to its partners */
   Trace      rate[2];   /* velocity and acceleration put on the Dirichlet sides of kinematic pairs */
@@ -71,7 +70,6 @@ typedef struct {
   PetscBool cycled;           /* one has joined again */
   PetscBool swept;            /* `previous` is of this step */
   PetscReal change, position; /* of the last sweep: the body with the worst ratio */
-  PetscReal growth;           /* of the change over that of the sweep before */
   struct {
     PetscInt     sweeps, steady; /* of this iteration; of these the last ones with steady forces and no smaller change of position */
     PetscReal    least;          /* change of position in this iteration [m] */

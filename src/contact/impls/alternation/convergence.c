@@ -149,7 +149,6 @@ PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
     worst                 = change;
     alternation->position = position;
   }
-  alternation->growth = alternation->change > 0 && !PetscIsInfOrNanReal(worst) ? worst / alternation->change : 0;
   alternation->change = worst;
   if (!alternation->converged) PetscCall(FindStall(contact));
   alternation->swept = PETSC_TRUE;
@@ -173,34 +172,6 @@ PetscErrorCode AlternationTestConvergence(SNES snes, PetscInt it, PetscReal xnor
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a user who has chosen a fixed relaxation t should know when it has failed. A sweep takes the error e to -m e, m being ratios of the
-   compliance of both sides, and the relaxed iteration takes it to (1 - t (1 + m)) e. What changes by a factor of r > 1 - t in each sweep is
-   the error with the largest m, 1 + m = (1 + r) / t. Relaxations below 2 / (1 + m) converge, and 2 / (2 + m + 1 / m) is the best where 1 /
-   m is the smallest ratio, as between two sides that mirror each other. The error with the largest m may not have come up yet. */
-static PetscErrorCode AdviseRelaxation(Contact contact, char advice[], size_t size)
-{
-  Alternation   *alternation = (Alternation *)contact->data;
-  SNESLineSearch line_search;
-  PetscReal      damping, ratio;
-  PetscBool      richardson;
-
-  PetscFunctionBegin;
-  advice[0] = 0;
-  PetscCall(PetscObjectTypeCompare((PetscObject)alternation->snes, SNESNRICHARDSON, &richardson));
-  if (!richardson || alternation->relaxation == SCHWARZ_RELAXATION_AITKEN) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESGetLineSearch(alternation->snes, &line_search));
-  PetscCall(SNESLineSearchGetDamping(line_search, &damping));
-  ratio = (1 + alternation->growth) / damping - 1;
-  if (!(alternation->growth > 1 - damping) || !(ratio > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSNPrintf(
-      advice, size,
-      "The change becomes %.3g times as large in each sweep, since a sweep answers an error with %.3g times as much, or more: "
-      "-schwarz_snes_linesearch_damping, now %g, converges below %.2g, or less, best near %.2g; -schwarz_relaxation aitken and "
-      "-schwarz_transmission robin need no such number. ",
-      (double)alternation->growth, (double)ratio, (double)damping, (double)(2 / (1 + ratio)), (double)(2 / (2 + ratio + 1 / ratio))));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Where the iteration did not converge, the step has failed, or is counted */
 PetscErrorCode AlternationCheckConverged(Contact contact)
 {
@@ -208,7 +179,6 @@ PetscErrorCode AlternationCheckConverged(Contact contact)
   SNESConvergedReason reason;
   PetscReal           time;
   TS                  ts;
-  char                advice[512];
 
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(alternation->snes, &reason));
@@ -219,14 +189,12 @@ PetscErrorCode AlternationCheckConverged(Contact contact)
   }
   PetscCall(BodyGetTS(contact->bodies[0], &ts));
   PetscCall(TSGetTime(ts, &time));
-  PetscCall(AdviseRelaxation(contact, advice, sizeof(advice)));
   PetscCall(StepFailureSet(
       &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
       "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT
-      " sweeps the change of position is %g%s (%s; absolute tolerance %g%s, relative %g). %sRaise -schwarz_snes_max_it, loosen "
+      " sweeps the change of position is %g%s (%s; absolute tolerance %g%s, relative %g). Raise -schwarz_snes_max_it, loosen "
       "-schwarz_snes_atol, choose another -schwarz_snes_type, or take it as it is with -schwarz_unconverged accept",
       (double)time, contact->counts.sweeps, (double)alternation->change, UnitsOf((PetscObject)contact, UNIT_LENGTH),
-      SNESConvergedReasons[reason], (double)alternation->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)alternation->rtol,
-      advice));
+      SNESConvergedReasons[reason], (double)alternation->atol, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)alternation->rtol));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
