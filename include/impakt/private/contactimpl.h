@@ -103,11 +103,6 @@ typedef struct {
    1e-12 m for bars of 0.25 m, as in Hoy, Tezaur, Mota, section 4. */
 #define CONTACT_POSITION_TOLERANCE     4e-12
 #define CONTACT_AUGMENTATION_TOLERANCE 4e-10 /* gap that the augmented Lagrangian leaves: its rounds converge linearly only */
-/* Nodes of this rank that have rows of several pairs, see src/contact/rows/sharednodes.c */
-typedef struct {
-  PetscInt   n, *offsets, *rows; /* node k has the rows rows[offsets[k]] to rows[offsets[k + 1] - 1] */
-  PetscBool *left_out;           /* per entry of `rows`: the row is that of an obstacle behind another one */
-} SharedNodes;
 
 /* What the rows mean to the bodies in a controller step */
 typedef enum {
@@ -479,7 +474,6 @@ struct _p_Contact {
   ContactTurns      turns;
   ContactTies       ties;
   ContactHeldRows   held;
-  SharedNodes       shared;
   ContactState      end;
   ContactState      start;
   ContactSavedRows  saved;

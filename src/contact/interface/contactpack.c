@@ -104,7 +104,6 @@ static PetscErrorCode UnpackRows(Contact contact, Tables tables)
     PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
   }
   PetscCall(ContactMergeDroppedRows(contact));
-  PetscCall(ContactLeaveOutObstacles(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_TRUE, tables));
   ContactForgetMatrices(contact);
   PetscCall(ContactFillMatrices(contact));

@@ -58,13 +58,11 @@ static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
 
 static PetscErrorCode VisitRows(Contact contact, Checkpoint checkpoint)
 {
-  SharedNodes *shared = &contact->shared;
-  StateList    list;
+  StateList list;
 
   PetscFunctionBegin;
   ContactListRowState(contact, &list);
   PetscCall(StateListVisit(&list, "rows", checkpoint));
-  PetscCall(CheckpointVisitBools(checkpoint, "left out", shared->offsets ? shared->offsets[shared->n] : 0, shared->left_out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

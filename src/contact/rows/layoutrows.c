@@ -5,8 +5,8 @@
 */
 #include <contact/parts.h>
 
-/* Of each row, beside what checkpoints have of it: its first displacement, and whether it is left out behind another obstacle */
-enum { ROW_DOF = CONTACT_ROW_NUMBERS, ROW_LEFT_OUT, N_ROW };
+/* Of each row, beside what checkpoints have of it: its first displacement */
+enum { ROW_DOF = CONTACT_ROW_NUMBERS, N_ROW };
 
 /* What is kept of rows and pairs, while they are laid out */
 typedef struct {
@@ -31,8 +31,6 @@ static PetscErrorCode KeepRows(Contact contact, Kept *kept)
     StateListCopyOne(&list, i, PETSC_FALSE, kept->rows + N_ROW * i);
     kept->rows[N_ROW * i + ROW_DOF] = (PetscReal)contact->rows.dof[i];
   }
-  for (PetscInt k = 0; contact->shared.offsets && k < contact->shared.offsets[contact->shared.n]; k++)
-    kept->rows[N_ROW * contact->shared.rows[k] + ROW_LEFT_OUT] = contact->shared.left_out[k];
   if (contact->n_pairs) PetscCall(PetscArraycpy(kept->impulses, contact->resultants.impulse, CONTACT_IMPULSES * contact->n_pairs));
   if (contact->n_pairs && contact->energy.pair_sums)
     PetscCall(PetscArraycpy(kept->pair_sums, contact->energy.pair_sums, 2 * contact->n_pairs));
@@ -125,17 +123,6 @@ static PetscErrorCode PutBack(Contact contact, const Kept *kept, const PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows of obstacles that were left out behind others still are */
-static void LeaveOutAgain(Contact contact, const Kept *kept, const PetscInt old_begin[], const PetscInt was[])
-{
-  for (PetscInt k = 0; k < contact->shared.offsets[contact->shared.n]; k++) {
-    const PetscInt i = contact->shared.rows[k], p = contact->rows.pair[i];
-
-    if (was[p] < 0) continue;
-    contact->shared.left_out[k] = (PetscBool)(kept->rows[N_ROW * (old_begin[p] + i - contact->pairs[p].begin) + ROW_LEFT_OUT] != 0);
-  }
-}
-
 /* The rows of a body that has other pairs than before */
 static PetscErrorCode ReplaceBody(Contact contact, PetscInt b, const PetscInt old_shift[], const PetscInt old_begin[], const PetscInt was[])
 {
@@ -225,8 +212,6 @@ PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt l
   PetscCall(ContactSetUpRowEnergy(contact));
   PetscCall(ContactSetUpFriction(contact));
   PetscCall(PutBack(contact, &kept, old_begin, was));
-  PetscCall(ContactFindSharedNodes(contact));
-  LeaveOutAgain(contact, &kept, old_begin, was);
   PetscCall(ReplaceBodies(contact, affected, old_shift, old_begin, was));
   PetscCall(ContactSetUpObstacleTraces(contact));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);

@@ -5,6 +5,8 @@
 
 /* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
 #define NO_COMPONENT 1e-9
+/* Planes count as parallel whose normals have a cosine nearer to 1 */
+#define PARALLEL 1e-8
 /* -contact_tolerance by default, in parts of the largest coordinate of any mesh, whose round-off is 10^4 times smaller: what a converged
    outer iteration leaves of the gap must not count as penetration in the next free trial */
 #define PENETRATION_TOLERANCE 3e-12
@@ -180,12 +182,40 @@ static PetscErrorCode CheckHeld(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Ends with an error if a body has two plane obstacles with one normal: nothing comes to the one behind, and both would have each row twice
+ */
+static PetscErrorCode CheckPlanes(Contact contact)
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (PetscInt q = 0; q < p; q++) {
+      const ContactPair *pairs[2] = {&contact->pairs[q], &contact->pairs[p]};
+      PetscReal          points[2][3], normals[2][3], along = 0;
+      PetscBool          planes = (PetscBool)(pairs[0]->obstacle && pairs[1]->obstacle && pairs[0]->body[0] == pairs[1]->body[0]);
+
+      for (PetscInt k = 0; k < 2 && planes; k++) {
+        ObstacleType type;
+
+        PetscCall(ObstacleGetType(pairs[k]->obstacle, &type));
+        PetscCall(ObstacleGetPlace(pairs[k]->obstacle, points[k], normals[k]));
+        planes = (PetscBool)(type == OBSTACLE_PLANE);
+      }
+      for (PetscInt d = 0; d < 3 && planes; d++) along += normals[0][d] * normals[1][d];
+      PetscCheck(
+          along < 1 - PARALLEL, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+          "-contact_pairs %s,%s: two planes with one normal, of which the nearer one alone is ever touched; leave the other pair out",
+          pairs[0]->name, pairs[1]->name);
+    }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Surfaces of all pairs, whose nodes their bodies are told of. `extent` becomes the largest coordinate of their meshes, without sign [m].
  */
 PetscErrorCode ContactTakeSurfaces(Contact contact, PetscReal *extent)
 {
   PetscFunctionBegin;
   *extent = 0;
+  PetscCall(CheckPlanes(contact));
   PetscCall(ContactChooseTiedMass(contact));
   if (contact->neighbours.come_and_go) PetscCall(ContactTakeFirstNeighbours(contact, extent));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
@@ -212,8 +242,6 @@ PetscErrorCode ContactSetUpRows(Contact contact, PetscReal extent)
   }
   PetscCall(CheckHeld(contact));
   PetscCall(ContactMergeDroppedRows(contact));
-  PetscCall(ContactFindSharedNodes(contact));
-  PetscCall(ContactLeaveOutObstacles(contact));
   ContactForgetMatrices(contact);
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -279,6 +307,5 @@ PetscErrorCode ContactDestroyRows(Contact contact)
   PetscCall(PetscFree4(contact->ties.holds, contact->ties.distance, contact->work.entry_counts, contact->work.drift));
   PetscCall(PetscFree(contact->saved.state));
   PetscCall(ContactDestroyTurns(contact));
-  PetscCall(ContactDestroySharedNodes(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -220,7 +220,6 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   contact->energy.rebuilt = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));
   if (contact->held.merger) ContactAffectAll(contact); /* heirs change with rows that are not their own */
-  PetscCall(ContactLeaveOutObstacles(contact));
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++)
     contact->work.moved[i] = (PetscBool)(contact->rows.changed[i] || contact->rows.followed[i]);

@@ -239,7 +239,6 @@ static PetscErrorCode RebuildTies(Contact contact)
     if (ContactPairTies(&contact->pairs[p])) PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.changed[i] = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));
-  PetscCall(ContactLeaveOutObstacles(contact));
   ContactAffectAll(contact);
   PetscCall(ContactFillMatrices(contact));
   PetscCall(ContactUpdateBodies(contact, contact->rows.changed));

@@ -113,7 +113,8 @@ static PetscErrorCode ContactSetUp_Alternation(Contact contact)
   PetscCall(AlternationSetUpSides(contact));
   PetscCall(SetUpUnknowns(contact, &unknowns));
   PetscCall(AlternationSetUpTransmission(contact));
-  PetscCall(ContactWeighSharedRows(contact));
+  PetscCall(ContactCopyAreas(contact));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetRowWeights(contact->bodies[b], contact->body_rows[b].area));
   PetscCall(AlternationSetUpOuterSolver(contact, unknowns));
   PetscCall(SetUpTies(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
