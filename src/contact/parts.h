@@ -168,8 +168,9 @@ PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
-/* Numbers of a pair that ranks add up, see pairsupdate.c */
-#define CONTACT_SUMS (TRANSFER_SUMS + 2)
+/* Numbers of a pair of which the least of all ranks count: how its surfaces have moved; -1 where it touches, or has; -1 where it may in the
+   step */
+enum { MOTION_TOUCHES = TRANSFER_MOTION, MOTION_CLOSES, CONTACT_MOTION };
 /* What ContactUpdatePairs() says of the rows of a pair */
 enum { ROWS_STAY, ROWS_FOLLOWED, ROWS_REBUILT };
 

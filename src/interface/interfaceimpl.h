@@ -151,7 +151,6 @@ struct _p_Transfer {
   PetscBool       guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
   RowSet          rows;
   PetscBool       built;
-  PetscBool       due, looks; /* in the present update rows are built whatever the motion; the motion says whether they are */
   TransferNumbers numbers;
   PetscReal      *built_x[2]; /* positions of the owned nodes of both sides at the last build */
   PetscReal      *built_slip; /* per row: the part of sum_j P_ij x_j - x_i across the normal at the last build, 3 numbers each [m] */

@@ -10,38 +10,6 @@
 /* Motion relative to the partner since the last build after which other faces may lie opposite [edges of the smallest face] */
 #define FAR_MOTION 0.25
 
-/* Adds up how far the nodes that this rank owns have moved since the last build [m], and their number */
-static void SumMotion(const SurfaceData *data, const PetscReal built[], PetscReal sums[])
-{
-  for (PetscInt i = 0; i < 3 * data->n_owned; i++) sums[i % 3] += data->positions[i] - built[i];
-  sums[3] += data->n_owned;
-}
-
-/* How far any node that this rank owns has moved since the last build, less the mean motion [m] */
-static PetscReal LargestMotion(const SurfaceData *data, const PetscReal built[], const PetscReal mean[])
-{
-  PetscReal largest = 0;
-
-  for (PetscInt i = 0; i < data->n_owned; i++) {
-    PetscReal square = 0;
-
-    for (PetscInt d = 0; d < 3; d++) square += PetscSqr(data->positions[3 * i + d] - built[3 * i + d] - mean[d]);
-    largest = PetscMax(largest, square);
-  }
-  return PetscSqrtReal(largest);
-}
-
-/* How far any node of each side that this rank owns has moved since the last build [m]. Between two surfaces the mean motion of all nodes
-   of all ranks is subtracted: rows do not change if both surfaces move together; an obstacle does not move. */
-static void GetMotion(Transfer transfer, const PetscReal sums[4], PetscReal largest[2])
-{
-  const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
-  PetscReal          mean[3] = {0};
-
-  for (PetscInt d = 0; d < 3 && sums[3] > 0; d++) mean[d] = sums[d] / sums[3];
-  for (PetscInt side = 0; side < 2; side++) largest[side] = data[side] ? LargestMotion(data[side], transfer->built_x[side], mean) : 0;
-}
-
 /* Brings vectors of the partner's nodes to the ranks whose rows name them */
 PetscErrorCode RowSetGetColumns(const RowSet *set, const PetscReal vectors[], PetscReal columns[])
 {
@@ -170,61 +138,58 @@ PetscErrorCode TransferSleep(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The part of TransferUpdate() before ranks add up motions, which callers do for many transfers at once. Surfaces are where they are.
-   `sums`: of this rank, to be added up over all ranks and given to TransferCompareMotion() */
-PetscErrorCode TransferBeginUpdate(Transfer transfer, PetscReal near, PetscReal sums[TRANSFER_SUMS])
+/* Whether rows are built whatever the motion */
+static PetscBool IsDue(Transfer transfer, PetscReal near)
 {
+  return (PetscBool)(!transfer->built || transfer->numbers.sleeps || near > transfer->numbers.near);
+}
+
+/* The part of TransferUpdate() before ranks tell each other of the motion, which callers do for many transfers at once. Surfaces are where
+   they are. `least`: of this rank; of those of all ranks the least go to TransferRenew(). They are a box about the motions of all nodes
+   since the last build, whose upper corner has its sign changed, and -1 if a row has slipped. */
+PetscErrorCode TransferMeasureMotion(Transfer transfer, PetscReal near, PetscReal least[TRANSFER_MOTION])
+{
+  const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
+  PetscBool          slipped = PETSC_FALSE;
+
   PetscFunctionBegin;
   PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
              (double)near);
-  for (PetscInt k = 0; k < TRANSFER_SUMS; k++) sums[k] = 0;
+  for (PetscInt k = 0; k < 6; k++) least[k] = transfer->obstacle ? 0 : PETSC_MAX_REAL; /* obstacles do not move */
+  least[6]                  = 0;
   transfer->columns_present = PETSC_FALSE;
-  transfer->looks           = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
-  transfer->due            = (PetscBool)(!transfer->built || transfer->numbers.sleeps || near > transfer->numbers.near);
-  transfer->looks          = (PetscBool)(!transfer->due && transfer->dim > 1);
-  transfer->numbers.sleeps = PETSC_FALSE;
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
-  if (!transfer->looks || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
-  SumMotion(&transfer->dirichlet->data, transfer->built_x[0], sums);
-  SumMotion(&transfer->neumann->data, transfer->built_x[1], sums);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  if (IsDue(transfer, near) || transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt side = 0; side < 2 && data[side]; side++)
+    for (PetscInt i = 0; i < 3 * data[side]->n_owned; i++) {
+      const PetscReal moved = data[side]->positions[i] - transfer->built_x[side][i];
 
-/* How far surfaces have moved since the last build. `sums`: of all ranks; `anew`: whether to build all rows where the surfaces are,
-   however little these have moved; `largest`: of this rank, of which the largest of all ranks are to be given to TransferEndUpdate() */
-PetscErrorCode TransferCompareMotion(Transfer transfer, const PetscReal sums[TRANSFER_SUMS], PetscBool anew,
-                                     PetscReal largest[TRANSFER_LARGEST])
-{
-  PetscBool slipped = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < TRANSFER_LARGEST; k++) largest[k] = 0;
-  if (anew) {
-    transfer->due   = PETSC_TRUE;
-    transfer->looks = PETSC_FALSE;
-    if (transfer->follow.known) PetscCall(PetscArrayzero(transfer->follow.known, transfer->n)); /* no row goes on from where it is */
-  }
-  if (!transfer->looks) PetscFunctionReturn(PETSC_SUCCESS);
-  GetMotion(transfer, sums, largest);
+      least[i % 3]     = PetscMin(least[i % 3], moved);
+      least[3 + i % 3] = PetscMin(least[3 + i % 3], -moved);
+    }
   if (!transfer->some_near || !IsFlat(transfer)) PetscCall(HasSlipped(transfer, &slipped));
-  largest[2] = slipped;
+  least[6] = slipped ? -1 : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Builds the rows again where that is needed, with the displacements of both bodies. `largest`: of all ranks */
-PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near,
-                                 const PetscReal largest[TRANSFER_LARGEST], PetscBool *rebuilt)
+/* The rest of TransferUpdate(). `least`: of all ranks; `anew`: builds all rows, and none goes on from where it is */
+PetscErrorCode TransferRenew(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscBool anew,
+                             const PetscReal least[TRANSFER_MOTION], PetscBool *rebuilt)
 {
-  PetscReal reach;
-  PetscBool slipped;
+  const PetscBool due = (PetscBool)(anew || IsDue(transfer, near)), looks = (PetscBool)(!due && transfer->dim > 1);
+  PetscReal       square = 0, reach;
+  PetscBool       slipped;
 
   PetscFunctionBegin;
   *rebuilt = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
-  *rebuilt = transfer->due;
-  if (transfer->looks) *rebuilt = (PetscBool)(largest[0] + largest[1] > FAR_MOTION * transfer->numbers.smallest_size || largest[2] > 0);
+  transfer->numbers.sleeps = PETSC_FALSE;
+  if (due) PetscCall(PetscArrayzero(transfer->keep, transfer->n));
+  if (anew && transfer->follow.known) PetscCall(PetscArrayzero(transfer->follow.known, transfer->n));
+  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(least[d] + least[3 + d]);
+  *rebuilt = (PetscBool)(due || (looks && (least[6] < 0 || PetscSqrtReal(square) > FAR_MOTION * transfer->numbers.smallest_size)));
   for (PetscInt row = 0; row < transfer->n; row++) {
     transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->follow.known && transfer->follow.known[row] && !transfer->keep[row]);
     transfer->followed[row] = PETSC_FALSE;
@@ -233,7 +198,7 @@ PetscErrorCode TransferEndUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   if (transfer->some_near) { /* normals, areas and sizes of all nodes */
     PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
     if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
-    if (transfer->looks && IsFlat(transfer)) PetscCall(HasSlipped(transfer, &slipped)); /* which rows stay as they are */
+    if (looks && IsFlat(transfer)) PetscCall(HasSlipped(transfer, &slipped)); /* which rows stay as they are */
   }
   PetscCall(TransferGetReach(transfer, near, &reach));
   if (transfer->neumann) PetscCall(TransferBuildRows(transfer, u_dirichlet, u_neumann, reach));
@@ -283,16 +248,13 @@ PetscErrorCode TransferSetNear(Transfer transfer, const PetscBool near[], PetscB
    boxes about both surfaces, if that is more; and behind the node as far as the two bodies overlap. */
 PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscBool *rebuilt)
 {
-  PetscReal sums[TRANSFER_SUMS], largest[TRANSFER_LARGEST];
+  PetscReal least[TRANSFER_MOTION];
 
   PetscFunctionBegin;
   PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
   if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
-  PetscCall(TransferBeginUpdate(transfer, near, sums));
-  if (transfer->looks && transfer->neumann)
-    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, TRANSFER_SUMS, MPIU_REAL, MPIU_SUM, transfer->comm));
-  PetscCall(TransferCompareMotion(transfer, sums, PETSC_FALSE, largest));
-  if (transfer->looks) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, largest, TRANSFER_LARGEST, MPIU_REAL, MPIU_MAX, transfer->comm));
-  PetscCall(TransferEndUpdate(transfer, u_dirichlet, u_neumann, near, largest, rebuilt));
+  PetscCall(TransferMeasureMotion(transfer, near, least));
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, least, TRANSFER_MOTION, MPIU_REAL, MPIU_MIN, transfer->comm));
+  PetscCall(TransferRenew(transfer, u_dirichlet, u_neumann, near, PETSC_FALSE, least, rebuilt));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -435,7 +435,7 @@ typedef struct {
   PetscInt      *entry_counts;  /* two numbers per row */
   PetscReal     *rest;          /* to a body */
   int           *updated;       /* per pair: what has become of its rows, see pairsupdate.c */
-  PetscReal     *motion;        /* per pair: how far its surfaces have moved, see pairsupdate.c */
+  PetscReal     *motion;        /* per pair: how its surfaces have moved, and whether they touch, see pairsupdate.c */
   PetscReal     *off;           /* per pair: how far planes of nodes in contact are off its partner, see layahead.c */
   BodyCondition *conditions;    /* to a body */
 } ContactWork;

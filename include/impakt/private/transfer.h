@@ -38,9 +38,8 @@ typedef struct {
   const PetscReal *bow;      /* depth that the row may have between surfaces which only touch, since the partner's faces are bent [m] */
 } TransferRows;
 
-/* Numbers of each rank that parts of an update hand to the next one, summed up and the largest of all ranks */
-#define TRANSFER_SUMS    4
-#define TRANSFER_LARGEST 3
+/* Numbers by which the motion of the surfaces is told, see TransferMeasureMotion() */
+#define TRANSFER_MOTION 7
 
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
@@ -51,9 +50,8 @@ PETSC_EXTERN PetscErrorCode TransferGetOwner(Transfer, PetscMPIInt *);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferSetNear(Transfer, const PetscBool[], PetscBool[], PetscBool[]);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
-PETSC_EXTERN PetscErrorCode TransferBeginUpdate(Transfer, PetscReal, PetscReal[TRANSFER_SUMS]);
-PETSC_EXTERN PetscErrorCode TransferCompareMotion(Transfer, const PetscReal[TRANSFER_SUMS], PetscBool, PetscReal[TRANSFER_LARGEST]);
-PETSC_EXTERN PetscErrorCode TransferEndUpdate(Transfer, Vec, Vec, PetscReal, const PetscReal[TRANSFER_LARGEST], PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferMeasureMotion(Transfer, PetscReal, PetscReal[TRANSFER_MOTION]);
+PETSC_EXTERN PetscErrorCode TransferRenew(Transfer, Vec, Vec, PetscReal, PetscBool, const PetscReal[TRANSFER_MOTION], PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscBool, PetscReal, PetscReal,
                                            PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSave(Transfer);

@@ -1,7 +1,4 @@
-/*
-   Pairs whose rows are built again, and those whose rows follow. How far the surfaces of a pair have moved relative to each other takes the
-   motion of all of their nodes: ranks add it up for all pairs at once.
-*/
+/* Pairs whose rows are built again, and those whose rows follow. */
 #include <contact/parts.h>
 #include <sys/stages.h>
 
@@ -47,80 +44,38 @@ static PetscErrorCode GetDisplacements(Contact contact, const ContactPair *pair,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether there is anything to update */
-static PetscBool MayChange(const ContactPair *pair)
+/* How the surfaces of all pairs have moved since their rows were built, which pairs touch or have had a force, and of which others rows may
+   close in this step; the same on all ranks */
+static PetscErrorCode MeasureMotion(Contact contact)
 {
-  return (PetscBool)(!pair->bonded && !pair->far);
-}
-
-/* Numbers of the pairs that have surfaces on several ranks, over all of these: `each` for each pair */
-static PetscErrorCode ReduceMotion(Contact contact, PetscInt each, MPI_Op operation, PetscReal values[])
-{
-  PetscReal *packed = contact->work.motion;
-  PetscInt   n      = 0;
-
   PetscFunctionBegin;
-  if (contact->ranks.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt pass = 0; pass < 2; pass++) {
-    n = 0;
-    for (PetscInt p = 0; p < contact->n_pairs; p++) {
-      PetscMPIInt owner;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair  = &contact->pairs[p];
+    PetscReal         *least = contact->work.motion + CONTACT_MOTION * p;
 
-      if (!MayChange(&contact->pairs[p])) continue;
-      PetscCall(TransferGetOwner(contact->pairs[p].transfer, &owner));
-      if (owner >= 0) continue;
-      PetscCall(PetscArraycpy(pass ? values + each * p : packed + n, pass ? packed + n : values + each * p, each));
-      n += each;
+    PetscCall(PetscArrayzero(least, CONTACT_MOTION));
+    if (pair->bonded || pair->far) continue;
+    PetscCall(TransferMeasureMotion(pair->transfer, ContactPairReach(contact, pair), least));
+    least[MOTION_TOUCHES] = ContactHasTouched(contact, pair) ? -1 : 0;
+    for (PetscInt i = pair->begin; i < pair->end && !pair->obstacle && least[MOTION_TOUCHES] == 0; i += pair->components) {
+      if (contact->start.active[i]) least[MOTION_TOUCHES] = -1;
+      if (contact->rows.opposite[i] && contact->start.gap[i] <= ContactRowReach(contact, pair, contact->rows.normal + 3 * i))
+        least[MOTION_CLOSES] = -1;
     }
-    if (!pass && n)
-      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, packed, (PetscMPIInt)n, MPIU_REAL, operation, PetscObjectComm((PetscObject)contact)));
   }
+  if (contact->ranks.size > 1)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, contact->work.motion, (PetscMPIInt)(CONTACT_MOTION * contact->n_pairs), MPIU_REAL, MPIU_MIN,
+                               PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether rows of a pair touch on this rank, or have had a force, and the number of those that may close in this step */
-static void CountTouching(Contact contact, const ContactPair *pair, PetscReal counts[2])
-{
-  counts[0] = ContactHasTouched(contact, pair);
-  counts[1] = 0;
-  for (PetscInt i = pair->begin; i < pair->end && !pair->obstacle && !counts[0]; i += pair->components) {
-    counts[0] += contact->start.active[i];
-    counts[1] += contact->rows.opposite[i] && contact->start.gap[i] <= ContactRowReach(contact, pair, contact->rows.normal + 3 * i);
-  }
-}
-
-/* How far the surfaces of each pair have moved since its rows were built, of all pairs at once. Rows of surfaces that may touch in this
-   step for the first time are built where the surfaces are now: what happens then does not depend on when they were built before. */
-static PetscErrorCode CompareMotion(Contact contact)
-{
-  PetscReal *sums = contact->work.motion + CONTACT_SUMS * contact->n_pairs, *largest = sums + CONTACT_SUMS * contact->n_pairs;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    if (!MayChange(pair)) continue;
-    PetscCall(TransferBeginUpdate(pair->transfer, ContactPairReach(contact, pair), sums + CONTACT_SUMS * p));
-    CountTouching(contact, pair, sums + CONTACT_SUMS * p + TRANSFER_SUMS);
-  }
-  PetscCall(ReduceMotion(contact, CONTACT_SUMS, MPIU_SUM, sums));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair   = &contact->pairs[p];
-    const PetscReal   *counts = sums + CONTACT_SUMS * p + TRANSFER_SUMS;
-
-    if (!MayChange(pair)) continue;
-    PetscCall(TransferCompareMotion(pair->transfer, sums + CONTACT_SUMS * p, (PetscBool)(pair->ahead || (counts[0] == 0 && counts[1] > 0)),
-                                    largest + TRANSFER_LARGEST * p));
-  }
-  PetscCall(ReduceMotion(contact, TRANSFER_LARGEST, MPIU_MAX, largest));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The rows of a pair where its bodies are; none, where they are far apart */
+/* The rows of a pair where its bodies are; none, where they are far apart. Rows of surfaces that may touch in this step for the first time
+   are built where the surfaces are now: what happens then does not depend on when they were built before. */
 static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt)
 {
-  const PetscReal   *largest = contact->work.motion + 2 * CONTACT_SUMS * contact->n_pairs + TRANSFER_LARGEST * p;
-  const ContactPair *pair    = &contact->pairs[p];
+  const PetscReal   *least = contact->work.motion + CONTACT_MOTION * p;
+  const ContactPair *pair  = &contact->pairs[p];
+  const PetscBool    anew  = (PetscBool)(pair->ahead || (least[MOTION_TOUCHES] == 0 && least[MOTION_CLOSES] < 0));
   Vec                u[2], at[2];
 
   PetscFunctionBegin;
@@ -132,7 +87,7 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt
   PetscCall(GetDisplacements(contact, pair, u));
   for (PetscInt side = 0; side < 2; side++) at[side] = pair->ahead && u[side] ? contact->ends[pair->body[side]] : u[side];
   for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
-  PetscCall(TransferEndUpdate(pair->transfer, at[0], at[1], ContactPairReach(contact, pair), largest, rebuilt));
+  PetscCall(TransferRenew(pair->transfer, at[0], at[1], ContactPairReach(contact, pair), anew, least, rebuilt));
   /* other pairs may have these surfaces too */
   for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], u[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -164,7 +119,7 @@ PetscErrorCode ContactUpdatePairs(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(StageBegin(STAGE_SEARCH, &logged));
-  PetscCall(CompareMotion(contact));
+  PetscCall(MeasureMotion(contact));
   PetscCall(StageEnd(logged));
   /* those of several ranks first, which wait for each other there, and would for what each has to do by itself */
   for (PetscInt pass = 0; pass < 2; pass++)

@@ -52,8 +52,8 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->held.heir, n, &contact->held.merged_gap, n, &contact->work.tilts));
   PetscCall(PetscCalloc7(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
                          &contact->rows.followed, n, &contact->work.moved, n, &contact->work.flags, n, &contact->work.rest));
-  PetscCall(PetscCalloc3(contact->n_pairs, &contact->work.updated, (2 * CONTACT_SUMS + TRANSFER_LARGEST) * contact->n_pairs,
-                         &contact->work.motion, contact->n_pairs, &contact->work.off));
+  PetscCall(PetscCalloc3(contact->n_pairs, &contact->work.updated, CONTACT_MOTION * contact->n_pairs, &contact->work.motion,
+                         contact->n_pairs, &contact->work.off));
   PetscCall(PetscMPIIntCast(n, &mine));
   PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
   for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
