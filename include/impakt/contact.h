@@ -71,7 +71,7 @@ PETSC_EXTERN PetscClassId CONTACT_CLASSID;
 S*/
 typedef struct {
   PetscReal force;   /* resultant of the normal contact forces, compression positive [N] */
-  PetscReal gap;     /* smallest normal gap; of a chosen pair whose bodies are far apart that of their boxes as the step begins [m] */
+  PetscReal gap;     /* smallest normal gap [m] */
   PetscInt  active;  /* nodes in contact */
   PetscReal tension; /* largest tensile force of a node along its normal, of ties too; 0 if there is none [N] */
   PetscReal area;    /* of the active nodes; of bars, the cross-section of the body that has the rows [m^2] */

@@ -117,7 +117,6 @@ typedef struct {
 
 /* What updates read and change beside arrays */
 typedef struct {
-  PetscBool sleeps;        /* no row has a partner until the next update, see TransferSleep() */
   PetscBool has_last;      /* the motion since the last update is known */
   PetscReal near;          /* partners at most that far away are known since the last build [m] */
   PetscReal smallest_size; /* edge of the smallest face of both sides at the last build [m] */
@@ -129,7 +128,7 @@ typedef struct {
 
 /* What TransferSave() puts aside */
 typedef struct {
-  PetscBool       same;   /* rows have neither been built, nor have they followed or gone to sleep, since they were put aside */
+  PetscBool       same;   /* rows have neither been built, nor have they followed, since they were put aside */
   PetscInt        builds; /* those counted when the rows were put aside; 0: none have been */
   RowSet          rows;   /* their shares */
   TransferNumbers numbers;

@@ -118,30 +118,10 @@ PetscErrorCode TransferGetReach(Transfer transfer, PetscReal near, PetscReal *re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Leaves all rows between two surfaces without a partner, since these are far apart, until the next update builds them. Rows that had a
-   partner count as changed. */
-PetscErrorCode TransferSleep(Transfer transfer)
-{
-  RowSet *set = &transfer->rows;
-
-  PetscFunctionBegin;
-  PetscCheck(transfer->built && transfer->neumann, transfer->comm, PETSC_ERR_ARG_WRONGSTATE,
-             "Only rows between two surfaces can sleep, after TransferUpdate()");
-  for (PetscInt row = 0; row < transfer->n; row++) {
-    set->changed[row]  = set->opposite[row];
-    set->opposite[row] = set->beyond[row] = transfer->keep[row] = PETSC_FALSE;
-    transfer->follow.known[row] = transfer->followed[row] = transfer->goes_on[row] = PETSC_FALSE;
-  }
-  transfer->saved.same       = PETSC_FALSE;
-  transfer->numbers.has_last = PETSC_FALSE;
-  transfer->numbers.sleeps   = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether rows are built whatever the motion */
 static PetscBool IsDue(Transfer transfer, PetscReal near)
 {
-  return (PetscBool)(!transfer->built || transfer->numbers.sleeps || near > transfer->numbers.near);
+  return (PetscBool)(!transfer->built || near > transfer->numbers.near);
 }
 
 /* The part of TransferUpdate() before ranks tell each other of the motion, which callers do for many transfers at once. Surfaces are where
@@ -185,7 +165,6 @@ PetscErrorCode TransferRenew(Transfer transfer, Vec u_dirichlet, Vec u_neumann, 
   PetscFunctionBegin;
   *rebuilt = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
-  transfer->numbers.sleeps = PETSC_FALSE;
   if (due) PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (anew && transfer->follow.known) PetscCall(PetscArrayzero(transfer->follow.known, transfer->n));
   for (PetscInt d = 0; d < 3; d++) square += PetscSqr(least[d] + least[3 + d]);

@@ -204,30 +204,6 @@ def cloud(n=7, speed=20.0):
     return " ".join(words)
 
 
-@pytest.mark.parametrize("ranks", [1, *long(2)])
-def test_pairs_that_are_far_apart(ranks, impakt):
-    """Chosen pairs have no rows with a partner while their bodies are far apart. Pairs that are named have them always; all else is the same, to what
-    round-off becomes in six impacts."""
-    chosen = impakt(f"{cloud()} -contact_pairs auto", ranks)
-    pairs = list(chosen.summary["pairs"])
-    named = impakt(f"{cloud()} -contact_pairs {','.join(pairs)}", ranks)
-    assert len(pairs) == 21
-    touched = [pair for pair in pairs if chosen.summary["pairs"][pair]["onsets"]]
-    assert 5 <= len(touched) < 21 and touched == [pair for pair in pairs if named.summary["pairs"][pair]["onsets"]]
-    for body in chosen.history["body"]:
-        a, b = (run.history["body"][body]["momentum"][()] for run in (chosen, named))
-        np.testing.assert_allclose(a, b, rtol=0, atol=1e-11 * np.abs(b).max(), err_msg=body)  # measured: 1.1e-13
-    assert chosen.summary["schwarz"]["rebuilds"] < 0.9 * named.summary["schwarz"]["rebuilds"]  # measured: 728 and 903
-    for run in (chosen, named):
-        assert run.summary["system"]["momentum_error_max"] <= 1e-11
-    # the gap of a pair that is far apart is the distance of the boxes as the step begins; corners of the discs lie on the axes
-    for pair in pairs:
-        gaps = chosen.history["contact"][pair]["gap"]
-        apart = np.diff([chosen.history["body"][body]["contact_position"][0] for body in pair.split(":")], axis=0)[0]
-        assert gaps[0] == named.history["contact"][pair]["gap"][0]  # that of the set-up, with all rows
-        assert gaps[1] == pytest.approx(np.linalg.norm(np.maximum(np.abs(apart) - 0.2, 0)), rel=1e-9)  # mean positions of 16 nodes are those of the centres
-
-
 def named(n):
     return ",".join(f"d{i}:d{j}" for i in range(n) for j in range(i + 1, n))
 

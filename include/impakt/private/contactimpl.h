@@ -70,9 +70,6 @@ typedef struct {
   PetscBool      own_side;    /* the pair has been given a side of its own */
   Surface        surfaces[2]; /* those of the bodies */
   PetscInt       place[2];    /* these in contact->surfaces */
-  PetscBool      far;         /* its bodies are so far apart that its rows have no partner, see src/contact/rows/farpairs.c */
-  PetscBool      was_far;     /* at the start of the controller step */
-  PetscReal      distance;    /* between the boxes of its surfaces as the step begins, where they are far apart [m] */
   Transfer       transfer;    /* between the surfaces */
   PetscInt       components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
   PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
@@ -423,7 +420,6 @@ typedef struct {
 typedef struct {
   PetscReal     *traces;        /* six numbers per body, see ContactGetBodyTraces() */
   PetscBool     *left_out;      /* per body: it is not integrated with others */
-  PetscReal     *boxes;         /* per surface: lower corner, and the upper one with its sign changed [m] */
   int           *hands_over;    /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;         /* to a body */
   PetscReal     *last_gap;      /* per row */

@@ -42,7 +42,6 @@ typedef struct {
 #define TRANSFER_MOTION 7
 
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, Transfer *);
-PETSC_EXTERN PetscErrorCode TransferSleep(Transfer);
 PETSC_EXTERN PetscErrorCode TransferGetDrift(Transfer, Vec, Vec, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferSetBoundaries(Transfer, Surface, Surface);
 PETSC_EXTERN PetscErrorCode TransferSetOwner(Transfer, PetscMPIInt);

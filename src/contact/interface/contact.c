@@ -310,7 +310,6 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
   PetscCall(PetscFree4(c->spares, c->work.hands_over, c->work.traces, c->work.left_out));
   PetscCall(PetscFree2(c->ends, c->at_end));
-  PetscCall(PetscFree(c->work.boxes));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyOverlaps(c));
   PetscCall(ContactDestroyFloating(c));

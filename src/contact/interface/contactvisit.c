@@ -190,8 +190,6 @@ PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
     PetscCall(CheckpointCheckInts(checkpoint, "the side that has the rows (-contact_rows)", 1, side));
     PetscCall(CheckpointVisitInts(checkpoint, "dirichlet", 1, &pair->dirichlet));
     PetscCall(CheckpointVisitBools(checkpoint, "bonded", 1, &pair->bonded));
-    PetscCall(CheckpointVisitBools(checkpoint, "far", 1, &pair->far));
-    PetscCall(CheckpointVisitReals(checkpoint, "distance", 1, &pair->distance));
     PetscCall(TransferVisitShared(pair->transfer, checkpoint));
   }
   PetscCall(CheckpointVisitReals(checkpoint, "turns", contact->turns.n, contact->turns.change));

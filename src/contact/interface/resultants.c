@@ -112,8 +112,7 @@ PetscErrorCode ContactAddImpulses(Contact contact)
               end[N_FORCES];
 
     /* nothing is added */
-    if (last[0] == 0 && last[1] == 0 && last[2] == 0 && normal[1] == 0 && (contact->pairs[p].far || !HasForce(contact, &contact->pairs[p])))
-      continue;
+    if (last[0] == 0 && last[1] == 0 && last[2] == 0 && normal[1] == 0 && !HasForce(contact, &contact->pairs[p])) continue;
     PetscCall(PetscArraycpy(first, last, 3));
     first[OF_NORMAL] = normal[1];
     if (contact->energy.changed) PetscCall(SumForces(contact, &contact->pairs[p], contact->start.force, first));
@@ -168,7 +167,7 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
 /* Whether a row of this rank touches, or has a force */
 static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
 {
-  for (PetscInt k = pair->acts_begin; k < pair->acts_end && !pair->far; k++) {
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
     const PetscInt i = contact->rows.acting[k];
 
     if (contact->end.active[i] || contact->end.force[i] != 0) return PETSC_TRUE;
@@ -192,7 +191,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
   maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
   maxima[MAX_TENSION]      = 0;
-  for (PetscInt k = pair->near_begin; k < pair->near_end && !pair->far; k++)
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k++)
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[contact->rows.near[k]]);
   if (!contact->held.merger && !IsLoaded(contact, pair))
     PetscFunctionReturn(PETSC_SUCCESS); /* moments of merged rows take a word of all ranks */
@@ -226,15 +225,14 @@ static PetscErrorCode FindFarGaps(Contact contact, PetscInt begin, PetscInt end,
   PetscBool       any   = PETSC_FALSE;
 
   PetscFunctionBegin;
-  for (PetscInt p = begin; p < end; p++)
-    any = (PetscBool)(any || (!contact->pairs[p].far && maxima[N_MAXIMA * (p - begin) + MAX_PENETRATION] < until));
+  for (PetscInt p = begin; p < end; p++) any = (PetscBool)(any || maxima[N_MAXIMA * (p - begin) + MAX_PENETRATION] < until);
   if (!contact->rows.listed || !any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactRefreshGaps(contact));
   for (PetscInt p = begin; p < end; p++) {
     const ContactPair *pair    = &contact->pairs[p];
     PetscReal         *deepest = &maxima[N_MAXIMA * (p - begin) + MAX_PENETRATION];
 
-    for (PetscInt i = pair->begin; i < pair->end && !pair->far; i++) *deepest = PetscMax(*deepest, -contact->end.gap[i]);
+    for (PetscInt i = pair->begin; i < pair->end; i++) *deepest = PetscMax(*deepest, -contact->end.gap[i]);
   }
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX,
@@ -262,7 +260,7 @@ PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscIn
 
     state->force   = sums[SUM_FORCE];
     state->active  = (PetscInt)sums[SUM_ACTIVE];
-    state->gap     = contact->pairs[p].far ? contact->pairs[p].distance : -maxima[MAX_PENETRATION];
+    state->gap     = -maxima[MAX_PENETRATION];
     state->tension = maxima[MAX_TENSION];
     state->area    = sums[SUM_AREA];
     for (PetscInt d = 0; d < 3; d++) {

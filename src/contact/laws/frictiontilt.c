@@ -52,7 +52,7 @@ PetscErrorCode ContactNoteTilt(Contact contact)
     const ContactPair *pair = &contact->pairs[p];
     PetscReal          turn, sums[2] = {0, 0};
 
-    if (!pair->rests || pair->far || pair->law != CONTACT_LAW_FRICTION) continue;
+    if (!pair->rests || pair->law != CONTACT_LAW_FRICTION) continue;
     PetscCall(TransferGetTilts(pair->transfer, contact->work.tilts));
     PetscCall(GetLinearTurn(contact, pair, &turn));
     AddTilts(contact, pair, turn, contact->work.tilts, sums);

@@ -82,7 +82,7 @@ PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
 }
 
 /* Distance of two boxes [m] */
-PetscReal ContactBoxDistance(const PetscReal a[], const PetscReal b[])
+static PetscReal BoxDistance(const PetscReal a[], const PetscReal b[])
 {
   PetscReal square = 0;
 
@@ -190,7 +190,7 @@ static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
     for (PetscInt l = k + 1; l < contact->n_bodies && neighbours->lower[l] <= until; l++) {
       const PetscInt  b = neighbours->sorted[l], first = ComesFirst(neighbours, a, b) ? a : b, second = first == a ? b : a;
       const PetscReal edge     = PetscMax(neighbours->edge[a], neighbours->edge[b]);
-      const PetscReal distance = ContactBoxDistance(neighbours->boxes + 6 * a, neighbours->boxes + 6 * b);
+      const PetscReal distance = BoxDistance(neighbours->boxes + 6 * a, neighbours->boxes + 6 * b);
 
       if (distance > near + DROPPED * edge || (distance > near + TAKEN * edge && !Lives(contact, first, second))) continue;
       PetscCall(Append(neighbours, n, first, second));

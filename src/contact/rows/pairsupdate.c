@@ -54,7 +54,7 @@ static PetscErrorCode MeasureMotion(Contact contact)
     PetscReal         *least = contact->work.motion + CONTACT_MOTION * p;
 
     PetscCall(PetscArrayzero(least, CONTACT_MOTION));
-    if (pair->bonded || pair->far) continue;
+    if (pair->bonded) continue;
     PetscCall(TransferMeasureMotion(pair->transfer, ContactPairReach(contact, pair), least));
     least[MOTION_TOUCHES] = ContactHasTouched(contact, pair) ? -1 : 0;
     for (PetscInt i = pair->begin; i < pair->end && !pair->obstacle && least[MOTION_TOUCHES] == 0; i += pair->components) {
@@ -69,7 +69,7 @@ static PetscErrorCode MeasureMotion(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of a pair where its bodies are; none, where they are far apart. Rows of surfaces that may touch in this step for the first time
+/* The rows of a pair where its bodies are. Rows of surfaces that may touch in this step for the first time
    are built where the surfaces are now: what happens then does not depend on when they were built before. */
 static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt)
 {
@@ -79,11 +79,6 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt
   Vec                u[2], at[2];
 
   PetscFunctionBegin;
-  if (pair->far) {
-    PetscCall(TransferSleep(pair->transfer));
-    *rebuilt = PETSC_TRUE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(GetDisplacements(contact, pair, u));
   for (PetscInt side = 0; side < 2; side++) at[side] = pair->ahead && u[side] ? contact->ends[pair->body[side]] : u[side];
   for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
@@ -101,11 +96,11 @@ static PetscErrorCode RenewPair(Contact contact, PetscInt p, int *updated)
 
   PetscFunctionBegin;
   *updated = ROWS_STAY;
-  if (pair->bonded || (pair->far && pair->was_far)) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->bonded) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StageBegin(STAGE_SEARCH, &logged));
   PetscCall(UpdatePair(contact, p, &rebuilt));
   PetscCall(StageEnd(logged));
-  if (!pair->far) PetscCall(FollowPair(contact, pair, &followed));
+  PetscCall(FollowPair(contact, pair, &followed));
   *updated = rebuilt ? ROWS_REBUILT : followed ? ROWS_FOLLOWED : ROWS_STAY;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

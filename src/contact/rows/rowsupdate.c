@@ -199,7 +199,6 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(PetscArrayzero(contact->rows.followed, contact->rows.n));
   PetscCall(StageBegin(STAGE_SEARCH, &logged));
   PetscCall(ContactMoveSurfaces(contact));
-  PetscCall(ContactFindFarPairs(contact, reach));
   PetscCall(StageEnd(logged));
   PetscCall(ContactUpdatePairs(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

@@ -78,12 +78,8 @@ PetscErrorCode ContactSaveRows(Contact contact)
   }
   contact->saved.rebuilds = contact->counts.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].saved = contact->body_rows[b].pattern;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    pair->was_far = pair->far;
-    if (!pair->bonded && !pair->far) PetscCall(TransferSave(pair->transfer));
-  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!contact->pairs[p].bonded) PetscCall(TransferSave(contact->pairs[p].transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,13 +94,7 @@ PetscErrorCode ContactRestoreRows(Contact contact)
   contact->counts.rebuilds = contact->saved.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (contact->body_rows[b].pattern != contact->body_rows[b].saved) contact->body_rows[b].pattern++;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    if (pair->bonded) continue;
-    if (pair->was_far) PetscCall(TransferSleep(pair->transfer));
-    else PetscCall(TransferRestore(pair->transfer));
-    pair->far = pair->was_far;
-  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (!contact->pairs[p].bonded) PetscCall(TransferRestore(contact->pairs[p].transfer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
