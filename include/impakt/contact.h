@@ -83,7 +83,7 @@ typedef struct {
   PetscReal friction_loss;   /* energy that friction has taken so far [J] */
   PetscReal obstacle_work;   /* work that an obstacle whose surface moves has done so far [J] */
   PetscInt  sliding;         /* of the nodes in contact those that slide, with friction */
-  PetscReal beyond_impulse;  /* what nodes beyond the end of the partner bear of that, see `TransferSetGuards()`; not trapezoidal [N s] */
+  PetscReal beyond_impulse;  /* what nodes beyond the end of the partner bear of that; not trapezoidal [N s] */
 } ContactPairState;
 
 /* Overlap from which on bodies are inside each other [parts of an element]: faces that do not match leave about 0.01 */

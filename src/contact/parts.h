@@ -110,7 +110,7 @@ PETSC_INTERN PetscErrorCode ContactDescribeMoves(Contact, PetscInt, char[CONTACT
 PETSC_INTERN PetscErrorCode ContactDestroyOverlaps(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckAxisymmetric(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactChooseBalance(Contact);
-PETSC_INTERN PetscErrorCode ContactSetUpBalance(Contact, ContactPair *);
+PETSC_INTERN PetscErrorCode ContactCheckBalance(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactSetUpTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactTurn(Contact, const PetscReal[]);

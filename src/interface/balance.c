@@ -131,19 +131,17 @@ static PetscErrorCode FindAxes(Transfer transfer, const PetscReal force[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prepares a transfer between two surfaces, in two or three dimensions, for TransferBalance() */
-PetscErrorCode TransferSetBalance(Transfer transfer)
+/* Room for the turns of gaps */
+PetscErrorCode TransferSetUpTurns(Transfer transfer)
 {
   Balance *balance = &transfer->balance;
 
   PetscFunctionBegin;
-  PetscCheck(transfer->neumann && transfer->dim > 1, transfer->comm, PETSC_ERR_SUP,
-             "Forces are balanced between two surfaces in two or three dimensions alone");
-  PetscCall(PetscFree5(balance->uneven, balance->lever, balance->across, balance->gap, balance->turned));
+  PetscCheck(transfer->neumann && transfer->dim > 1 && !transfer->options.owned, transfer->comm, PETSC_ERR_SUP,
+             "Forces are balanced between two surfaces in two or three dimensions alone, without an owner");
   balance->n = transfer->dim - 1;
   PetscCall(PetscCalloc5(balance->n * transfer->n, &balance->uneven, balance->n * transfer->n, &balance->lever, 3 * transfer->n,
                          &balance->across, transfer->n, &balance->gap, transfer->n, &balance->turned));
-  PetscCall(PetscFree3(balance->bends[0], balance->bends[1], balance->bend));
   PetscCall(PetscCalloc3(3 * transfer->n, &balance->bends[0], 3 * transfer->neumann->data.n_owned, &balance->bends[1], transfer->n,
                          &balance->bend));
   FindBends(&transfer->dirichlet->data, balance->bends[0]);

@@ -87,7 +87,7 @@ static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal 
 {
   RowSet         *set   = &transfer->rows;
   const PetscInt  first = set->offsets[row], n = set->offsets[row + 1] - first;
-  const PetscReal slip = PetscSqrtReal(Dot(expected, expected)) / (transfer->slip_bound * transfer->dirichlet->data.sizes[row]);
+  const PetscReal slip = PetscSqrtReal(Dot(expected, expected)) / (transfer->options.slip_bound * transfer->dirichlet->data.sizes[row]);
   const PetscReal rest = PetscMax(set->rest[row] - slip, 0), part = set->rest[row] > 0 ? 1 - rest / set->rest[row] : 0;
   PetscReal       weights[FOLLOW_MAX];
 

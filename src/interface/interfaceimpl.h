@@ -138,16 +138,11 @@ typedef struct {
 struct _p_Transfer {
   PETSCHEADER(int);
   MPI_Comm        comm;               /* of what is found of both surfaces: one rank where that has all of both */
-  PetscMPIInt     owner;              /* that rank, see TransferSetOwner(); PETSC_DECIDE: there may be several */
   PetscBool       idle;               /* it is another one than this, which has no rows */
   Surface         dirichlet, neumann; /* neumann NULL: an obstacle */
-  Surface         boundaries[2];      /* of both bodies, see TransferSetBoundaries(); or NULL */
   Obstacle        obstacle;
   PetscInt        dim, n;
-  PetscReal       slip_bound, angle_bound;
-  PetscBool       curved; /* rows take the bend of both surfaces into account, see TransferSetCurved() */
-  PetscReal       share;  /* of the partner's normals in those of rows then, see TransferSetNormalShare() */
-  PetscBool       guards; /* nodes just beyond the end of the partner have rows too, see TransferSetGuards() */
+  TransferOptions options;
   RowSet          rows;
   PetscBool       built;
   TransferNumbers numbers;
@@ -231,6 +226,7 @@ PETSC_INTERN PetscErrorCode RowSetGetColumns(const RowSet *, const PetscReal[], 
 PETSC_INTERN PetscErrorCode TransferAllocateColumns(Transfer);
 PETSC_INTERN void           TransferListState(Transfer, StateList[2]);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
+PETSC_INTERN PetscErrorCode TransferSetUpTurns(Transfer);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
 PETSC_INTERN PetscReal      TransferSplitRow(const Transfer, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferGetReach(Transfer, PetscReal, PetscReal *);

@@ -248,7 +248,10 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
                                  PetscReal ends[], PetscReal seen[], PetscInt *n_shares, Share *shares[])
 {
   Surface      dirichlet = transfer->dirichlet;
-  Segments     segments  = {.ahead = ahead, .behind = behind, .guards = transfer->guards, .face_nodes = transfer->neumann->data.face_nodes};
+  Segments     segments  = {.ahead      = ahead,
+                            .behind     = behind,
+                            .guards     = (PetscBool)!transfer->options.unguarded,
+                            .face_nodes = transfer->neumann->data.face_nodes};
   PetscInt     n_faces, n_mine = 0;
   Face        *faces;
   Share       *mine;
@@ -278,7 +281,7 @@ PetscErrorCode TransferIntegrate(Transfer transfer, PetscReal ahead, PetscReal b
   PetscCall(PetscSFReduceEnd(dirichlet->vectors, MPIU_REAL, seen, seen, MPIU_SUM));
   PetscCall(PetscSFReduceBegin(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
   PetscCall(PetscSFReduceEnd(dirichlet->sf, MPIU_REAL, ends, ends, MPIU_MIN));
-  if (transfer->owner >= 0) PetscCall(PetscArrayzero(owners, n_mine)); /* of one rank alone that is its number */
+  if (transfer->options.owned) PetscCall(PetscArrayzero(owners, n_mine)); /* of one rank alone that is its number */
   PetscCall(ExchangeRecords(transfer->comm, sizeof(Share), n_mine, owners, mine, n_shares, (void **)shares));
   PetscCall(PetscFree2(mine, owners));
   PetscCall(PetscFree(segments.list));

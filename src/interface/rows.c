@@ -143,7 +143,8 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
 static PetscBool SeesSmooth(Transfer transfer, PetscInt node, const PetscReal seen[], PetscReal area, PetscReal normal[])
 {
   PetscReal       mean[3] = {seen[0], seen[1], seen[2]};
-  const PetscBool smooth  = (PetscBool)(transfer->guards && transfer->dirichlet->sharp[node] && Normalize(mean) > SHARP_COSINE * area);
+  const PetscBool smooth  = (PetscBool)(!transfer->options.unguarded && transfer->dirichlet->sharp[node] &&
+                                        Normalize(mean) > SHARP_COSINE * area);
 
   for (PetscInt d = 0; d < 3; d++) normal[d] = smooth ? mean[d] : 0;
   if (!smooth) return PETSC_FALSE;
@@ -180,7 +181,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   if (SeesSmooth(transfer, row, seen, set->area[row], set->partner + 3 * row)) {
     (void)RowPartnerNormal(transfer->dirichlet, set, row, x, normal); /* as it is found again later, from slopes */
     for (PetscInt d = 0; d < 3; d++) normal[d] = -normal[d];
-  } else if (transfer->curved) RowNormal(dim, n, transfer->share, data->normals + 3 * row, smooth, weights, normal);
+  } else if (transfer->options.curved) RowNormal(dim, n, transfer->options.share, data->normals + 3 * row, smooth, weights, normal);
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
   for (PetscInt pass = 0; pass < 2; pass++)
     RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
@@ -196,7 +197,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     present += normal[d] * (now - data->positions[3 * row + d]);
   }
   set->bow[row] = RowBow(dim, n, partners, normals, weights);
-  bulge         = transfer->curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, smooth, weights) : 0;
+  bulge         = transfer->options.curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, smooth, weights) : 0;
   if (!set->beyond[row]) {
     gap -= bulge;
     present -= bulge;
@@ -306,8 +307,8 @@ static PetscErrorCode FindDeepest(Transfer transfer, const Vec u[2], PetscReal *
   PetscInt      n;
 
   PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceUpdate(transfer->boundaries[side], u[side]));
-  PetscCall(SurfacesFindDepths(transfer->comm, 2, transfer->boundaries, 0, NULL, &n, &depths));
+  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceUpdate(transfer->options.boundaries[side], u[side]));
+  PetscCall(SurfacesFindDepths(transfer->comm, 2, transfer->options.boundaries, 0, NULL, &n, &depths));
   *deepest = 0;
   for (PetscInt i = 0; i < n; i++) *deepest = PetscMax(*deepest, depths[i].depth);
   PetscCall(PetscFree(depths));
@@ -324,7 +325,7 @@ static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann
   PetscCall(SurfaceComputeOverlap(transfer->comm, transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind, &round_off));
   if (transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   *behind *= OBLIQUE;
-  if (*behind > PetscMax(least, OBLIQUE * round_off) && transfer->boundaries[0]) {
+  if (*behind > PetscMax(least, OBLIQUE * round_off) && transfer->options.boundaries[0]) {
     PetscCall(FindDeepest(transfer, (const Vec[2]){u_dirichlet, u_neumann}, &deepest));
     *behind = PetscMin(*behind, OBLIQUE * (deepest + round_off));
   }

@@ -2,34 +2,29 @@
 #include "interfaceimpl.h"
 #include <sys/citations.h>
 
-/* Bounds beyond which rows are built again, unless TransferSetBounds() is called: with this slip bound a half disc that is led round
-   another one has a normal force steady to 0.2 % */
-#define SLIP_BOUND  0.05 /* [parts of the face] */
-#define ANGLE_BOUND 0.02 /* [rad] */
-
 /* Prepares the rows that compare a surface, which takes displacements and gives tractions, with another one or with an obstacle, the
    other being NULL. Surfaces and obstacle belong to the caller and must live as long. `comm`: that of both */
-PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann, Obstacle obstacle, Transfer *transfer)
+PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann, Obstacle obstacle, const TransferOptions *options,
+                              Transfer *transfer)
 {
-  Transfer t;
+  PetscMPIInt rank;
+  Transfer    t;
 
   PetscFunctionBegin;
   PetscCall(InterfaceInitializePackage());
   PetscCall(PetscHeaderCreate(*transfer, TRANSFER_CLASSID, "Transfer", "Rows between contact surfaces", "Interface", comm, TransferDestroy,
                               NULL));
   PetscCheck(!neumann != !obstacle, comm, PETSC_ERR_ARG_WRONG, "A transfer is between a surface and either another surface or an obstacle");
-  t              = *transfer;
-  t->comm        = comm;
-  t->owner       = PETSC_DECIDE;
-  t->dirichlet   = dirichlet;
-  t->neumann     = neumann;
-  t->obstacle    = obstacle;
-  t->dim         = dirichlet->data.dim;
-  t->n           = dirichlet->data.n_owned;
-  t->slip_bound  = SLIP_BOUND;
-  t->angle_bound = ANGLE_BOUND;
-  t->share       = 0.5;
-  t->guards      = PETSC_TRUE;
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  t            = *transfer;
+  t->comm      = options->owned ? PETSC_COMM_SELF : comm;
+  t->idle      = (PetscBool)(options->owned && rank != options->owner);
+  t->dirichlet = dirichlet;
+  t->neumann   = neumann;
+  t->obstacle  = obstacle;
+  t->dim       = dirichlet->data.dim;
+  t->n         = dirichlet->data.n_owned;
+  t->options   = *options;
   if (neumann && t->dim > 1) {
     PetscCall(ImpaktCite(CITE_DUAL_MORTAR));
     PetscCall(ImpaktCite(CITE_SEGMENTS));
@@ -43,6 +38,7 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   if (neumann)
     PetscCall(PetscCalloc6(3 * t->n, &t->follow.x[0], 3 * neumann->data.n_owned, &t->follow.x[1], 3 * t->n, &t->follow.moved,
                            3 * neumann->data.n_owned, &t->follow.partner_moved, 3 * t->n, &t->follow.slip, t->n, &t->follow.known));
+  if (options->turns) PetscCall(TransferSetUpTurns(t));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,7 +53,6 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
   }
   PetscCall(RowSetDestroy(&(*transfer)->rows));
   PetscCall(TransferDestroySaved(*transfer));
-  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceDestroy(&(*transfer)->boundaries[side]));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
   PetscCall(PetscFree((*transfer)->near));
@@ -77,56 +72,8 @@ PetscErrorCode TransferSetBounds(Transfer transfer, PetscReal slip, PetscReal an
   PetscFunctionBegin;
   PetscCheck(slip >= 0 && angle >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE,
              "The bounds of slip, %g, and angle, %g, must not be negative", (double)slip, (double)angle);
-  transfer->slip_bound  = slip;
-  transfer->angle_bound = angle;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The whole boundaries of both bodies, by which it is known how deep they lie inside each other, for all transfers of these bodies; else
-   each has its own */
-PetscErrorCode TransferSetBoundaries(Transfer transfer, Surface dirichlet, Surface neumann)
-{
-  PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) {
-    PetscCall(PetscObjectReference((PetscObject)(side ? neumann : dirichlet)));
-    PetscCall(SurfaceDestroy(&transfer->boundaries[side]));
-    transfer->boundaries[side] = side ? neumann : dirichlet;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Says, before the first update, that one rank has all of both surfaces. From then on that rank alone knows what an update finds;
-   updates are collective no more. Gaps must not be turned. */
-PetscErrorCode TransferSetOwner(Transfer transfer, PetscMPIInt rank)
-{
-  PetscMPIInt mine;
-
-  PetscFunctionBegin;
-  PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
-  PetscCallMPI(MPI_Comm_rank(PetscObjectComm((PetscObject)transfer), &mine));
-  transfer->comm  = PETSC_COMM_SELF;
-  transfer->owner = rank;
-  transfer->idle  = (PetscBool)(mine != rank);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Which rank has all of both surfaces; PETSC_DECIDE: there may be several */
-PetscErrorCode TransferGetOwner(Transfer transfer, PetscMPIInt *rank)
-{
-  PetscFunctionBegin;
-  *rank = transfer->owner;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether Dirichlet nodes just beyond the end of the partner have rows too, which they do by default. If a face is covered in part, a
-   node of it beyond the end of the partner is compared with the straight line that continues the covered part (Popp, Seitz, Gee, Wall
-   2013), with the gap counted from where the partner ends. Without these rows the end of a tilting partner gets into the surface by half
-   an element times the angle. */
-PetscErrorCode TransferSetGuards(Transfer transfer, PetscBool guards)
-{
-  PetscFunctionBegin;
-  PetscCheck(!transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call before TransferUpdate()");
-  transfer->guards = guards;
+  transfer->options.slip_bound  = slip;
+  transfer->options.angle_bound = angle;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

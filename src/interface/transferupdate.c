@@ -24,7 +24,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 {
   const SurfaceData *data = &transfer->dirichlet->data;
   const PetscInt     dim  = transfer->dim;
-  const PetscReal    turn = 2 * PetscSinReal(transfer->angle_bound / 2); /* chord of the angle */
+  const PetscReal    turn = 2 * PetscSinReal(transfer->options.angle_bound / 2); /* chord of the angle */
 
   PetscFunctionBegin;
   *slipped = PETSC_FALSE;
@@ -54,7 +54,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
       for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(gradient[d] + normal[d]);
     }
     if (PetscAbsReal(gap) >= NEAR_CONTACT * size) continue;
-    within              = (PetscBool)(slip <= PetscSqr(transfer->slip_bound * size) && turned <= turn * turn);
+    within              = (PetscBool)(slip <= PetscSqr(transfer->options.slip_bound * size) && turned <= turn * turn);
     transfer->keep[row] = within;
     if (!within) *slipped = PETSC_TRUE;
   }

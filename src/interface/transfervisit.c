@@ -28,11 +28,11 @@ static PetscErrorCode VisitShares(Transfer transfer, Checkpoint checkpoint)
 PetscErrorCode TransferVisitShared(Transfer transfer, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
-  if (transfer->owner >= 0 && !CheckpointLoads(checkpoint)) { /* one rank alone knows it */
+  if (transfer->options.owned && !CheckpointLoads(checkpoint)) { /* one rank alone knows it */
     MPI_Comm comm = PetscObjectComm((PetscObject)transfer);
 
-    PetscCallMPI(MPI_Bcast(&transfer->numbers, sizeof(transfer->numbers), MPI_BYTE, transfer->owner, comm));
-    PetscCallMPI(MPI_Bcast(&transfer->builds, 1, MPIU_INT, transfer->owner, comm));
+    PetscCallMPI(MPI_Bcast(&transfer->numbers, sizeof(transfer->numbers), MPI_BYTE, transfer->options.owner, comm));
+    PetscCallMPI(MPI_Bcast(&transfer->builds, 1, MPIU_INT, transfer->options.owner, comm));
   }
   PetscCall(CheckpointVisitBytes(checkpoint, "numbers", sizeof(transfer->numbers), &transfer->numbers));
   PetscCall(CheckpointVisitInts(checkpoint, "builds", 1, &transfer->builds));

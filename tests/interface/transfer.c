@@ -28,7 +28,7 @@ static void bars_create(const char *const lower[], const char *const upper[], co
     ok(SurfaceCreate(bars->dm[side], names[side], &bars->surface[side]));
   }
   ok(SurfaceKeepFacing(bars->surface[0], bars->surface[1], NULL, (PetscBool)!names[0], (PetscBool)!names[1]));
-  ok(TransferCreate(PETSC_COMM_WORLD, bars->surface[0], bars->surface[1], NULL, &bars->transfer));
+  ok(TransferCreate(PETSC_COMM_WORLD, bars->surface[0], bars->surface[1], NULL, &bounds, &bars->transfer));
   ok(TransferUpdate(bars->transfer, NULL, NULL, near, &rebuilt));
   assert_true(rebuilt);
   ok(TransferGetRows(bars->transfer, &bars->rows));
@@ -114,7 +114,7 @@ static void dimensions_must_agree(void **state)
 
   (void)state;
   for (PetscInt i = 0; i < 2; i++) ok(SurfaceCreate(dm[i], NULL, &surface[i]));
-  refused(PETSC_ERR_USER_INPUT, "1 and 2 dimensions", TransferCreate(PETSC_COMM_WORLD, surface[0], surface[1], NULL, &transfer));
+  refused(PETSC_ERR_USER_INPUT, "1 and 2 dimensions", TransferCreate(PETSC_COMM_WORLD, surface[0], surface[1], NULL, &bounds, &transfer));
   ok(TransferDestroy(&transfer));
   refused(PETSC_ERR_USER_INPUT, "1 and 2 dimensions", SurfaceKeepFacing(surface[0], surface[1], NULL, PETSC_TRUE, PETSC_TRUE));
   for (PetscInt i = 0; i < 2; i++) {
@@ -317,19 +317,20 @@ static void ends_are_guarded(void **state)
 
   (void)state;
   for (PetscInt variant = 0; variant < 4; variant++) {
-    const PetscBool    guards = (PetscBool)(variant % 2 == 0);
-    const PetscInt     pair   = variant < 2 ? 0 : 3;
-    const SurfaceData *data;
-    const PetscScalar *gaps;
-    PetscReal          smallest = 1;
-    Interface          interface;
-    Vec                moved;
+    const PetscBool       guards  = (PetscBool)(variant % 2 == 0);
+    const TransferOptions options = {.slip_bound = 0.05, .angle_bound = 0.02, .unguarded = (PetscBool)!guards};
+    const PetscInt        pair    = variant < 2 ? 0 : 3;
+    const SurfaceData    *data;
+    const PetscScalar    *gaps;
+    PetscReal             smallest = 1;
+    Interface             interface;
+    Vec                   moved;
 
     interface_create(&interface, pair_dim[pair], pair_faces[pair], pair_simplex[pair], PETSC_FALSE);
-    ok(TransferSetGuards(interface.transfer, guards));
+    ok(TransferDestroy(&interface.transfer));
+    ok(TransferCreate(PETSC_COMM_WORLD, interface.surface[0], interface.surface[1], NULL, &options, &interface.transfer));
     move_mesh(interface.dm[1], pair_dim[pair] == 2 ? map_tilted_2d : map_tilted, aside, interface.u[1]);
     (void)interface_update(&interface, 1, 1);
-    refused(PETSC_ERR_ARG_WRONGSTATE, "before TransferUpdate", TransferSetGuards(interface.transfer, guards));
     assert_int_equal(interface.n_opposite, pair == 0 ? 1 + guards : 4 * (2 + guards));
     ok(SurfaceGetData(interface.surface[0], &data));
     ok(MatCreateVecs(interface.matrix[1], NULL, &moved));
@@ -436,7 +437,7 @@ static void rows_over_obstacles(void **state)
     n = data->n_owned;
     assert_int_equal(MPI_Allreduce(MPI_IN_PLACE, &n, 1, MPIU_INT, MPI_SUM, PETSC_COMM_WORLD), 0);
     if (!disc) assert_int_equal(n, 5);
-    ok(TransferCreate(PETSC_COMM_WORLD, surface, NULL, obstacle, &transfer));
+    ok(TransferCreate(PETSC_COMM_WORLD, surface, NULL, obstacle, &bounds, &transfer));
     ok(TransferSetBounds(transfer, 0.05, 1e-6)); /* every row whose normal has turned is built again */
     ok(DMCreateGlobalVector(dm, &u));
     for (PetscInt moves = 0; moves < 2; moves++) {

@@ -83,6 +83,8 @@ static inline void move_mesh(DM dm, Map map, const PetscReal shift[3], Vec u)
   ok(VecAssemblyEnd(u));
 }
 
+static const TransferOptions bounds = {.slip_bound = 0.05, .angle_bound = 0.02};
+
 /* [0,1]^dim under [0,1]^(dim - 1) x [1,2] with these elements; lower box first, `flip`: the upper one is the Dirichlet side */
 static inline void interface_create(Interface *interface, PetscInt dim, const char *const faces[2], const PetscBool simplex[2],
                                     PetscBool flip)
@@ -103,7 +105,7 @@ static inline void interface_create(Interface *interface, PetscInt dim, const ch
     ok(SurfaceCreate(interface->dm[side], names[box][dim], &interface->surface[side]));
     ok(DMCreateGlobalVector(interface->dm[side], &interface->u[side]));
   }
-  ok(TransferCreate(PETSC_COMM_WORLD, interface->surface[0], interface->surface[1], NULL, &interface->transfer));
+  ok(TransferCreate(PETSC_COMM_WORLD, interface->surface[0], interface->surface[1], NULL, &bounds, &interface->transfer));
 }
 
 /* Rows and matrices at the displacements interface->u */

@@ -71,6 +71,7 @@ typedef struct {
   Surface        surfaces[2]; /* those of the bodies */
   PetscInt       place[2];    /* these in contact->surfaces */
   Transfer       transfer;    /* between the surfaces */
+  PetscBool      owned;       /* one of several ranks has all of both surfaces, and looks at them alone */
   PetscInt       components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
   PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
   PetscInt       near_begin, near_end; /* of them those near contact, in rows.near */

@@ -66,8 +66,5 @@ PetscErrorCode ContactCheckAxisymmetric(Contact contact, const ContactPair *pair
       pair->name, ((PetscObject)contact->bodies[pair->body[rings[0] ? 0 : 1]])->name,
       ((PetscObject)contact->bodies[pair->body[rings[0] ? 1 : 0]])->name,
       ((PetscObject)contact->bodies[pair->body[rings[0] ? 1 : 0]])->name);
-  PetscCheck(!rings[0] || !contact->options.balance, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_balance: pair %s is axisymmetric, so that moments of contact forces are in balance all around; leave it out",
-             pair->name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -29,6 +29,7 @@
 #define FLAT 1e-3
 /* Pairs whose gaps are turned unasked, at most: the turns of all are unknowns of one dense matrix */
 #define MOST_PAIRS 100
+#define WHY        256 /* length of a text that says why gaps of a pair are not turned */
 
 /* The largest bend of a face of one side of a pair, as a chord, without those that are `edge` or more */
 static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt side, PetscReal edge, PetscReal *bend)
@@ -66,55 +67,64 @@ static PetscErrorCode IsHeld(Contact contact, PetscInt b, int *held)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether gaps of a pair are to be turned unasked. Where both bodies are held what holds them takes the moment: there is no spin to keep
-   away, and turns that nothing answers have brought energy. */
-static PetscErrorCode SuitsBalance(Contact contact, const ContactPair *pair, PetscBool *suits)
+/* Why gaps of a pair cannot be turned, or are not to be `unasked`; empty: they can. Unasked they are not where faces are flat or beside
+   edges, nor where both bodies are held: what holds them takes the moment, there is no spin to keep away, and turns that nothing answers
+   have brought energy. */
+static PetscErrorCode Judge(Contact contact, const ContactPair *pair, PetscBool unasked, char why[], size_t size)
 {
-  PetscBool linear = PETSC_TRUE, both_held = PETSC_TRUE, axisymmetric;
+  PetscBool linear = PETSC_TRUE, both_held = PETSC_TRUE, may = PETSC_FALSE, axisymmetric;
 
   PetscFunctionBegin;
-  *suits = PETSC_FALSE;
-  if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
+  why[0] = 0;
   PetscCall(BodyGetAxisymmetric(contact->bodies[pair->body[0]], &axisymmetric));
-  if (axisymmetric) PetscFunctionReturn(PETSC_SUCCESS); /* moments are in balance around the ring */
-  for (PetscInt side = 0; side < 2; side++) {
-    PetscReal bend;
-    PetscBool is_static, is_linear;
-    int       held;
+  if (contact->ops->maybalance) PetscCall((*contact->ops->maybalance)(contact, &may));
+  if (contact->dim == 1 || pair->obstacle || pair->law != CONTACT_LAW_FRICTIONLESS)
+    PetscCall(PetscStrncpy(why, "is not a frictionless one of two bodies in two or three dimensions", size));
+  else if (axisymmetric)
+    PetscCall(PetscStrncpy(why, "is axisymmetric, so that moments of contact forces are in balance all around; leave it out", size));
+  else if (!may)
+    PetscCall(PetscStrncpy(why, "needs -contact_type schwarz and massless contact nodes (-<body>_mass_redistribute true)", size));
+  for (PetscInt side = 0; side < 2 && !why[0]; side++) {
+    const char *name = ((PetscObject)contact->bodies[pair->body[side]])->name;
+    PetscReal   bend;
+    PetscBool   is_static, is_linear;
+    int         held;
 
     PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
     PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
-    PetscCall(GetBend(contact, pair, side, PETSC_MAX_REAL, &bend));
-    if (is_static || bend > COARSE || bend < FLAT) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(GetBend(contact, pair, side, unasked ? PETSC_MAX_REAL : EDGE, &bend));
     PetscCall(IsHeld(contact, pair->body[side], &held));
     linear    = (PetscBool)(linear && is_linear);
     both_held = (PetscBool)(both_held && held);
+    if (is_static) PetscCall(PetscSNPrintf(why, size, "has a body without inertia, '%s'", name));
+    else if (bend > COARSE)
+      PetscCall(PetscSNPrintf(why, size,
+                              "has faces of body '%s' that bend by up to %.3g degrees; refine its surface until that is 11.5 or less", name,
+                              (double)(bend * 180 / PETSC_PI)));
+    else if (unasked && bend < FLAT) PetscCall(PetscStrncpy(why, "is flat", size));
   }
-  *suits = (PetscBool)(!linear && !both_held);
+  if (!why[0] && linear)
+    PetscCall(PetscStrncpy(why, "has bodies that are both linear elastic, and its rows do not follow the surfaces", size));
+  if (!why[0] && unasked && both_held) PetscCall(PetscStrncpy(why, "has bodies that are both held", size));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscBool AllSlide(Contact contact)
-{
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (contact->pairs[p].law != CONTACT_LAW_FRICTIONLESS) return PETSC_FALSE;
-  return PETSC_TRUE;
 }
 
 /* Whether gaps are turned where neither the user nor the program has said so. Surfaces are known, but not how they are to be moved. */
 PetscErrorCode ContactChooseBalance(Contact contact)
 {
   PetscBool suits = PETSC_TRUE;
+  char      why[WHY];
 
   PetscFunctionBegin;
   if (!contact->options.auto_balance) PetscFunctionReturn(PETSC_SUCCESS);
   contact->options.balance = PETSC_FALSE;
-  if (contact->dim == 1 || !AllSlide(contact) || contact->options.constraint != CONTACT_CONSTRAINT_GAP ||
-      contact->options.stabilization != CONTACT_STABILIZATION_NONE || !contact->options.shared_times || contact->neighbours.come_and_go ||
-      !contact->n_pairs || contact->n_pairs > MOST_PAIRS || !contact->ops->maybalance)
+  if (contact->options.constraint != CONTACT_CONSTRAINT_GAP || contact->options.stabilization != CONTACT_STABILIZATION_NONE ||
+      !contact->options.shared_times || contact->neighbours.come_and_go || !contact->n_pairs || contact->n_pairs > MOST_PAIRS)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall((*contact->ops->maybalance)(contact, &suits));
-  for (PetscInt p = 0; p < contact->n_pairs && suits; p++) PetscCall(SuitsBalance(contact, &contact->pairs[p], &suits));
+  for (PetscInt p = 0; p < contact->n_pairs && suits; p++) {
+    PetscCall(Judge(contact, &contact->pairs[p], PETSC_TRUE, why, sizeof(why)));
+    suits = (PetscBool)!why[0];
+  }
   if (!suits) PetscFunctionReturn(PETSC_SUCCESS);
   contact->options.balance = PETSC_TRUE;
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
@@ -124,37 +134,15 @@ PetscErrorCode ContactChooseBalance(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prepares a pair whose gaps can be turned */
-PetscErrorCode ContactSetUpBalance(Contact contact, ContactPair *pair)
+/* An error where gaps of a pair are to be turned and cannot be */
+PetscErrorCode ContactCheckBalance(Contact contact, const ContactPair *pair)
 {
-  PetscBool linear = PETSC_TRUE, may = PETSC_FALSE;
+  char why[WHY];
 
   PetscFunctionBegin;
   if (!contact->options.balance) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(contact->dim > 1 && !pair->obstacle && pair->law == CONTACT_LAW_FRICTIONLESS, PetscObjectComm((PetscObject)contact),
-             PETSC_ERR_USER_INPUT, "-contact_balance: pair %s is not a frictionless one of two bodies in two or three dimensions",
-             pair->name);
-  if (contact->ops->maybalance) PetscCall((*contact->ops->maybalance)(contact, &may));
-  PetscCheck(may, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_balance goes with -contact_type schwarz and massless contact nodes (-<body>_mass_redistribute true)");
-  for (PetscInt side = 0; side < 2; side++) {
-    const char *name = ((PetscObject)contact->bodies[pair->body[side]])->name;
-    PetscReal   bend;
-    PetscBool   is_static, is_linear;
-
-    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
-    PetscCheck(!is_static, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_balance: body '%s' of pair %s has no inertia", name, pair->name);
-    PetscCall(GetBend(contact, pair, side, EDGE, &bend));
-    PetscCheck(bend <= COARSE, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_balance: faces of body '%s' of pair %s bend by up to %.3g degrees; refine its surface until that is 11.5 or less",
-               name, pair->name, (double)(bend * 180 / PETSC_PI));
-    linear = (PetscBool)(linear && is_linear);
-  }
-  PetscCheck(!linear, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_balance: the bodies of pair %s are both linear elastic, and their rows do not follow the surfaces", pair->name);
-  PetscCall(TransferSetBalance(pair->transfer));
+  PetscCall(Judge(contact, pair, PETSC_FALSE, why, sizeof(why)));
+  PetscCheck(!why[0], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_balance: pair %s %s", pair->name, why);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -118,12 +118,8 @@ PetscErrorCode ContactUpdatePairs(Contact contact)
   PetscCall(StageEnd(logged));
   /* those of several ranks first, which wait for each other there, and would for what each has to do by itself */
   for (PetscInt pass = 0; pass < 2; pass++)
-    for (PetscInt p = 0; p < contact->n_pairs; p++) {
-      PetscMPIInt owner;
-
-      PetscCall(TransferGetOwner(contact->pairs[p].transfer, &owner));
-      if ((owner >= 0) == (pass > 0)) PetscCall(RenewPair(contact, p, &updated[p]));
-    }
+    for (PetscInt p = 0; p < contact->n_pairs; p++)
+      if (contact->pairs[p].owned == (PetscBool)pass) PetscCall(RenewPair(contact, p, &updated[p]));
   /* of its own rows, and of a pair that it has to itself, each rank alone knows */
   if (contact->ranks.size > 1)
     PetscCallMPI(

@@ -252,16 +252,15 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
 }
 
 /* Where one of several ranks has all of both surfaces it is the only one that looks at them */
-static PetscErrorCode SetOwner(Contact contact, const ContactPair *pair)
+static PetscErrorCode FindOwner(Contact contact, ContactPair *pair, PetscMPIInt *owner)
 {
-  PetscMPIInt rank[2];
+  PetscMPIInt other;
 
   PetscFunctionBegin;
-  if (contact->ranks.size == 1 || contact->options.balance) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetMeshRank(contact->bodies[pair->body[0]], &rank[0]));
-  rank[1] = rank[0];
-  if (!pair->obstacle) PetscCall(BodyGetMeshRank(contact->bodies[pair->body[1]], &rank[1]));
-  if (rank[0] >= 0 && rank[0] == rank[1]) PetscCall(TransferSetOwner(pair->transfer, rank[0]));
+  PetscCall(BodyGetMeshRank(contact->bodies[pair->body[0]], owner));
+  other = *owner;
+  if (!pair->obstacle) PetscCall(BodyGetMeshRank(contact->bodies[pair->body[1]], &other));
+  pair->owned = (PetscBool)(contact->ranks.size > 1 && !contact->options.balance && *owner >= 0 && *owner == other);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -312,10 +311,13 @@ static PetscErrorCode GetNormalShare(Contact contact, const ContactPair *pair, P
 /* The transfer of a pair, whose surfaces are known */
 PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
 {
-  Vec       u[2] = {NULL, NULL};
-  PetscBool rebuilt;
-  PetscBool inertia = PETSC_TRUE, linear = PETSC_TRUE;
-  PetscReal share;
+  TransferOptions options = {.slip_bound  = contact->options.slip_bound,
+                             .angle_bound = contact->options.angle_bound,
+                             .unguarded   = ContactPairTies(pair),
+                             .turns       = contact->options.balance};
+  Vec             u[2]    = {NULL, NULL};
+  PetscBool       rebuilt;
+  PetscBool       inertia = PETSC_TRUE, linear = PETSC_TRUE;
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
@@ -325,24 +327,17 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
     inertia = (PetscBool)(inertia && !is_static);
     PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
     linear = (PetscBool)(linear && is_linear);
+    if (!pair->obstacle && contact->dim > 1) PetscCall(ContactGetBoundary(contact, pair->body[side], &options.boundaries[side]));
+    if (contact->setup) PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
   }
-  PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &pair->transfer));
-  PetscCall(SetOwner(contact, pair));
-  if (!pair->obstacle && contact->dim > 1) {
-    Surface boundaries[2] = {NULL, NULL};
-
-    for (PetscInt side = 0; side < 2; side++) PetscCall(ContactGetBoundary(contact, pair->body[side], &boundaries[side]));
-    PetscCall(TransferSetBoundaries(pair->transfer, boundaries[0], boundaries[1]));
-  }
-  PetscCall(TransferSetBounds(pair->transfer, contact->options.slip_bound, contact->options.angle_bound));
-  pair->rests = (PetscBool)!inertia;
-  PetscCall(TransferSetCurved(pair->transfer, IsCurved(contact, pair, inertia, linear)));
-  PetscCall(GetNormalShare(contact, pair, &share));
-  PetscCall(TransferSetNormalShare(pair->transfer, share));
-  PetscCall(ContactSetUpBalance(contact, pair));
-  PetscCall(TransferSetGuards(pair->transfer, (PetscBool)!ContactPairTies(pair)));
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2) && contact->setup; side++)
-    PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
+  pair->rests    = (PetscBool)!inertia;
+  options.curved = IsCurved(contact, pair, inertia, linear);
+  PetscCall(GetNormalShare(contact, pair, &options.share));
+  PetscCall(FindOwner(contact, pair, &options.owner));
+  options.owned = pair->owned;
+  PetscCall(ContactCheckBalance(contact, pair));
+  PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &options,
+                           &pair->transfer));
   PetscCall(TransferUpdate(pair->transfer, u[0], u[1], contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
   PetscCall(GetPairNormal(contact, pair));
   PetscFunctionReturn(PETSC_SUCCESS);
