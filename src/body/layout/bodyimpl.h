@@ -373,7 +373,7 @@ PETSC_INTERN PetscErrorCode BodyStateDestroy(BodyState *);
 PETSC_INTERN PetscErrorCode BodySetUpMass(Body);
 PETSC_INTERN PetscErrorCode BodyGetElementEigenvalue(Body, PetscInt, const PetscScalar[], PetscReal *);
 PETSC_INTERN PetscErrorCode BodyGetStepOfEigenvalue(Body, PetscReal, PetscReal *);
-PETSC_INTERN PetscErrorCode BodyNoteStepBounds(Body, const PetscScalar[], PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyNoteStepBounds(Body, const PetscScalar[], const PetscReal[]);
 PETSC_INTERN void           BodyGetElementCentre(Body, PetscInt, PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodySetUpInertia(Body);
 PETSC_INTERN PetscErrorCode BodyMarkNodes(Body, PetscInt, const PetscInt[], PetscBool[]);
