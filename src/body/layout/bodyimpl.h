@@ -87,7 +87,6 @@ typedef struct {
   Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
   Mat               product;      /* the same for products with vectors */
   Mat               of_nodes;     /* the same for nodes, where it couples nodes that share no element; else NULL */
-  PetscScalar      *diagonals;    /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
   Vec               inverse;      /* of a diagonal one: 1/m, 0 on massless nodes */
   ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
   MassBlocks        blocks; /* in its place where the matrix couples nodes near the surface alone, on one rank; NULL until first needed */
@@ -475,7 +474,6 @@ PETSC_INTERN PetscErrorCode BodySolveLayer(Body, Vec, Vec, Vec, Vec);
 PETSC_INTERN PetscInt       BodyCountLayerTangents(Body);
 PETSC_INTERN PetscErrorCode BodyMultiplyLayerTangent(Body, const PetscScalar[], Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyLayerSolverDestroy(LayerSolver *);
-PETSC_INTERN PetscErrorCode BodySetUpMassProduct(Body);
 PETSC_INTERN PetscErrorCode BodyMultiplyMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAddMassMatrix(Body, PetscReal, Mat);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, Vec);

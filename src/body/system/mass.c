@@ -103,6 +103,36 @@ static PetscErrorCode AssembleMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* For products with a mass matrix that is not diagonal: x, y and z of a node have the same masses, and nothing to do with each other */
+static PetscErrorCode SetUpProduct(Body body)
+{
+  const PetscInt dim = body->mesh.dim;
+  Mat            of_nodes;
+
+  PetscFunctionBegin;
+  if (!body->mass.matrix) PetscFunctionReturn(PETSC_SUCCESS);
+  if (dim == 1) {
+    PetscCall(PetscObjectReference((PetscObject)body->mass.matrix));
+    body->mass.product = body->mass.matrix;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(BodyCreateMassOfNodes(body, &of_nodes));
+  PetscCall(MatCreateMAIJ(of_nodes, dim, &body->mass.product));
+  /* on several ranks such a matrix takes memory in each product; another without the zeros between components does not */
+  if (body->rows.size > 1) PetscCall(MatConvert(body->mass.product, MATAIJ, MAT_INPLACE_MATRIX, &body->mass.product));
+  PetscCall(MatDestroy(&of_nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* y = M x */
+PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
+{
+  PetscFunctionBegin;
+  if (body->mass.diagonal) PetscCall(VecPointwiseMult(y, body->mass.diagonal, x));
+  else PetscCall(MatMult(body->mass.product, x, y));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Marks the massless nodes and their displacements, but those that are held */
 static PetscErrorCode SetUpLayer(Body body)
 {
@@ -137,7 +167,7 @@ PetscErrorCode BodySetUpMass(Body body)
   if (body->mass.redistribute && !body->mass.extrapolation && !body->mass.moved) PetscCall(BodyFindMassFactor(body, NULL));
   PetscCall(AssembleMass(body));
   if (body->mass.redistribute && body->mass.extrapolation) PetscCall(BodyExtrapolateMass(body));
-  PetscCall(BodySetUpMassProduct(body));
+  PetscCall(SetUpProduct(body));
   PetscCall(BodyCreateVec(body, &body->mass.row_sum));
   PetscCall(BodyCreateVec(body, &ones));
   PetscCall(VecSet(ones, 1));
