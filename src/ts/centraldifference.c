@@ -10,7 +10,7 @@
 typedef struct {
   TSCentralDifferenceFn *acceleration;
   void                  *ctx;
-  Vec                    A;      /* acceleration at ts->ptime; it belongs to the caller of TSCentralDifferenceSetAccelerationVec() */
+  Vec                    A;      /* acceleration at ts->ptime; it belongs to the caller of TSCentralDifferenceSetAcceleration() */
   PetscBool              leaves; /* the function has left the acceleration, and the velocity at the end of the step, to others */
 } TS_CentralDifference;
 
@@ -68,7 +68,6 @@ static PetscErrorCode TSSetUp_CentralDifference(TS ts)
   PetscCall(TSSecondOrderKeepNoStart(ts));
   PetscCheck(cd->acceleration, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE,
              "Call TSCentralDifferenceSetAcceleration() first");
-  PetscCheck(cd->A, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE, "Call TSCentralDifferenceSetAccelerationVec() first");
   PetscCall(TSGetAdapt(ts, &ts->adapt));
   PetscCall(TSAdaptCandidatesClear(ts->adapt));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,59 +86,25 @@ static PetscErrorCode TSDestroy_CentralDifference(TS ts)
 {
   PetscFunctionBegin;
   PetscCall(TSReset_CentralDifference(ts));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C", NULL));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C", NULL));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceLeaveVelocity_C", NULL));
   PetscCall(PetscFree(ts->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode TSCentralDifferenceSetAcceleration_CentralDifference(TS ts, TSCentralDifferenceFn *acceleration, void *ctx)
+/* Sets the function that gives the acceleration for a displacement, and the vector that holds it between steps. `acceleration`: function
+   (ts, t, U, V, A, ctx): computes A = M^{-1} f(t, U) [m/s^2]. It may correct U (prescribed and massless nodes) and V (the velocity at
+   mid-step) before it does. The caller fills `A` at the start, and to restore an earlier state. */
+PetscErrorCode TSCentralDifferenceSetAcceleration(TS ts, TSCentralDifferenceFn *acceleration, Vec A, void *ctx)
 {
   TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
 
   PetscFunctionBegin;
-  cd->acceleration = acceleration;
-  cd->ctx          = ctx;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode TSCentralDifferenceSetAccelerationVec_CentralDifference(TS ts, Vec A)
-{
-  TS_CentralDifference *cd = (TS_CentralDifference *)ts->data;
-
-  PetscFunctionBegin;
+  PetscValidHeaderSpecificType(ts, TS_CLASSID, 1, TSCENTRALDIFFERENCE);
+  PetscValidHeaderSpecific(A, VEC_CLASSID, 3);
   PetscCall(PetscObjectReference((PetscObject)A));
   PetscCall(VecDestroy(&cd->A));
-  cd->A = A;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode TSCentralDifferenceLeaveVelocity_CentralDifference(TS ts)
-{
-  PetscFunctionBegin;
-  ((TS_CentralDifference *)ts->data)->leaves = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Sets the function that gives the acceleration for a displacement. `acceleration`: function (ts, t, U, V, A, ctx): computes A = M^{-1}
-   f(t, U) [m/s^2]. It may correct U (prescribed and massless nodes) and V (the velocity at mid-step) before it does */
-PetscErrorCode TSCentralDifferenceSetAcceleration(TS ts, TSCentralDifferenceFn *acceleration, void *ctx)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
-  PetscTryMethod(ts, "TSCentralDifferenceSetAcceleration_C", (TS, TSCentralDifferenceFn *, void *), (ts, acceleration, ctx));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Sets the vector that holds the acceleration between steps. `A`: acceleration at the current time [m/s^2]; the caller fills it at the
-   start, and to restore an earlier state */
-PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS ts, Vec A)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
-  PetscValidHeaderSpecific(A, VEC_CLASSID, 2);
-  PetscTryMethod(ts, "TSCentralDifferenceSetAccelerationVec_C", (TS, Vec), (ts, A));
+  cd->A            = A;
+  cd->acceleration = acceleration;
+  cd->ctx          = ctx;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,8 +113,8 @@ PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS ts, Vec A)
 PetscErrorCode TSCentralDifferenceLeaveVelocity(TS ts)
 {
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
-  PetscTryMethod(ts, "TSCentralDifferenceLeaveVelocity_C", (TS), (ts));
+  PetscValidHeaderSpecificType(ts, TS_CLASSID, 1, TSCENTRALDIFFERENCE);
+  ((TS_CentralDifference *)ts->data)->leaves = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -177,11 +142,5 @@ PetscErrorCode TSCreate_CentralDifference(TS ts)
   ts->ops->reset         = TSReset_CentralDifference;
   ts->ops->destroy       = TSDestroy_CentralDifference;
   ts->default_adapt_type = TSADAPTNONE;
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAcceleration_C",
-                                       TSCentralDifferenceSetAcceleration_CentralDifference));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceSetAccelerationVec_C",
-                                       TSCentralDifferenceSetAccelerationVec_CentralDifference));
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSCentralDifferenceLeaveVelocity_C",
-                                       TSCentralDifferenceLeaveVelocity_CentralDifference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -38,18 +38,7 @@ static PetscErrorCode TSSetUp_Rigid(TS ts)
 static PetscErrorCode TSDestroy_Rigid(TS ts)
 {
   PetscFunctionBegin;
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSRigidSetAdvance_C", NULL));
   PetscCall(PetscFree(ts->data));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode TSRigidSetAdvance_Rigid(TS ts, TSRigidFn *advance, void *ctx)
-{
-  TS_Rigid *rigid = (TS_Rigid *)ts->data;
-
-  PetscFunctionBegin;
-  rigid->advance = advance;
-  rigid->ctx     = ctx;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,9 +46,12 @@ static PetscErrorCode TSRigidSetAdvance_Rigid(TS ts, TSRigidFn *advance, void *c
    t to those at t + dt */
 PetscErrorCode TSRigidSetAdvance(TS ts, TSRigidFn *advance, void *ctx)
 {
+  TS_Rigid *rigid = (TS_Rigid *)ts->data;
+
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(ts, TS_CLASSID, 1);
-  PetscTryMethod(ts, "TSRigidSetAdvance_C", (TS, TSRigidFn *, void *), (ts, advance, ctx));
+  PetscValidHeaderSpecificType(ts, TS_CLASSID, 1, TSRIGID);
+  rigid->advance = advance;
+  rigid->ctx     = ctx;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,6 +77,5 @@ PetscErrorCode TSCreate_Rigid(TS ts)
   ts->ops->step          = TSStep_Rigid;
   ts->ops->destroy       = TSDestroy_Rigid;
   ts->default_adapt_type = TSADAPTNONE;
-  PetscCall(PetscObjectComposeFunction((PetscObject)ts, "TSRigidSetAdvance_C", TSRigidSetAdvance_Rigid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -51,8 +51,7 @@ static void create_springs(Springs *s, PetscReal step)
   ok(TSCreate(PETSC_COMM_WORLD, &s->ts));
   ok(TSSetType(s->ts, TSCENTRALDIFFERENCE)); /* by its name, from the registry */
   ok(TS2SetSolution(s->ts, s->u, s->v));
-  ok(TSCentralDifferenceSetAcceleration(s->ts, Accelerate, &s->evaluations));
-  ok(TSCentralDifferenceSetAccelerationVec(s->ts, s->a));
+  ok(TSCentralDifferenceSetAcceleration(s->ts, Accelerate, s->a, &s->evaluations));
   ok(Accelerate(s->ts, 0, s->u, s->v, s->a, NULL));
   ok(TSSetTimeStep(s->ts, step));
   ok(TSSetMaxTime(s->ts, 1e300));
@@ -191,17 +190,14 @@ static void refuses_to_set_up_without_its_parts(void **state)
   ok(TSSetType(ts, TSCENTRALDIFFERENCE));
   ok(TS2SetSolution(ts, u, v));
   refused(PETSC_ERR_ARG_WRONGSTATE, "TSCentralDifferenceSetAcceleration()", TSSetUp(ts));
-  ok(TSCentralDifferenceSetAcceleration(ts, Accelerate, NULL));
-  refused(PETSC_ERR_ARG_WRONGSTATE, "TSCentralDifferenceSetAccelerationVec()", TSSetUp(ts));
-  ok(TSCentralDifferenceSetAccelerationVec(ts, a));
+  ok(TSCentralDifferenceSetAcceleration(ts, Accelerate, a, NULL));
   ok(TSSetUp(ts));
   ok(TSDestroy(&ts));
 
   ok(TSCreate(PETSC_COMM_WORLD, &ts));
   ok(TSSetType(ts, TSCENTRALDIFFERENCE));
   ok(TSSetSolution(ts, u)); /* displacements alone */
-  ok(TSCentralDifferenceSetAcceleration(ts, Accelerate, NULL));
-  ok(TSCentralDifferenceSetAccelerationVec(ts, a));
+  ok(TSCentralDifferenceSetAcceleration(ts, Accelerate, a, NULL));
   refused(PETSC_ERR_ARG_WRONGSTATE, "TS2SetSolution()", TSSetUp(ts));
   ok(TSDestroy(&ts));
   ok(VecDestroy(&u));

@@ -6,8 +6,7 @@ typedef PetscErrorCode TSCentralDifferenceFn(TS, PetscReal, Vec, Vec, Vec, void 
 typedef PetscErrorCode TSAlpha2StepFn(TS);
 typedef PetscErrorCode TSRigidFn(TS, PetscReal, PetscReal, Vec, Vec, void *);
 
-PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDifferenceFn *, void *);
-PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAccelerationVec(TS, Vec);
+PETSC_EXTERN PetscErrorCode TSCentralDifferenceSetAcceleration(TS, TSCentralDifferenceFn *, Vec, void *);
 PETSC_EXTERN PetscErrorCode TSCentralDifferenceLeaveVelocity(TS);
 PETSC_EXTERN PetscErrorCode TSRigidSetAdvance(TS, TSRigidFn *, void *);
 PETSC_EXTERN PetscErrorCode TSSecondOrderRegisterAll(void);

@@ -265,8 +265,7 @@ static PetscErrorCode SetUp(Body body)
     PetscCall(VecZeroEntries(body->work.nodes[0]));
     PetscCall(BodySolveMass(body, body->work.nodes[0], body->work.nodes[1]));
   }
-  PetscCall(TSCentralDifferenceSetAcceleration(body->time.ts, ComputeAcceleration, body));
-  PetscCall(TSCentralDifferenceSetAccelerationVec(body->time.ts, body->state.a));
+  PetscCall(TSCentralDifferenceSetAcceleration(body->time.ts, ComputeAcceleration, body->state.a, body));
   integrator->is_local        = (PetscBool)(body->mass.inverse || body->mass.blocks);
   integrator->depends_on_step = (PetscBool)(body->time.substeps > 1);
   integrator->reads_start     = layer;
