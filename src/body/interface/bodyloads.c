@@ -6,8 +6,9 @@
 PetscErrorCode BodyNoteHeld(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(BodyLoadsGetHeld(body, &body->held.n, &body->held.dofs));
-  body->held.any = (PetscBool)(body->held.n > 0);
+  body->held.n    = body->loads ? body->loads->n_held : 0;
+  body->held.dofs = body->loads ? body->loads->held_dofs : NULL;
+  body->held.any  = (PetscBool)(body->held.n > 0);
   PetscCall(BodyAnyRank(body, &body->held.any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -223,13 +224,5 @@ PetscErrorCode BodySetInitialVelocity(Body body, const PetscReal velocity[])
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(velocity, 2);
   PetscCall(SetInitial(body, PETSC_TRUE, velocity));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether tractions, body forces or gravity act on a body that is set up */
-PetscErrorCode BodyHasForces(Body body, PetscBool *has)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyLoadsHaveForce(body, has));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

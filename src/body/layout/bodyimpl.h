@@ -539,8 +539,6 @@ PETSC_INTERN void           BodyDivideByGram(Body, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGramDestroy(BodyGram *);
 PETSC_INTERN PetscErrorCode BodyLoadsSetFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodyLoadsDestroy(Body);
-PETSC_INTERN PetscErrorCode BodyLoadsGetHeld(Body, PetscInt *, const PetscInt *[]);
-PETSC_INTERN PetscErrorCode BodyLoadsHaveForce(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyLoadsHoldAxis(Body);
 PETSC_INTERN PetscBool      BodyIsLoaded(Body);
 PETSC_INTERN PetscBool      BodyIsLed(Body);

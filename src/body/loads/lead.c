@@ -4,8 +4,6 @@
 
 /* Between the times at which angular velocities are compared for their rate, in parts of the step */
 #define SPACING 0.25
-/* Under what name the force and the moment that lead a body are found */
-#define NAME "rigid"
 
 static PetscErrorCode RefusePlace(Body body, const char name[], PetscInt n, const Expression list[])
 {
@@ -64,22 +62,6 @@ PetscErrorCode BodyLoadsSetRigidRotation(Body body, const char text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What leads the body, from options. The body must be rigid. */
-PetscErrorCode BodyLoadsReadLead(Body body, const char displacement[], const char rotation[])
-{
-  PetscFunctionBegin;
-  if (displacement) PetscCall(BodyLoadsSetRigidDisplacement(body, displacement));
-  if (rotation) PetscCall(BodyLoadsSetRigidRotation(body, rotation));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyLoadsDestroyLead(struct _BodyLoads *loads)
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < 6; i++) PetscCall(ExpressionDestroy(&loads->lead[i]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether a component of the displacement, or (3) the rotation, is led */
 PetscBool BodyLeads(Body body, PetscInt component)
 {
@@ -90,14 +72,6 @@ PetscBool BodyLeads(Body body, PetscInt component)
 PetscBool BodyIsLed(Body body)
 {
   return (PetscBool)(body->loads && body->loads->led);
-}
-
-/* For the reactions of a body: what leads it comes after its surfaces */
-PetscErrorCode BodyLoadsGetLeadName(const char *name[])
-{
-  PetscFunctionBegin;
-  *name = NAME;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A displacement or a component of the rotation vector, its first and its second derivative */

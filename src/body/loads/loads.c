@@ -53,29 +53,17 @@ static PetscErrorCode GetSurfaceText(Body body, const char list[], const char su
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadDisplacements(Body body, PetscInt n, char **names)
+/* What -<body>_<list> names, with the components of each */
+static PetscErrorCode ReadSurfaces(Body body, const char list[], PetscInt n, char **names,
+                                   PetscErrorCode (*add)(Body, const char[], const char[]))
 {
   const char *text;
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; i++) {
-    PetscCall(GetSurfaceText(body, "boundary_displacement", names[i], &text));
-    PetscCall(BodyLoadsAddDisplacement(body, names[i], text));
+    PetscCall(GetSurfaceText(body, list, names[i], &text));
+    PetscCall((*add)(body, names[i], text));
   }
-  PetscCall(BodyLoadsSetUpHeld(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ReadForces(Body body, PetscInt n, char **names, const char body_force[])
-{
-  const char *text;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(GetSurfaceText(body, "boundary_traction", names[i], &text));
-    PetscCall(BodyLoadsAddTraction(body, names[i], text));
-  }
-  if (body_force) PetscCall(BodyLoadsAddBodyForce(body, body_force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -162,9 +150,12 @@ PetscErrorCode BodyLoadsSetFromOptions(Body body)
   error = GetNames(body, "boundary_traction", &n_tractions, &tractions);
   if (!error && (gravity || body_force || n_displacements || n_tractions || lead[0] || lead[1])) {
     error = PetscNew(&body->loads);
-    if (!error) error = BodyLoadsReadLead(body, lead[0], lead[1]);
-    if (!error) error = ReadDisplacements(body, n_displacements, displacements);
-    if (!error) error = ReadForces(body, n_tractions, tractions, body_force);
+    if (!error && lead[0]) error = BodyLoadsSetRigidDisplacement(body, lead[0]);
+    if (!error && lead[1]) error = BodyLoadsSetRigidRotation(body, lead[1]);
+    if (!error) error = ReadSurfaces(body, "boundary_displacement", n_displacements, displacements, BodyLoadsAddDisplacement);
+    if (!error) error = BodyLoadsSetUpHeld(body);
+    if (!error) error = ReadSurfaces(body, "boundary_traction", n_tractions, tractions, BodyLoadsAddTraction);
+    if (!error && body_force) error = BodyLoadsAddBodyForce(body, body_force);
     if (!error) error = ReadGravity(body, gravity);
   }
   if (!error) error = BodyLoadsHoldAxis(body);
@@ -179,7 +170,7 @@ PetscErrorCode BodyLoadsDestroy(Body body)
   PetscFunctionBegin;
   if (!body->loads) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyLoadsDestroyHeld(body->loads));
-  PetscCall(BodyLoadsDestroyLead(body->loads));
+  for (PetscInt i = 0; i < 6; i++) PetscCall(ExpressionDestroy(&body->loads->lead[i]));
   PetscCall(BodyLoadsDestroyForces(body->loads));
   PetscCall(PetscFree(body->loads));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -182,8 +182,8 @@ static PetscErrorCode SetUpForces(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether there is any force from outside, on any rank */
-PetscErrorCode BodyLoadsHaveForce(Body body, PetscBool *force)
+/* Whether tractions, body forces or gravity act on a body, on any rank */
+PetscErrorCode BodyHasForces(Body body, PetscBool *force)
 {
   PetscFunctionBegin;
   *force = (PetscBool)(body->loads && (body->loads->n_loads || body->loads->has_gravity));

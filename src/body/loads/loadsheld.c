@@ -201,15 +201,6 @@ PetscErrorCode BodyLoadsHoldAxis(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Owned dofs (rank numbering) with a prescribed displacement, ascending; owned by the loads */
-PetscErrorCode BodyLoadsGetHeld(Body body, PetscInt *n, const PetscInt *dofs[])
-{
-  PetscFunctionBegin;
-  *n    = body->loads ? body->loads->n_held : 0;
-  *dofs = body->loads ? body->loads->held_dofs : NULL;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Displacement, and with rates velocity and acceleration, of the i-th dof of a group */
 static PetscErrorCode EvaluateHeld(Body body, const HeldDofs *group, PetscInt i, PetscReal t, PetscBool rates, PetscReal values[])
 {

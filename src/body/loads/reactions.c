@@ -63,7 +63,7 @@ PetscErrorCode BodyGetReactionSurface(Body body, PetscInt i, const char *name[])
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(name, 3);
   if (BodyIsLed(body) && i == body->loads->n_prescribed) {
-    PetscCall(BodyLoadsGetLeadName(name));
+    *name = "rigid";
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCheck(body->loads && i >= 0 && i < body->loads->n_prescribed, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,

@@ -40,7 +40,7 @@ static void traction_is_area_times_traction(void **state)
       ok(PetscSNPrintf(text, sizeof(text), "-boundary_traction %s -boundary_traction_%s %s", sides[side], sides[side],
                        components[dim - 1]));
       options = box_create(&body, box, text);
-      ok(BodyLoadsHaveForce(body, &force));
+      ok(BodyHasForces(body, &force));
       assert_true(force);
       total = force_at(body, 0.3);
       for (PetscInt j = 0; j < dim; j++) {
@@ -249,9 +249,9 @@ static void bodies_without_loads_have_none(void **state)
   (void)state;
   options = box_create(&body, 1, "-initial_velocity 1,2");
   assert_null(body->loads);
-  ok(BodyLoadsHaveForce(body, &force));
+  ok(BodyHasForces(body, &force));
   assert_false(force);
-  ok(BodyLoadsGetHeld(body, &n, &dofs));
+  ok(BodyGetHeldDofs(body, &n, &dofs));
   assert_int_equal(n, 0);
   near(force_at(body, 0).force[0], 0, 0);
   bar_destroy(&body, options);
@@ -319,7 +319,7 @@ static PetscInt count_held(Body body)
   const PetscInt *dofs;
   PetscInt        n;
 
-  ok(BodyLoadsGetHeld(body, &n, &dofs));
+  ok(BodyGetHeldDofs(body, &n, &dofs));
   for (PetscInt i = 0; i < n; i++) {
     assert_true(dofs[i] >= 0 && dofs[i] < body->mesh.owned_nodes * body->mesh.dim);
     if (i) assert_true(dofs[i] > dofs[i - 1]);
@@ -359,7 +359,7 @@ static void held_dofs_are_those_of_the_surfaces(void **state)
 
     options = box_create(&body, cases[i].box, cases[i].options);
     assert_int_equal(count_held(body), cases[i].n);
-    ok(BodyLoadsHaveForce(body, &force));
+    ok(BodyHasForces(body, &force));
     assert_false(force);
     bar_destroy(&body, options);
   }
