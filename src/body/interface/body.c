@@ -294,7 +294,6 @@ PetscErrorCode BodyDestroy(Body *body)
     PetscCall(BodyDestroyContactNodes(b));
     PetscCall(BodyIntegratorDestroy(b));
     PetscCall(BodyDestroyLevels(b));
-    PetscCall(BodyDestroyProbe(b));
     PetscCall(BodyLoadsDestroy(b));
     PetscCall(BodyDestroyDamping(b));
     PetscCall(BodyDestroyPoints(b));

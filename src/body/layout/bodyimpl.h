@@ -295,7 +295,6 @@ struct _p_Body {
   BodyTraces              traces;
   struct _BodyCompliance *compliance; /* of the present level, as is the solver */
   BodyLevel               levels[STEP_MAX_CUTS + 1];
-  struct _BodyProbe      *probe; /* room for the state while unit forces are tried; NULL until then */
   struct _BodyRepeat     *repeat;
   StepFailure             failure; /* of the last integration */
   PetscBool repeats; /* the present end state is that of an integration from the saved state, under the present conditions and inputs */
@@ -518,7 +517,6 @@ PETSC_INTERN PetscErrorCode BodySetUpRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
-PETSC_INTERN PetscErrorCode BodyDestroyProbe(Body);
 PETSC_INTERN PetscErrorCode BodyPrepareLinearized(Body);
 PETSC_INTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_INTERN PetscErrorCode BodyProbeNodes(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);

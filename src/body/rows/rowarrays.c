@@ -162,7 +162,6 @@ PetscErrorCode BodyReplaceInterface(Body body, Mat B, const PetscInt from[])
   PetscCheck(body->setup && !body->time.level && (rows->expected || rows->global), PetscObjectComm((PetscObject)body),
              PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp() with rows, or with BodyExpectRows(), at the start of a whole step");
   PetscCall(BodyDestroyRowArrays(body));
-  PetscCall(BodyDestroyProbe(body));
   PetscCall(BodyDestroyRepeat(body));
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&rows->matrix));

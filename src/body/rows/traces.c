@@ -114,7 +114,7 @@ static PetscErrorCode WriteRates(Body body, PetscInt level)
 PetscErrorCode BodyWriteTraces(Body body, PetscInt level)
 {
   PetscFunctionBegin;
-  if (!body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->rows.global || body->unloaded) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->rows.exchange.open) {
     body->rows.exchange.writes = PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -150,8 +150,6 @@ PetscErrorCode BodySetUpDamping(Body body)
   PetscFunctionBegin;
   if (!BodyIsDamped(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyCreateVec(body, &damping->work));
-  PetscCall(BodyCreateVec(body, &body->state.damping));
-  PetscCall(BodyCreateVec(body, &body->saved.damping));
   if (!(damping->stiffness > 0)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(body->model.linear || body->model.element->ops->viscousforce, PetscObjectComm((PetscObject)body), PETSC_ERR_SUP,
              "-%sdamping_stiffness: elements of shape '%s' do not support it with nonlinear materials", ((PetscObject)body)->prefix,

@@ -1,7 +1,7 @@
 /* The state of a body as one thing: made, copied, brought back. */
 #include <body/layout/bodyimpl.h>
 
-/* With room for displacement, velocity, acceleration, what loads do, and for the internal force where it is wanted */
+/* With room for displacement, velocity, acceleration, what loads and dashpots do, and for the internal force where it is wanted */
 PetscErrorCode BodyStateCreate(Body body, PetscBool internal_force, BodyState *state)
 {
   PetscFunctionBegin;
@@ -10,6 +10,7 @@ PetscErrorCode BodyStateCreate(Body body, PetscBool internal_force, BodyState *s
   PetscCall(BodyCreateVec(body, &state->a));
   if (internal_force) PetscCall(BodyCreateVec(body, &state->internal_force));
   if (body->loads) PetscCall(BodyCreateVec(body, &state->applied));
+  if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &state->damping));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
