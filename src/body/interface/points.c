@@ -159,43 +159,20 @@ static PetscReal DistanceFromBox(Body body, PetscInt e, const PetscReal x[], Pet
   return PetscSqrtReal(squares);
 }
 
-/* How far a point is from this rank's element whose box is nearest, so that few others have to be looked at */
-static PetscErrorCode BoundDistance(Body body, const PetscReal x[], PetscReal *bound)
-{
-  const Element element = body->model.element;
-  PetscReal     shape[ELEMENT_MAX_NODES], least = PETSC_MAX_REAL;
-  PetscInt      first = -1;
-
-  PetscFunctionBegin;
-  *bound = PETSC_MAX_REAL;
-  for (PetscInt e = 0; e < element->count; e++) {
-    PetscReal       size;
-    const PetscReal distance = DistanceFromBox(body, e, x, &size);
-
-    if (distance >= least) continue;
-    least = distance;
-    first = e;
-  }
-  if (first >= 0) PetscCall((*element->ops->nearest)(element, first, x, shape, bound));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds the places of a point in this rank's elements; `nearest`: its distance from the nearest of them, 0 where it is inside */
 static PetscErrorCode FindPlaces(Body body, PetscInt point, PetscReal *nearest)
 {
   struct _BodyPoints *points  = body->points;
   const Element       element = body->model.element;
   const PetscReal    *x       = points->x + 3 * point;
-  PetscReal           bound;
 
   PetscFunctionBegin;
-  PetscCall(BoundDistance(body, x, &bound));
   *nearest = PETSC_MAX_REAL;
   for (PetscInt e = 0; e < element->count; e++) {
     Place     place = {.point = point, .element = e, .weight = 1};
     PetscReal size, distance;
 
-    if (DistanceFromBox(body, e, x, &size) > bound + INSIDE * size) continue;
+    if (DistanceFromBox(body, e, x, &size) > *nearest + INSIDE * size) continue;
     PetscCall((*element->ops->nearest)(element, e, x, place.shape, &distance));
     if (distance <= INSIDE * size) {
       distance = 0;
@@ -203,7 +180,6 @@ static PetscErrorCode FindPlaces(Body body, PetscInt point, PetscReal *nearest)
       points->places[points->n_places++] = place;
     }
     *nearest = PetscMin(*nearest, distance);
-    bound    = PetscMin(bound, distance);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
