@@ -115,7 +115,7 @@ static PetscBool IsEarly(Body body)
 static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
-  if (GetLayerBalance(body)) PetscCall(LayerBalanceGetForce(GetLayerBalance(body), body, U, body->state.internal_force));
+  if (GetLayerBalance(body)) PetscCall(LayerBalanceGetForce(body, U, body->state.internal_force));
   if (body->held.n && !body->state.incomplete) PetscCall(VecZeroEntries(A)); /* of held nodes it is not */
   else PetscCall(PetscObjectStateIncrease((PetscObject)A));
   body->state.incomplete = PETSC_TRUE;

@@ -17,7 +17,7 @@ static inline LayerBalance GetLayerBalance(Body body)
   return ((BodyExplicit *)body->integrator->data)->layer;
 }
 
-PETSC_INTERN PetscErrorCode LayerRowsCreate(Body, IS, LayerRows *);
+PETSC_INTERN PetscErrorCode LayerRowsCreate(Body, LayerRows *);
 PETSC_INTERN PetscErrorCode LayerRowsUpdate(LayerRows, Body);
 PETSC_INTERN Mat            LayerRowsGetMatrix(LayerRows);
 PETSC_INTERN PetscErrorCode LayerRowsDestroy(LayerRows *);
@@ -26,7 +26,7 @@ PETSC_INTERN PetscErrorCode LayerBalanceCreate(Body, LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceDestroy(LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceSetRows(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode LayerBalanceSolve(LayerBalance, Body, PetscReal, PetscReal, Vec, Vec);
-PETSC_INTERN PetscErrorCode LayerBalanceGetForce(LayerBalance, Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode LayerBalanceGetForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode LayerBalanceSave(Body);
 PETSC_INTERN PetscErrorCode LayerBalanceRestore(Body);
 PETSC_INTERN PetscErrorCode LayerBalanceAgree(Body);

@@ -48,14 +48,11 @@ typedef struct {
 } Factors;
 
 struct _n_LayerBalance {
-  IS         dofs;          /* of the layer, numbers in the vectors of the body */
-  Vec        rhs, solution; /* of the layer */
-  VecScatter scatter;       /* from a vector of the body */
-  LayerRows  rows;
-  PetscReal  reach; /* norm of the reference positions of all nodes [m] */
-  Factors    now, aside;
-  PetscInt   n_made;
-  PetscInt   n_history; /* numbers of that history */
+  LayerRows rows;
+  PetscReal reach; /* norm of the reference positions of all nodes [m] */
+  Factors   now, aside;
+  PetscInt  n_made;
+  PetscInt  n_history; /* numbers of that history */
 };
 
 /* What factors are made from, from one place to another */
@@ -155,24 +152,24 @@ PetscErrorCode LayerBalanceRestore(Body body)
 }
 
 /* rhs: what is missing to balance at u. `follows`: forces from outside go with u. */
-static PetscErrorCode ComputeMissing(LayerBalance layer, Body body, const LoadCase *load, PetscBool follows, Vec u)
+static PetscErrorCode ComputeMissing(Body body, const LoadCase *load, PetscBool follows, Vec u)
 {
   PetscFunctionBegin;
   if (follows) PetscCall(BodyComputeOutsideForce(body, load->time, load->position, PETSC_TRUE, u, load->force));
   if (load->outside) {
-    PetscCall(VecScatterBegin(layer->scatter, load->force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecScatterEnd(layer->scatter, load->force, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
-  } else PetscCall(VecZeroEntries(layer->rhs));
-  PetscCall(BodySubtractLayerForce(body, u, layer->rhs));
+    PetscCall(VecScatterBegin(body->layer.scatter, load->force, body->layer.rhs, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecScatterEnd(body->layer.scatter, load->force, body->layer.rhs, INSERT_VALUES, SCATTER_FORWARD));
+  } else PetscCall(VecZeroEntries(body->layer.rhs));
+  PetscCall(BodySubtractLayerForce(body, u, body->layer.rhs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves the layer in u, a vector of the body */
-static PetscErrorCode Move(LayerBalance layer, Vec moved, Vec u)
+/* Moves the layer in u, a vector of the body, by the solution */
+static PetscErrorCode Move(Body body, Vec u)
 {
   PetscFunctionBegin;
-  PetscCall(VecScatterBegin(layer->scatter, moved, u, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(layer->scatter, moved, u, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterBegin(body->layer.scatter, body->layer.solution, u, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(body->layer.scatter, body->layer.solution, u, ADD_VALUES, SCATTER_REVERSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -180,23 +177,23 @@ static PetscErrorCode Move(LayerBalance layer, Vec moved, Vec u)
    flows has a potential of each step (M. Ortiz, L. Stainier, The variational formulation of viscoplastic constitutive updates, Computer
    Methods in Applied Mechanics and Engineering 171, 1999), and this is a search for its least value along a line. `before`: force along
    the way at the start of the round, times the way [J]. */
-static PetscErrorCode TakeBack(LayerBalance layer, Body body, const LoadCase *load, PetscBool follows, PetscReal before, Vec u)
+static PetscErrorCode TakeBack(Body body, const LoadCase *load, PetscBool follows, PetscReal before, Vec u)
 {
   PetscReal low = 0, high = 1, of_low = before, of_high, at = 1, left;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &left));
+  PetscCall(BodyGetDot(body, body->layer.solution, body->layer.rhs, &left));
   of_high = left;
   if (!(before > 0) || left >= -FORCE_LEFT * before) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt tries = 0; tries < MAX_SEARCH && !(PetscAbsReal(left) <= FORCE_LEFT * before); tries++) {
     const PetscReal root = PetscIsInfOrNanReal(of_high) ? 0.5 : of_low / (of_low - of_high);
     const PetscReal next = low + (high - low) * PetscMin(PetscMax(root, LEAST_PART), 1 - LEAST_PART);
 
-    PetscCall(VecScale(layer->solution, next - at));
-    PetscCall(Move(layer, layer->solution, u));
-    PetscCall(VecScale(layer->solution, 1 / (next - at)));
-    PetscCall(ComputeMissing(layer, body, load, follows, u));
-    PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &left));
+    PetscCall(VecScale(body->layer.solution, next - at));
+    PetscCall(Move(body, u));
+    PetscCall(VecScale(body->layer.solution, 1 / (next - at)));
+    PetscCall(ComputeMissing(body, load, follows, u));
+    PetscCall(BodyGetDot(body, body->layer.solution, body->layer.rhs, &left));
     at = next;
     if (left > 0) {
       low    = next;
@@ -229,13 +226,13 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     PetscReal change;
 
     if (body->history && round && round % ROUNDS_OF_FACTORS == 0) PetscCall(RefactorAt(layer, body, u));
-    PetscCall(ComputeMissing(layer, body, &load, (PetscBool)(round && robin), u));
-    if (body->history && round > 1) PetscCall(TakeBack(layer, body, &load, robin, work, u)); /* the first puts held rows in their places */
-    PetscCall(ConstrainedSolverSolve(body->solver, layer->rhs, layer->solution));
-    if (body->history) PetscCall(BodyGetDot(body, layer->solution, layer->rhs, &work));
-    PetscCall(Move(layer, layer->solution, u));
+    PetscCall(ComputeMissing(body, &load, (PetscBool)(round && robin), u));
+    if (body->history && round > 1) PetscCall(TakeBack(body, &load, robin, work, u)); /* the first puts held rows in their places */
+    PetscCall(ConstrainedSolverSolve(body->solver, body->layer.rhs, body->layer.solution));
+    if (body->history) PetscCall(BodyGetDot(body, body->layer.solution, body->layer.rhs, &work));
+    PetscCall(Move(body, u));
     if (linear) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(BodyGetNorm(body, layer->solution, &change));
+    PetscCall(BodyGetNorm(body, body->layer.solution, &change));
     first = PetscMax(first, change);
     /* what is not a number is told when the substep is over */
     layer->now.rounds = round + 1;
@@ -252,14 +249,14 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
 }
 
 /* The internal force of the body at displacement u, on the dofs of the layer alone; other entries of `force` are left alone */
-PetscErrorCode LayerBalanceGetForce(LayerBalance layer, Body body, Vec u, Vec force)
+PetscErrorCode LayerBalanceGetForce(Body body, Vec u, Vec force)
 {
   PetscFunctionBegin;
-  PetscCall(VecZeroEntries(layer->rhs));
-  PetscCall(BodySubtractLayerForce(body, u, layer->rhs));
-  PetscCall(VecScale(layer->rhs, -1));
-  PetscCall(VecScatterBegin(layer->scatter, layer->rhs, force, INSERT_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(layer->scatter, layer->rhs, force, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(VecZeroEntries(body->layer.rhs));
+  PetscCall(BodySubtractLayerForce(body, u, body->layer.rhs));
+  PetscCall(VecScale(body->layer.rhs, -1));
+  PetscCall(VecScatterBegin(body->layer.scatter, body->layer.rhs, force, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(body->layer.scatter, body->layer.rhs, force, INSERT_VALUES, SCATTER_REVERSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -276,33 +273,21 @@ PetscErrorCode LayerBalanceSetRows(Body body, const PetscMPIInt changed[])
 /* With the factors of the undeformed layer, in body->solver */
 PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
 {
-  MPI_Comm     comm = PetscObjectComm((PetscObject)body);
   Mat          K;
-  PetscInt     rstart, *global;
   char         prefix[128];
   LayerBalance layer;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(balance));
   layer = *balance;
-  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
-  PetscCall(PetscMalloc1(body->layer.n_dofs, &global));
-  for (PetscInt i = 0; i < body->layer.n_dofs; i++) global[i] = rstart + body->layer.dofs[i];
-  PetscCall(ISCreateGeneral(comm, body->layer.n_dofs, global, PETSC_OWN_POINTER, &layer->dofs));
-  PetscCall(VecCreate(comm, &layer->rhs));
-  PetscCall(VecSetSizes(layer->rhs, body->layer.n_dofs, PETSC_DETERMINE));
-  PetscCall(VecSetType(layer->rhs, VECSTANDARD));
-  PetscCall(VecDuplicate(layer->rhs, &layer->solution));
-  PetscCall(BodySetUpLayerElements(body, layer->rhs));
+  PetscCall(BodySetUpLayerElements(body));
   PetscCall(BodyCreateLayerMatrix(body, &K));
-  PetscCall(LayerRowsCreate(body, layer->dofs, &layer->rows));
+  PetscCall(LayerRowsCreate(body, &layer->rows));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
   /* a layer is a surface, and its factors fill in as those of a mesh with one dimension less */
   PetscCall(ConstrainedSolverCreate(K, LayerRowsGetMatrix(layer->rows), PetscMax(body->mesh.dim - 1, 1), prefix, body->model.linear,
                                     &body->solver));
   PetscCall(VecNorm(body->mesh.positions, NORM_2, &layer->reach));
-  PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
-  PetscCall(BodyUseScatter(layer->scatter, body->state.u, layer->rhs));
   PetscCall(MatDestroy(&K));
   if (!body->model.linear) {
     PetscCall(BodyCreateLayerVec(body, &layer->now.point));
@@ -374,14 +359,10 @@ PetscErrorCode LayerBalanceDestroy(LayerBalance *layer)
 {
   PetscFunctionBegin;
   if (!*layer) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ISDestroy(&(*layer)->dofs));
-  PetscCall(VecDestroy(&(*layer)->rhs));
-  PetscCall(VecDestroy(&(*layer)->solution));
   PetscCall(VecDestroy(&(*layer)->now.point));
   PetscCall(PetscFree((*layer)->now.memory));
   PetscCall(VecDestroy(&(*layer)->aside.point));
   PetscCall(PetscFree((*layer)->aside.memory));
-  PetscCall(VecScatterDestroy(&(*layer)->scatter));
   PetscCall(LayerRowsDestroy(&(*layer)->rows));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -6,10 +6,8 @@
 
 struct _n_LayerRows {
   Mat        matrix;
-  IS         dofs;     /* of the layer, numbers in the vectors of the body */
   PetscInt   n;        /* of a body that one of several ranks has: how many, */
   PetscInt  *list;     /* and all of them, ascending; else NULL */
-  PetscInt  *column;   /* per entry of the rows of the body: its column, or -1 where the layer does not have it */
   PetscInt64 laid_out; /* what the rows of the body counted when the matrix was made */
 };
 
@@ -23,92 +21,22 @@ PetscErrorCode LayerRowsDestroy(LayerRows *rows)
   PetscFunctionBegin;
   if (!*rows) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MatDestroy(&(*rows)->matrix));
-  PetscCall(ISDestroy(&(*rows)->dofs));
   PetscCall(PetscFree((*rows)->list));
-  PetscCall(PetscFree((*rows)->column));
   PetscCall(PetscFree(*rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for a column of each entry of the rows of the body */
-static PetscErrorCode MakeRoom(LayerRows rows, const RowPattern *pattern)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFree(rows->column));
-  PetscCall(PetscMalloc1(pattern->offsets[pattern->n], &rows->column));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Marks the entries of the rows of the body that are in the layer: a copy of the rows has ones there, and else zeros */
-static PetscErrorCode MarkEntries(LayerRows rows, Body body)
-{
-  const RowPattern *pattern = &body->rows.pattern;
-  PetscScalar      *in;
-  Vec               mask;
-  Mat               marks;
-
-  PetscFunctionBegin;
-  PetscCall(BodyCreateVec(body, &mask));
-  PetscCall(VecZeroEntries(mask));
-  PetscCall(VecGetArray(mask, &in));
-  for (PetscInt i = 0; i < body->layer.n_dofs; i++) in[body->layer.dofs[i]] = 1;
-  PetscCall(VecRestoreArray(mask, &in));
-  PetscCall(MatDuplicate(body->rows.free_matrix, MAT_DO_NOT_COPY_VALUES, &marks));
-  for (PetscInt i = 0; i < pattern->n; i++) {
-    const PetscInt row = body->rows.begin + i;
-
-    for (PetscInt k = pattern->offsets[i]; k < pattern->offsets[i + 1]; k++)
-      PetscCall(MatSetValue(marks, row, pattern->columns[k], 1, INSERT_VALUES));
-  }
-  PetscCall(MatAssemblyBegin(marks, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(marks, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatDiagonalScale(marks, NULL, mask));
-  for (PetscInt i = 0; i < pattern->n; i++) {
-    const PetscScalar *values;
-    PetscInt           n;
-
-    PetscCall(MatGetRow(marks, body->rows.begin + i, &n, NULL, &values));
-    for (PetscInt k = 0; k < n; k++) rows->column[pattern->offsets[i] + k] = PetscRealPart(values[k]) != 0 ? 0 : -1;
-    PetscCall(MatRestoreRow(marks, body->rows.begin + i, &n, NULL, &values));
-  }
-  PetscCall(MatDestroy(&marks));
-  PetscCall(VecDestroy(&mask));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The columns of marked entries, in the order of those of the matrix: the dofs of the layer are in the order of those of the body */
-static PetscErrorCode NumberEntries(LayerRows rows, Body body)
-{
-  const RowPattern *pattern = &body->rows.pattern;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < pattern->n; i++) {
-    const PetscInt *columns;
-    PetscInt        n, next = 0;
-
-    PetscCall(MatGetRow(rows->matrix, body->rows.begin + i, &n, &columns, NULL));
-    for (PetscInt k = pattern->offsets[i]; k < pattern->offsets[i + 1]; k++)
-      if (rows->column[k] >= 0) rows->column[k] = columns[next++];
-    PetscCall(MatRestoreRow(rows->matrix, body->rows.begin + i, &n, &columns, NULL));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A part of the matrix of the body; collective */
+/* A part of the matrix of the body, in place where entries are where they were; collective */
 static PetscErrorCode Extract(LayerRows rows, Body body)
 {
-  IS own;
+  const MatReuse reuse = rows->matrix && body->rows.same_pattern ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX;
+  IS             own;
 
   PetscFunctionBegin;
-  PetscCall(MatDestroy(&rows->matrix));
+  if (reuse == MAT_INITIAL_MATRIX) PetscCall(MatDestroy(&rows->matrix));
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, body->rows.begin, 1, &own));
-  PetscCall(MatCreateSubMatrix(body->rows.free_matrix, own, rows->dofs, MAT_INITIAL_MATRIX, &rows->matrix));
-  PetscCall(MatSetOption(rows->matrix, MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  PetscCall(MatSetOption(rows->matrix, MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE)); /* assembled again, it needs no word of other ranks */
+  PetscCall(MatCreateSubMatrix(body->rows.free_matrix, own, body->layer.global, reuse, &rows->matrix));
   PetscCall(ISDestroy(&own));
-  PetscCall(MakeRoom(rows, &body->rows.pattern));
-  PetscCall(MarkEntries(rows, body));
-  PetscCall(NumberEntries(rows, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -132,21 +60,17 @@ static PetscErrorCode CreateWhole(LayerRows rows, Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for the entries that the layer has of the rows of this rank */
-static PetscErrorCode MakeEntries(LayerRows rows, Body body)
+/* Room for the entries of the rows of this rank */
+static PetscErrorCode MakeRoom(LayerRows rows, Body body)
 {
-  const RowPattern *pattern = &body->rows.pattern;
-  PetscInt         *counts;
+  PetscInt *counts;
 
   PetscFunctionBegin;
-  PetscCall(MakeRoom(rows, pattern));
-  PetscCall(PetscCalloc1(pattern->n, &counts));
-  for (PetscInt i = 0; i < pattern->n; i++)
-    for (PetscInt k = pattern->offsets[i]; k < pattern->offsets[i + 1]; k++) {
-      PetscCall(PetscFindInt(pattern->columns[k], rows->n, rows->list, &rows->column[k]));
-      if (rows->column[k] < 0) rows->column[k] = -1;
-      else counts[i]++;
-    }
+  PetscCall(PetscMalloc1(body->rows.local, &counts));
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    PetscCall(MatGetRow(body->rows.free_matrix, body->rows.begin + i, &counts[i], NULL, NULL));
+    PetscCall(MatRestoreRow(body->rows.free_matrix, body->rows.begin + i, NULL, NULL, NULL));
+  }
   PetscCall(BodyWholeRowsRenew(rows->matrix, body->mesh.is_owner, counts));
   PetscCall(PetscFree(counts));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -155,15 +79,19 @@ static PetscErrorCode MakeEntries(LayerRows rows, Body body)
 static PetscErrorCode Fill(LayerRows rows, Body body)
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < body->rows.local; i++) {
-    const PetscInt    *column = rows->column + body->rows.pattern.offsets[i], row = body->rows.begin + i;
+  for (PetscInt row = body->rows.begin; row < body->rows.begin + body->rows.local; row++) {
+    const PetscInt    *columns;
     const PetscScalar *values;
     PetscInt           n;
 
-    PetscCall(MatGetRow(body->rows.free_matrix, row, &n, NULL, &values));
-    for (PetscInt k = 0; k < n; k++)
-      if (column[k] >= 0) PetscCall(MatSetValue(rows->matrix, row, column[k], values[k], INSERT_VALUES));
-    PetscCall(MatRestoreRow(body->rows.free_matrix, row, &n, NULL, &values));
+    PetscCall(MatGetRow(body->rows.free_matrix, row, &n, &columns, &values));
+    for (PetscInt k = 0; k < n; k++) {
+      PetscInt column;
+
+      PetscCall(PetscFindInt(columns[k], rows->n, rows->list, &column));
+      if (column >= 0) PetscCall(MatSetValue(rows->matrix, row, column, values[k], INSERT_VALUES));
+    }
+    PetscCall(MatRestoreRow(body->rows.free_matrix, row, &n, &columns, &values));
   }
   PetscCall(MatAssemblyBegin(rows->matrix, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(rows->matrix, MAT_FINAL_ASSEMBLY));
@@ -177,18 +105,17 @@ PetscErrorCode LayerRowsUpdate(LayerRows rows, Body body)
 
   PetscFunctionBegin;
   if (!rows->list) {
-    if (body->rows.same_pattern) PetscCall(Fill(rows, body));
-    else PetscCall(Extract(rows, body));
+    PetscCall(Extract(rows, body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (others) PetscCall(CreateWhole(rows, body));
-  if (others || !body->rows.same_pattern) PetscCall(MakeEntries(rows, body));
+  if (others || !body->rows.same_pattern) PetscCall(MakeRoom(rows, body));
   PetscCall(Fill(rows, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* dofs: those of the layer that this rank has, numbers in the vectors of the body, ascending */
-PetscErrorCode LayerRowsCreate(Body body, IS dofs, LayerRows *created)
+/* After BodySetUpLayerElements() */
+PetscErrorCode LayerRowsCreate(Body body, LayerRows *created)
 {
   MPI_Comm        comm = PetscObjectComm((PetscObject)body);
   const PetscInt *own;
@@ -197,8 +124,6 @@ PetscErrorCode LayerRowsCreate(Body body, IS dofs, LayerRows *created)
   PetscFunctionBegin;
   PetscCall(PetscNew(created));
   rows = *created;
-  PetscCall(PetscObjectReference((PetscObject)dofs));
-  rows->dofs = dofs;
   if (!body->mesh.whole) {
     PetscCall(Extract(rows, body));
     PetscFunctionReturn(PETSC_SUCCESS);
@@ -206,9 +131,9 @@ PetscErrorCode LayerRowsCreate(Body body, IS dofs, LayerRows *created)
   rows->n = body->layer.n_dofs;
   PetscCallMPI(MPI_Bcast(&rows->n, 1, MPIU_INT, body->mesh.owner, comm));
   PetscCall(PetscMalloc1(rows->n + 1, &rows->list));
-  PetscCall(ISGetIndices(dofs, &own));
+  PetscCall(ISGetIndices(body->layer.global, &own));
   if (body->mesh.is_owner) PetscCall(PetscArraycpy(rows->list, own, rows->n));
-  PetscCall(ISRestoreIndices(dofs, &own));
+  PetscCall(ISRestoreIndices(body->layer.global, &own));
   PetscCallMPI(MPI_Bcast(rows->list, (PetscMPIInt)rows->n, MPIU_INT, body->mesh.owner, comm));
   PetscCall(LayerRowsUpdate(rows, body));
   PetscFunctionReturn(PETSC_SUCCESS);

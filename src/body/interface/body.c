@@ -313,7 +313,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(VecDestroy(&b->rows.free_dofs));
   PetscCall(TSDestroy(&b->time.ts));
   PetscCall(BodyLayerSolverDestroy(&b->layer.solver));
-  PetscCall(BodyLayerElementsDestroy(&b->layer.elements));
+  PetscCall(BodyLayerElementsDestroy(&b->layer));
   PetscCall(ElementDestroy(&b->model.element));
   PetscCall(ElementDestroy(&b->model.linearized_element));
   PetscCall(MaterialDestroy(&b->model.material));

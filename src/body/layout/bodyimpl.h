@@ -110,13 +110,16 @@ typedef struct {
 
 /* The contact nodes, and those of their dofs that are massless */
 typedef struct {
-  PetscBool    *contains; /* per local node: it belongs to a contact surface */
-  PetscReal     edge;     /* of the elements with such a node, see BODY_CONTACT_ELEMENT_SIZE; 0 until it is asked for [m] */
-  PetscBool     exists;   /* some rank has massless nodes */
-  PetscInt      n_dofs;   /* owned */
-  PetscInt     *dofs;     /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */
-  LayerElements elements; /* those that touch massless nodes; NULL until somebody balances them */
-  LayerSolver   solver;   /* NULL until BodySolveLayer() */
+  PetscBool    *contains;      /* per local node: it belongs to a contact surface */
+  PetscReal     edge;          /* of the elements with such a node, see BODY_CONTACT_ELEMENT_SIZE; 0 until it is asked for [m] */
+  PetscBool     exists;        /* some rank has massless nodes */
+  PetscInt      n_dofs;        /* owned */
+  PetscInt     *dofs;          /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */
+  LayerElements elements;      /* those that touch massless nodes; NULL until somebody balances them, and so is what follows */
+  IS            global;        /* `dofs`, numbers in the vectors of the body */
+  VecScatter    scatter;       /* from such a vector to one of the layer */
+  Vec           rhs, solution; /* work space, of the layer */
+  LayerSolver   solver;        /* NULL until BodySolveLayer() */
 } BodyLayer;
 
 typedef struct {
@@ -181,7 +184,7 @@ typedef struct {
   Vec      values;      /* work space: a number for each */
 } RowList;
 
-/* The rows of the interface: of this rank, and how to have all of them on every rank */
+/* The rows of the interface */
 typedef struct {
   Mat              matrix;      /* B: rows of all ranks x displacements */
   Mat              free_matrix; /* without held dofs; the same matrix where none is held */
@@ -192,14 +195,13 @@ typedef struct {
   PetscMPIInt     *changed;      /* work space, per row of all ranks */
   PetscMPIInt      size;         /* ranks */
   PetscInt         local, global, begin;
-  PetscBool        at_home;          /* the mesh is whole on one of several ranks, and no other has rows */
-  PetscBool        expected;         /* rows may come in the course of the run */
-  PetscMPIInt     *counts, *offsets; /* of 4 numbers for each row, on each rank */
-  BodyGram         gram;             /* of prescribed rows that are not orthonormal */
-  PetscBool        any_oblique;      /* on any rank there are rows of one node that are not orthonormal */
-  PetscBool       *by_mean;          /* per local row: see BodySetMeanForces(); NULL: none */
-  PetscBool        any_by_mean;      /* on any rank */
-  const PetscReal *weights;          /* of rows that depend on each other; borrowed, NULL: they are equal */
+  PetscBool        at_home;     /* the mesh is whole on one of several ranks, and no other has rows */
+  PetscBool        expected;    /* rows may come in the course of the run */
+  BodyGram         gram;        /* of prescribed rows that are not orthonormal */
+  PetscBool        any_oblique; /* on any rank there are rows of one node that are not orthonormal */
+  PetscBool       *by_mean;     /* per local row: see BodySetMeanForces(); NULL: none */
+  PetscBool        any_by_mean; /* on any rank */
+  const PetscReal *weights;     /* of rows that depend on each other; borrowed, NULL: they are equal */
   BodyTractionType traction;
   PetscBool        have_mass; /* prescribed nodes carry mass, and take velocity and acceleration from their partner */
   PetscBool        tied_mass; /* rows on nodes with mass are ties: constraints in the equations of motion */
@@ -449,8 +451,8 @@ PETSC_INTERN void           BodyHistoryGather(Body, PetscBool, Element, const Pe
 PETSC_INTERN PetscInt       BodyHistoryGetEpoch(Body);
 PETSC_INTERN PetscReal     *BodyHistoryGetSaved(Body, size_t *);
 PETSC_INTERN PetscErrorCode BodyGetElement(Body, Element *);
-PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body, Vec);
-PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(LayerElements *);
+PETSC_INTERN PetscErrorCode BodySetUpLayerElements(Body);
+PETSC_INTERN PetscErrorCode BodyLayerElementsDestroy(BodyLayer *);
 PETSC_INTERN PetscErrorCode BodySetUpBlocks(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyReadBlocks(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyBlocks(Body);
@@ -502,6 +504,7 @@ PETSC_INTERN PetscBool      BodyNearRowsAreZero(Body, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyDestroyNearRows(Body);
 PETSC_INTERN PetscErrorCode BodyClearRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyListContactDofs(Body);
+PETSC_INTERN PetscErrorCode BodyMarkColumns(Mat, Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteRest(Body);
 PETSC_INTERN PetscErrorCode BodyBringChanges(Body);

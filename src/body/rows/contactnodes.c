@@ -18,21 +18,20 @@ PetscErrorCode BodyDestroyContactNodes(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks displacements that near rows have entries in */
-static PetscErrorCode MarkNear(Body body, Vec marks)
+/* BodyMarkColumns - adds 1 to each displacement, of whatever rank, that a row of this rank has an entry in. Collective. */
+PetscErrorCode BodyMarkColumns(Mat rows, Vec marks)
 {
-  const RowList *near = &body->rows.near;
-  PetscInt       begin;
+  PetscInt begin, end;
 
   PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRange(near->matrix, &begin, NULL));
-  for (PetscInt k = 0; k < near->n; k++) {
+  PetscCall(MatGetOwnershipRange(rows, &begin, &end));
+  for (PetscInt row = begin; row < end; row++) {
     const PetscInt *columns;
     PetscInt        n;
 
-    PetscCall(MatGetRow(near->matrix, begin + k, &n, &columns, NULL));
+    PetscCall(MatGetRow(rows, row, &n, &columns, NULL));
     for (PetscInt j = 0; j < n; j++) PetscCall(VecSetValue(marks, columns[j], 1, ADD_VALUES));
-    PetscCall(MatRestoreRow(near->matrix, begin + k, &n, &columns, NULL));
+    PetscCall(MatRestoreRow(rows, row, &n, &columns, NULL));
   }
   PetscCall(VecAssemblyBegin(marks));
   PetscCall(VecAssemblyEnd(marks));
@@ -56,7 +55,7 @@ PetscErrorCode BodyListContactDofs(Body body)
     PetscCall(PetscMalloc1(n, &body->nodes.dofs));
   }
   PetscCall(VecZeroEntries(body->nodes.force));
-  if (some) PetscCall(MarkNear(body, body->nodes.force));
+  if (some) PetscCall(BodyMarkColumns(body->rows.near.matrix, body->nodes.force));
   PetscCall(VecGetArrayRead(body->nodes.force, &marked));
   body->nodes.n = 0;
   for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++)

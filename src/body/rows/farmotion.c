@@ -131,39 +131,31 @@ static PetscErrorCode NumberCoarse(Coarse *coarse, Vec positions, const PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The columns of the slab's dofs come first on each rank, then its part of the coarse ones */
+/* The columns of the slab's dofs come first on each rank, then, on the last one, all coarse ones */
 static PetscErrorCode FillFunctions(const Coarse *coarse, Vec positions, IS near, const PetscBool moved[], Mat P)
 {
-  const PetscInt    *dofs, *ranges;
+  const PetscInt    *dofs;
   const PetscScalar *x;
-  PetscInt           begin, n, column, n_near;
-  PetscLayout        layout;
+  PetscInt           begin, n, column, n_near, n_columns;
 
   PetscFunctionBegin;
   PetscCall(VecGetLocalSize(positions, &n));
   PetscCall(MatGetOwnershipRange(P, &begin, NULL));
   PetscCall(MatGetOwnershipRangeColumn(P, &column, NULL));
-  PetscCall(MatGetOwnershipRangesColumn(P, &ranges));
+  PetscCall(MatGetSize(P, NULL, &n_columns));
   PetscCall(ISGetLocalSize(near, &n_near));
   PetscCall(ISGetIndices(near, &dofs));
   for (PetscInt k = 0; k < n_near; k++) PetscCall(MatSetValue(P, dofs[k], column + k, 1, INSERT_VALUES));
   PetscCall(ISRestoreIndices(near, &dofs));
-  PetscCall(PetscLayoutCreateFromSizes(PetscObjectComm((PetscObject)P), PETSC_DECIDE, coarse->n, 1, &layout));
   PetscCall(VecGetArrayRead(positions, &x));
   for (PetscInt i = 0; i < n; i++) {
     CoarseWeight   list[8];
     const PetscInt of = moved[i] ? FindWeights(coarse, &x[i - i % coarse->dim], i % coarse->dim, list) : 0;
 
-    for (PetscInt k = 0; k < of; k++) {
-      const PetscInt number = coarse->numbers[list[k].index];
-      PetscMPIInt    owner;
-
-      PetscCall(PetscLayoutFindOwner(layout, number, &owner));
-      PetscCall(MatSetValue(P, begin + i, ranges[owner + 1] - layout->range[owner + 1] + number, list[k].weight, INSERT_VALUES));
-    }
+    for (PetscInt k = 0; k < of; k++)
+      PetscCall(MatSetValue(P, begin + i, n_columns - coarse->n + coarse->numbers[list[k].index], list[k].weight, INSERT_VALUES));
   }
   PetscCall(VecRestoreArrayRead(positions, &x));
-  PetscCall(PetscLayoutDestroy(&layout));
   PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -204,51 +196,37 @@ static PetscErrorCode ListMarked(Vec mark, IS *is)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The dofs of this rank within some layers of elements from dofs of any rank, which may come more than once */
-static PetscErrorCode FindNear(Mat A, IS surface, PetscInt layers, IS *near)
-{
-  IS  reach;
-  Vec mark;
-
-  PetscFunctionBegin;
-  PetscCall(MatCreateVecs(A, &mark, NULL));
-  PetscCall(VecZeroEntries(mark));
-  PetscCall(Mark(surface, mark));
-  PetscCall(ListMarked(mark, &reach));
-  PetscCall(MatIncreaseOverlap(A, 1, &reach, layers));
-  PetscCall(Mark(reach, mark));
-  PetscCall(ISDestroy(&reach));
-  PetscCall(ListMarked(mark, near));
-  PetscCall(VecDestroy(&mark));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* P, the displacements near a surface and what the body may do beyond them on a coarse grid: all dofs by functions, those near the surface
-   first on each rank. `A`: matrix of the body, without entries beside the diagonal in rows of held dofs; `surface`: dofs of any rank, of
-   which functions have those one by one that are within so many layers of elements */
-PetscErrorCode BodyCreateSlabFunctions(Mat A, Vec positions, PetscInt dim, IS surface, PetscInt layers, Mat *functions)
+   first on each rank. `A`: matrix of the body, without entries beside the diagonal in rows of held dofs; `surface`: not zero on dofs of
+   which functions have those one by one that are within so many layers of elements, which become `near` */
+PetscErrorCode BodyCreateSlabFunctions(Mat A, Vec positions, PetscInt dim, Vec surface, PetscInt layers, IS *near, Mat *functions)
 {
-  MPI_Comm   comm   = PetscObjectComm((PetscObject)A);
-  Coarse     coarse = {0};
-  PetscBool *moved;
-  PetscInt   n, n_near, n_coarse = PETSC_DECIDE;
-  IS         near;
+  MPI_Comm    comm   = PetscObjectComm((PetscObject)A);
+  Coarse      coarse = {0};
+  PetscBool  *moved;
+  PetscInt    n, n_near;
+  PetscMPIInt rank, size;
+  IS          reach;
 
   PetscFunctionBegin;
-  PetscCall(FindNear(A, surface, layers, &near));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  PetscCall(ListMarked(surface, &reach));
+  PetscCall(MatIncreaseOverlap(A, 1, &reach, layers));
+  PetscCall(Mark(reach, surface));
+  PetscCall(ISDestroy(&reach));
+  PetscCall(ListMarked(surface, near));
   PetscCall(MatGetLocalSize(A, &n, NULL));
-  PetscCall(ISGetLocalSize(near, &n_near));
+  PetscCall(ISGetLocalSize(*near, &n_near));
   PetscCall(PetscMalloc1(n, &moved));
-  PetscCall(FindMoved(A, near, moved));
+  PetscCall(FindMoved(A, *near, moved));
   PetscCall(CreateCoarse(positions, dim, &coarse));
   PetscCall(NumberCoarse(&coarse, positions, moved));
-  PetscCall(PetscSplitOwnership(comm, &n_coarse, &coarse.n));
   PetscCall(MatCreate(comm, functions));
-  PetscCall(MatSetSizes(*functions, n, n_near + n_coarse, PETSC_DETERMINE, PETSC_DETERMINE));
+  PetscCall(MatSetSizes(*functions, n, n_near + (rank == size - 1 ? coarse.n : 0), PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(*functions, MATAIJ));
   PetscCall(MatSetUp(*functions));
-  PetscCall(FillFunctions(&coarse, positions, near, moved, *functions));
-  PetscCall(ISDestroy(&near));
+  PetscCall(FillFunctions(&coarse, positions, *near, moved, *functions));
   PetscCall(PetscFree(coarse.numbers));
   PetscCall(PetscFree(moved));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -28,8 +28,7 @@ struct _NodalMatrix {
   BodyForceShape    shape;
   NodalMatrix       layer;     /* of massless nodes, where a constant force counts twice on all but them; else NULL */
   Mat               functions; /* P; NULL: all displacements, one by one */
-  PetscInt          n_near;    /* its columns that are single displacements of this rank: the first ones */
-  PetscInt         *near;      /* which, rank numbering */
+  IS                near;      /* which displacements of this rank its first columns are, one by one */
   ConstrainedSolver solver;    /* that the body has for the matrix; NULL: the following are */
   Mat               matrix;    /* P^T A P, or the stiffness */
   KSP               ksp;
@@ -43,7 +42,7 @@ PetscErrorCode NodalMatrixDestroy(NodalMatrix *nodal)
   PetscCall(MatDestroy(&(*nodal)->matrix));
   PetscCall(KSPDestroy(&(*nodal)->ksp));
   PetscCall(NodalMatrixDestroy(&(*nodal)->layer));
-  PetscCall(PetscFree((*nodal)->near));
+  PetscCall(ISDestroy(&(*nodal)->near));
   PetscCall(PetscFree(*nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -100,69 +99,41 @@ static PetscErrorCode GetMatrix(Body body, Kind kind, Mat *A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The dofs that rows of this rank have entries at, and those asked for */
-static PetscErrorCode ListSurface(Body body, PetscInt n, const PetscInt dofs[], IS *surface)
+/* P of a slab at the displacements that rows have entries in, and those asked for */
+static PetscErrorCode CreateSlabFunctions(Body body, PetscInt n, const PetscInt dofs[], Mat A, NodalMatrix nodal)
 {
-  PetscInt begin, end, count = n, *list = NULL;
+  Vec surface;
 
   PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRange(body->rows.matrix, &begin, &end));
-  for (PetscInt pass = 0; pass < 2; pass++) {
-    if (pass) {
-      PetscCall(PetscMalloc1(count, &list));
-      PetscCall(PetscArraycpy(list, dofs, n));
-      count = n;
-    }
-    for (PetscInt row = begin; row < end; row++) {
-      const PetscInt *columns;
-      PetscInt        entries;
-
-      PetscCall(MatGetRow(body->rows.matrix, row, &entries, &columns, NULL));
-      if (pass) PetscCall(PetscArraycpy(list + count, columns, entries));
-      count += entries;
-      PetscCall(MatRestoreRow(body->rows.matrix, row, &entries, &columns, NULL));
-    }
-  }
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), count, list, PETSC_OWN_POINTER, surface));
+  PetscCall(BodyCreateVec(body, &surface));
+  PetscCall(VecZeroEntries(surface));
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecSetValue(surface, dofs[i], 1, ADD_VALUES));
+  PetscCall(BodyMarkColumns(body->rows.matrix, surface));
+  PetscCall(BodyCreateSlabFunctions(A, body->mesh.positions, body->mesh.dim, surface, LAYERS, &nodal->near, &nodal->functions));
+  PetscCall(VecDestroy(&surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* P of a layer: its displacements, one by one */
-static PetscErrorCode CreateLayerFunctions(Body body, Mat *functions)
+static PetscErrorCode CreateLayerFunctions(Body body, NodalMatrix nodal)
 {
-  PetscInt n, begin, column;
+  MPI_Comm       comm   = PetscObjectComm((PetscObject)body);
+  const PetscInt n_dofs = body->layer.n_dofs;
+  PetscInt       n, begin, column, *near;
 
   PetscFunctionBegin;
   PetscCall(VecGetLocalSize(body->state.u, &n));
   PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
-  PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)body), n, body->layer.n_dofs, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL,
-                         functions));
-  PetscCall(MatGetOwnershipRangeColumn(*functions, &column, NULL));
-  for (PetscInt k = 0; k < body->layer.n_dofs; k++)
-    PetscCall(MatSetValue(*functions, begin + body->layer.dofs[k], column + k, 1, INSERT_VALUES));
-  PetscCall(MatAssemblyBegin(*functions, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(*functions, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Which columns of P are single displacements of this rank: those in front, see BodyCreateSlabFunctions() */
-static PetscErrorCode FindNear(NodalMatrix nodal)
-{
-  PetscInt begin, end, first, n;
-
-  PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRange(nodal->functions, &begin, &end));
-  PetscCall(MatGetOwnershipRangeColumn(nodal->functions, &first, &n));
-  PetscCall(PetscMalloc1(n - first, &nodal->near));
-  for (PetscInt row = begin; row < end; row++) {
-    const PetscInt    *columns;
-    const PetscScalar *values;
-    PetscInt           entries;
-
-    PetscCall(MatGetRow(nodal->functions, row, &entries, &columns, &values));
-    if (entries == 1 && columns[0] == first + nodal->n_near && values[0] == 1) nodal->near[nodal->n_near++] = row - begin;
-    PetscCall(MatRestoreRow(nodal->functions, row, &entries, &columns, &values));
+  PetscCall(MatCreateAIJ(comm, n, n_dofs, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, &nodal->functions));
+  PetscCall(MatGetOwnershipRangeColumn(nodal->functions, &column, NULL));
+  PetscCall(PetscMalloc1(n_dofs, &near));
+  for (PetscInt k = 0; k < n_dofs; k++) {
+    near[k] = begin + body->layer.dofs[k];
+    PetscCall(MatSetValue(nodal->functions, near[k], column + k, 1, INSERT_VALUES));
   }
+  PetscCall(ISCreateGeneral(comm, n_dofs, near, PETSC_OWN_POINTER, &nodal->near));
+  PetscCall(MatAssemblyBegin(nodal->functions, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(nodal->functions, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -193,7 +164,6 @@ static PetscErrorCode Factor(Body body, NodalMatrix nodal, Mat A)
 static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt dofs[], NodalMatrix *result)
 {
   NodalMatrix nodal;
-  IS          surface;
   Mat         A;
 
   PetscFunctionBegin;
@@ -204,18 +174,10 @@ static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt do
   if (kind == BY_BODY || body->integrator->staggered > 0) nodal->solver = body->solver;
   if (kind == BY_FRONT) PetscCall(FrontCreateMatrix(body, &nodal->matrix));
   if (kind == BY_BODY || kind == BY_FRONT) PetscFunctionReturn(PETSC_SUCCESS);
-  if (kind == BY_LAYER) PetscCall(CreateLayerFunctions(body, &nodal->functions));
-  if (nodal->solver) {
-    PetscCall(FindNear(nodal));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  if (kind == BY_LAYER) PetscCall(CreateLayerFunctions(body, nodal));
+  if (nodal->solver) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetMatrix(body, kind, &A));
-  if (kind == BY_SLAB) {
-    PetscCall(ListSurface(body, n, dofs, &surface));
-    PetscCall(BodyCreateSlabFunctions(A, body->mesh.positions, body->mesh.dim, surface, LAYERS, &nodal->functions));
-    PetscCall(ISDestroy(&surface));
-  }
-  PetscCall(FindNear(nodal));
+  if (kind == BY_SLAB) PetscCall(CreateSlabFunctions(body, n, dofs, A, nodal));
   PetscCall(Factor(body, nodal, A));
   PetscCall(MatDestroy(&A));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -305,12 +267,18 @@ static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, PetscInt 
   const PetscReal   factor[] = {nodal->shape == BODY_FORCE_CONSTANT ? 2 : 1, -1};
   const Vec         column   = body->work.nodes[0];
   const PetscInt    n_parts  = nodal->layer ? 2 : 1;
+  const PetscInt   *near[2];
   Mat               answers[2];
-  PetscInt          local;
+  PetscInt          sizes[2], begin;
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < n_parts; p++) PetscCall(Solve(body, parts[p], n, dofs, &answers[p]));
-  PetscCall(VecGetLocalSize(column, &local));
+  PetscCall(VecGetOwnershipRange(column, &begin, NULL));
+  for (PetscInt p = 0; p < n_parts; p++) {
+    PetscCall(Solve(body, parts[p], n, dofs, &answers[p]));
+    if (parts[p]->functions) PetscCall(ISGetLocalSize(parts[p]->near, &sizes[p]));
+    else PetscCall(VecGetLocalSize(column, &sizes[p]));
+    if (parts[p]->functions) PetscCall(ISGetIndices(parts[p]->near, &near[p]));
+  }
   PetscCall(VecZeroEntries(column));
   for (PetscInt k = 0; k < n; k++) {
     PetscScalar *values;
@@ -322,8 +290,8 @@ static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, PetscInt 
 
       PetscCall(MatDenseGetLDA(answers[p], &leading));
       PetscCall(MatDenseGetArrayRead(answers[p], &u));
-      for (PetscInt i = 0; i < (parts[p]->functions ? parts[p]->n_near : local); i++) {
-        const PetscInt at = parts[p]->functions ? parts[p]->near[i] : i;
+      for (PetscInt i = 0; i < sizes[p]; i++) {
+        const PetscInt at = parts[p]->functions ? near[p][i] - begin : i;
 
         values[at] = factor[p] * u[k * leading + i] + (p ? values[at] : 0);
       }
@@ -335,7 +303,10 @@ static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, PetscInt 
     PetscCall(ComplianceSetColumn(compliance, dofs[k], values));
     PetscCall(VecRestoreArray(column, &values));
   }
-  for (PetscInt p = 0; p < n_parts; p++) PetscCall(MatDestroy(&answers[p]));
+  for (PetscInt p = 0; p < n_parts; p++) {
+    if (parts[p]->functions) PetscCall(ISRestoreIndices(parts[p]->near, &near[p]));
+    PetscCall(MatDestroy(&answers[p]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

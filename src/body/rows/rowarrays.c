@@ -41,21 +41,16 @@ PetscErrorCode BodyDestroyTraces(Body body)
 /* Room for as many rows as the matrix has, all of them free */
 PetscErrorCode BodyCreateRowArrays(Body body)
 {
-  BodyRows   *rows = &body->rows;
-  PetscMPIInt four, total = 0;
+  BodyRows *rows = &body->rows;
+  PetscBool elsewhere;
 
   PetscFunctionBegin;
   PetscCall(MatGetLocalSize(rows->matrix, &rows->local, NULL));
   PetscCall(MatGetSize(rows->matrix, &rows->global, NULL));
   PetscCall(MatGetOwnershipRange(rows->matrix, &rows->begin, NULL));
-  PetscCall(PetscMalloc2(rows->size, &rows->counts, rows->size, &rows->offsets));
-  PetscCall(PetscMPIIntCast(4 * rows->local, &four));
-  PetscCallMPI(MPI_Allgather(&four, 1, MPI_INT, rows->counts, 1, MPI_INT, PetscObjectComm((PetscObject)body)));
-  rows->at_home = body->mesh.whole;
-  for (PetscMPIInt r = 0; r < rows->size; total += rows->counts[r++]) {
-    rows->offsets[r] = total;
-    if (r != body->mesh.owner && rows->counts[r]) rows->at_home = PETSC_FALSE;
-  }
+  elsewhere = (PetscBool)(rows->local && !body->mesh.is_owner);
+  if (body->mesh.whole) PetscCall(BodyAnyRank(body, &elsewhere));
+  rows->at_home = (PetscBool)(body->mesh.whole && !elsewhere);
   PetscCall(PetscCalloc4(rows->local, &rows->conditions, rows->local, &rows->constrained, rows->local, &rows->flexibility, rows->local,
                          &rows->robin));
   PetscCall(PetscMalloc1(rows->global, &rows->changed));
@@ -72,7 +67,6 @@ PetscErrorCode BodyDestroyRowArrays(Body body)
   BodyRows *rows = &body->rows;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree2(rows->counts, rows->offsets));
   PetscCall(PetscFree4(rows->conditions, rows->constrained, rows->flexibility, rows->robin));
   PetscCall(PetscFree(rows->changed));
   PetscCall(PetscFree(rows->by_mean));

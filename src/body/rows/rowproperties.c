@@ -5,29 +5,24 @@
    other bodies. Collective. */
 PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
 {
-  const BodyRows *rows = &body->rows;
-  Mat             K, forces;
+  const BodyRows    *rows = &body->rows;
+  Mat                K, forces, answers;
+  Vec                diagonal;
+  const PetscScalar *values;
 
   PetscFunctionBegin;
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   if (!rows->global) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetStiffness(body, &K));
-  PetscCall(MatMatMult(body->rows.matrix, K, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &forces));
-  for (PetscInt i = 0; i < rows->local; i++) {
-    const PetscInt    *of_forces, *of_row;
-    const PetscScalar *force, *row;
-    PetscInt           n_forces, n_row;
-
-    stiffness[i] = 0;
-    PetscCall(MatGetRow(body->rows.matrix, rows->begin + i, &n_row, &of_row, &row));
-    PetscCall(MatGetRow(forces, rows->begin + i, &n_forces, &of_forces, &force));
-    for (PetscInt k = 0, l = 0; k < n_row; k++) {
-      while (l < n_forces && of_forces[l] < of_row[k]) l++;
-      if (l < n_forces && of_forces[l] == of_row[k]) stiffness[i] += PetscRealPart(force[l] * row[k]);
-    }
-    PetscCall(MatRestoreRow(forces, rows->begin + i, &n_forces, &of_forces, &force));
-    PetscCall(MatRestoreRow(body->rows.matrix, rows->begin + i, &n_row, &of_row, &row));
-  }
+  PetscCall(MatMatMult(rows->matrix, K, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &forces));
+  PetscCall(MatMatTransposeMult(forces, rows->matrix, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &answers));
+  PetscCall(MatCreateVecs(answers, NULL, &diagonal));
+  PetscCall(MatGetDiagonal(answers, diagonal));
+  PetscCall(VecGetArrayRead(diagonal, &values));
+  for (PetscInt i = 0; i < rows->local; i++) stiffness[i] = PetscRealPart(values[i]);
+  PetscCall(VecRestoreArrayRead(diagonal, &values));
+  PetscCall(VecDestroy(&diagonal));
+  PetscCall(MatDestroy(&answers));
   PetscCall(MatDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

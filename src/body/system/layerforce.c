@@ -16,8 +16,6 @@ struct _n_LayerElements {
   PetscReal *history;
   PetscInt   history_size; /* numbers of that */
   PetscInt   epoch;        /* of the substep */
-  PetscInt   n_near;       /* of contact nodes and of the nodes of these elements, on whatever rank the elements are */
-  PetscInt  *near;         /* owned ones, rank numbering */
 };
 
 /* The number of each dof of this rank's nodes, ghosts too, within the layer; -1 for others */
@@ -90,7 +88,7 @@ static PetscErrorCode SelectElements(Body body, const PetscInt number[], LayerEl
 }
 
 /* From a vector of the body to the nodes of the elements, and from there to the layer */
-static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[], Vec of_layer)
+static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_nodes, const PetscInt nodes[])
 {
   const PetscInt dim = body->mesh.dim;
   PetscInt       rstart, n = 0, *dofs, *from, *to;
@@ -120,35 +118,11 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
   }
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, from, PETSC_COPY_VALUES, &is));
   PetscCall(ISCreateGeneral(PETSC_COMM_SELF, n, to, PETSC_COPY_VALUES, &to_is));
-  PetscCall(VecScatterCreate(layer->f, is, of_layer, to_is, &layer->add));
-  PetscCall(BodyUseScatter(layer->add, layer->f, of_layer));
+  PetscCall(VecScatterCreate(layer->f, is, body->layer.rhs, to_is, &layer->add));
+  PetscCall(BodyUseScatter(layer->add, layer->f, body->layer.rhs));
   PetscCall(ISDestroy(&is));
   PetscCall(ISDestroy(&to_is));
   PetscCall(PetscFree2(from, to));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Needs the scatters */
-static PetscErrorCode FindNear(Body body, LayerElements layer)
-{
-  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar *mark;
-  Vec                marks;
-
-  PetscFunctionBegin;
-  PetscCall(BodyCreateVec(body, &marks));
-  PetscCall(VecZeroEntries(marks));
-  PetscCall(VecSet(layer->u, 1));
-  PetscCall(VecScatterBegin(layer->gather, layer->u, marks, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(layer->gather, layer->u, marks, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecGetArrayRead(marks, &mark));
-  for (PetscInt i = 0; i < n; i++) layer->n_near += PetscRealPart(mark[i]) > 0 || body->layer.contains[i / body->mesh.dim];
-  PetscCall(PetscMalloc1(layer->n_near, &layer->near));
-  layer->n_near = 0;
-  for (PetscInt i = 0; i < n; i++)
-    if (PetscRealPart(mark[i]) > 0 || body->layer.contains[i / body->mesh.dim]) layer->near[layer->n_near++] = i;
-  PetscCall(VecRestoreArrayRead(marks, &mark));
-  PetscCall(VecDestroy(&marks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,8 +164,29 @@ PetscErrorCode BodyLayerCopyHistory(Body body, PetscReal history[], PetscReal *s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* of_layer: any vector of the layer, one number for each of its dofs */
-PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
+/* Vectors of the layer, one number for each of its dofs, and the way to them */
+static PetscErrorCode CreateVectors(Body body)
+{
+  MPI_Comm   comm  = PetscObjectComm((PetscObject)body);
+  BodyLayer *layer = &body->layer;
+  PetscInt   rstart, *global;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
+  PetscCall(PetscMalloc1(layer->n_dofs, &global));
+  for (PetscInt i = 0; i < layer->n_dofs; i++) global[i] = rstart + layer->dofs[i];
+  PetscCall(ISCreateGeneral(comm, layer->n_dofs, global, PETSC_OWN_POINTER, &layer->global));
+  PetscCall(VecCreate(comm, &layer->rhs));
+  PetscCall(VecSetSizes(layer->rhs, layer->n_dofs, PETSC_DETERMINE));
+  PetscCall(VecSetType(layer->rhs, VECSTANDARD));
+  PetscCall(VecDuplicate(layer->rhs, &layer->solution));
+  PetscCall(VecScatterCreate(body->state.u, layer->global, layer->rhs, NULL, &layer->scatter));
+  PetscCall(BodyUseScatter(layer->scatter, body->state.u, layer->rhs));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The elements that touch the layer, and vectors of it. Collective. */
+PetscErrorCode BodySetUpLayerElements(Body body)
 {
   const PetscInt dim = body->mesh.dim;
   PetscInt       count, n_nodes, *nodes, *number;
@@ -200,6 +195,7 @@ PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
   PetscFunctionBegin;
   PetscCall(PetscNew(&layer));
   body->layer.elements = layer;
+  PetscCall(CreateVectors(body));
   PetscCall(NumberLayer(body, &number));
   PetscCall(SelectElements(body, number, layer, &count, &n_nodes, &nodes));
   layer->n_dofs = n_nodes * dim;
@@ -212,29 +208,33 @@ PetscErrorCode BodySetUpLayerElements(Body body, Vec of_layer)
                                    &layer->element));
   PetscCall(BodyLayerCreateHistory(body, &layer->history_size, &layer->memory, &layer->history));
   layer->epoch = -1;
-  PetscCall(CreateScatters(body, layer, n_nodes, nodes, of_layer));
-  PetscCall(FindNear(body, layer));
+  PetscCall(CreateScatters(body, layer, n_nodes, nodes));
   PetscCall(PetscFree(nodes));
   PetscCall(PetscFree(number));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BodyLayerElementsDestroy(LayerElements *layer)
+PetscErrorCode BodyLayerElementsDestroy(BodyLayer *of_body)
 {
+  LayerElements layer = of_body->elements;
+
   PetscFunctionBegin;
-  if (!*layer) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ElementDestroy(&(*layer)->element));
-  PetscCall(ElementDestroy(&(*layer)->linearized));
-  PetscCall(VecScatterDestroy(&(*layer)->gather));
-  PetscCall(VecScatterDestroy(&(*layer)->add));
-  PetscCall(VecDestroy(&(*layer)->u));
-  PetscCall(VecDestroy(&(*layer)->f));
-  PetscCall(PetscFree2((*layer)->coordinates, (*layer)->numbers));
-  PetscCall(PetscFree((*layer)->connectivity));
-  PetscCall(PetscFree((*layer)->near));
-  PetscCall(PetscFree((*layer)->of_body));
-  PetscCall(PetscFree((*layer)->memory));
-  PetscCall(PetscFree(*layer));
+  if (!layer) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ISDestroy(&of_body->global));
+  PetscCall(VecScatterDestroy(&of_body->scatter));
+  PetscCall(VecDestroy(&of_body->rhs));
+  PetscCall(VecDestroy(&of_body->solution));
+  PetscCall(ElementDestroy(&layer->element));
+  PetscCall(ElementDestroy(&layer->linearized));
+  PetscCall(VecScatterDestroy(&layer->gather));
+  PetscCall(VecScatterDestroy(&layer->add));
+  PetscCall(VecDestroy(&layer->u));
+  PetscCall(VecDestroy(&layer->f));
+  PetscCall(PetscFree2(layer->coordinates, layer->numbers));
+  PetscCall(PetscFree(layer->connectivity));
+  PetscCall(PetscFree(layer->of_body));
+  PetscCall(PetscFree(layer->memory));
+  PetscCall(PetscFree(of_body->elements));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

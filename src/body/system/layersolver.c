@@ -9,15 +9,12 @@
 #include <body/layout/bodyimpl.h>
 
 struct _n_LayerSolver {
-  IS                dofs;          /* of the layer, numbers in the vectors of the body */
-  Vec               rhs, solution; /* of the layer */
-  Vec               point;         /* displacement at which the tangent is taken, on the nodes near the layer; NULL for linear bodies [m] */
-  VecScatter        scatter;       /* from a vector of the body */
-  ConstrainedSolver own;           /* factors, where the integrator has none */
-  Mat               K;             /* what they are of */
-  PetscScalar      *tangents;      /* of the elements that touch the layer, at the point; NULL for linear bodies */
-  PetscObjectId     of;            /* the displacements that the point was taken of last, their state and the step then: they are asked */
-  PetscObjectState  of_state;      /* for in each pass over the bodies, and do not change before the next step */
+  Vec               point;    /* displacement at which the tangent is taken, on the nodes near the layer; NULL for linear bodies [m] */
+  ConstrainedSolver own;      /* factors, where the integrator has none */
+  Mat               K;        /* what they are of */
+  PetscScalar      *tangents; /* of the elements that touch the layer, at the point; NULL for linear bodies */
+  PetscObjectId     of;       /* the displacements that the point was taken of last, their state and the step then: they are asked */
+  PetscObjectState  of_state; /* for in each pass over the bodies, and do not change before the next step */
   PetscReal         of_step;
 };
 
@@ -28,7 +25,6 @@ static PetscErrorCode CreateFactors(Body body, LayerSolver layer)
   Mat  empty;
 
   PetscFunctionBegin;
-  if (!body->layer.elements) PetscCall(BodySetUpLayerElements(body, layer->rhs));
   PetscCall(BodyCreateLayerMatrix(body, &layer->K));
   if (!body->model.linear) {
     PetscCall(BodyCreateLayerVec(body, &layer->point));
@@ -46,22 +42,12 @@ static PetscErrorCode CreateFactors(Body body, LayerSolver layer)
 /* Collective; for a body with massless nodes on some rank */
 static PetscErrorCode CreateLayerSolver(Body body)
 {
-  PetscInt    rstart, *global;
-  LayerSolver layer;
+  const PetscBool balances = (PetscBool)(body->layer.elements != NULL);
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&body->layer.solver));
-  layer = body->layer.solver;
-  PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
-  PetscCall(PetscMalloc1(body->layer.n_dofs, &global));
-  for (PetscInt i = 0; i < body->layer.n_dofs; i++) global[i] = rstart + body->layer.dofs[i];
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)body), body->layer.n_dofs, global, PETSC_OWN_POINTER, &layer->dofs));
-  PetscCall(VecCreate(PetscObjectComm((PetscObject)body), &layer->rhs));
-  PetscCall(VecSetSizes(layer->rhs, body->layer.n_dofs, PETSC_DETERMINE));
-  PetscCall(VecSetType(layer->rhs, VECSTANDARD));
-  PetscCall(VecDuplicate(layer->rhs, &layer->solution));
-  PetscCall(VecScatterCreate(body->state.u, layer->dofs, layer->rhs, NULL, &layer->scatter));
-  if (!body->layer.elements || !body->model.linear) PetscCall(CreateFactors(body, layer));
+  if (!balances) PetscCall(BodySetUpLayerElements(body));
+  if (!balances || !body->model.linear) PetscCall(CreateFactors(body, body->layer.solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,12 +79,12 @@ PetscErrorCode BodyPrepareLayer(Body body, Vec u)
    is left alone, and may be du. */
 PetscErrorCode BodyApplyLayerCompliance(Body body, Vec f, Vec du)
 {
-  LayerSolver layer = body->layer.solver;
+  const BodyLayer *layer = &body->layer;
 
   PetscFunctionBegin;
   PetscCall(VecScatterBegin(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
   PetscCall(VecScatterEnd(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(ConstrainedSolverSolveFree(layer->own ? layer->own : body->solver, layer->rhs, layer->solution));
+  PetscCall(ConstrainedSolverSolveFree(layer->solver->own ? layer->solver->own : body->solver, layer->rhs, layer->solution));
   PetscCall(VecZeroEntries(du));
   PetscCall(VecScatterBegin(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
   PetscCall(VecScatterEnd(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
@@ -122,11 +108,7 @@ PetscErrorCode BodyLayerSolverDestroy(LayerSolver *layer)
 {
   PetscFunctionBegin;
   if (!*layer) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ISDestroy(&(*layer)->dofs));
-  PetscCall(VecDestroy(&(*layer)->rhs));
-  PetscCall(VecDestroy(&(*layer)->solution));
   PetscCall(VecDestroy(&(*layer)->point));
-  PetscCall(VecScatterDestroy(&(*layer)->scatter));
   PetscCall(ConstrainedSolverDestroy(&(*layer)->own));
   PetscCall(MatDestroy(&(*layer)->K));
   PetscCall(PetscFree((*layer)->tangents));
