@@ -49,8 +49,8 @@ typedef struct {
 
 struct _n_LayerBalance {
   LayerRows rows;
-  PetscReal reach; /* norm of the reference positions of all nodes [m] */
-  Factors   now, aside;
+  PetscReal reach;      /* norm of the reference positions of all nodes [m] */
+  Factors   now, aside; /* the latter: of the saved state */
   PetscInt  n_made;
   PetscInt  n_history; /* numbers of that history */
 };
@@ -115,23 +115,16 @@ PetscErrorCode LayerBalanceSave(Body body)
 /* How good the factors of a local body are its rank alone knows; before all ranks have rows to hold, they all do */
 PetscErrorCode LayerBalanceAgree(Body body)
 {
-  LayerBalance layer = GetLayerBalance(body);
-  PetscInt     told[5];
+  LayerBalance    layer    = GetLayerBalance(body);
+  PetscInt *const values[] = {&layer->n_made, &layer->now.number, &layer->now.rounds, &layer->aside.number, &layer->aside.rounds};
+  PetscInt        told[PETSC_STATIC_ARRAY_LENGTH(values)];
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  told[0] = layer->n_made;
-  told[1] = layer->now.number;
-  told[2] = layer->now.rounds;
-  told[3] = layer->aside.number;
-  told[4] = layer->aside.rounds;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) told[k] = *values[k];
   PetscCallMPI(
       MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(told), MPIU_INT, body->mesh.owner, PetscObjectComm((PetscObject)body)));
-  layer->n_made       = told[0];
-  layer->now.number   = told[1];
-  layer->now.rounds   = told[2];
-  layer->aside.number = told[3];
-  layer->aside.rounds = told[4];
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) *values[k] = told[k];
   PetscCall(ConstrainedSolverForgetColumns(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
