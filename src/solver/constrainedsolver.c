@@ -12,6 +12,9 @@
 #include "constrainedsolverimpl.h"
 #include <math.h>
 
+/* Numbers that the right-hand sides may have which are solved for together: 200 MB */
+#define MAX_BLOCK_NUMBERS 25000000
+
 /* Whether columns are kept: on interfaces of few rows, and where to add up those of all rows is half the work of a solution by factors, or
    less; they take a quarter of the factors' memory then, or less */
 static PetscErrorCode ChooseColumns(ConstrainedSolver s)
@@ -64,12 +67,31 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* How many right-hand sides are solved for together: those of MUMPS; PETSc's own factors solve for one after the other, whatever they are
+   asked for */
+static PetscErrorCode ChooseBlock(ConstrainedSolver s)
+{
+  PetscInt      size;
+  PetscBool     mumps = PETSC_FALSE;
+  MatSolverType package;
+
+  PetscFunctionBegin;
+  s->block = 1;
+  if (!s->factors || s->global <= FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCFactorGetMatSolverType(s->factors, &package));
+  PetscCall(PetscStrcmp(package, MATSOLVERMUMPS, &mumps));
+  if (!mumps) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecGetSize(s->rhs, &size));
+  s->block = PetscMax(1, PetscMin(MAX_BLOCK, MAX_BLOCK_NUMBERS / size));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* What depends on the price of a solution */
 static PetscErrorCode ChooseForRows(ConstrainedSolver s)
 {
   PetscFunctionBegin;
   PetscCall(ChooseColumns(s));
-  PetscCall(ConstrainedSolverChooseBlock(s));
+  PetscCall(ChooseBlock(s));
   PetscCall(PetscMalloc3(s->global, &s->gathered, s->global, &s->force, s->global, &s->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -292,39 +314,5 @@ PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver s, PetscInt j)
   if (s->fresh[j]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SolveForColumn(s, j));
   s->fresh[j] = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The columns of A^{-1} B^T follow from A and B, as they are, to the last bit if each was found by itself */
-static PetscErrorCode VisitColumns(ConstrainedSolver s, Checkpoint checkpoint)
-{
-  PetscInt local;
-
-  PetscFunctionBegin;
-  PetscCall(CheckpointVisitBools(checkpoint, "columns", s->global, s->fresh));
-  PetscCall(VecGetLocalSize(s->rhs, &local));
-  for (PetscInt j = 0; j < s->global; j++) {
-    PetscScalar *values;
-
-    if (!s->fresh[j]) continue;
-    if (s->global <= FEW_ROWS || !s->keeps) {
-      if (CheckpointLoads(checkpoint)) PetscCall(SolveForColumn(s, j));
-      continue;
-    }
-    if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
-    PetscCall(VecGetArray(s->columns[j], &values));
-    PetscCall(CheckpointVisitReals(checkpoint, "column", local, values));
-    PetscCall(VecRestoreArray(s->columns[j], &values));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* State for a checkpoint. A and B are loaded before. Collective. */
-PetscErrorCode ConstrainedSolverVisit(ConstrainedSolver s, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  PetscCall(CheckpointCheckInts(checkpoint, "rows", 1, &s->global));
-  PetscCall(VisitColumns(s, checkpoint));
-  PetscCall(ConstrainedSolverVisitConstraints(s, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

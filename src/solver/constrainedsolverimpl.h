@@ -44,7 +44,9 @@ struct _n_ConstrainedSolver {
 /* Interfaces of so few rows in all make the column of each row that is asked for: a correction adds them up in place of a solution */
 #define FEW_ROWS 16
 
-PETSC_INTERN PetscErrorCode ConstrainedSolverChooseBlock(ConstrainedSolver);
+/* Right-hand sides that are solved for together, at most */
+#define MAX_BLOCK 256
+
 PETSC_INTERN PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver, KSP, Vec);

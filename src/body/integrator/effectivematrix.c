@@ -1,68 +1,6 @@
 /* The effective matrix K + shift M + shift_velocity C of a body on TSALPHA2, and the solver with its factors: one for each level of cut
    controller steps. */
 #include "implicitimpl.h"
-#include <impakt/private/simd.h>
-
-/* Where the matrix of whole controller steps was linearised last, to another vector or back; the first number tells whether it was */
-static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
-{
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-
-  PetscFunctionBegin;
-  if (back) {
-    /* a displacement of earlier steps goes with the history of these steps, which is not there any more */
-    if (numbers[0] != 0) PetscCall(BodyImplicitRefactor(body, body->history ? body->saved.u : point));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  numbers[0] = implicit->deformed[0];
-  numbers[1] = 0;
-  if (implicit->deformed[0]) PetscCall(VecCopy(implicit->points[0], point));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where a local body was linearised last its rank alone knows, and has factors that no column of others is of; before all ranks have rows
-   to hold, they all do */
-static PetscErrorCode Agree(Body body)
-{
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-
-  PetscFunctionBegin;
-  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Bcast(&implicit->deformed[body->time.level], 1, MPI_C_BOOL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
-  PetscCall(ConstrainedSolverForgetColumns(body->solver));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Brings what BodyImplicitCorrect() needs from ranks with rows */
-static PetscErrorCode BringChanges(Body body, const PetscScalar force[])
-{
-  PetscFunctionBegin;
-  PetscCall(ConstrainedSolverBring(body->solver, force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What all integrators on TSALPHA2 have in common */
-PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
-{
-  BodyImplicit *implicit;
-
-  PetscFunctionBegin;
-  PetscCall(PetscNew(&implicit));
-  integrator->data               = implicit;
-  integrator->reads_start        = PETSC_TRUE;
-  integrator->feels_end_force    = PETSC_TRUE;
-  integrator->repeats_prescribed = PETSC_TRUE;
-  integrator->ops.bringchanges   = BringChanges;
-  integrator->ops.setrows        = BodyImplicitSetRows;
-  integrator->ops.setlevel       = BodyImplicitSetLevel;
-  integrator->ops.renew          = BodyImplicitRenew;
-  integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
-  integrator->ops.visit          = BodyImplicitVisit;
-  integrator->ops.copypoint      = CopyPoint;
-  integrator->ops.agree          = Agree;
-  integrator->ops.destroy        = BodyImplicitDestroy;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* The effective matrix K + shift M + shift_velocity C, with the artificial springs of a body that contact alone holds; its held dofs
  * eliminated */
@@ -128,6 +66,15 @@ static void SetShifts(Body body)
   implicit->shift_velocity = implicit->gamma / (implicit->beta * body->time.step);
 }
 
+/* The factors are there, and what depends on how many numbers they have */
+PetscErrorCode BodyEndSolver(Body body)
+{
+  PetscFunctionBegin;
+  if (body->solver_begun) PetscCall(ConstrainedSolverEnd(body->solver));
+  body->solver_begun = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The effective matrix at a displacement, with its factors in body->solver, for controller steps of the present level. It is K + alpha_m /
    (alpha_f beta dt^2) M + gamma / (beta dt) C, with the dashpots C, and K alone without inertia. */
 PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
@@ -145,7 +92,6 @@ PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
     PetscCall(BodyHistoryCreateBuffer(body, body->model.element->count, &size, &implicit->memory[body->time.level],
                                       &implicit->history[body->time.level]));
   }
-  if (!body->model.linear && implicit->unit_strain == 0) PetscCall(BodyImplicitComputeUnitStrainForce(body));
   PetscCall(AssembleMatrix(body, u));
   PetscCall(SetNearNullSpace(body, implicit->matrix));
   PetscCall(ConstrainedSolverBegin(implicit->matrix, body->rows.free_matrix, body->mesh.dim, ((PetscObject)body)->prefix,
@@ -189,41 +135,6 @@ PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u, v and a += du times these parts */
-SIMD_CLONES static void AddChange(PetscInt n, PetscReal part, PetscReal to_velocity, PetscReal to_acceleration, const PetscScalar du[],
-                                  PetscScalar u[], PetscScalar v[], PetscScalar a[])
-{
-#pragma omp simd
-  for (PetscInt i = 0; i < n; i++) {
-    u[i] += part * du[i];
-    v[i] += part * to_velocity * du[i];
-    a[i] += part * to_acceleration * du[i];
-  }
-}
-
-/* Moves the displacement at the end of the one substep of a linear body: A du = part B^T df with prescribed rows at B du = dx, A being the
-   effective matrix; and velocity, acceleration and internal force with it. With a part other than 1 no row is prescribed. */
-PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar displacement[], PetscReal part, PetscReal to_velocity,
-                                   PetscReal to_acceleration, Vec du)
-{
-  const PetscScalar *change;
-  PetscScalar       *u, *v, *a;
-
-  PetscFunctionBegin;
-  PetscCall(ConstrainedSolverCorrect(body->solver, displacement, du));
-  PetscCall(VecGetArrayRead(du, &change));
-  PetscCall(VecGetArray(body->state.u, &u));
-  PetscCall(VecGetArray(body->state.v, &v));
-  PetscCall(VecGetArray(body->state.a, &a));
-  AddChange(body->mesh.owned_nodes * body->mesh.dim, part, to_velocity, to_acceleration, change, u, v, a);
-  PetscCall(VecRestoreArray(body->state.a, &a));
-  PetscCall(VecRestoreArray(body->state.v, &v));
-  PetscCall(VecRestoreArray(body->state.u, &u));
-  PetscCall(VecRestoreArrayRead(du, &change));
-  PetscCall(BodyImplicitNoteForce(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* State for a checkpoint: where the matrix of a nonlinear body was linearised last, at a level of cut steps. Its factors answer until the
    next iteration of Newton's method. */
 PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoint)
@@ -244,23 +155,5 @@ PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoin
   }
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyImplicitRefactor(body, implicit->points[level]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyImplicitDestroy(Body body)
-{
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  Vec *vecs[] = {&implicit->u, &implicit->v, &implicit->a, &implicit->next, &implicit->stage_u, &implicit->stage_v, &implicit->stage_a};
-
-  PetscFunctionBegin;
-  for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
-  for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&implicit->lead[k]));
-  PetscCall(BodyImplicitDestroyOwnStep(body));
-  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
-    PetscCall(MatDestroy(&implicit->matrices[k]));
-    PetscCall(VecDestroy(&implicit->points[k]));
-    PetscCall(PetscFree(implicit->memory[k]));
-  }
-  PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -104,7 +104,7 @@ static PetscErrorCode SetUp(Body body)
   /* iterations of Newton's method cannot bring forces from other ranks */
   if (!body->model.linear) {
     if (!body->integrator->affine || body->time.substeps > 1) body->integrator->is_local = PETSC_FALSE;
-    if (body->integrator->is_local) PetscCall(BodyImplicitSetUpOwnStep(body, ComputeResidual, Predict));
+    if (body->integrator->is_local) PetscCall(BodyImplicitSetUpOwnStep(body, ComputeResidual, Predict, BodyImplicitSetUpNewton));
   }
   /* a mass matrix that is not diagonal hands the acceleration of prescribed nodes to others */
   if (body->rows.have_mass && body->mass.matrix) body->integrator->repeats_prescribed = PETSC_FALSE;

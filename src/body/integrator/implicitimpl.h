@@ -29,13 +29,14 @@ typedef struct {
 
 typedef PetscErrorCode BodyResidualFn(TS, PetscReal, Vec, Vec, Vec, Vec, void *);
 typedef PetscErrorCode BodyPredictorFn(TS, Vec, Vec, Vec, Vec, void *);
+typedef PetscErrorCode BodyNewtonFn(Body, TS, Mat, BodyPredictorFn *);
 
 PETSC_INTERN PetscErrorCode BodyImplicitCreate(BodyIntegrator);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroy(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUp(Body, BodyResidualFn *, BodyPredictorFn *);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUpLinear(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetUpNewton(Body, TS, Mat, BodyPredictorFn *);
-PETSC_INTERN PetscErrorCode BodyImplicitSetUpOwnStep(Body, BodyResidualFn *, BodyPredictorFn *);
+PETSC_INTERN PetscErrorCode BodyImplicitSetUpOwnStep(Body, BodyResidualFn *, BodyPredictorFn *, BodyNewtonFn *);
 PETSC_INTERN PetscErrorCode BodyImplicitGetSNES(Body, SNES *);
 PETSC_INTERN PetscErrorCode BodyImplicitLinearize(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroyOwnStep(Body);

@@ -114,9 +114,13 @@ PetscErrorCode BodyImplicitComputeUnitStrainForce(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
+  Mat tangent;
+
   PetscFunctionBegin;
-  PetscCall(BodyAssembleTangent(body, NULL, NULL, implicit->matrix));
-  PetscCall(MatGetDiagonal(implicit->matrix, body->work.nodes[0]));
+  PetscCall(BodyCreateMatrix(body, NULL, &tangent));
+  PetscCall(BodyAssembleTangent(body, NULL, NULL, tangent));
+  PetscCall(MatGetDiagonal(tangent, body->work.nodes[0]));
+  PetscCall(MatDestroy(&tangent));
   PetscCall(GetShortestEdges(body, body->work.nodes[1]));
   PetscCall(ProductNorm(body, body->work.nodes[0], body->work.nodes[1], body->work.nodes[0], &implicit->unit_strain));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -200,26 +204,6 @@ static PetscErrorCode StopInBalance(SNES snes, PetscInt it, PetscReal xnorm, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A controller step that is made again begins with the same displacement, and has to begin with the same Jacobian too: lagging it, or its
-   factors, from one substep to the next is refused */
-static PetscErrorCode RefuseLagBetweenSubsteps(Body body)
-{
-  static const char *const options[] = {"-snes_lag_jacobian_persists", "-snes_lag_preconditioner_persists"};
-  const char              *prefix    = ((PetscObject)body)->prefix;
-
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < 2; i++) {
-    PetscBool persists = PETSC_FALSE;
-
-    PetscCall(PetscOptionsGetBool(NULL, prefix, options[i], &persists, NULL));
-    PetscCheck(!persists, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-               "-%s%s: steps are made several times, and each time must begin with the Jacobian of its own start; leave it out, since "
-               "-%ssnes_lag_jacobian alone lags within a step",
-               prefix, options[i] + 1, prefix);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Newton's method of a nonlinear body, whose linear systems go to the factors of the effective matrix with constraints */
 PetscErrorCode BodyImplicitSetUpNewton(Body body, TS ts, Mat J, BodyPredictorFn *predictor)
 {
@@ -251,28 +235,6 @@ PetscErrorCode BodyImplicitSetUpNewton(Body body, TS ts, Mat J, BodyPredictorFn 
   PetscCall(PCShellSetContext(pc, body));
   PetscCall(PCShellSetApply(pc, ApplyConstrainedSolver));
   PetscCall(PCShellSetName(pc, "factored effective matrix with contact constraints"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The effective matrix and its factors, which a linear body keeps for good, and how the TS makes its steps */
-PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
-{
-  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  Vec                 vec;
-
-  PetscFunctionBegin;
-  PetscCall(BodyImplicitCreateSolver(body, NULL));
-  PetscCall(BodyCreateVec(body, &vec));
-  PetscCall(TSSetI2Function(body->time.ts, vec, residual, body));
-  PetscCall(VecDestroy(&vec));
-  PetscCall(TSSetErrorIfStepFails(body->time.ts, PETSC_FALSE));
-  if (!body->model.linear || !body->integrator->affine || body->time.substeps > 1) body->integrator->ops.repeat = NULL;
-  if (body->model.linear) PetscCall(BodyImplicitSetUpLinear(body));
-  else {
-    body->integrator->uses_newton = PETSC_TRUE;
-    PetscCall(RefuseLagBetweenSubsteps(body));
-    PetscCall(BodyImplicitSetUpNewton(body, body->time.ts, implicit->matrix, predictor));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -114,7 +114,7 @@ static PetscErrorCode ApplySolver(PC pc, Vec b, Vec x)
 }
 
 /* The integrator of the rank that has the body, as that of the body is */
-static PetscErrorCode CreateTS(Body body)
+static PetscErrorCode CreateTS(Body body, BodyNewtonFn *newton)
 {
   const BodyImplicit  *implicit = (const BodyImplicit *)body->integrator->data;
   struct _BodyOwnStep *own      = implicit->own;
@@ -143,7 +143,7 @@ static PetscErrorCode CreateTS(Body body)
   PetscCall(TSSetErrorIfStepFails(own->ts, PETSC_FALSE));
   /* its solver is a shell: of the matrix it takes the size */
   PetscCall(MatMPIAIJGetSeqAIJ(implicit->matrix, &J, NULL, NULL));
-  PetscCall(BodyImplicitSetUpNewton(body, own->ts, J, Predict));
+  PetscCall((*newton)(body, own->ts, J, Predict));
   PetscCall(TSGetSNES(own->ts, &snes));
   PetscCall(SNESGetKSP(snes, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
@@ -185,8 +185,8 @@ static PetscErrorCode MakeStep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For a body with factors of one of several ranks; collective */
-PetscErrorCode BodyImplicitSetUpOwnStep(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
+/* For a body with factors of one of several ranks, whose equations `newton` sets up; collective */
+PetscErrorCode BodyImplicitSetUpOwnStep(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor, BodyNewtonFn *newton)
 {
   BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
   const PetscInt n        = body->mesh.owned_nodes * body->mesh.dim;
@@ -197,7 +197,7 @@ PetscErrorCode BodyImplicitSetUpOwnStep(Body body, BodyResidualFn *residual, Bod
   implicit->own->predictor = predictor;
   for (PetscInt k = 0; k < LENT; k++)
     PetscCall(VecCreateMPIWithArray(PetscObjectComm((PetscObject)body), body->mesh.dim, n, PETSC_DETERMINE, NULL, &implicit->own->lent[k]));
-  if (body->mesh.is_owner) PetscCall(CreateTS(body));
+  if (body->mesh.is_owner) PetscCall(CreateTS(body, newton));
   body->integrator->ops.step = MakeStep;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

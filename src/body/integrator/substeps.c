@@ -68,7 +68,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     if (BodyHasStopped(body)) break;
     if (body->rows.any_by_mean) PetscCall(BodyEndMeanForce(body));
     PetscCall((*body->integrator->ops.finishsubstep)(body));
-    if (!body->state.incomplete) PetscCall(BodyHistoryEnd(body));
+    if (!body->state.incomplete) PetscCall(BodyEndHistory(body));
     PetscCall(BodyWriteTraces(body, body->time.substep + 1));
     if (body->time.substeps > 1) {
       PetscCall(BodyAddWork(body, body->substep_start.u));

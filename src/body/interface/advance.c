@@ -70,7 +70,7 @@ PetscErrorCode BodyCompleteStep(Body body, StepConvergedReason *reason)
     PetscCall(PetscTime(&begin));
     PetscCall((*body->integrator->ops.complete)(body));
     body->state.incomplete = PETSC_FALSE;
-    PetscCall(BodyHistoryEnd(body));
+    PetscCall(BodyEndHistory(body));
     PetscCall(BodyCheckSubstep(body));
     /* rows of massless nodes are where they were, and all that they do but for reactions and what is held is known */
     if (body->held.any || body->rows.constant || body->rows.n_prescribed || body->rows.n_robin) PetscCall(BodyWriteRest(body));

@@ -69,38 +69,6 @@ PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the nodes at some vertices of this rank, and what other ranks have of them: a rank may hold a node of a surface without holding a
-   face of it */
-PetscErrorCode BodyMarkNodes(Body body, PetscInt n, const PetscInt vertices[], PetscBool marked[])
-{
-  const PetscBool    ghosted = body->mesh.ghosted;
-  PetscScalar       *mark;
-  const PetscScalar *all;
-  Vec                marks, local;
-
-  PetscFunctionBegin;
-  PetscCall(BodyCreateVec(body, &marks));
-  local = marks;
-  if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
-  PetscCall(VecSet(local, 0));
-  PetscCall(VecGetArray(local, &mark));
-  for (PetscInt i = 0; i < n; i++) mark[body->mesh.node_of_vertex[vertices[i] - body->mesh.vertex_start] * body->mesh.dim] = 1;
-  PetscCall(VecRestoreArray(local, &mark));
-  if (ghosted) {
-    PetscCall(VecGhostUpdateBegin(marks, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateEnd(marks, ADD_VALUES, SCATTER_REVERSE));
-    PetscCall(VecGhostUpdateBegin(marks, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecGhostUpdateEnd(marks, INSERT_VALUES, SCATTER_FORWARD));
-  }
-  PetscCall(VecGetArrayRead(local, &all));
-  for (PetscInt node = 0; node < body->mesh.local_nodes; node++)
-    if (PetscRealPart(all[node * body->mesh.dim]) > 0) marked[node] = PETSC_TRUE;
-  PetscCall(VecRestoreArrayRead(local, &all));
-  if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
-  PetscCall(VecDestroy(&marks));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds vertices (points of the DM) that lie on contact surfaces; with `-<body>_mass_redistribute` these become massless. Collective. */
 PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertices[])
 {
@@ -140,6 +108,8 @@ static PetscErrorCode SetUpRows(Body body)
 /* The first part of BodySetUp(): makes the mass, on which stable steps depend, and chooses the number of substeps. Collective. */
 PetscErrorCode BodySetUpSteps(Body body)
 {
+  PetscReal free[BODY_MAX_RIGID * BODY_MAX_RIGID];
+  PetscInt  n_free;
   PetscBool keeps;
 
   PetscFunctionBegin;
@@ -154,7 +124,8 @@ PetscErrorCode BodySetUpSteps(Body body)
   if (body->rows.global || body->rows.expected) PetscCall(BodyCreateVec(body, &body->iterate.u)); /* else nobody repeats a step */
   PetscCall(BodySetUpFreeRows(body));
   PetscCall(BodySetUpMass(body));
-  PetscCall(BodyCheckHeld(body));
+  PetscCall(BodyCheckHeld(body, &n_free, free));
+  PetscCall(BodySetUpSprings(body, n_free, free));
   body->time.shared = 1;
   PetscCall(BodySetUpSubsteps(body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -190,15 +161,6 @@ static PetscErrorCode SetUpSubstepStart(Body body)
     start->u = body->saved.u;
     start->v = body->saved.v;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The factors are there, and what depends on how many numbers they have */
-PetscErrorCode BodyEndSolver(Body body)
-{
-  PetscFunctionBegin;
-  if (body->solver_begun) PetscCall(ConstrainedSolverEnd(body->solver));
-  body->solver_begun = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

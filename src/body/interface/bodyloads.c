@@ -2,17 +2,6 @@
 #include <body/loads/loadsimpl.h>
 #include "bodysetup.h"
 
-/* What the loads hold, where the rest of the body looks for it */
-PetscErrorCode BodyNoteHeld(Body body)
-{
-  PetscFunctionBegin;
-  body->held.n    = body->loads ? body->loads->n_held : 0;
-  body->held.dofs = body->loads ? body->loads->held_dofs : NULL;
-  body->held.any  = (PetscBool)(body->held.n > 0);
-  PetscCall(BodyAnyRank(body, &body->held.any));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Room for loads, on a mesh whose surfaces are known; loads are part of what is set up */
 static PetscErrorCode Prepare(Body body)
 {

@@ -128,6 +128,58 @@ static PetscErrorCode ReadStatic(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* -<body>_ts_time_step takes a word where PETSc's own option of that name takes a number */
+static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
+{
+  const char *prefix = ((PetscObject)body)->prefix;
+  char        text[64], full[160];
+  PetscBool   set, is_auto;
+
+  PetscFunctionBegin;
+  *hidden = PETSC_FALSE;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_time_step", text, sizeof(text), &set));
+  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscStrcasecmp(text, "auto", &is_auto));
+  if (is_auto) {
+    PetscCall(BodySetTimeStep(body, PETSC_DETERMINE));
+    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
+    PetscCall(PetscOptionsClearValue(NULL, full));
+    *hidden = PETSC_TRUE;
+  } else {
+    PetscReal step = 0;
+
+    PetscCall(PetscOptionsGetReal(NULL, prefix, "-ts_time_step", &step, NULL));
+    PetscCheck(step > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%sts_time_step %s: a time step must be positive",
+               prefix, text);
+    PetscCall(BodySetTimeStep(body, step));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Type, substep and parameters; what the program has chosen holds where the options are silent */
+PetscErrorCode BodySetTimeFromOptions(Body body)
+{
+  const char *prefix = ((PetscObject)body)->prefix;
+  char        type[64], full[160];
+  PetscBool   hidden, set, rigid;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-ts_type", type, sizeof(type), &set));
+  PetscCall(BodyReadRigid(body, set ? type : NULL, &rigid));
+  if (rigid) set = PETSC_FALSE;
+  if (set || !body->time.ts) PetscCall(BodySetTSType(body, set ? type : TSALPHA2));
+  PetscCall(TSSetDM(body->time.ts, body->mesh.dm));
+  PetscCall(ReadTimeStep(body, &hidden));
+  PetscCall(TSSetFromOptions(body->time.ts));
+  if (hidden) {
+    PetscCall(PetscSNPrintf(full, sizeof(full), "-%sts_time_step", prefix));
+    PetscCall(PetscOptionsSetValue(NULL, full, "auto"));
+    PetscCall(PetscOptionsHasName(NULL, prefix, "-ts_time_step", NULL)); /* it has been used */
+  }
+  PetscCall(BodySetUpIntegrator(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   BodySetFromOptions - mesh, material, mass, integrator and initial state from the options that begin with the body's name
 

@@ -295,30 +295,6 @@ PetscErrorCode BodyGetReferencePositions(Body body, Vec *positions)
 }
 
 /*@
-  BodyIsExplicit - whether the body's substeps are bounded by a stable step, as those of central differences are
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, after `BodySetFromOptions()`
-
-  Output Parameter:
-. is_explicit - `PETSC_TRUE` if so
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyGetStableStep()`, `TSCENTRALDIFFERENCE`
-@*/
-PetscErrorCode BodyIsExplicit(Body body, PetscBool *is_explicit)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(is_explicit, 2);
-  *is_explicit = body->integrator ? body->integrator->needs_stable_step : PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   BodyIsStatic - whether the body has no inertia
 
   Not Collective

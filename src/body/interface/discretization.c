@@ -1,5 +1,6 @@
 /* A body's mesh, elements and integrator made ready: what can be asked of it before its contact rows are known. */
 #include <body/layout/bodyimpl.h>
+#include <body/loads/loadsimpl.h>
 #include "bodysetup.h"
 
 /* Mass matrices that are not diagonal have to be factored, which a body that divides by the mass in each substep does not pay for in two
@@ -41,6 +42,17 @@ PetscErrorCode BodySetUpMesh(Body body)
   PetscCall(BodySetUpLayout(body));
   PetscCall(BodyComputeBlockMass(body));
   PetscCall(BodyNoteSurfaceMaterial(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What the loads hold, where the rest of the body looks for it */
+PetscErrorCode BodyNoteHeld(Body body)
+{
+  PetscFunctionBegin;
+  body->held.n    = body->loads ? body->loads->n_held : 0;
+  body->held.dofs = body->loads ? body->loads->held_dofs : NULL;
+  body->held.any  = (PetscBool)(body->held.n > 0);
+  PetscCall(BodyAnyRank(body, &body->held.any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -115,7 +115,7 @@ PetscErrorCode BodySetUpComposite(Body body)
   for (PetscInt e = 0; e < n && !wrong; e++)
     wrong = (PetscBool)!FindNodes(mesh->cell_connectivity + e * cells * mesh->cell_nodes, cells, mesh->cell_nodes,
                                   mesh->connectivity + e * nodes);
-  PetscCall(BodyAnyRank(body, &wrong));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &wrong, 1, MPI_C_BOOL, MPI_LOR, PetscObjectComm((PetscObject)body)));
   PetscCheck(
       !wrong, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG,
       "Body '%s': the mesh has the label of composite elements, but its cells are not what MeshCreateComposite() makes; do not refine "
@@ -127,7 +127,7 @@ PetscErrorCode BodySetUpComposite(Body body)
     blocks->of_element[e] = blocks->of_cell[e * cells];
     for (PetscInt c = 0; c < cells; c++) mixed = (PetscBool)(mixed || blocks->of_cell[e * cells + c] != blocks->of_element[e]);
   }
-  PetscCall(BodyAnyRank(body, &mixed));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &mixed, 1, MPI_C_BOOL, MPI_LOR, PetscObjectComm((PetscObject)body)));
   PetscCheck(!mixed, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG,
              "Body '%s': the cells of a composite element are in different blocks of the mesh", body->hdr.name);
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -140,3 +140,35 @@ PetscErrorCode BodyFacesDestroy(BodyFaces *faces)
   PetscCall(PetscFree(faces->side));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Marks the nodes at some vertices of this rank, and what other ranks have of them: a rank may hold a node of a surface without holding a
+   face of it */
+PetscErrorCode BodyMarkNodes(Body body, PetscInt n, const PetscInt vertices[], PetscBool marked[])
+{
+  const PetscBool    ghosted = body->mesh.ghosted;
+  PetscScalar       *mark;
+  const PetscScalar *all;
+  Vec                marks, local;
+
+  PetscFunctionBegin;
+  PetscCall(BodyCreateVec(body, &marks));
+  local = marks;
+  if (ghosted) PetscCall(VecGhostGetLocalForm(marks, &local));
+  PetscCall(VecSet(local, 0));
+  PetscCall(VecGetArray(local, &mark));
+  for (PetscInt i = 0; i < n; i++) mark[body->mesh.node_of_vertex[vertices[i] - body->mesh.vertex_start] * body->mesh.dim] = 1;
+  PetscCall(VecRestoreArray(local, &mark));
+  if (ghosted) {
+    PetscCall(VecGhostUpdateBegin(marks, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecGhostUpdateEnd(marks, ADD_VALUES, SCATTER_REVERSE));
+    PetscCall(VecGhostUpdateBegin(marks, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecGhostUpdateEnd(marks, INSERT_VALUES, SCATTER_FORWARD));
+  }
+  PetscCall(VecGetArrayRead(local, &all));
+  for (PetscInt node = 0; node < body->mesh.local_nodes; node++)
+    if (PetscRealPart(all[node * body->mesh.dim]) > 0) marked[node] = PETSC_TRUE;
+  PetscCall(VecRestoreArrayRead(local, &all));
+  if (ghosted) PetscCall(VecGhostRestoreLocalForm(marks, &local));
+  PetscCall(VecDestroy(&marks));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -4,12 +4,6 @@
 */
 #include <body/layout/bodyimpl.h>
 
-/* Whether forces on rows accelerate the nodes that they act on alone */
-PetscBool BodyAnswersByNodes(Body body)
-{
-  return (PetscBool)(body->mass.inverse && body->integrator->has_inertia && !body->integrator->ops.solvemass && !body->layer.exists);
-}
-
 PetscErrorCode BodyDestroyContactNodes(Body body)
 {
   PetscFunctionBegin;

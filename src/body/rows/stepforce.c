@@ -45,18 +45,6 @@ PetscErrorCode BodyEndConstantForces(Body body, const PetscScalar start[], const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyComputeForceChange - how much more constant forces on the rows are at the start of a step than those that the last one ended with, on
-   the nodes; `any`: whether the substep that has been made last is the first one of such a step */
-PetscErrorCode BodyComputeForceChange(Body body, PetscBool *any, Vec change)
-{
-  PetscFunctionBegin;
-  *any = (PetscBool)(body->rows.constant && body->state.step - body->saved.step == 1);
-  if (!*any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecZeroEntries(change));
-  PetscCall(BodyAddNearRows(body, body->compliance->change, change));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* BodyCreateNodalCompliance - one in which no displacement is known yet */
 PetscErrorCode BodyCreateNodalCompliance(Body body, Compliance *nodal)
 {

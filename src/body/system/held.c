@@ -146,23 +146,23 @@ static PetscErrorCode RefuseLoose(Body body, PetscInt n_free, const PetscReal fr
 }
 
 /* A body that can move as if it were rigid has a matrix that is singular for that, and factors of it need not show that it is. A static
-   body with too few held displacements gets artificial springs if it has contact rows, else that is an error, and so is a massless layer
-   that too few nodes with mass hold. */
-PetscErrorCode BodyCheckHeld(Body body)
+   body with too few held displacements has `n_free` motions for artificial springs if it has contact rows, else that is an error, and so is
+   a massless layer that too few nodes with mass hold. */
+PetscErrorCode BodyCheckHeld(Body body, PetscInt *n_free, PetscReal free[])
 {
-  PetscReal free[BODY_MAX_RIGID * BODY_MAX_RIGID], rows;
-  PetscInt  n_free;
+  PetscReal rows, of_layer[BODY_MAX_RIGID * BODY_MAX_RIGID];
+  PetscInt  n_of_layer;
 
   PetscFunctionBegin;
+  *n_free = 0;
   if (!body->integrator->has_inertia) {
-    PetscCall(FindFreeMotions(body, body->held.n, body->held.dofs, PETSC_FALSE, &n_free, free));
+    PetscCall(FindFreeMotions(body, body->held.n, body->held.dofs, PETSC_FALSE, n_free, free));
     PetscCall(MatNorm(body->rows.matrix, NORM_FROBENIUS, &rows)); /* the rows of all pairs are there, those of others empty */
-    if (n_free && rows == 0) PetscCall(RefuseLoose(body, n_free, free));
-    PetscCall(BodySetUpSprings(body, n_free, free));
+    if (*n_free && rows == 0) PetscCall(RefuseLoose(body, *n_free, free));
   }
   if (body->layer.exists) {
-    PetscCall(FindFreeMotions(body, body->layer.n_dofs, body->layer.dofs, PETSC_TRUE, &n_free, free));
-    PetscCheck(!n_free, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+    PetscCall(FindFreeMotions(body, body->layer.n_dofs, body->layer.dofs, PETSC_TRUE, &n_of_layer, of_layer));
+    PetscCheck(!n_of_layer, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "Body '%s' has too few nodes with mass to hold its massless contact nodes, which can turn about them; refine the mesh, or "
                "set -%smass_redistribute false",
                body->hdr.name, ((PetscObject)body)->prefix);

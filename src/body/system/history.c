@@ -118,20 +118,21 @@ PetscErrorCode BodyHistoryNote(Body body, Vec u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyHistoryEnd - the displacement at the end of the substep is there: so is the history then, without another look at the elements where
-   the last internal force was at that displacement */
-PetscErrorCode BodyHistoryEnd(Body body)
+/* BodyHistoryTakeEnd - the displacement at the end of the substep is there: so is the history then, if the last internal force was at that
+   displacement, which `taken` tells */
+PetscErrorCode BodyHistoryTakeEnd(Body body, PetscBool *taken)
 {
   struct _n_BodyHistory *history = body->history;
   PetscObjectId          id;
   PetscObjectState       state;
 
   PetscFunctionBegin;
+  *taken = PETSC_TRUE;
   if (!HasHistory(body)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscObjectGetId((PetscObject)body->state.u, &id));
   PetscCall(PetscObjectStateGet((PetscObject)body->state.u, &state));
-  if (id != history->id || state != history->state) PetscCall(BodyComputeInternalForce(body, body->state.u, body->work.nodes[0]));
-  history->now = history->end;
+  *taken = (PetscBool)(id == history->id && state == history->state);
+  if (*taken) history->now = history->end;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,15 +15,3 @@ PetscErrorCode BodyPrepareLinearized(Body body)
   PetscCall(BodyLayerLinearize(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* The elements that forces and tangents come from */
-PetscErrorCode BodyGetElement(Body body, Element *element)
-{
-  PetscFunctionBegin;
-  *element = body->model.element;
-  if (!body->model.linearized || body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(body->model.linearized_element, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
-             "Body '%s': call BodyPrepareLinearized() before its forces are linearized", body->hdr.name);
-  *element = body->model.linearized_element;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -4,6 +4,19 @@
 /* Eigenvalues of elements alike differ by less than this part of them: then the first element comes first */
 #define EQUAL 1e-9
 
+/* 2 / omega, less with dashpots that feel the velocity at mid-step: (2 / omega) (sqrt(1 + zeta^2) - zeta), twice zeta omega being
+   alpha + beta omega^2 */
+PetscErrorCode BodyGetStepOfEigenvalue(Body body, PetscReal eigenvalue, PetscReal *step)
+{
+  PetscReal alpha, beta, rate;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDamping(body, &alpha, &beta));
+  rate  = alpha + beta * eigenvalue;
+  *step = 4 / (rate + PetscSqrtReal(PetscSqr(rate) + 4 * eigenvalue));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The eigenvalues of all ranks' elements that are positive, ascending, and the numbers of these elements, rank after rank from 0; `offset`:
    of this rank's first one. The caller frees both. */
 static PetscErrorCode SortAll(Body body, const PetscReal eigenvalues[], PetscInt *offset, PetscInt *n, PetscReal **all, PetscInt **numbers)
@@ -73,30 +86,5 @@ PetscErrorCode BodyNoteStepBounds(Body body, const PetscScalar u[], const PetscR
   }
   if (n) PetscCall(BodyGetStepOfEigenvalue(body, all[(n - 1) / 2], &bounds->median));
   PetscCall(PetscFree2(all, numbers));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-  BodyGetStepBounds - which elements bound the stable step of a body, and how they compare with the others
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, set up
-
-  Output Parameter:
-. bounds - the same on every rank; owned by the body
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyStepBounds`, `BodyGetStableStep()`
-@*/
-PetscErrorCode BodyGetStepBounds(Body body, const BodyStepBounds **bounds)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscAssertPointer(bounds, 2);
-  PetscCall(BodyComputeStableStep(body));
-  *bounds = &body->time.bounds;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

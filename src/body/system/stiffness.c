@@ -1,6 +1,18 @@
 /* Internal force, tangent and stiffness matrix. */
 #include <body/layout/bodyimpl.h>
 
+/* The elements that forces and tangents come from */
+PetscErrorCode BodyGetElement(Body body, Element *element)
+{
+  PetscFunctionBegin;
+  *element = body->model.element;
+  if (!body->model.linearized || body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(body->model.linearized_element, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
+             "Body '%s': call BodyPrepareLinearized() before its forces are linearized", body->hdr.name);
+  *element = body->model.linearized_element;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* f = internal force for displacement u [N] */
 PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
 {
@@ -23,6 +35,19 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   PetscCall(BodyRestoreLocalRead(body, u, &u_local, &u_array));
   PetscCall(BodyHistoryNote(body, u));
   PetscCall(PetscLogEventEnd(BODY_InternalForce, body, 0, 0, 0));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyEndHistory - the history of the material at the end of the substep, by another look at the elements where that is not known */
+PetscErrorCode BodyEndHistory(Body body)
+{
+  PetscBool taken;
+
+  PetscFunctionBegin;
+  PetscCall(BodyHistoryTakeEnd(body, &taken));
+  if (taken) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->work.nodes[0]));
+  PetscCall(BodyHistoryTakeEnd(body, &taken));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

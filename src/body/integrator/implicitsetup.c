@@ -1,0 +1,124 @@
+/* What all integrators on TSALPHA2 have in common: their operations, set-up, and what is put aside for steps that are made again. */
+#include "implicitimpl.h"
+
+/* Where the matrix of whole controller steps was linearised last, to another vector or back; the first number tells whether it was */
+static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (back) {
+    /* a displacement of earlier steps goes with the history of these steps, which is not there any more */
+    if (numbers[0] != 0) PetscCall(BodyImplicitRefactor(body, body->history ? body->saved.u : point));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  numbers[0] = implicit->deformed[0];
+  numbers[1] = 0;
+  if (implicit->deformed[0]) PetscCall(VecCopy(implicit->points[0], point));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where a local body was linearised last its rank alone knows, and has factors that no column of others is of; before all ranks have rows
+   to hold, they all do */
+static PetscErrorCode Agree(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+
+  PetscFunctionBegin;
+  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCallMPI(MPI_Bcast(&implicit->deformed[body->time.level], 1, MPI_C_BOOL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  PetscCall(ConstrainedSolverForgetColumns(body->solver));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Brings what BodyImplicitCorrect() needs from ranks with rows */
+static PetscErrorCode BringChanges(Body body, const PetscScalar force[])
+{
+  PetscFunctionBegin;
+  PetscCall(ConstrainedSolverBring(body->solver, force));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What all integrators on TSALPHA2 have in common */
+PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
+{
+  BodyImplicit *implicit;
+
+  PetscFunctionBegin;
+  PetscCall(PetscNew(&implicit));
+  integrator->data               = implicit;
+  integrator->reads_start        = PETSC_TRUE;
+  integrator->feels_end_force    = PETSC_TRUE;
+  integrator->repeats_prescribed = PETSC_TRUE;
+  integrator->ops.bringchanges   = BringChanges;
+  integrator->ops.setrows        = BodyImplicitSetRows;
+  integrator->ops.setlevel       = BodyImplicitSetLevel;
+  integrator->ops.renew          = BodyImplicitRenew;
+  integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
+  integrator->ops.visit          = BodyImplicitVisit;
+  integrator->ops.copypoint      = CopyPoint;
+  integrator->ops.agree          = Agree;
+  integrator->ops.destroy        = BodyImplicitDestroy;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A controller step that is made again begins with the same displacement, and has to begin with the same Jacobian too: lagging it, or its
+   factors, from one substep to the next is refused */
+static PetscErrorCode RefuseLagBetweenSubsteps(Body body)
+{
+  static const char *const options[] = {"-snes_lag_jacobian_persists", "-snes_lag_preconditioner_persists"};
+  const char              *prefix    = ((PetscObject)body)->prefix;
+
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < 2; i++) {
+    PetscBool persists = PETSC_FALSE;
+
+    PetscCall(PetscOptionsGetBool(NULL, prefix, options[i], &persists, NULL));
+    PetscCheck(!persists, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+               "-%s%s: steps are made several times, and each time must begin with the Jacobian of its own start; leave it out, since "
+               "-%ssnes_lag_jacobian alone lags within a step",
+               prefix, options[i] + 1, prefix);
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The effective matrix and its factors, which a linear body keeps for good, and how the TS makes its steps */
+PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredictorFn *predictor)
+{
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+  Vec                 vec;
+
+  PetscFunctionBegin;
+  PetscCall(BodyImplicitCreateSolver(body, NULL));
+  if (!body->model.linear) PetscCall(BodyImplicitComputeUnitStrainForce(body));
+  PetscCall(BodyCreateVec(body, &vec));
+  PetscCall(TSSetI2Function(body->time.ts, vec, residual, body));
+  PetscCall(VecDestroy(&vec));
+  PetscCall(TSSetErrorIfStepFails(body->time.ts, PETSC_FALSE));
+  if (!body->model.linear || !body->integrator->affine || body->time.substeps > 1) body->integrator->ops.repeat = NULL;
+  if (body->model.linear) PetscCall(BodyImplicitSetUpLinear(body));
+  else {
+    body->integrator->uses_newton = PETSC_TRUE;
+    PetscCall(RefuseLagBetweenSubsteps(body));
+    PetscCall(BodyImplicitSetUpNewton(body, body->time.ts, implicit->matrix, predictor));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BodyImplicitDestroy(Body body)
+{
+  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  Vec *vecs[] = {&implicit->u, &implicit->v, &implicit->a, &implicit->next, &implicit->stage_u, &implicit->stage_v, &implicit->stage_a};
+
+  PetscFunctionBegin;
+  for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
+  for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&implicit->lead[k]));
+  PetscCall(BodyImplicitDestroyOwnStep(body));
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
+    PetscCall(MatDestroy(&implicit->matrices[k]));
+    PetscCall(VecDestroy(&implicit->points[k]));
+    PetscCall(PetscFree(implicit->memory[k]));
+  }
+  PetscCall(PetscFree(body->integrator->data));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
