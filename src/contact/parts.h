@@ -115,6 +115,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactTurn(Contact, const PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactAcceptTurns(Contact);
+PETSC_INTERN PetscErrorCode ContactCheckTies(Contact);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
 PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);

@@ -35,6 +35,47 @@ static PetscErrorCode SumNormals(Surface surface, PetscSF sf, PetscReal sums[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The vertices of a boundary face, or of a cell, and their number */
+PetscErrorCode SurfaceListVertices(DM dm, PetscInt point, PetscInt *n, PetscInt vertices[])
+{
+  PetscInt *closure = NULL, n_points, vstart, vend;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
+  *n = 0;
+  PetscCall(DMPlexGetTransitiveClosure(dm, point, PETSC_TRUE, &n_points, &closure));
+  for (PetscInt p = 0; p < n_points; p++) {
+    if (closure[2 * p] < vstart || closure[2 * p] >= vend) continue;
+    PetscCheck(*n < 8, PETSC_COMM_SELF, PETSC_ERR_SUP, "Cells with more than eight nodes are not supported");
+    vertices[(*n)++] = closure[2 * p];
+  }
+  PetscCall(DMPlexRestoreTransitiveClosure(dm, point, PETSC_TRUE, &n_points, &closure));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Marks the vertices of some faces with 1, on all ranks that have these vertices. `marks` has an entry for each point of the mesh. */
+PetscErrorCode SurfaceMarkVertices(DM dm, PetscInt n_faces, const PetscInt points[], PetscSF sf, PetscInt marks[])
+{
+  PetscInt start;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetChart(dm, &start, NULL));
+  for (PetscInt f = 0; f < n_faces; f++) {
+    PetscInt n, vertices[8];
+
+    PetscCall(SurfaceListVertices(dm, points[f], &n, vertices));
+    PetscCheck(n <= 4, PETSC_COMM_SELF, PETSC_ERR_SUP, "Faces with more than four nodes are not supported");
+    for (PetscInt k = 0; k < n; k++) marks[vertices[k] - start] = 1;
+  }
+  if (sf) {
+    PetscCall(PetscSFReduceBegin(sf, MPIU_INT, marks, marks, MPI_MAX));
+    PetscCall(PetscSFReduceEnd(sf, MPIU_INT, marks, marks, MPI_MAX));
+    PetscCall(PetscSFBcastBegin(sf, MPIU_INT, marks, marks, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(sf, MPIU_INT, marks, marks, MPI_REPLACE));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Finds the nodes on edges between two faces whose normals differ by more than SHARP in the mesh */
 PetscErrorCode SurfaceFindEdges(Surface surface, PetscSF sf)
 {

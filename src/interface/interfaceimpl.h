@@ -212,6 +212,7 @@ PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm, size_t, PetscInt, const Pe
 PETSC_INTERN void           SurfaceGetFace(Surface, PetscInt, Face *);
 PETSC_INTERN PetscErrorCode ExchangeFaces(MPI_Comm, Surface, Surface, PetscReal, PetscReal, PetscInt *, Face *[]);
 PETSC_INTERN PetscErrorCode SurfaceSetUpNodes(Surface);
+PETSC_INTERN PetscErrorCode SurfaceListVertices(DM, PetscInt, PetscInt *, PetscInt[]);
 PETSC_INTERN PetscErrorCode SurfaceMarkVertices(DM, PetscInt, const PetscInt[], PetscSF, PetscInt[]);
 PETSC_INTERN PetscErrorCode SurfaceFindEdges(Surface, PetscSF);
 PETSC_INTERN void           SurfaceMirrorNormal(Surface, PetscInt, PetscReal[]);

@@ -75,10 +75,3 @@ PetscErrorCode SurfaceSetMirrors(Surface surface, PetscInt n, const PetscInt dof
   PetscCall(PetscFree2(lower, upper));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* Puts the normal of an owned node into its planes of symmetry; it need not have unit length */
-void SurfaceMirrorNormal(Surface surface, PetscInt node, PetscReal normal[])
-{
-  for (PetscInt d = 0; d < surface->data.dim && surface->mirrors; d++)
-    if (surface->mirrors[node] & (1 << d)) normal[d] = 0;
-}

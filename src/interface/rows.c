@@ -333,6 +333,27 @@ static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Brings vectors of the partner's nodes to the ranks whose rows name them */
+PetscErrorCode RowSetGetColumns(const RowSet *set, const PetscReal vectors[], PetscReal columns[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSFBcastBegin(set->vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(set->vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Work space for vectors of the columns of rows that have just been built */
+PetscErrorCode TransferAllocateColumns(Transfer transfer)
+{
+  const PetscInt n = 3 * transfer->rows.n_columns;
+
+  PetscFunctionBegin;
+  transfer->columns_present = PETSC_FALSE;
+  PetscCall(PetscFree4(transfer->column_x, transfer->column_normals, transfer->column_moved, transfer->column_reference));
+  PetscCall(PetscMalloc4(n, &transfer->column_x, n, &transfer->column_normals, n, &transfer->column_moved, n, &transfer->column_reference));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Builds the rows between two surfaces, whose positions are those under the given displacements; partners at most `near` before a node
    count [m] */
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)

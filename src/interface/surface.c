@@ -2,47 +2,6 @@
 #include "interfaceimpl.h"
 #include <impakt/private/mesh.h>
 
-/* The vertices of a boundary face, or of a cell, and their number */
-static PetscErrorCode GetVertices(DM dm, PetscInt point, PetscInt *n, PetscInt vertices[])
-{
-  PetscInt *closure = NULL, n_points, vstart, vend;
-
-  PetscFunctionBegin;
-  PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
-  *n = 0;
-  PetscCall(DMPlexGetTransitiveClosure(dm, point, PETSC_TRUE, &n_points, &closure));
-  for (PetscInt p = 0; p < n_points; p++) {
-    if (closure[2 * p] < vstart || closure[2 * p] >= vend) continue;
-    PetscCheck(*n < 8, PETSC_COMM_SELF, PETSC_ERR_SUP, "Cells with more than eight nodes are not supported");
-    vertices[(*n)++] = closure[2 * p];
-  }
-  PetscCall(DMPlexRestoreTransitiveClosure(dm, point, PETSC_TRUE, &n_points, &closure));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Marks the vertices of some faces with 1, on all ranks that have these vertices. `marks` has an entry for each point of the mesh. */
-PetscErrorCode SurfaceMarkVertices(DM dm, PetscInt n_faces, const PetscInt points[], PetscSF sf, PetscInt marks[])
-{
-  PetscInt start;
-
-  PetscFunctionBegin;
-  PetscCall(DMPlexGetChart(dm, &start, NULL));
-  for (PetscInt f = 0; f < n_faces; f++) {
-    PetscInt n, vertices[8];
-
-    PetscCall(GetVertices(dm, points[f], &n, vertices));
-    PetscCheck(n <= 4, PETSC_COMM_SELF, PETSC_ERR_SUP, "Faces with more than four nodes are not supported");
-    for (PetscInt k = 0; k < n; k++) marks[vertices[k] - start] = 1;
-  }
-  if (sf) {
-    PetscCall(PetscSFReduceBegin(sf, MPIU_INT, marks, marks, MPI_MAX));
-    PetscCall(PetscSFReduceEnd(sf, MPIU_INT, marks, marks, MPI_MAX));
-    PetscCall(PetscSFBcastBegin(sf, MPIU_INT, marks, marks, MPI_REPLACE));
-    PetscCall(PetscSFBcastEnd(sf, MPIU_INT, marks, marks, MPI_REPLACE));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Numbers the nodes of this rank, owned ones first. `marks` become these numbers, and -1 at all other points. */
 static PetscErrorCode NumberNodes(Surface surface, PetscInt marks[])
 {
@@ -155,14 +114,14 @@ static PetscErrorCode OrientFace(Surface surface, PetscInt f, const PetscInt num
 
   PetscFunctionBegin;
   PetscCall(DMPlexGetSupport(surface->dm, surface->points[f], &support));
-  PetscCall(GetVertices(surface->dm, support[0], &n_vertices, vertices));
+  PetscCall(SurfaceListVertices(surface->dm, support[0], &n_vertices, vertices));
   for (PetscInt k = 0; k < n_vertices; k++) {
     PetscReal position[3];
 
     PetscCall(GetPosition(surface->dm, vertices[k], coordinates, data->dim, position));
     for (PetscInt d = 0; d < 3; d++) outward[d] -= position[d] / n_vertices;
   }
-  PetscCall(GetVertices(surface->dm, surface->points[f], &n_vertices, vertices));
+  PetscCall(SurfaceListVertices(surface->dm, surface->points[f], &n_vertices, vertices));
   for (PetscInt k = 0; k < n; k++) {
     PetscCall(GetPosition(surface->dm, vertices[k], coordinates, data->dim, x[k]));
     data->faces[f * n + k] = numbers[vertices[k] - start];
@@ -192,7 +151,7 @@ static PetscErrorCode SetUpFaces(Surface surface, const PetscInt numbers[])
   Vec                local;
 
   PetscFunctionBegin;
-  if (data->n_faces) PetscCall(GetVertices(surface->dm, surface->points[0], &n, vertices));
+  if (data->n_faces) PetscCall(SurfaceListVertices(surface->dm, surface->points[0], &n, vertices));
   PetscCallMPI(MPIU_Allreduce(&n, &data->face_nodes, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)surface->dm)));
   n = data->face_nodes;
   PetscCall(PetscMalloc4(data->n_faces * n, &data->faces, data->n_faces, &surface->signs, 3 * data->n_faces, &data->face_normals,

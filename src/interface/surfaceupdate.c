@@ -98,6 +98,13 @@ PetscErrorCode SurfaceSetRound(Surface surface, PetscBool round)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Puts the normal of an owned node into its planes of symmetry; it need not have unit length */
+void SurfaceMirrorNormal(Surface surface, PetscInt node, PetscReal normal[])
+{
+  for (PetscInt d = 0; d < surface->data.dim && surface->mirrors; d++)
+    if (surface->mirrors[node] & (1 << d)) normal[d] = 0;
+}
+
 /* Normals, areas and sizes of near nodes where these are now */
 static PetscErrorCode UpdateNodes(Surface surface)
 {

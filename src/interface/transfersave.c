@@ -119,18 +119,6 @@ PetscErrorCode TransferRestore(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Work space for vectors of the columns of rows that have just been built */
-PetscErrorCode TransferAllocateColumns(Transfer transfer)
-{
-  const PetscInt n = 3 * transfer->rows.n_columns;
-
-  PetscFunctionBegin;
-  transfer->columns_present = PETSC_FALSE;
-  PetscCall(PetscFree4(transfer->column_x, transfer->column_normals, transfer->column_moved, transfer->column_reference));
-  PetscCall(PetscMalloc4(n, &transfer->column_x, n, &transfer->column_normals, n, &transfer->column_moved, n, &transfer->column_reference));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode TransferDestroySaved(Transfer transfer)
 {
   TransferSaved *saved = &transfer->saved;

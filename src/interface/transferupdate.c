@@ -10,15 +10,6 @@
 /* Motion relative to the partner since the last build after which other faces may lie opposite [edges of the smallest face] */
 #define FAR_MOTION 0.25
 
-/* Brings vectors of the partner's nodes to the ranks whose rows name them */
-PetscErrorCode RowSetGetColumns(const RowSet *set, const PetscReal vectors[], PetscReal columns[])
-{
-  PetscFunctionBegin;
-  PetscCall(PetscSFBcastBegin(set->vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(set->vectors, MPIU_REAL, vectors, columns, MPI_REPLACE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether a row of this rank near contact has slipped or turned beyond the bounds. Marks those that have not, and notes all slips. */
 static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 {

@@ -160,83 +160,6 @@ PetscErrorCode ContactGetType(Contact contact, ContactType *type)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One attempt at a step. `pass`: how often it has been made with rows laid where it ended; `off`, `again`: see ContactLayAhead() */
-static PetscErrorCode MakeOnce(Contact contact, PetscInt pass, PetscReal *off, PetscBool *again)
-{
-  PetscBool logged;
-
-  PetscFunctionBegin;
-  *again = PETSC_FALSE;
-  StepFailureClear(&contact->attempt.failure);
-  PetscCall(ContactBeginEnergy(contact));
-  PetscCall(ContactNoteLevel(contact));
-  PetscCall(StageBegin(STAGE_ROWS, &logged));
-  PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
-  PetscTryTypeMethod(contact, layrows);
-  PetscCall(ContactBond(contact));
-  PetscCall(ContactUpdateRows(contact));
-  ContactHoldTogether(contact);
-  PetscCall(ContactDriveFriction(contact));
-  if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
-  PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
-  PetscCall(StageEnd(logged));
-  PetscCall(StageBegin(STAGE_SWEEPS, &logged));
-  PetscCall(ContactTurn(contact, NULL));
-  if (contact->rows.n_all) {
-    PetscCall(ContactMakeStep(contact));
-    if (!ContactFailed(contact)) PetscCall(ContactLayAhead(contact, pass, off, again));
-    if (!ContactFailed(contact) && !*again) PetscCall(ContactLimitEnergy(contact));
-  } else { /* nothing can touch */
-    PetscBool penetrating;
-
-    PetscCall(ContactIntegrateFree(contact, &penetrating));
-    PetscCall(ContactCompleteBodies(contact));
-  }
-  PetscCall(StageEnd(logged));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactStep - advances all bodies from their saved states through one controller step, or one part of it, under contact
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up
-
-  Level: developer
-
-  Note:
-  The step becomes final by `ContactAccept()`. `ContactGetParts()` tells how many make a controller step.
-
-.seealso: `Contact`, `ContactAccept()`, `BodySave()`
-@*/
-PetscErrorCode ContactStep(Contact contact)
-{
-  PetscReal off = 0;
-  PetscBool again;
-  PetscInt  pass = 0;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
-  contact->counts.sweeps = 0;
-  ContactForgetAhead(contact);
-  PetscCall(MakeOnce(contact, pass++, &off, &again));
-  while (again) {
-    PetscCall(ContactStepBack(contact));
-    PetscCall(MakeOnce(contact, pass++, &off, &again));
-    if (!ContactFailed(contact)) continue;
-    PetscCall(ContactStepBack(contact)); /* with the rows of its start it went through */
-    ContactForgetAhead(contact);
-    PetscCall(MakeOnce(contact, PETSC_INT_MAX, &off, &again));
-  }
-  contact->counts.total_sweeps += contact->counts.sweeps;
-  PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
-  if (!contact->attempt.returns) PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Takes the states at the end of a controller step, made by ContactStep(), as the start of the next one. Collective. */
 PetscErrorCode ContactAccept(Contact contact)
 {
@@ -249,6 +172,7 @@ PetscErrorCode ContactAccept(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySave(contact->bodies[b]));
   PetscCall(ContactBookWork(contact));
   PetscCall(ContactAcceptFriction(contact));
+  PetscCall(ContactNoteTilt(contact));
   PetscCall(ContactAddImpulses(contact));
   PetscCall(ContactAcceptTurns(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

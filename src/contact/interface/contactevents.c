@@ -1,5 +1,6 @@
-/* Class id and events, apart from the registry: that knows the methods, and the methods know these. */
+/* Class id, events and names, apart from the registry: that knows the methods, and the methods know these. */
 #include <contact/parts.h>
 
-PetscClassId  CONTACT_CLASSID = 0;
-PetscLogEvent CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;
+PetscClassId      CONTACT_CLASSID = 0;
+PetscLogEvent     CONTACT_Step, CONTACT_Sweep, CONTACT_Update, CONTACT_Factor;
+const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};

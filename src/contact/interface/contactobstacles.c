@@ -1,5 +1,7 @@
 /* Obstacles of a contact problem. */
 #include <contact/parts.h>
+#include <impakt/private/bodymesh.h>
+#include <impakt/private/mesh.h>
 #include <sys/units.h>
 
 /* Pairs find bodies and obstacles by their names */
@@ -95,6 +97,32 @@ PetscErrorCode ContactGetPairObstacle(Contact contact, PetscInt pair, PetscInt *
   }
   *i = contact->pairs[pair].obstacle ? contact->n_obstacles - 1 : -1;
   while (*i >= 0 && contact->obstacles[*i] != contact->pairs[pair].obstacle) (*i)--;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The options by which a user moves a body at the start */
+PetscErrorCode ContactDescribeMoves(Contact contact, PetscInt body, char text[CONTACT_MOVES])
+{
+  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *option;
+
+  PetscFunctionBegin;
+  PetscCall(MeshGetPlaceOption(prefix, &option, NULL));
+  PetscCall(PetscSNPrintf(text, CONTACT_MOVES, "-%s%s, -%sinitial_displacement", prefix, option, prefix));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of a ball or a rod whose nodes lie outside its radius, that they do; of other bodies nothing */
+PetscErrorCode ContactDescribeRound(Contact contact, PetscInt body, char text[CONTACT_MOVES])
+{
+  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *keeps;
+
+  PetscFunctionBegin;
+  text[0] = 0;
+  PetscCall(MeshGetPlaceOption(prefix, NULL, &keeps));
+  if (keeps)
+    PetscCall(PetscSNPrintf(text, CONTACT_MOVES,
+                            "; nodes of '%s' lie outside its radius, for the mesh to have its volume: with -%s%s false they lie at it",
+                            ((PetscObject)contact->bodies[body])->name, prefix, keeps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,8 +2,7 @@
 #include <contact/parts.h>
 #include <sys/names.h>
 #include <sys/optionvalues.h>
-
-const char *const ContactConstraints[] = {"gap", "gap_rate", "both", "ContactConstraint", "CONTACT_CONSTRAINT_", NULL};
+#include <sys/sharedoptions.h>
 
 /* -contact_balance: on where it has no value */
 static PetscErrorCode ReadBalance(Contact contact, const char value[])
@@ -88,7 +87,7 @@ static PetscErrorCode ReadObstacles(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(NamesRead(NULL, "-obstacles", &n, &names, NULL));
-  for (PetscInt o = 0; o < n; o++) PetscCall(NamesCheck(PetscObjectComm((PetscObject)contact), "obstacles", names[o]));
+  for (PetscInt o = 0; o < n; o++) PetscCall(OptionsCheckName(PetscObjectComm((PetscObject)contact), "obstacles", names[o]));
   for (PetscInt o = 0; o < n && !error; o++) {
     Obstacle obstacle = NULL;
 

@@ -57,15 +57,6 @@ PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which bodies pairs connect, directly or by others: to each one the first of them */
-void ContactFindSets(Contact contact, PetscInt set[])
-{
-  for (PetscInt b = 0; b < contact->n_bodies; b++) set[b] = contact->neighbours.come_and_go ? 0 : b; /* then any two may come near */
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (!contact->pairs[p].obstacle) ContactJoinGroups(set, contact->pairs[p].body[0], contact->pairs[p].body[1]);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) set[b] = ContactGroupOf(set, b);
-}
-
 /* Lets bodies choose whether their contact nodes are massless. Where some are not, no others of their set are either: their rule is that of
    impulses, by which massless nodes lose more than the kinetic energy with which those that have mass hit, and cost more. */
 static PetscErrorCode ChooseMass(Contact contact)

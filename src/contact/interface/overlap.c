@@ -125,32 +125,6 @@ static PetscErrorCode FindDepths(Contact contact, PetscInt *n, SurfaceDepth *dep
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The options by which a user moves a body at the start */
-PetscErrorCode ContactDescribeMoves(Contact contact, PetscInt body, char text[CONTACT_MOVES])
-{
-  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *option;
-
-  PetscFunctionBegin;
-  PetscCall(MeshGetPlaceOption(prefix, &option, NULL));
-  PetscCall(PetscSNPrintf(text, CONTACT_MOVES, "-%s%s, -%sinitial_displacement", prefix, option, prefix));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Of a ball or a rod whose nodes lie outside its radius, that they do; of other bodies nothing */
-PetscErrorCode ContactDescribeRound(Contact contact, PetscInt body, char text[CONTACT_MOVES])
-{
-  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *keeps;
-
-  PetscFunctionBegin;
-  text[0] = 0;
-  PetscCall(MeshGetPlaceOption(prefix, NULL, &keeps));
-  if (keeps)
-    PetscCall(PetscSNPrintf(text, CONTACT_MOVES,
-                            "; nodes of '%s' lie outside its radius, for the mesh to have its volume: with -%s%s false they lie at it",
-                            ((PetscObject)contact->bodies[body])->name, prefix, keeps));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode RefuseOverlap(Contact contact, const SurfaceDepth *overlap)
 {
   const PetscInt *of = overlap->surfaces;

@@ -152,3 +152,61 @@ void ContactGetTold(Contact contact, PetscInt p, PetscInt *body, PetscInt *obsta
   *body     = p < contact->n_bodies ? p : (p - contact->n_bodies) / contact->n_obstacles;
   *obstacle = p < contact->n_bodies ? -1 : (p - contact->n_bodies) % contact->n_obstacles;
 }
+
+/*@
+  ContactGetPairState - forces, gap and active nodes of a pair at the end of the last step
+
+  Collective
+
+  Input Parameters:
++ contact - the `Contact`, set up
+- pair    - 0 to the number of pairs - 1
+
+  Output Parameter:
+. state - see `ContactPairState`
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPairStates()`, `ContactStep()`
+@*/
+PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairState *state)
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(state, 3);
+  ContactCheckPair(contact, pair);
+  if (contact->neighbours.come_and_go) {
+    ContactPairState *states;
+
+    PetscCall(PetscMalloc1(contact->neighbours.told.n, &states));
+    PetscCall(ContactTellStates(contact, states));
+    *state = states[pair];
+    PetscCall(PetscFree(states));
+  } else PetscCall(ContactComputePairStates(contact, pair, pair + 1, state));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactGetPairStates - forces, gaps and active nodes of all pairs at the end of the last step
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Output Parameter:
+. states - see `ContactPairState`; one for each pair
+
+  Level: intermediate
+
+.seealso: `Contact`, `ContactGetPairState()`, `ContactGetNumPairs()`, `ContactStep()`
+@*/
+PetscErrorCode ContactGetPairStates(Contact contact, ContactPairState states[])
+{
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  if (contact->n_pairs) PetscAssertPointer(states, 2);
+  if (contact->neighbours.come_and_go) PetscCall(ContactTellStates(contact, states));
+  else PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

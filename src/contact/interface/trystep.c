@@ -1,5 +1,6 @@
 /* Controller steps that may fail, and be made again in halves. */
 #include <contact/parts.h>
+#include <sys/stages.h>
 #include <impakt/private/bodyforces.h>
 #include <impakt/private/bodystep.h>
 
@@ -26,6 +27,83 @@ PetscErrorCode ContactReadUnconverged(Contact contact)
   PetscCall(PetscOptionsEnum("-schwarz_unconverged", "What to do with a step that does not converge", "ContactSetFromOptions", Unconvergeds,
                              (PetscEnum)contact->options.unconverged, (PetscEnum *)&contact->options.unconverged, NULL));
   PetscOptionsEnd();
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* One attempt at a step. `pass`: how often it has been made with rows laid where it ended; `off`, `again`: see ContactLayAhead() */
+static PetscErrorCode MakeOnce(Contact contact, PetscInt pass, PetscReal *off, PetscBool *again)
+{
+  PetscBool logged;
+
+  PetscFunctionBegin;
+  *again = PETSC_FALSE;
+  StepFailureClear(&contact->attempt.failure);
+  PetscCall(ContactBeginEnergy(contact));
+  PetscCall(ContactNoteLevel(contact));
+  PetscCall(StageBegin(STAGE_ROWS, &logged));
+  PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
+  PetscTryTypeMethod(contact, layrows);
+  PetscCall(ContactBond(contact));
+  PetscCall(ContactUpdateRows(contact));
+  ContactHoldTogether(contact);
+  PetscCall(ContactDriveFriction(contact));
+  if (contact->energy.rebuilt && !contact->energy.unlimited) PetscCall(ContactNoteRebuild(contact));
+  PetscCall(PetscLogEventEnd(CONTACT_Update, contact, 0, 0, 0));
+  PetscCall(StageEnd(logged));
+  PetscCall(StageBegin(STAGE_SWEEPS, &logged));
+  PetscCall(ContactTurn(contact, NULL));
+  if (contact->rows.n_all) {
+    PetscCall(ContactMakeStep(contact));
+    if (!ContactFailed(contact)) PetscCall(ContactLayAhead(contact, pass, off, again));
+    if (!ContactFailed(contact) && !*again) PetscCall(ContactLimitEnergy(contact));
+  } else { /* nothing can touch */
+    PetscBool penetrating;
+
+    PetscCall(ContactIntegrateFree(contact, &penetrating));
+    PetscCall(ContactCompleteBodies(contact));
+  }
+  PetscCall(StageEnd(logged));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@
+  ContactStep - advances all bodies from their saved states through one controller step, or one part of it, under contact
+
+  Collective
+
+  Input Parameter:
+. contact - the `Contact`, set up
+
+  Level: developer
+
+  Note:
+  The step becomes final by `ContactAccept()`. `ContactGetParts()` tells how many make a controller step.
+
+.seealso: `Contact`, `ContactAccept()`, `BodySave()`
+@*/
+PetscErrorCode ContactStep(Contact contact)
+{
+  PetscReal off = 0;
+  PetscBool again;
+  PetscInt  pass = 0;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
+  contact->counts.sweeps = 0;
+  ContactForgetAhead(contact);
+  PetscCall(MakeOnce(contact, pass++, &off, &again));
+  while (again) {
+    PetscCall(ContactStepBack(contact));
+    PetscCall(MakeOnce(contact, pass++, &off, &again));
+    if (!ContactFailed(contact)) continue;
+    PetscCall(ContactStepBack(contact)); /* with the rows of its start it went through */
+    ContactForgetAhead(contact);
+    PetscCall(MakeOnce(contact, PETSC_INT_MAX, &off, &again));
+  }
+  contact->counts.total_sweeps += contact->counts.sweeps;
+  PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
+  if (!contact->attempt.returns) PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -320,6 +320,5 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
   if (contact->ranks.size > 1)
     PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
   contact->counts.friction_least = least;
-  PetscCall(ContactNoteTilt(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

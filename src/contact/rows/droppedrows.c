@@ -7,11 +7,34 @@
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 
+/* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
+#define NO_COMPONENT 1e-9
+
 /* Neither opens nor closes */
 static void LeaveOut(Contact contact, PetscInt i)
 {
   contact->rows.opposite[i] = contact->rows.tied[i] = PETSC_FALSE;
   contact->rows.initial_gap[i]                      = CONTACT_NO_GAP;
+}
+
+/* Whether row i is held: the user prescribes all displacements of its Dirichlet node that it asks for. Rows of a node that rubs are held
+   together. */
+PetscErrorCode ContactRowIsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
+{
+  const PetscInt *dofs;
+  PetscInt        n;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetHeldDofs(contact->bodies[pair->body[0]], &n, &dofs));
+  *held = (PetscBool)(n > 0);
+  for (PetscInt d = 0; d < contact->dim && *held; d++) {
+    PetscInt place;
+
+    if (PetscAbsReal(contact->rows.normal[3 * i + d]) < NO_COMPONENT && pair->law != CONTACT_LAW_FRICTION) continue;
+    PetscCall(PetscFindInt(contact->rows.dof[i] + d, n, dofs, &place));
+    if (place < 0) *held = PETSC_FALSE;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Where bodies answer to forces: marks the rows of held nodes, to be dropped if they are at a rim or move nothing. Obstacles move never. */

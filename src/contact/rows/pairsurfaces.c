@@ -3,20 +3,6 @@
 #include <impakt/private/bodymesh.h>
 #include <impakt/private/bodymass.h>
 
-/* A surface of a body; `name` NULL: the whole of it */
-PetscErrorCode ContactCreateSurface(Contact contact, PetscInt body, const char name[], Surface *surface)
-{
-  PetscBool axisymmetric;
-  DM        dm;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetDM(contact->bodies[body], &dm));
-  PetscCall(SurfaceCreate(dm, name, surface));
-  PetscCall(BodyGetAxisymmetric(contact->bodies[body], &axisymmetric));
-  if (axisymmetric) PetscCall(SurfaceSetAxisymmetric(*surface));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The contact position and velocity of a body in the history are those of the first surface that it has */
 static PetscErrorCode NoteNodes(Contact contact, PetscInt body, Surface surface)
 {
@@ -194,28 +180,6 @@ static PetscErrorCode MirrorSurface(Contact contact, PetscInt body, Surface surf
   PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
   PetscCall(VecGetOwnershipRange(positions, &first, NULL));
   PetscCall(SurfaceSetMirrors(surface, n, dofs, first));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The displacement of a body with which rows are laid, unless those of a pair are laid elsewhere, see ContactPair's `ahead` */
-PetscErrorCode ContactGetRowPlace(Contact contact, PetscInt b, Vec *u)
-{
-  PetscFunctionBegin;
-  if (contact->at_end[b]) *u = contact->ends[b];
-  else PetscCall(BodyGetSolution(contact->bodies[b], u, NULL, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* All surfaces to where their bodies are */
-PetscErrorCode ContactMoveSurfaces(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt s = 0; s < contact->n_surfaces; s++) {
-    Vec u;
-
-    PetscCall(ContactGetRowPlace(contact, contact->surfaces[s].body, &u));
-    PetscCall(SurfaceMove(contact->surfaces[s].surface, u));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

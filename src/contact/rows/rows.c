@@ -3,8 +3,6 @@
 #include <sys/units.h>
 #include <impakt/private/bodymesh.h>
 
-/* A component of a unit normal that is smaller is round-off: the row does not ask for that displacement */
-#define NO_COMPONENT 1e-9
 /* Planes count as parallel whose normals have a cosine nearer to 1 */
 #define PARALLEL 1e-8
 /* -contact_tolerance by default, in parts of the largest coordinate of any mesh, whose round-off is 10^4 times smaller: what a converged
@@ -75,26 +73,6 @@ PetscErrorCode ContactLayOutRows(Contact contact)
   PetscCall(CountRows(contact));
   PetscCall(AllocateRows(contact));
   PetscCall(ContactSetUpTurns(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether row i is held: the user prescribes all displacements of its Dirichlet node that it asks for. Rows of a node that rubs are held
-   together. */
-PetscErrorCode ContactRowIsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
-{
-  const PetscInt *dofs;
-  PetscInt        n;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetHeldDofs(contact->bodies[pair->body[0]], &n, &dofs));
-  *held = (PetscBool)(n > 0);
-  for (PetscInt d = 0; d < contact->dim && *held; d++) {
-    PetscInt place;
-
-    if (PetscAbsReal(contact->rows.normal[3 * i + d]) < NO_COMPONENT && pair->law != CONTACT_LAW_FRICTION) continue;
-    PetscCall(PetscFindInt(contact->rows.dof[i] + d, n, dofs, &place));
-    if (place < 0) *held = PETSC_FALSE;
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -55,25 +55,6 @@ static PetscErrorCode GetSpacing(Contact contact, Surface surface, PetscReal *sp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static void Swap(void *a, void *b, size_t size)
-{
-  char held[sizeof(void *)];
-
-  memcpy(held, a, size);
-  memcpy(a, b, size);
-  memcpy(b, held, size);
-}
-
-/* Turns a pair round, before it has a transfer */
-void ContactTurnPair(ContactPair *pair)
-{
-  Swap(&pair->body[0], &pair->body[1], sizeof(pair->body[0]));
-  Swap((void *)&pair->surface[0], (void *)&pair->surface[1], sizeof(pair->surface[0]));
-  Swap((void *)&pair->surfaces[0], (void *)&pair->surfaces[1], sizeof(pair->surfaces[0]));
-  Swap(&pair->place[0], &pair->place[1], sizeof(pair->place[0]));
-  pair->turned = (PetscBool)!pair->turned;
-}
-
 /* Turns a pair round if its second body is to have the rows. Its surfaces must be known. */
 PetscErrorCode ContactChooseRowSide(Contact contact, ContactPair *pair)
 {

@@ -191,7 +191,7 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckTies(Contact contact)
+PetscErrorCode ContactCheckTies(Contact contact)
 {
   TieSummary *summaries;
   PetscInt   *tied; /* per body, and for obstacles: its nodes that are tied, and those of others that are tied to it */
@@ -210,57 +210,5 @@ static PetscErrorCode CheckTies(Contact contact)
   PetscCall(CheckNothingTied(contact, tied, summaries));
   PetscCall(PetscFree(tied));
   PetscCall(PetscFree(summaries));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Builds the rows again where the displacements at the start have other nodes tied, or tied to other ones, than the meshes alone */
-static PetscErrorCode RebuildTies(Contact contact)
-{
-  int any = 0;
-
-  PetscFunctionBegin;
-  PetscCall(ContactMoveSurfaces(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    Vec                u[2] = {NULL, NULL};
-    PetscBool          rebuilt, changed = PETSC_FALSE;
-
-    if (!ContactPairTies(pair)) continue;
-    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-      PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
-    PetscCall(TransferUpdate(pair->transfer, u[0], u[1], contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
-    PetscCall(ContactMeasureTies(contact, pair, &changed));
-    any |= rebuilt || changed;
-  }
-  PetscCall(ContactOr(contact, &any));
-  PetscCall(CheckTies(contact));
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (ContactPairTies(&contact->pairs[p])) PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.changed[i] = PETSC_TRUE;
-  PetscCall(ContactMergeDroppedRows(contact));
-  ContactAffectAll(contact);
-  PetscCall(ContactFillMatrices(contact));
-  PetscCall(ContactUpdateBodies(contact, contact->rows.changed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Ties what lies on each other in the present states, as it lies there, and ends with an error where that is not clear or nothing is tied.
-   Call with the bodies set up. */
-PetscErrorCode ContactTie(Contact contact)
-{
-  PetscBool any = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || ContactPairTies(&contact->pairs[p]));
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(RebuildTies(contact));
-  PetscCall(ContactComputeStartGaps(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    if (!contact->rows.tied[i]) continue;
-    contact->rows.initial_gap[i] -= contact->start.gap[i];
-    contact->start.gap[i] = contact->end.gap[i] = 0;
-  }
-  PetscTryTypeMethod(contact, rowschanged);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

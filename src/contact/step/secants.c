@@ -16,12 +16,8 @@
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
 
-#define CURVATURE 1e-10 /* a secant counts whose work is at least this part of what S tells of it */
-#define EXACT     1e-9  /* S has told right what differs by less than this part of it, and by the round-off of positions */
-#define SURE      1e3   /* a secant is kept where S has told wrong by more than this many times that round-off */
-#define SURE_WORK 10    /* one of a linear body counts as such where S has told the work of its forces wrong by so many times round-off */
-#define RENEW     1e-3  /* of a body that follows: S has told wrong by more than this part of it, and is as the body has answered now */
-#define MOST_KEPT 80    /* secants of a body; one more, and the older half of them goes */
+#define SURE_WORK 10 /* one of a linear body counts as such where S has told the work of its forces wrong by so many times round-off */
+#define MOST_KEPT 80 /* secants of a body; one more, and the older half of them goes */
 
 PetscErrorCode StepperSecantsDestroy(StepperSecants *secants)
 {
@@ -121,7 +117,7 @@ PetscErrorCode ContactStepperVisitSecants(Contact contact, ContactStepper *stepp
 }
 
 /* How a block has it that rows go under the forces of a secant, and the work of these by it */
-static PetscReal Multiply(PetscInt n, const PetscScalar block[], const PetscScalar force[], PetscScalar product[])
+PetscReal StepperSecantMultiply(PetscInt n, const PetscScalar block[], const PetscScalar force[], PetscScalar product[])
 {
   PetscReal work = 0;
 
@@ -133,7 +129,7 @@ static PetscReal Multiply(PetscInt n, const PetscScalar block[], const PetscScal
 }
 
 /* Whether a secant of a linear body is one of those that hold all at once; `product`: how the block has it */
-static PetscBool HoldsWithOthers(PetscInt n, const PetscScalar force[], const PetscScalar product[], PetscReal resolution)
+PetscBool StepperSecantHolds(PetscInt n, const PetscScalar force[], const PetscScalar product[], PetscReal resolution)
 {
   const PetscScalar *gone = force + n;
   PetscReal          more = 0, square = 0;
@@ -147,7 +143,8 @@ static PetscBool HoldsWithOthers(PetscInt n, const PetscScalar force[], const Pe
 
 /* Corrects the block by a secant, and S with it unless that is NULL; `product`: how the block has it. The change is a product of one vector
    with itself, or of two, each by its work. */
-static PetscErrorCode Correct(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool one, LawProblem *problem)
+PetscErrorCode StepperSecantCorrect(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool one,
+                                    LawProblem *problem)
 {
   const PetscInt     n       = entries->n;
   const PetscScalar *gone    = force + n;
@@ -205,156 +202,10 @@ PetscErrorCode ContactStepperCorrectBlock(Contact contact, ContactStepper *stepp
     PetscScalar       *product = entries->product;
     PetscBool          one;
 
-    if (!(Multiply(n, entries->block, force, product) > 0)) continue;
-    one = (PetscBool)(linear && HoldsWithOthers(n, force, product, stepper->problem.resolution));
-    PetscCall(Correct(entries, force, product, one, NULL));
+    if (!(StepperSecantMultiply(n, entries->block, force, product) > 0)) continue;
+    one = (PetscBool)(linear && StepperSecantHolds(n, force, product, stepper->problem.resolution));
+    PetscCall(StepperSecantCorrect(entries, force, product, one, NULL));
   }
   entries->corrected = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* How the bodies of each touching row have gone along it in the last pass */
-static PetscErrorCode GatherEnds(Contact contact, ContactStepper *stepper)
-{
-  PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) {
-    for (PetscInt p = 0; p < contact->n_pairs; p++) {
-      const ContactPair *pair  = &contact->pairs[p];
-      const Trace        trace = contact->traces[pair->body[side]].displacement;
-      PetscScalar       *end;
-      PetscInt           levels;
-
-      PetscCall(TraceGetSizes(trace, NULL, &levels));
-      PetscCall(TraceGetLevel(trace, levels, &end));
-      for (PetscInt i = pair->begin; i < pair->end; i++) stepper->mine[i] = PetscRealPart(end[i - pair->shift[side]]);
-    }
-    PetscCall(ContactStepperGather(contact, stepper, stepper->mine, stepper->ends + side * stepper->problem.n));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* By how much rows have gone otherwise under the forces of a secant than a block has it */
-static PetscReal Off(PetscInt n, const PetscScalar gone[], const PetscScalar product[])
-{
-  PetscReal off = 0;
-
-  for (PetscInt k = 0; k < n; k++) off = PetscMax(off, PetscAbsScalar(gone[k] - product[k]));
-  return off;
-}
-
-static PetscReal Largest(PetscInt n, const PetscScalar product[])
-{
-  PetscReal largest = 0;
-
-  for (PetscInt k = 0; k < n; k++) largest = PetscMax(largest, PetscAbsScalar(product[k]));
-  return largest;
-}
-
-/* The block of a body is as the body has answered in the last pass */
-static PetscErrorCode Renew(Contact contact, ContactStepper *stepper, PetscInt b)
-{
-  StepperEntries *entries = &stepper->assembly.of_body[b];
-
-  PetscFunctionBegin;
-  PetscCall(ContactStepperMakeBlock(contact, stepper, b));
-  PetscCall(PetscArraycpy(entries->block, entries->own, entries->n * entries->n));
-  PetscCall(StepperSecantsResize(&entries->secants, entries->n, 0));
-  entries->corrected = PETSC_TRUE;
-  stepper->assembled = -1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The block of a body is corrected by what the last two passes have shown of it, unless it has told right. Where secants of earlier steps
-   have made it worse than the body's own one they are forgotten. */
-static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool *renewed)
-{
-  LawProblem     *problem = &stepper->problem;
-  StepperEntries *entries = &stepper->assembly.of_body[b];
-  StepperSecants *secants = &entries->secants;
-  const PetscInt  n = entries->n, all = problem->n;
-  PetscBool       one;
-  PetscInt        at   = secants->n_pairs;
-  PetscReal       work = 0, told_work, off;
-  PetscScalar    *force, *gone, *product = entries->product;
-
-  PetscFunctionBegin;
-  PetscCall(StepperSecantsResize(secants, n, at + 1));
-  force = secants->values + 2 * n * at;
-  gone  = force + n;
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscInt     i    = entries->places[k];
-    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[i]]];
-    const PetscInt     end  = i + (pair->body[1] == b) * all;
-
-    force[k] = problem->base[i] - stepper->told[i];
-    gone[k]  = ContactSign(pair, b) * (stepper->ends[end] - stepper->told[all + end]);
-    work += PetscRealPart(force[k] * gone[k]);
-  }
-  told_work = Multiply(n, entries->block, force, product);
-  off       = Off(n, gone, product);
-  if (entries->follows && off > RENEW * Largest(n, product) + SURE * problem->resolution) {
-    PetscCall(Renew(contact, stepper, b));
-    *renewed = stepper->corrected = PETSC_TRUE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (stepper->passes == 1 && at && Multiply(n, entries->own, force, product + n) > 0 && Off(n, gone, product + n) < off) {
-    PetscCall(PetscArraymove(secants->values, force, 2 * n));
-    PetscCall(StepperSecantsResize(secants, n, 1));
-    PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
-    at        = 0;
-    force     = secants->values;
-    gone      = force + n;
-    told_work = Multiply(n, entries->block, force, product);
-    off       = Off(n, gone, product);
-    *renewed = stepper->corrected = PETSC_TRUE;
-    stepper->assembled            = -1;
-  }
-  if (off <= EXACT * Largest(n, product) + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0)) {
-    secants->n_pairs = at;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(BodyIsLinear(contact->bodies[b], &one));
-  one = (PetscBool)(one && HoldsWithOthers(n, force, product, problem->resolution));
-  PetscCall(Correct(entries, force, product, one, problem));
-  stepper->assembled = -1;
-  if (!one && off <= SURE * problem->resolution) { /* for this step alone: the next one makes the block anew */
-    secants->n_pairs   = at;
-    entries->corrected = PETSC_FALSE;
-  }
-  stepper->corrected = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* S after a pass, body by body. One whose nodes answer to forces on them alone tells right. */
-PetscErrorCode ContactStepperCorrectS(Contact contact, ContactStepper *stepper)
-{
-  LawProblem    *problem = &stepper->problem;
-  const PetscInt n       = problem->n;
-  PetscBool      any = PETSC_FALSE, renewed = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  stepper->corrected = PETSC_FALSE;
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    any = (PetscBool)(any || (stepper->assembly.of_body[b].n && !stepper->assembly.of_body[b].alone));
-  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GatherEnds(contact, stepper));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const StepperEntries *entries = &stepper->assembly.of_body[b];
-
-    if (!entries->n || entries->alone) continue;
-    if (stepper->has_told) PetscCall(CorrectBody(contact, stepper, b, &renewed));
-    else if (entries->follows) {
-      PetscCall(Renew(contact, stepper, b));
-      renewed = PETSC_TRUE;
-    }
-  }
-  if (stepper->corrected) {
-    PetscCall(MatAssemblyBegin(problem->S, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(problem->S, MAT_FINAL_ASSEMBLY));
-  }
-  if (renewed) PetscCall(ContactStepperAssemble(contact, stepper));
-  PetscCall(PetscArraycpy(stepper->told, problem->base, n));
-  PetscCall(PetscArraycpy(stepper->told + n, stepper->ends, 2 * n));
-  stepper->has_told = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

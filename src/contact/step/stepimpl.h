@@ -196,6 +196,9 @@ PETSC_INTERN PetscErrorCode ContactStepperVisitSecants(Contact, ContactStepper *
 PETSC_INTERN PetscErrorCode ContactStepperCorrectBlock(Contact, ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode StepperSecantsResize(StepperSecants *, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode StepperSecantsDestroy(StepperSecants *);
+PETSC_INTERN PetscReal      StepperSecantMultiply(PetscInt, const PetscScalar[], const PetscScalar[], PetscScalar[]);
+PETSC_INTERN PetscBool      StepperSecantHolds(PetscInt, const PetscScalar[], const PetscScalar[], PetscReal);
+PETSC_INTERN PetscErrorCode StepperSecantCorrect(StepperEntries *, const PetscScalar[], PetscScalar[], PetscBool, LawProblem *);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpTurns(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyTurns(StepperTurns *);
 PETSC_INTERN PetscErrorCode ContactStepperMayTurn(Contact, PetscBool *);

@@ -11,6 +11,24 @@
 #define STEADY_FORCE  1e-6
 #define STEADY_SWEEPS 4
 
+/* Forces of this rank's rows at the end of the controller step, from the bodies' traces [N] */
+PetscErrorCode AlternationGetForces(Contact contact, PetscScalar force[])
+{
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair     = &contact->pairs[p];
+    const Trace        reaction = contact->traces[DirichletBody(pair)].reaction;
+    PetscScalar       *end;
+    PetscInt           levels;
+
+    PetscCall(TraceGetSizes(reaction, NULL, &levels));
+    PetscCall(TraceGetLevel(reaction, levels, &end));
+    for (PetscInt i = pair->begin; i < pair->end; i++)
+      force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* How far the contact nodes of a body on one side of the pairs have moved since the last sweep, and where they are [m] */
 static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *change, PetscReal *position)
 {

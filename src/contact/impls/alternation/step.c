@@ -2,24 +2,6 @@
 #include "alternationimpl.h"
 #include <impakt/private/bodysweeps.h>
 
-/* Forces of this rank's rows at the end of the controller step, from the bodies' traces [N] */
-PetscErrorCode AlternationGetForces(Contact contact, PetscScalar force[])
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair     = &contact->pairs[p];
-    const Trace        reaction = contact->traces[DirichletBody(pair)].reaction;
-    PetscScalar       *end;
-    PetscInt           levels;
-
-    PetscCall(TraceGetSizes(reaction, NULL, &levels));
-    PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++)
-      force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The outer iteration with the active set as it is, then forces and gaps */
 static PetscErrorCode SolveActive(Contact contact)
 {
