@@ -70,7 +70,7 @@ static PetscErrorCode ReadBodies(Controller controller)
   PetscCheck(
       (set && n) || first, comm, PETSC_ERR_USER_INPUT,
       "-bodies is missing: name the bodies, as in -bodies left,right, or give an options file with -options_file (options/ has some)");
-  for (PetscInt b = 0; b < n && !error; b++) error = NamesCheck(comm, "bodies", names[b]);
+  for (PetscInt b = 0; b < n && !error; b++) error = OptionsCheckName(comm, "bodies", names[b]);
   if (!error) error = OptionsExpandShared(comm, n, names);
   for (PetscInt b = 0; b < n && !error; b++) {
     Body body = NULL;

@@ -6,15 +6,13 @@
    is the largest so far of kinetic energy, strain energy and work: of loads, held displacements and moving obstacles, or what friction,
    damage of glue, damping and plastic flow have taken. The energy at the start alone says nothing of a body that hardly moves then and is
    driven afterwards, nor does the strain energy of a body that slides for long. Collective */
-PetscErrorCode EnergyScaleAdd(EnergyScale *scale, Controller controller, ControllerFrame *frame)
+PetscErrorCode EnergyScaleAdd(EnergyScale *scale, const Body bodies[], ControllerFrame *frame)
 {
   const PetscReal glue  = frame->penalty_energy - frame->uncounted_energy;
   PetscReal       taken = frame->friction_loss + frame->glue_loss, done = PetscAbsReal(frame->obstacle_work);
   PetscReal       balance = taken - frame->obstacle_work + glue, kinetic, strain = glue;
-  const Body     *bodies;
 
   PetscFunctionBegin;
-  PetscCall(ControllerGetBodies(controller, NULL, &bodies));
   PetscCall(BodyGetOwnKinetic(frame->n_bodies, bodies, frame->bodies, &kinetic));
   for (PetscInt b = 0; b < frame->n_bodies; b++) {
     const BodyMeasures *body = &frame->bodies[b];

@@ -7,4 +7,4 @@ typedef struct {
   PetscReal largest; /* kinetic energy, strain energy or work so far [J] */
 } EnergyScale;
 
-PETSC_INTERN PetscErrorCode EnergyScaleAdd(EnergyScale *, Controller, ControllerFrame *);
+PETSC_INTERN PetscErrorCode EnergyScaleAdd(EnergyScale *, const Body[], ControllerFrame *);

@@ -151,7 +151,7 @@ PetscErrorCode ControllerCheck(Controller controller, PetscViewer viewer)
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   if (!viewer) PetscCall(PetscViewerASCIIGetStdout(comm, &viewer));
   PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
-  PetscCall(ControllerSetUp(controller));
+  PetscCheck(controller->setup, comm, PETSC_ERR_ARG_WRONGSTATE, "Call ControllerSetUp() first");
   PetscCall(ControllerNotify(controller, 0));
   PetscCallMPI(MPI_Comm_size(comm, &size));
   PetscCall(PetscViewerASCIIPrintf(viewer, "check: the set-up alone, no step is made\n"));

@@ -72,7 +72,7 @@ PetscErrorCode ControllerNotify(Controller controller, PetscInt step)
   frame.obstacle_work    = counts.obstacle_work;
   frame.contact_loss     = counts.contact_loss;
   frame.glue_loss        = counts.glue_loss;
-  PetscCall(EnergyScaleAdd(&controller->scale, controller, &frame));
+  PetscCall(EnergyScaleAdd(&controller->scale, controller->bodies, &frame));
   PetscCall(ControllerGuardEnergy(controller, &frame));
   for (PetscInt i = 0; i < controller->n_monitors; i++)
     PetscCall((*controller->monitor[i])(controller, &frame, controller->monitor_ctx[i]));

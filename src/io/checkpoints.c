@@ -2,6 +2,8 @@
 #include "outputimpl.h"
 #include "outputfile.h"
 #include <contact/interface/contactvisit.h>
+#include <controller/controllervisit.h>
+#include <exact/exactvisit.h>
 #include "stopsignals.h"
 #include <petsctime.h>
 
@@ -13,6 +15,20 @@
 #define TIME_LEFT 0.01
 /* Larger than the number of any signal */
 #define LAST_SIGNAL 64
+
+/* What all ranks have of that which a run goes on from: the simulation, and what its observers have gathered. `same_ranks`: it is loaded on
+   as many ranks as before */
+PetscErrorCode OutputVisitShared(Output output, PetscBool same_ranks, Checkpoint checkpoint)
+{
+  PetscFunctionBegin;
+  PetscCall(ControllerVisit(output->controller, checkpoint));
+  PetscCall(StatisticsVisit(output->statistics, checkpoint));
+  if (output->exact) PetscCall(ExactVisit(output->exact, checkpoint));
+  PetscCall(CheckpointBegin(checkpoint, "files"));
+  PetscCall(HistoryVisit(output->history, checkpoint));
+  PetscCall(FieldsVisit(output->fields, PetscObjectComm((PetscObject)output), same_ranks, checkpoint));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* The run begins: what came before, reading meshes and setting up, counts as well */
 PetscErrorCode OutputStartClock(Output output)

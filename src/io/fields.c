@@ -136,13 +136,6 @@ void FieldsKeepFirst(Fields fields)
   fields->n_frames = 1;
 }
 
-PetscErrorCode FieldsShareError(Fields fields, PetscErrorCode error)
-{
-  PetscFunctionBegin;
-  PetscCall(OutputFileShareError(fields->comm, error, "-output_fields", fields->path, "write"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Gives the file its final name, with the XDMF file of the obstacles beside it; that of the frames of an earlier run is removed */
 static PetscErrorCode TakePlace(Fields fields)
 {

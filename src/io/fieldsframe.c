@@ -40,6 +40,13 @@ PetscErrorCode FieldsWriteMesh(Fields fields)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+PetscErrorCode FieldsShareError(Fields fields, PetscErrorCode error)
+{
+  PetscFunctionBegin;
+  PetscCall(OutputFileShareError(fields->comm, error, "-output_fields", fields->path, "write"));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Puts number i of a field into the buffer */
 static inline void Store(Fields fields, size_t i, PetscReal value)
 {

@@ -16,21 +16,6 @@ PetscErrorCode OutputInitializePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps other runs away from the files */
-PetscErrorCode OutputLock(Output output)
-{
-  MPI_Comm          comm      = PetscObjectComm((PetscObject)output);
-  const char *const options[] = {"-output_history", "-output_summary", "-output_fields", "-checkpoint"};
-  const char *const paths[]   = {output->history_path, output->summary_path, output->fields_path, output->checkpoints.path};
-
-  PetscFunctionBegin;
-  if (output->locked) PetscFunctionReturn(PETSC_SUCCESS);
-  output->locked = PETSC_TRUE;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(paths); i++)
-    if (paths[i][0]) PetscCall(OutputLocksTake(comm, &output->locks, options[i], paths[i]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Before the first record is written */
 static PetscErrorCode LockFiles(Controller controller, const ControllerFrame *frame, void *context)
 {

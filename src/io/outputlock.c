@@ -3,6 +3,7 @@
    Beside an output lies <path>.lock, locked in the kernel, so that the lock ends with the process however that ends. */
 #define _DEFAULT_SOURCE /* flock() */
 #include "outputlock.h"
+#include "outputimpl.h"
 #include "outputfile.h"
 #include "outputpaths.h"
 #include <errno.h>
@@ -92,5 +93,20 @@ PetscErrorCode OutputLocksRelease(OutputLocks *locks)
     close(locks->file[i]);
   }
   locks->n = 0;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Keeps other runs away from the files */
+PetscErrorCode OutputLock(Output output)
+{
+  MPI_Comm          comm      = PetscObjectComm((PetscObject)output);
+  const char *const options[] = {"-output_history", "-output_summary", "-output_fields", "-checkpoint"};
+  const char *const paths[]   = {output->history_path, output->summary_path, output->fields_path, output->checkpoints.path};
+
+  PetscFunctionBegin;
+  if (output->locked) PetscFunctionReturn(PETSC_SUCCESS);
+  output->locked = PETSC_TRUE;
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(paths); i++)
+    if (paths[i][0]) PetscCall(OutputLocksTake(comm, &output->locks, options[i], paths[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

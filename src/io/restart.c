@@ -3,27 +3,11 @@
 #include "outputpaths.h"
 #include <body/interface/bodyvisit.h>
 #include <contact/interface/contactvisit.h>
-#include <controller/controllervisit.h>
-#include <exact/exactvisit.h>
 #include <stdlib.h>
 #include <sys/units.h>
 
 /* Minutes between checkpoints where the user says nothing */
 #define WALL_INTERVAL 15
-
-/* What all ranks have of that which a run goes on from: the simulation, and what its observers have gathered. `same_ranks`: it is loaded on
-   as many ranks as before */
-PetscErrorCode OutputVisitShared(Output output, PetscBool same_ranks, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  PetscCall(ControllerVisit(output->controller, checkpoint));
-  PetscCall(StatisticsVisit(output->statistics, checkpoint));
-  if (output->exact) PetscCall(ExactVisit(output->exact, checkpoint));
-  PetscCall(CheckpointBegin(checkpoint, "files"));
-  PetscCall(HistoryVisit(output->history, checkpoint));
-  PetscCall(FieldsVisit(output->fields, PetscObjectComm((PetscObject)output), same_ranks, checkpoint));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /*@
   OutputSetRestart - sets the checkpoint that the run is continued from

@@ -17,26 +17,6 @@ static const char *GetPrefix(Material material)
   return ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "";
 }
 
-/* PlasticGetSize - numbers of the history of a point */
-PetscInt PlasticGetSize(const Plastic *plastic)
-{
-  return plastic->kinematic > 0 ? PLASTIC_SIZE_CENTRED : PLASTIC_SIZE;
-}
-
-/* PlasticCompleteKernels - what the kernels of all plastic models have in common, beside the functions that the caller has put in */
-PetscErrorCode PlasticCompleteKernels(Material material, PetscBool plane_stress, MaterialKernels *kernels)
-{
-  PetscFunctionBegin;
-  PetscCheck(!plane_stress, PetscObjectComm((PetscObject)material), PETSC_ERR_SUP,
-             "The material of type %s is there for solids and plane strain, not for plane stress: leave -%splane_stress out",
-             ((PetscObject)material)->type_name, GetPrefix(material));
-  kernels->data           = material->data;
-  kernels->n_history      = PlasticGetSize((const Plastic *)material->data);
-  kernels->plastic_strain = PLASTIC_STRAIN;
-  kernels->plastic_work   = PLASTIC_WORK;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* An error unless the strains of a table begin with 0 and ascend, and the strengths are positive and do not fall */
 static PetscErrorCode CheckTable(Material material, PetscInt n, const PetscReal strain[], const PetscReal stress[])
 {

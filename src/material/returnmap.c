@@ -19,6 +19,26 @@
 /* Strains below, of which powers are taken, count as this */
 #define SMALLEST 1e-300
 
+/* PlasticGetSize - numbers of the history of a point */
+PetscInt PlasticGetSize(const Plastic *plastic)
+{
+  return plastic->kinematic > 0 ? PLASTIC_SIZE_CENTRED : PLASTIC_SIZE;
+}
+
+/* PlasticCompleteKernels - what the kernels of all plastic models have in common, beside the functions that the caller has put in */
+PetscErrorCode PlasticCompleteKernels(Material material, PetscBool plane_stress, MaterialKernels *kernels)
+{
+  PetscFunctionBegin;
+  PetscCheck(!plane_stress, PetscObjectComm((PetscObject)material), PETSC_ERR_SUP,
+             "The material of type %s is there for solids and plane strain, not for plane stress: leave -%splane_stress out",
+             ((PetscObject)material)->type_name, ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "");
+  kernels->data           = material->data;
+  kernels->n_history      = PlasticGetSize((const Plastic *)material->data);
+  kernels->plastic_strain = PLASTIC_STRAIN;
+  kernels->plastic_work   = PLASTIC_WORK;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Of Voce's law or Johnson and Cook's: strength of half a batch less that of the virgin material, by the equivalent plastic strain alone,
    its slope, and what that changes by [Pa] */
 SIMD_INLINE SimdVector GetStrength(const Plastic *plastic, SimdVector strain, SimdVector *slope, SimdVector *curvature)

@@ -2,17 +2,6 @@
    only with a generator of tetrahedra. */
 #include "ballimpl.h"
 
-/* Whether -dm_plex_shape is this one */
-PetscErrorCode MeshHasShape(const char prefix[], const char shape[], PetscBool *has)
-{
-  char given[64] = "";
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", given, sizeof(given), NULL));
-  PetscCall(PetscStrcasecmp(given, shape, has));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ReadPart(MPI_Comm comm, const char prefix[], Ball *ball)
 {
   const char *const parts[] = {"full", "half", "quarter"};

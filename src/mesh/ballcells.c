@@ -74,22 +74,6 @@ static PetscErrorCode AddCell(MeshFile *file, const Ball *ball, PetscInt dim, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The corner of a cell, or of a face or edge of it that lies along some axes, at which the walks of its simplices begin: bit i is 1 if it
-   is the farther one along axes[i], where the number of elements to the nearer one is odd */
-PetscInt BallFirstCorner(const Ball *ball, const BallBlock *block, PetscInt n_axes, const PetscInt axes[], const PetscInt at[3])
-{
-  const PetscInt half  = ball->divisions / ball->step / 2; /* elements from the plane in the middle to the lower side, or to the layers */
-  PetscInt       first = 0;
-
-  for (PetscInt i = 0; i < n_axes; i++) {
-    const PetscInt  d        = axes[i];
-    const PetscBool from_cut = (PetscBool)(d < ball->n_cuts && d != block->axis);
-
-    first |= (at[d] / ball->step + (from_cut || d >= ball->dim ? 0 : half)) % 2 << i;
-  }
-  return first;
-}
-
 /* The nodes of a cell of a block, or of a face or edge of it that lies along some axes: those at its corners, and those between where the
    grid has some. A place without a node has -1. */
 static void FindNodes(const BallGrid *grid, const BallBlock *block, PetscInt n_axes, const PetscInt axes[], const PetscInt at[3],
@@ -228,6 +212,32 @@ static PetscErrorCode AddBack(MeshFile *file, const Ball *ball, PetscInt sphere)
     PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
     PetscCall(PetscArraycpy(nodes, file->element_nodes + run.first_node + e * run.nodes, run.nodes));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Makes the nodes of a rod of those of the disc that is its section, section by section */
+PetscErrorCode BallDrawOut(BallGrid *grid)
+{
+  MeshFile      *file     = grid->file;
+  const PetscInt sections = grid->ball->sections + 1; /* of nodes */
+  PetscReal     *disc     = file->coordinates;
+
+  PetscFunctionBegin;
+  /* the corners of 6 tetrahedra in each cell must be counted in PetscInt */
+  PetscCheck((double)grid->n_section * sections * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "%" PetscInt_FMT " divisions, %" PetscInt_FMT " layers and %" PetscInt_FMT " elements along it are too many: take fewer",
+             grid->ball->divisions / grid->ball->step, grid->ball->layers / grid->ball->step, grid->ball->sections / grid->ball->step);
+  file->n_nodes = grid->n_section * sections;
+  PetscCall(PetscMalloc1(3 * file->n_nodes, &file->coordinates));
+  for (PetscInt k = 0; k < sections; k++)
+    for (PetscInt i = 0; i < grid->n_section; i++) {
+      PetscReal *x = file->coordinates + 3 * (k * grid->n_section + i);
+
+      x[0] = disc[3 * i];
+      x[1] = disc[3 * i + 1];
+      x[2] = grid->ball->length * (PetscReal)k / (PetscReal)(sections - 1);
+    }
+  PetscCall(PetscFree(disc));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -101,6 +101,22 @@ static PetscReal Volume(const Ball *ball, const Sphere *sphere, PetscReal share)
   return sum;
 }
 
+/* The corner of a cell, or of a face or edge of it that lies along some axes, at which the walks of its simplices begin: bit i is 1 if it
+   is the farther one along axes[i], where the number of elements to the nearer one is odd */
+PetscInt BallFirstCorner(const Ball *ball, const BallBlock *block, PetscInt n_axes, const PetscInt axes[], const PetscInt at[3])
+{
+  const PetscInt half  = ball->divisions / ball->step / 2; /* elements from the plane in the middle to the lower side, or to the layers */
+  PetscInt       first = 0;
+
+  for (PetscInt i = 0; i < n_axes; i++) {
+    const PetscInt  d        = axes[i];
+    const PetscBool from_cut = (PetscBool)(d < ball->n_cuts && d != block->axis);
+
+    first |= (at[d] / ball->step + (from_cut || d >= ball->dim ? 0 : half)) % 2 << i;
+  }
+  return first;
+}
+
 /* The faces of the sphere by their nodes on the rim */
 static PetscErrorCode FindFaces(const BallGrid *grid, Sphere *sphere)
 {

@@ -119,14 +119,6 @@ static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], const cha
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The number of a side (xmin, xmax, ymin, ...) in the face sets of DMPLEX's boxes */
-PetscInt MeshBoxSideNumber(PetscInt dim, PetscInt side)
-{
-  static const PetscInt numbers[3][6] = {{1, 2}, {4, 2, 1, 3}, {6, 5, 3, 4, 1, 2}};
-
-  return numbers[dim - 1][side];
-}
-
 static PetscErrorCode AddSimplex(MeshFile *file, PetscInt n, const PetscInt corners[])
 {
   PetscInt *nodes;

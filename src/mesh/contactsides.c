@@ -91,6 +91,14 @@ PetscErrorCode MeshCheckContact(DM dm, const char prefix[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The number of a side (xmin, xmax, ymin, ...) in the face sets of DMPLEX's boxes */
+PetscInt MeshBoxSideNumber(PetscInt dim, PetscInt side)
+{
+  static const PetscInt numbers[3][6] = {{1, 2}, {4, 2, 1, 3}, {6, 5, 3, 4, 1, 2}};
+
+  return numbers[dim - 1][side];
+}
+
 /* Marks the sides of a box that may touch another body. Names that the mesh does not have MeshCheckContact() finds. */
 PetscErrorCode MeshBoxMarkContact(MPI_Comm comm, const char prefix[], const char name[], MeshBox *box)
 {

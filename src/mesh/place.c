@@ -180,3 +180,14 @@ PetscErrorCode MeshGetPlaceOption(const char prefix[], const char *option[], con
   *keeps = (is_rod || is_ball) && keeps_it ? volume : NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Whether -dm_plex_shape is this one */
+PetscErrorCode MeshHasShape(const char prefix[], const char shape[], PetscBool *has)
+{
+  char given[64] = "";
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetString(NULL, prefix, "-dm_plex_shape", given, sizeof(given), NULL));
+  PetscCall(PetscStrcasecmp(given, shape, has));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

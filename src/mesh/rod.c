@@ -61,32 +61,6 @@ static PetscErrorCode ReadRod(MPI_Comm comm, const char prefix[], Ball *disc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the nodes of a rod of those of the disc that is its section, section by section */
-PetscErrorCode BallDrawOut(BallGrid *grid)
-{
-  MeshFile      *file     = grid->file;
-  const PetscInt sections = grid->ball->sections + 1; /* of nodes */
-  PetscReal     *disc     = file->coordinates;
-
-  PetscFunctionBegin;
-  /* the corners of 6 tetrahedra in each cell must be counted in PetscInt */
-  PetscCheck((double)grid->n_section * sections * 24 < PETSC_INT_MAX, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
-             "%" PetscInt_FMT " divisions, %" PetscInt_FMT " layers and %" PetscInt_FMT " elements along it are too many: take fewer",
-             grid->ball->divisions / grid->ball->step, grid->ball->layers / grid->ball->step, grid->ball->sections / grid->ball->step);
-  file->n_nodes = grid->n_section * sections;
-  PetscCall(PetscMalloc1(3 * file->n_nodes, &file->coordinates));
-  for (PetscInt k = 0; k < sections; k++)
-    for (PetscInt i = 0; i < grid->n_section; i++) {
-      PetscReal *x = file->coordinates + 3 * (k * grid->n_section + i);
-
-      x[0] = disc[3 * i];
-      x[1] = disc[3 * i + 1];
-      x[2] = grid->ball->length * (PetscReal)k / (PetscReal)(sections - 1);
-    }
-  PetscCall(PetscFree(disc));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A rod from options, along z from 0, and where the nodes in the middle of its edges are, if it has some */
 PetscErrorCode MeshCreateRod(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm, MeshMiddles *middles)
 {

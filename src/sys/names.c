@@ -1,9 +1,6 @@
 /* Lists of names: in the options, of any length (PETSc's own call fills an array of the caller's, and leaves away what does not fit), and
    in registries. */
-#define _DEFAULT_SOURCE /* isascii() */
 #include "names.h"
-#include "sharedoptions.h"
-#include <ctype.h>
 
 PetscErrorCode NamesDestroy(PetscInt n, char ***names)
 {
@@ -29,27 +26,6 @@ PetscErrorCode NamesRead(const char prefix[], const char option[], PetscInt *n, 
     PetscCall(PetscOptionsGetStringArray(NULL, prefix, option, *names, n, set));
   } while (*n == capacity);
   if (!*n) PetscCall(NamesDestroy(0, names));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Stops with an error if options cannot begin with a name, as PETSc reads them, or are those of all bodies or of a material; `option` is
-   the one that gave it */
-PetscErrorCode NamesCheck(MPI_Comm comm, const char option[], const char name[])
-{
-  char      begin[PETSC_MAX_OPTION_NAME];
-  PetscBool fine = (PetscBool)(isascii((unsigned char)name[0]) && isalpha((unsigned char)name[0]));
-
-  PetscFunctionBegin;
-  for (const char *c = name; *c; c++)
-    if (!isascii((unsigned char)*c) || !(isalnum((unsigned char)*c) || *c == '_' || *c == '-')) fine = PETSC_FALSE;
-  PetscCheck(fine, comm, PETSC_ERR_USER_INPUT,
-             "-%s: '%s' cannot be a name, since options begin with it: it needs a letter of ASCII first, then letters, digits, _ or -",
-             option, name);
-  PetscCall(PetscSNPrintf(begin, sizeof(begin), "%s_x", name));
-  PetscCheck(!OptionsIsShared(begin), comm, PETSC_ERR_USER_INPUT,
-             "-%s: '%s' cannot be a name: options that begin with -all_ are those of all bodies, and with -material_ those of named "
-             "materials; choose another name",
-             option, name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,7 +3,6 @@
 #include <petscsys.h>
 
 PETSC_INTERN PetscErrorCode NamesRead(const char[], const char[], PetscInt *, char ***, PetscBool *);
-PETSC_INTERN PetscErrorCode NamesCheck(MPI_Comm, const char[], const char[]);
 PETSC_INTERN PetscErrorCode NamesDestroy(PetscInt, char ***);
 PETSC_INTERN PetscErrorCode NamesOfRegistry(PetscFunctionList, size_t, char[]);
 PETSC_INTERN PetscErrorCode NamesAppend(char[], size_t, const char[], const char[]);

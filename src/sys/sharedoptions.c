@@ -4,7 +4,7 @@
    steel, before -all_density. As soon as the names of the bodies are known, the options database gets -<body>_density for them, where each
    reader looks for it, and which checkpoints compare. The shared options stay in the database, where messages and the check of unread
    options find them. */
-#define _POSIX_C_SOURCE 200809L /* strncasecmp() */
+#define _DEFAULT_SOURCE /* isascii(), strncasecmp() */
 #include <ctype.h>
 #include <stdlib.h>
 #include <string.h>
@@ -36,6 +36,27 @@ static const char *After(const char option[], const char owner[])
 PetscBool OptionsIsShared(const char option[])
 {
   return (PetscBool)(After(option, all) || After(option, materials));
+}
+
+/* Stops with an error if options cannot begin with a name, as PETSc reads them, or are those of all bodies or of a material; `option` is
+   the one that gave it */
+PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char name[])
+{
+  char      begin[PETSC_MAX_OPTION_NAME];
+  PetscBool fine = (PetscBool)(isascii((unsigned char)name[0]) && isalpha((unsigned char)name[0]));
+
+  PetscFunctionBegin;
+  for (const char *c = name; *c; c++)
+    if (!isascii((unsigned char)*c) || !(isalnum((unsigned char)*c) || *c == '_' || *c == '-')) fine = PETSC_FALSE;
+  PetscCheck(fine, comm, PETSC_ERR_USER_INPUT,
+             "-%s: '%s' cannot be a name, since options begin with it: it needs a letter of ASCII first, then letters, digits, _ or -",
+             option, name);
+  PetscCall(PetscSNPrintf(begin, sizeof(begin), "%s_x", name));
+  PetscCheck(!OptionsIsShared(begin), comm, PETSC_ERR_USER_INPUT,
+             "-%s: '%s' cannot be a name: options that begin with -all_ are those of all bodies, and with -material_ those of named "
+             "materials; choose another name",
+             option, name);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode FindValue(const char option[], const char **value, PetscBool *set)

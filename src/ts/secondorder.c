@@ -1,24 +1,6 @@
-/* What time integrators of second order share: registration, and what driving them in sweeps takes, beside `TSALPHA2` as a static one. */
+/* What time integrators of second order share: what driving them in sweeps takes. */
 #include <impakt/private/tssecondorder.h>
-#include "constructors.h"
 #include <petsc/private/tsimpl.h>
-
-/*MC
-   TSSTATIC - static balance at the end of each step, K(u) = f(t): `TSALPHA2` with its stage at the end of the step, for bodies without
-   inertia
-
-   Level: beginner
-
-.seealso: `TSALPHA2`
-M*/
-static PetscErrorCode TSCreate_Static(TS ts)
-{
-  PetscFunctionBegin;
-  PetscCall(TSSetType(ts, TSALPHA2));
-  PetscCall(TSAlpha2SetParams(ts, 1, 1, 0.5, 0.25));
-  PetscCall(PetscObjectChangeTypeName((PetscObject)ts, TSSTATIC));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 static PetscErrorCode RollBack(TS ts)
 {
@@ -46,16 +28,6 @@ PetscErrorCode TSSecondOrderCheckSolution(TS ts)
   PetscFunctionBegin;
   PetscCheck(ts->vec_sol0 == ts->vec_sol, PetscObjectComm((PetscObject)ts), PETSC_ERR_ARG_WRONGSTATE,
              "TS2SetSolution() has set another vector after the set-up: set the entries of the first one instead");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Registers Impakt's time integrators with `TS` */
-PetscErrorCode TSSecondOrderRegisterAll(void)
-{
-  PetscFunctionBegin;
-  PetscCall(TSRegister(TSCENTRALDIFFERENCE, TSCreate_CentralDifference));
-  PetscCall(TSRegister(TSSTATIC, TSCreate_Static));
-  PetscCall(TSRegister(TSRIGID, TSCreate_Rigid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

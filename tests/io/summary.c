@@ -245,8 +245,8 @@ static void report_state(Simulation *simulation, Statistics statistics, EnergySc
     bodies[b].external_work                           = work;
   }
   frame.bodies             = bodies;
-  frame.contact_velocities = velocities;                     /* bodies that never touch: no time of contact depends on them */
-  ok(EnergyScaleAdd(scale, simulation->controller, &frame)); /* as ControllerNotify() does */
+  frame.contact_velocities = velocities;                 /* bodies that never touch: no time of contact depends on them */
+  ok(EnergyScaleAdd(scale, simulation->bodies, &frame)); /* as ControllerNotify() does */
   ok(StatisticsMonitor(simulation->controller, &frame, statistics));
   ok(PetscFree2(bodies, velocities));
 }
