@@ -4,21 +4,12 @@
 #include <impakt/private/simd.h>
 #include <sys/units.h>
 
-/* Elements one after the other from a node to the next: nearly all of a mesh. Others are runs of one element, whose nodes may be any. */
-typedef struct {
-  PetscInt  element, length; /* the first of them, and their number */
-  PetscBool follow;          /* their nodes follow each other */
-} Run;
-
 typedef struct {
   PetscBool        linear;
-  PetscReal        modulus;        /* of a linear material [Pa] */
   const PetscReal *coordinates;    /* of the rank's nodes; owned by the body */
   PetscReal       *inverse_length; /* of the coordinate of the second node less that of the first, so it may be negative [1/m] */
   PetscReal       *pull_area;      /* cross-section, with the sign of the length: an element may run against the axis [m^2] */
   PetscReal       *strain, *stress;
-  PetscInt         n_runs;
-  Run             *runs;
 } Bar2;
 
 /* Shape functions at the two Gauss points, (1 +- 1 / sqrt 3) / 2 */
@@ -43,27 +34,6 @@ static PetscErrorCode ElementSetFromOptions_Bar2(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which elements follow each other, so that loops over them need not look up their nodes */
-static PetscErrorCode FindRuns(Element element)
-{
-  Bar2           *bar   = (Bar2 *)element->data;
-  const PetscInt *nodes = element->connectivity;
-  Run            *run   = NULL;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(element->count, &bar->runs));
-  for (PetscInt e = 0; e < element->count; e++) {
-    const PetscBool follows = (PetscBool)(nodes[2 * e + 1] == nodes[2 * e] + 1);
-
-    if (run && run->follow && follows && nodes[2 * e] == nodes[2 * e - 1]) run->length++;
-    else {
-      run  = &bar->runs[bar->n_runs++];
-      *run = (Run){e, 1, follows};
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordinates[])
 {
   Bar2 *bar = (Bar2 *)element->data;
@@ -75,7 +45,6 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
              ((PetscObject)element->material)->type_name);
   element->flops = 6; /* strain 2, stress 1 where it is linear, force 3 */
   PetscCall(MaterialIsLinear(element->material, &bar->linear));
-  PetscCall(MaterialGetUniaxialModulus(element->material, &bar->modulus));
   PetscCall(PetscMalloc4(element->count, &bar->inverse_length, element->count, &bar->pull_area, element->count, &bar->strain,
                          element->count, &bar->stress));
   for (PetscInt e = 0; e < element->count; e++) {
@@ -86,13 +55,23 @@ static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordin
     bar->pull_area[e]      = length > 0 ? element->cross_section : -element->cross_section;
     PetscCheck(length != 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT, "A bar element at x = %g has no length", (double)coordinates[node[0]]);
   }
-  PetscCall(FindRuns(element));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscReal GetStrain(const Bar2 *bar, const PetscInt nodes[], PetscInt e, const PetscScalar u[])
 {
   return (u[nodes[2 * e + 1]] - u[nodes[2 * e]]) * bar->inverse_length[e];
+}
+
+/* Strains of all elements at displacement u, and stresses */
+static PetscErrorCode ComputeStress(Element element, const PetscScalar u[])
+{
+  const Bar2 *bar = (const Bar2 *)element->data;
+
+  PetscFunctionBegin;
+  for (PetscInt e = 0; e < element->count; e++) bar->strain[e] = GetStrain(bar, element->connectivity, e, u);
+  PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Notes the first element that is turned over, which means nothing to linear materials, or whose stress is not a number */
@@ -107,73 +86,20 @@ static void NoteInverted(Element element, const PetscReal strain[], const PetscR
     if (isnan(stress[e]) || (!linear && !(1 + strain[e] > 0))) element->inverted = e;
 }
 
-static void ComputeStrains(const Bar2 *bar, const PetscInt nodes[], const PetscScalar u[])
-{
-  for (const Run *run = bar->runs; run < bar->runs + bar->n_runs; run++) {
-    const PetscReal   *inverse_length = bar->inverse_length + run->element;
-    const PetscScalar *at             = u + nodes[2 * run->element];
-    PetscReal         *strain         = bar->strain + run->element;
-
-    if (!run->follow) *strain = GetStrain(bar, nodes, run->element, u);
-    else {
-#pragma omp simd
-      for (PetscInt e = 0; e < run->length; e++) strain[e] = (at[e + 1] - at[e]) * inverse_length[e];
-    }
-  }
-}
-
-/* f += what elements with these stresses pull at their nodes with [N] */
-static void AddPulls(const Bar2 *bar, const PetscInt nodes[], const PetscReal stress[], PetscScalar f[])
-{
-  for (const Run *run = bar->runs; run < bar->runs + bar->n_runs; run++) {
-    const PetscInt *ends = nodes + 2 * run->element;
-    PetscScalar    *at   = f + ends[0];
-    PetscReal       pull = 0;
-
-    for (PetscInt e = 0; e < run->length; e++) {
-      const PetscReal before = pull;
-
-      pull = bar->pull_area[run->element + e] * stress[run->element + e];
-      at[e] += before - pull;
-    }
-    f[ends[2 * run->length - 1]] += pull;
-  }
-}
-
-/* The same for bars of a linear material that follow each other, from displacements on, with the same bits; `pull`: work space, of all
-   elements [N]. True where one of these is not a number. */
-SIMD_CLONES static PetscBool AddLinearPulls(const Bar2 *bar, const Run *run, const PetscScalar u[], PetscReal pull[], PetscScalar f[])
-{
-  const PetscReal *inverse_length = bar->inverse_length + run->element, *area = bar->pull_area + run->element, modulus = bar->modulus;
-  const PetscInt   n   = run->length;
-  int              bad = 0;
-
-  for (PetscInt e = 0; e < n; e++) pull[e] = area[e] * (modulus * ((u[e + 1] - u[e]) * inverse_length[e]));
-  for (PetscInt e = 0; e < n; e++) bad |= pull[e] != pull[e]; /* NOLINT(misc-redundant-expression): the test that vectorises */
-  f[0] -= pull[0];
-#pragma omp simd
-  for (PetscInt e = 1; e < n; e++) f[e] += pull[e - 1] - pull[e];
-  f[n] += pull[n - 1];
-  return (PetscBool)bad;
-}
-
 static PetscErrorCode ElementInternalForce_Bar2(Element element, const PetscScalar u[], PetscScalar f[])
 {
   const Bar2     *bar   = (const Bar2 *)element->data;
   const PetscInt *nodes = element->connectivity;
 
   PetscFunctionBegin;
-  if (bar->linear && bar->n_runs == 1 && bar->runs->follow) {
-    PetscReal *pull = bar->stress;
+  PetscCall(ComputeStress(element, u));
+  for (PetscInt e = 0; e < element->count; e++) {
+    const PetscReal pull = bar->pull_area[e] * bar->stress[e];
 
-    element->inverted = -1;
-    if (AddLinearPulls(bar, bar->runs, u + nodes[0], pull, f + nodes[0])) NoteInverted(element, bar->strain, pull);
-  } else {
-    ComputeStrains(bar, nodes, u);
-    PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
-    AddPulls(bar, nodes, bar->stress, f);
-    NoteInverted(element, bar->strain, bar->stress);
+    f[nodes[2 * e]] -= pull;
+    f[nodes[2 * e + 1]] += pull;
   }
+  NoteInverted(element, bar->strain, bar->stress);
   PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)element->count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -213,8 +139,7 @@ static PetscErrorCode ElementViscousForce_Bar2(Element element, const PetscScala
   const PetscInt *nodes = element->connectivity;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < element->count; e++) bar->strain[e] = GetStrain(bar, nodes, e, v);
-  PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
+  PetscCall(ComputeStress(element, v));
   for (PetscInt e = 0; e < element->count; e++) {
     const PetscReal pull = PetscSqr(1 + GetStrain(bar, nodes, e, u)) * bar->pull_area[e] * bar->stress[e];
 
@@ -252,8 +177,7 @@ static PetscErrorCode ElementStress_Bar2(Element element, const PetscScalar u[],
   MaterialKernels kernels;
 
   PetscFunctionBegin;
-  for (PetscInt e = 0; e < element->count; e++) bar->strain[e] = GetStrain(bar, element->connectivity, e, u);
-  PetscCall(MaterialComputeUniaxial(element->material, element->count, bar->strain, bar->stress));
+  PetscCall(ComputeStress(element, u));
   if (!bar->linear) {
     PetscCall(MaterialGetKernels(element->material, &kernels));
     for (PetscInt e = 0; e < element->count; e++) bar->stress[e] /= PetscSqr(1 + FindWidening(&kernels, bar->strain[e]));
@@ -307,7 +231,6 @@ static PetscErrorCode ElementDestroy_Bar2(Element element)
 
   PetscFunctionBegin;
   PetscCall(PetscFree4(bar->inverse_length, bar->pull_area, bar->strain, bar->stress));
-  PetscCall(PetscFree(bar->runs));
   PetscCall(PetscFree(element->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
