@@ -149,38 +149,20 @@ static PetscErrorCode ElementViscousForce_Bar2(Element element, const PetscScala
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How much a bar with free sides is wider than undeformed, less 1: the strain across that leaves no stress there, by Newton's method */
-static PetscReal FindWidening(const MaterialKernels *kernels, PetscReal strain)
-{
-  PetscReal across = 0;
-
-  for (PetscInt iteration = 0; iteration < 50; iteration++) {
-    SimdReal  H[9]   = {{0}}, P[9];
-    PetscReal one[9] = {strain, 0, 0, 0, across, 0, 0, 0, across}, tangent[81], change;
-
-    for (PetscInt i = 0; i < 9; i++)
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) H[i][p] = one[i];
-    (*kernels->stress)(kernels->data, (const PetscReal(*)[SIMD_WIDTH])H, P);
-    (*kernels->tangent)(kernels->data, one, tangent);
-    /* no further than half way to a width of zero */
-    change = PetscMax(-P[4][0] / (tangent[9 * 4 + 4] + tangent[9 * 4 + 8]), -0.5 * (1 + across));
-    across += change;
-    if (!(PetscAbsReal(change) > 1e-15)) break;
-  }
-  return across;
-}
-
 /* Force over the cross-section, as it is then; of linear materials as it was */
 static PetscErrorCode ElementStress_Bar2(Element element, const PetscScalar u[], PetscReal stress[])
 {
   Bar2           *bar = (Bar2 *)element->data;
   MaterialKernels kernels;
+  SimdReal        H[9], P[9];
+  PetscReal       tangent[81];
 
   PetscFunctionBegin;
   PetscCall(ComputeStress(element, u));
   if (!bar->linear) {
     PetscCall(MaterialGetKernels(element->material, &kernels));
-    for (PetscInt e = 0; e < element->count; e++) bar->stress[e] /= PetscSqr(1 + FindWidening(&kernels, bar->strain[e]));
+    for (PetscInt e = 0; e < element->count; e++)
+      bar->stress[e] /= PetscSqr(1 + MaterialFindSides(&kernels, bar->strain[e], H, P, tangent));
   }
   for (PetscInt e = 0; e < element->count; e++)
     for (PetscInt k = 0; k < 6; k++) stress[6 * e + k] = k == 0 ? bar->stress[e] : 0;

@@ -294,32 +294,6 @@ static PetscErrorCode ElementMass_Solid(Element element, PetscInt e, PetscScalar
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In plane stress, the stretch of the thickness, which the kernels keep to themselves: P_zz(H_zz) = 0 by Newton's method */
-void SolidStretchThickness(const Solid *solid, PetscReal H[9][SIMD_WIDTH])
-{
-  for (PetscInt k = 2; k < 9; k++)
-    if (k == 2 || k > 4)
-      for (PetscInt p = 0; p < SIMD_WIDTH; p++) H[k][p] = 0;
-  for (PetscInt iteration = 0; iteration < 50; iteration++) {
-    SimdReal  P[9];
-    PetscReal largest = 0;
-
-    (*solid->unconstrained.stress)(solid->unconstrained.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
-    for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-      PetscReal one[9], tangent[81], change;
-
-      for (PetscInt k = 0; k < 9; k++) one[k] = H[k][p];
-      (*solid->unconstrained.tangent)(solid->unconstrained.data, one, tangent);
-      change = -P[8][p] / tangent[80];
-      /* no further than half way to a thickness of zero */
-      change = PetscMax(change, -0.5 * (1 + H[8][p]));
-      if (change == change) H[8][p] += change;
-      if (change == change) largest = PetscMax(largest, PetscAbsReal(change));
-    }
-    if (largest < 1e-14) return;
-  }
-}
-
 static PetscErrorCode ElementDestroy_Solid(Element element)
 {
   PetscFunctionBegin;

@@ -1,4 +1,5 @@
 /* What is observed of all solid elements, whatever their formulation: energy, stress, plastic flow. */
+#include <impakt/private/materialimpl.h>
 #include <impakt/private/solid.h>
 
 /* With the plastic work of materials with history, and the first element without an energy */
@@ -50,7 +51,7 @@ PetscErrorCode ElementStress_Solid(Element element, const PetscScalar u[], Petsc
     PetscCall((*solid->observe)(element, first, u, H, weights));
     for (PetscInt g = 0; g < solid->shape->n_points; g++) {
       SolidStress(solid, first, g, (const SimdReal *)H[g], P);
-      if (solid->plane_stress && !solid->linear) SolidStretchThickness(solid, H[g]);
+      if (solid->plane_stress && !solid->linear) MaterialFindThickness(&solid->unconstrained, H[g]);
       for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
         PetscReal sigma[6];
 

@@ -19,18 +19,6 @@
 #define EXPONENT_TERMS 9
 #define MAX_HALVES     40
 
-static const PetscReal virgin[PLASTIC_SIZE_CENTRED][SIMD_WIDTH] = {{0}};
-
-/* Deviator of M less the centre of the yield surface */
-SIMD_INLINE Symmetric Relative(const Plastic *plastic, Symmetric m, const PetscReal history[][8], PetscInt part)
-{
-  const SimdVector mean = (m.xx + m.yy + m.zz) / 3;
-  Symmetric        s    = {m.xx - mean, m.yy - mean, m.zz - mean, m.xy, m.yz, m.zx};
-
-  if (plastic->kinematic > 0) s = SymmetricAdd(s, SymmetricAll(-1), SymmetricGet(history + PLASTIC_CENTRE, part));
-  return s;
-}
-
 /* exp(-D) - 1 of a batch: the series of a small part of D, squared as often as it takes */
 SIMD_INLINE Symmetric ExponentialLess1(Symmetric d, PetscInt halves)
 {
@@ -103,7 +91,7 @@ SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal 
 
   GetTrial(H, start, &trial);
   for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-    const Symmetric m = Hencky(&plastic->elastic, SymmetricGet(trial.E, part)), s = Relative(plastic, m, start, part);
+    const Symmetric m = PlasticMandel(&plastic->elastic, SymmetricGet(trial.E, part)), s = PlasticRelative(plastic, m, start, part);
 
     SymmetricStore(m, M, part);
     SymmetricStore(s, relative, part);
@@ -151,7 +139,7 @@ SIMD_CLONES static void Hold(const void *data, const PetscReal H[9][8], const Pe
     const Symmetric  e     = SymmetricGet(trial.E, part);
     const SimdVector trace = e.xx + e.yy + e.zz;
 
-    if (P) StoreStress(part, &trial, now, Hencky(&plastic->elastic, e), P);
+    if (P) StoreStress(part, &trial, now, PlasticMandel(&plastic->elastic, e), P);
     SimdGetParts(W)[part] = 0.5 * plastic->elastic.lambda * trace * trace + plastic->elastic.mu * SymmetricSquares(e);
   }
   for (int p = 0; p < SIMD_WIDTH; p++) {
@@ -163,19 +151,6 @@ SIMD_CLONES static void Hold(const void *data, const PetscReal H[9][8], const Pe
                 ? 1
                 : NAN;
   }
-}
-
-/* The virgin material, as long as nothing flows */
-static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
-{
-  SimdReal W;
-
-  Hold(data, H, virgin, W, P);
-}
-
-static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])
-{
-  Hold(data, H, virgin, W, NULL);
 }
 
 /* dM / dE of the step: q and the slope are those of PlasticFindFlow() */
@@ -213,8 +188,8 @@ static void AdvanceTangent(const void *data, PetscReal dt, const PetscReal H[9],
   }
   GetTrial((const PetscReal(*)[8])batch, (const PetscReal(*)[8])history, &trial);
   for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-    const Symmetric mandel = Hencky(&plastic->elastic, SymmetricGet(trial.E, part)),
-                    s      = Relative(plastic, mandel, (const PetscReal(*)[8])history, part);
+    const Symmetric mandel = PlasticMandel(&plastic->elastic, SymmetricGet(trial.E, part)),
+                    s      = PlasticRelative(plastic, mandel, (const PetscReal(*)[8])history, part);
 
     SymmetricStore(mandel, M, part);
     SymmetricStore(s, rel, part);
@@ -255,17 +230,11 @@ static void AdvanceTangent(const void *data, PetscReal dt, const PetscReal H[9],
   }
 }
 
-static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81])
-{
-  AdvanceTangent(data, 0, H, NULL, tangent);
-}
-
 /* PlasticKernels_Finite - the kernels of finite strain */
 PetscErrorCode PlasticKernels_Finite(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
-  *kernels = (MaterialKernels){
-      .stress = Stress, .energy = Energy, .tangent = Tangent, .advance = Advance, .hold = Hold, .advancetangent = AdvanceTangent};
+  *kernels = (MaterialKernels){.advance = Advance, .hold = Hold, .advancetangent = AdvanceTangent};
   PetscCall(PlasticCompleteKernels(material, plane_stress, kernels));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

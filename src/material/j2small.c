@@ -1,9 +1,6 @@
 /* Plasticity of metals at small strain, with no regard to rotations: M = lambda tr(E) 1 + 2 mu E with E = (H + H^T) / 2 - Ep. */
-#include "symmetric.h"
-#include <impakt/private/plastic.h>
+#include "plasticpoint.h"
 #include <math.h>
-
-static const PetscReal virgin[PLASTIC_SIZE_CENTRED][SIMD_WIDTH] = {{0}};
 
 SIMD_INLINE Symmetric ElasticStrain(const PetscReal H[9][8], const PetscReal history[][8], PetscInt part)
 {
@@ -17,28 +14,11 @@ SIMD_INLINE Symmetric ElasticStrain(const PetscReal H[9][8], const PetscReal his
   return SymmetricAdd(strain, SymmetricAll(-1), SymmetricGet(history + PLASTIC_DEFORMATION, part));
 }
 
-SIMD_INLINE Symmetric Hooke(const Isotropic *elastic, Symmetric e)
-{
-  const SimdVector d      = elastic->lambda * (e.xx + e.yy + e.zz);
-  const PetscReal  two_mu = 2 * elastic->mu;
-
-  return (Symmetric){d + two_mu * e.xx, d + two_mu * e.yy, d + two_mu * e.zz, two_mu * e.xy, two_mu * e.yz, two_mu * e.zx};
-}
-
 SIMD_INLINE void StoreStress(Symmetric m, PetscInt part, PetscReal P[9][8])
 {
   const SimdVector rows[9] = {m.xx, m.xy, m.zx, m.xy, m.yy, m.yz, m.zx, m.yz, m.zz};
 
   for (PetscInt i = 0; i < 9; i++) SimdGetParts(P[i])[part] = rows[i];
-}
-
-/* Deviator of M less the centre of the yield surface */
-SIMD_INLINE Symmetric Relative(const Plastic *plastic, Symmetric m, const PetscReal history[][8], PetscInt part)
-{
-  const SimdVector mean = (m.xx + m.yy + m.zz) / 3;
-  const Symmetric  s    = {m.xx - mean, m.yy - mean, m.zz - mean, m.xy, m.yz, m.zx};
-
-  return plastic->kinematic > 0 ? SymmetricAdd(s, SymmetricAll(-1), SymmetricGet(history + PLASTIC_CENTRE, part)) : s;
 }
 
 SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal H[9][8], const PetscReal start[][8], PetscReal end[][8],
@@ -49,7 +29,7 @@ SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal 
   PlasticFlow    flow;
 
   for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-    const Symmetric m = Hooke(&plastic->elastic, ElasticStrain(H, start, part)), s = Relative(plastic, m, start, part);
+    const Symmetric m = PlasticMandel(&plastic->elastic, ElasticStrain(H, start, part)), s = PlasticRelative(plastic, m, start, part);
 
     SymmetricStore(m, M, part);
     SymmetricStore(s, relative, part);
@@ -88,21 +68,9 @@ SIMD_CLONES static void Hold(const void *data, const PetscReal H[9][8], const Pe
     const Symmetric  e     = ElasticStrain(H, now, part);
     const SimdVector trace = e.xx + e.yy + e.zz;
 
-    if (P) StoreStress(Hooke(elastic, e), part, P);
+    if (P) StoreStress(PlasticMandel(elastic, e), part, P);
     SimdGetParts(W)[part] = 0.5 * elastic->lambda * trace * trace + elastic->mu * SymmetricSquares(e);
   }
-}
-
-static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
-{
-  SimdReal W;
-
-  Hold(data, H, virgin, W, P);
-}
-
-static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])
-{
-  Hold(data, H, virgin, W, NULL);
 }
 
 /* dP = lambda tr(dE) 1 + 2 mu (1 - 3 mu d / q) dev dE + 2 mu dev dE + (what the growth d of the strain adds) s (s : dE) */
@@ -120,8 +88,8 @@ static void AdvanceTangent(const void *data, PetscReal dt, const PetscReal H[9],
     for (PetscInt i = 0; i < size; i++) history[i][p] = start ? start[i] : 0;
   }
   for (PetscInt part = 0; part < SIMD_PARTS; part++) {
-    const Symmetric m = Hooke(&plastic->elastic, ElasticStrain((const PetscReal(*)[8])batch, (const PetscReal(*)[8])history, part)),
-                    r = Relative(plastic, m, (const PetscReal(*)[8])history, part);
+    const Symmetric m = PlasticMandel(&plastic->elastic, ElasticStrain((const PetscReal(*)[8])batch, (const PetscReal(*)[8])history, part)),
+                    r = PlasticRelative(plastic, m, (const PetscReal(*)[8])history, part);
 
     SymmetricStore(r, s, part);
     SimdGetParts(q)[part] = 1.5 * SymmetricSquares(r);
@@ -145,17 +113,11 @@ static void AdvanceTangent(const void *data, PetscReal dt, const PetscReal H[9],
                                                  along * s[place[3 * i + j]][0] * s[place[3 * k + l]][0];
 }
 
-static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81])
-{
-  AdvanceTangent(data, 0, H, NULL, tangent);
-}
-
 /* PlasticKernels_Small - the kernels of small strain */
 PetscErrorCode PlasticKernels_Small(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
-  *kernels = (MaterialKernels){
-      .stress = Stress, .energy = Energy, .tangent = Tangent, .advance = Advance, .hold = Hold, .advancetangent = AdvanceTangent};
+  *kernels = (MaterialKernels){.advance = Advance, .hold = Hold, .advancetangent = AdvanceTangent};
   PetscCall(PlasticCompleteKernels(material, plane_stress, kernels));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,7 +3,7 @@
 #pragma once
 #include "logarithm.h"
 #include "logarithmderivative.h"
-#include <impakt/private/plastic.h>
+#include "plasticpoint.h"
 #include <impakt/private/simdmath.h>
 #include <math.h>
 
@@ -118,15 +118,6 @@ SIMD_INLINE void GetTrial(const PetscReal H[9][8], const PetscReal history[][8],
   if (largest > SERIES_LIMIT * SERIES_LIMIT)
     for (int p = 0; p < SIMD_WIDTH; p++)
       if (trial->squares[p] > SERIES_LIMIT * SERIES_LIMIT) TakeEigenvalues(p, trial);
-}
-
-/* M = lambda tr(E) 1 + 2 mu E */
-SIMD_INLINE Symmetric Hencky(const Isotropic *elastic, Symmetric e)
-{
-  const SimdVector d      = elastic->lambda * (e.xx + e.yy + e.zz);
-  const PetscReal  two_mu = 2 * elastic->mu;
-
-  return (Symmetric){d + two_mu * e.xx, d + two_mu * e.yy, d + two_mu * e.zz, two_mu * e.xy, two_mu * e.yz, two_mu * e.zx};
 }
 
 /* Fe and Fp^-1 of one part of a batch */

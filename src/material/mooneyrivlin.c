@@ -9,8 +9,6 @@
 #include <impakt/private/tensor.h>
 #include <sys/units.h>
 
-#define MAX_ITERATIONS 50
-
 /* Up to this |J - 1| Newton's method below reaches round-off in its 4 iterations: from an error of 3e-4 in parts it squares it each time */
 #define SERIES_LIMIT 0.2
 
@@ -176,91 +174,24 @@ static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81
         }
 }
 
-/* Plane stress: H_zz at which P_zz vanishes, by Newton's method from no strain. P_zz falls with the stretch in places, where a plate is
-   squeezed to less than about a third of its area: so the root is kept between stretches that push and that pull, and halved between. */
-static void Thickness(const void *data, const PetscReal H[9][8], PetscReal Hzz[8])
-{
-  PetscReal full[9][8], P[9][8], tangent[81], low[8], high[8];
-  PetscBool done[8] = {PETSC_FALSE};
-  int       left    = 8;
-
-  for (int i = 0; i < 9; i++)
-    for (int p = 0; p < 8; p++) full[i][p] = i == 0 || i == 1 || i == 3 || i == 4 ? H[i][p] : 0;
-  for (int p = 0; p < 8; p++) {
-    low[p]  = -1;
-    high[p] = PETSC_INFINITY;
-  }
-  for (int iteration = 0; iteration < 2 * MAX_ITERATIONS && left; iteration++) {
-    Stress(data, (const PetscReal(*)[8])full, P);
-    for (int p = 0; p < 8; p++) {
-      const PetscReal old = full[8][p];
-      PetscReal       point[9], size = 0, next;
-
-      if (done[p]) continue;
-      for (int i = 0; i < 9; i++) {
-        point[i] = full[i][p];
-        size     = PetscMax(size, PetscAbsReal(point[i]));
-      }
-      Tangent(data, point, tangent);
-      if (P[8][p] > 0) high[p] = old;
-      else low[p] = old; /* NaN is no matter: it ends the search of the point */
-      next = old - P[8][p] / tangent[80];
-      if (PetscAbsReal(next - old) > 1e-9 * size && (next <= low[p] || next >= high[p]))
-        next = PetscIsInfReal(high[p]) ? 1 + 2 * old : 0.5 * (low[p] + high[p]);
-      /* convergence is quadratic: the error left is the square of this step, relative to the strain. NaN remains what it is. */
-      done[p]    = PetscNot(PetscAbsReal(next - old) > 1e-9 * size);
-      full[8][p] = next;
-      if (done[p]) left--;
-    }
-  }
-  for (int p = 0; p < 8; p++) Hzz[p] = done[p] ? full[8][p] : NAN;
-}
-
 static PetscErrorCode MaterialKernels_MooneyRivlin(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
   PetscFunctionBegin;
   *kernels = (MaterialKernels){.data = material->data, .stress = Stress, .energy = Energy, .tangent = Tangent};
-  if (plane_stress) PetscCall(MaterialCondenseKernels(material, Thickness, kernels));
+  if (plane_stress) PetscCall(MaterialCondenseKernels(material, NULL, kernels));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A bar with free sides: the strain of its sides at which there is no stress across them, by Newton's method from no strain.
-   In one lane of the kernels; NaN where there is none. */
-static PetscReal SideStrain(const void *data, PetscReal strain, PetscReal H[9][8], PetscReal P[9][8], PetscReal tangent[81])
-{
-  PetscReal side = 0, step = 0;
-
-  for (int i = 0; i < 9; i++)
-    for (int p = 0; p < 8; p++) H[i][p] = i == 0 ? strain : 0;
-  for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
-    const PetscReal limit    = -0.5 * (1 + side); /* not beyond an inverted point */
-    PetscReal       point[9] = {strain, 0, 0, 0, side, 0, 0, 0, side};
-
-    Stress(data, H, P);
-    Tangent(data, point, tangent);
-    step = -P[4][0] / (tangent[40] + tangent[44]);
-    if (PetscIsNanReal(step)) return NAN;
-    side += step < limit ? limit : step;
-    for (int p = 0; p < 8; p++) H[4][p] = H[8][p] = side;
-    /* convergence is quadratic: what is left is the square of this step, relative to the strain */
-    if (PetscAbsReal(step) <= 1e-9 * PetscMax(PetscAbsReal(strain), PetscAbsReal(side))) {
-      point[4] = point[8] = side;
-      Stress(data, H, P);
-      Tangent(data, point, tangent);
-      return side;
-    }
-  }
-  return NAN;
 }
 
 static PetscErrorCode MaterialUniaxial_MooneyRivlin(Material material, PetscInt n, const PetscReal strain[], PetscReal stress[],
                                                     PetscReal tangent[], PetscReal energy[])
 {
-  PetscReal H[9][8], P[9][8], W[8], A[81];
+  PetscReal       H[9][8], P[9][8], W[8], A[81];
+  MaterialKernels kernels;
 
   PetscFunctionBegin;
+  PetscCall(MaterialKernels_MooneyRivlin(material, PETSC_FALSE, &kernels));
   for (PetscInt i = 0; i < n; i++) {
-    const PetscReal defined = PetscIsNanReal(SideStrain(material->data, strain[i], H, P, A)) ? NAN : 1;
+    const PetscReal defined = PetscIsNanReal(MaterialFindSides(&kernels, strain[i], H, P, A)) ? NAN : 1;
 
     if (energy) Energy(material->data, H, W);
     if (stress) stress[i] = defined * P[0][0];

@@ -1,36 +1,72 @@
-/* Plane stress from the kernels of a solid: the stretch across the plane that leaves it free of stress is found first. */
+/* Plane stress and bars from the kernels of a solid: the stretch that leaves a plane, or sides, free of stress is found first. */
 #include <impakt/private/materialimpl.h>
 #include <impakt/private/tensor.h>
 
 #define MAX_ITERATIONS 50
 
-/* Where a model has no formula for it: Newton's method, from no strain across the plane. The step after which the next one could not be
+/* H_zz at which P_zz of the kernels of a solid vanishes, by Newton's method from no strain across the plane; the rest of the third row and
+   column becomes zero. P_zz may fall with the stretch in places, as where a plate of rubber is squeezed to less than about a third of its
+   area: so the root is kept between stretches that push and that pull, and halved between. The step after which the next one could not be
    seen is the last; a point without a solution gets NaN. */
-static void FindThickness(const MaterialKernels *solid, PetscReal H[9][8])
+void MaterialFindThickness(const MaterialKernels *solid, PetscReal H[9][8])
 {
-  PetscReal P[9][8], point[9], tangent[81];
+  PetscReal tangent[81], low[8], high[8];
+  SimdReal  P[9];
   PetscBool done[8] = {PETSC_FALSE};
   int       left    = 8;
 
-  for (int iteration = 0; iteration < MAX_ITERATIONS && left; iteration++) {
-    (*solid->stress)(solid->data, H, P);
+  for (int p = 0; p < 8; p++) {
+    H[2][p] = H[5][p] = H[6][p] = H[7][p] = H[8][p] = 0;
+    low[p]                                          = -1;
+    high[p]                                         = PETSC_INFINITY;
+  }
+  for (int iteration = 0; iteration < 2 * MAX_ITERATIONS && left; iteration++) {
+    (*solid->stress)(solid->data, (const PetscReal(*)[8])H, P);
     for (int p = 0; p < 8; p++) {
-      const PetscReal limit = -0.5 * (1 + H[8][p]); /* not beyond an inverted point */
-      PetscReal       size  = 0, step;
+      const PetscReal old = H[8][p];
+      PetscReal       point[9], size = 0, next;
 
       if (done[p]) continue;
-      for (int i = 0; i < 9; i++) point[i] = H[i][p];
-      for (int i = 0; i < 9; i++) size = PetscMax(size, PetscAbsReal(point[i]));
+      for (int i = 0; i < 9; i++) {
+        point[i] = H[i][p];
+        size     = PetscMax(size, PetscAbsReal(point[i]));
+      }
       (*solid->tangent)(solid->data, point, tangent);
-      step = -P[8][p] / tangent[80];
+      if (P[8][p] > 0) high[p] = old;
+      else low[p] = old; /* NaN is no matter: it ends the search of the point */
+      next = old - P[8][p] / tangent[80];
+      if (PetscAbsReal(next - old) > 1e-9 * size && (next <= low[p] || next >= high[p]))
+        next = PetscIsInfReal(high[p]) ? 1 + 2 * old : 0.5 * (low[p] + high[p]);
       /* convergence is quadratic: the error left is the square of this step, relative to the strain. NaN remains what it is. */
-      done[p] = PetscNot(PetscAbsReal(step) > 1e-9 * size || step < limit);
-      H[8][p] += step < limit ? limit : step;
+      done[p] = PetscNot(PetscAbsReal(next - old) > 1e-9 * size);
+      H[8][p] = next;
       if (done[p]) left--;
     }
   }
   for (int p = 0; p < 8; p++)
     if (!done[p]) H[8][p] = NAN;
+}
+
+/* A bar with free sides: the strain of its sides at which there is no stress across them, by Newton's method from no strain; NaN where
+   there is none. H, stress and tangent of a solid in that state, in all lanes of the former two. */
+PetscReal MaterialFindSides(const MaterialKernels *solid, PetscReal strain, PetscReal H[9][8], PetscReal P[9][8], PetscReal tangent[81])
+{
+  PetscReal point[9] = {strain}, step = PETSC_MAX_REAL;
+
+  for (int iteration = 0; iteration < MAX_ITERATIONS; iteration++) {
+    const PetscReal limit = -0.5 * (1 + point[4]); /* not beyond an inverted point */
+
+    for (int i = 0; i < 9; i++)
+      for (int p = 0; p < 8; p++) H[i][p] = point[i];
+    (*solid->stress)(solid->data, (const PetscReal(*)[8])H, P);
+    (*solid->tangent)(solid->data, point, tangent);
+    /* convergence is quadratic: what is left is the square of this step, relative to the strain */
+    if (PetscAbsReal(step) <= 1e-9 * PetscMax(PetscAbsReal(strain), PetscAbsReal(point[4]))) return point[4];
+    step = -P[4][0] / (tangent[40] + tangent[44]);
+    if (PetscIsNanReal(step)) return NAN;
+    point[4] = point[8] = point[4] + (step < limit ? limit : step);
+  }
+  return NAN;
 }
 
 /* Displacement gradients with the third row and column that plane stress asks for. With vectors: stores narrower than the loads of the
@@ -40,7 +76,7 @@ SIMD_CLONES static void Complete(const PlaneStressData *plane, const PetscReal H
 #pragma omp simd
   for (int p = 0; p < SIMD_WIDTH; p++) TensorStore((Tensor){H[0][p], H[1][p], 0, H[3][p], H[4][p], 0, 0, 0, 0}, full, p);
   if (plane->thickness) (*plane->thickness)(plane->solid.data, full, full[8]);
-  else FindThickness(&plane->solid, full);
+  else MaterialFindThickness(&plane->solid, full);
 }
 
 SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])

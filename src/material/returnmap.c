@@ -25,6 +25,26 @@ PetscInt PlasticGetSize(const Plastic *plastic)
   return plastic->kinematic > 0 ? PLASTIC_SIZE_CENTRED : PLASTIC_SIZE;
 }
 
+static const PetscReal virgin[PLASTIC_SIZE_CENTRED][SIMD_WIDTH] = {{0}};
+
+/* The virgin material, as long as nothing flows */
+static void Stress(const void *data, const PetscReal H[9][8], PetscReal P[9][8])
+{
+  SimdReal W;
+
+  (*((const Plastic *)data)->kernels.hold)(data, H, virgin, W, P);
+}
+
+static void Energy(const void *data, const PetscReal H[9][8], PetscReal W[8])
+{
+  (*((const Plastic *)data)->kernels.hold)(data, H, virgin, W, NULL);
+}
+
+static void Tangent(const void *data, const PetscReal H[9], PetscReal tangent[81])
+{
+  (*((const Plastic *)data)->kernels.advancetangent)(data, 0, H, NULL, tangent);
+}
+
 /* PlasticCompleteKernels - what the kernels of all plastic models have in common, beside the functions that the caller has put in */
 PetscErrorCode PlasticCompleteKernels(Material material, PetscBool plane_stress, MaterialKernels *kernels)
 {
@@ -33,9 +53,14 @@ PetscErrorCode PlasticCompleteKernels(Material material, PetscBool plane_stress,
              "The material of type %s is there for solids and plane strain, not for plane stress: leave -%splane_stress out",
              ((PetscObject)material)->type_name, ((PetscObject)material)->prefix ? ((PetscObject)material)->prefix : "");
   kernels->data           = material->data;
+  kernels->stress         = Stress;
+  kernels->energy         = Energy;
+  kernels->tangent        = Tangent;
   kernels->n_history      = PlasticGetSize((const Plastic *)material->data);
   kernels->plastic_strain = PLASTIC_STRAIN;
   kernels->plastic_work   = PLASTIC_WORK;
+
+  ((Plastic *)material->data)->kernels = *kernels;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -38,6 +38,8 @@ PETSC_INTERN PetscFunctionList MaterialList;
 
 PETSC_EXTERN PetscErrorCode MaterialCondenseKernels(Material, void (*)(const void *, const PetscReal[9][8], PetscReal[8]),
                                                     MaterialKernels *);
+PETSC_EXTERN void           MaterialFindThickness(const MaterialKernels *, PetscReal[9][8]);
+PETSC_EXTERN PetscReal      MaterialFindSides(const MaterialKernels *, PetscReal, PetscReal[9][8], PetscReal[9][8], PetscReal[81]);
 PETSC_INTERN PetscErrorCode MaterialCreate_LinearElastic(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_SaintVenantKirchhoff(Material);
 PETSC_INTERN PetscErrorCode MaterialCreate_NeoHookean(Material);

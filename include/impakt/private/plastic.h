@@ -7,20 +7,21 @@
 typedef enum { HARDENING_LINEAR, HARDENING_VOCE, HARDENING_TABLE, HARDENING_JOHNSON_COOK } Hardening;
 
 typedef struct {
-  Isotropic  elastic; /* first, as the functions of isotropic models find it */
-  Hardening  hardening;
-  PetscReal  yield;       /* strength before any plastic strain [Pa] */
-  PetscReal  modulus;     /* linear: d strength / d strain; of Voce's law beside its saturation; of Johnson and Cook's the factor B [Pa] */
-  PetscReal  kinematic;   /* by which the centre of the yield surface moves [Pa] */
-  PetscReal  saturation;  /* of Voce's law: the strength that it tends to without the linear part [Pa] */
-  PetscReal  saturate_at; /* of Voce's law: how fast, per plastic strain */
-  PetscInt   n_table;
-  PetscReal *strain, *stress; /* of the table: plastic strains from 0 on, ascending, and strengths [Pa] */
-  PetscReal  exponent;        /* of Johnson and Cook's law: n */
-  PetscReal  rate, reference_rate;
-  PetscReal  softening, room, melting, initial; /* m, and temperatures [K] */
-  PetscReal  heat_fraction, specific_heat;      /* of plastic work that becomes heat; [J/(kg K)] */
-  PetscReal  density;                           /* as of the material [kg/m^3] */
+  Isotropic       elastic; /* first, as the functions of isotropic models find it */
+  Hardening       hardening;
+  PetscReal       yield;   /* strength before any plastic strain [Pa] */
+  PetscReal       modulus; /* linear: d strength / d strain; of Voce's law beside its saturation; of Johnson and Cook's the factor B [Pa] */
+  PetscReal       kinematic;   /* by which the centre of the yield surface moves [Pa] */
+  PetscReal       saturation;  /* of Voce's law: the strength that it tends to without the linear part [Pa] */
+  PetscReal       saturate_at; /* of Voce's law: how fast, per plastic strain */
+  PetscInt        n_table;
+  PetscReal      *strain, *stress; /* of the table: plastic strains from 0 on, ascending, and strengths [Pa] */
+  PetscReal       exponent;        /* of Johnson and Cook's law: n */
+  PetscReal       rate, reference_rate;
+  PetscReal       softening, room, melting, initial; /* m, and temperatures [K] */
+  PetscReal       heat_fraction, specific_heat;      /* of plastic work that becomes heat; [J/(kg K)] */
+  PetscReal       density;                           /* as of the material [kg/m^3] */
+  MaterialKernels kernels;                           /* of the finite or the small strain */
 } Plastic;
 
 /* History of a point, 12 numbers or 18. Zero: the virgin material */
