@@ -2,7 +2,7 @@
    Bodies that are whole on one rank. A body that is divided is integrated by all ranks together, which wait for each other in each of its
    steps: with few elements that takes longer than the elements. Where there are many small bodies, each is given to one rank, and those
    that are near each other to the same one as far as they can: their places are halved across their longest extent, with as much work on
-   both sides, until there is a part for each rank (recursive coordinate bisection, as in src/mesh/bisection.c).
+   both sides, until there is a part for each rank (recursive coordinate bisection, MeshBisect()).
 */
 #include "controllerimpl.h"
 #include <impakt/private/mesh.h>
@@ -34,56 +34,6 @@ static PetscErrorCode MayBePlaced(Body body, PetscBool *may, PetscBool *asks)
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-rigid", &rigid, NULL));
   if (type[0]) PetscCall(PetscStrcasecmp(type, TSALPHA2, &is_implicit));
   *may = (PetscBool)(*may && (is_explicit || is_implicit) && !rigid);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The axis along which these bodies reach farthest */
-static PetscInt LongestAxis(const Placement *p, PetscInt n, const PetscInt list[])
-{
-  PetscReal longest = -1;
-  PetscInt  axis    = 0;
-
-  for (PetscInt d = 0; d < 3; d++) {
-    PetscReal lower = PETSC_MAX_REAL, upper = -PETSC_MAX_REAL;
-
-    for (PetscInt i = 0; i < n; i++) {
-      lower = PetscMin(lower, p->places[list[i]][d]);
-      upper = PetscMax(upper, p->places[list[i]][d]);
-    }
-    if (upper - lower > longest) axis = d;
-    longest = PetscMax(longest, upper - lower);
-  }
-  return axis;
-}
-
-/* Gives bodies to the ranks from `first` on, as much work to each; list: their numbers in the placement */
-static PetscErrorCode Halve(Placement *p, PetscInt n, PetscInt list[], PetscMPIInt first, PetscMPIInt size)
-{
-  PetscReal *along;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(n, &along));
-  while (size > 1) {
-    const PetscMPIInt below = size / 2;
-    const PetscInt    axis  = LongestAxis(p, n, list);
-    PetscReal         all = 0, sum = 0;
-    PetscInt          k = 0;
-
-    PetscCall(PetscSortInt(n, list)); /* those at one place in the order of their numbers */
-    for (PetscInt i = 0; i < n; i++) {
-      along[i] = p->places[list[i]][axis];
-      all += p->work[list[i]];
-    }
-    PetscCall(PetscSortRealWithArrayInt(n, along, list));
-    while (k < n && sum + 0.5 * p->work[list[k]] < all * below / size) sum += p->work[list[k++]];
-    PetscCall(Halve(p, k, list, first, below)); /* as deep as the logarithm of the number of ranks */
-    list += k;
-    n -= k;
-    first += below;
-    size -= below;
-  }
-  for (PetscInt i = 0; i < n; i++) p->ranks[p->bodies[list[i]]] = first;
-  PetscCall(PetscFree(along));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,16 +72,17 @@ static PetscErrorCode List(Controller controller, PetscInt begin, PetscMPIInt si
 /* ControllerPlaceBodies - tells bodies from options that are to be whole on one rank on which, before their meshes are made */
 PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
 {
-  const PetscInt n = controller->n_bodies - begin;
-  Placement      p = {0};
-  PetscInt       small, *list;
-  PetscBool     *asks;
-  PetscMPIInt    size;
+  const PetscReal weights[3] = {1, 1, 1};
+  const PetscInt  n          = controller->n_bodies - begin;
+  Placement       p          = {0};
+  PetscInt        small, *list, *ranks;
+  PetscBool      *asks;
+  PetscMPIInt     size;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)controller), &size));
   if (n < 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc5(n, &p.bodies, n, &p.places, n, &p.work, n, &p.ranks, n, &list));
+  PetscCall(PetscMalloc6(n, &p.bodies, n, &p.places, n, &p.work, n, &p.ranks, n, &list, n, &ranks));
   PetscCall(PetscMalloc1(n, &asks));
   PetscCall(List(controller, begin, size, &p, &small, asks));
   if (small < MANY * size) { /* those alone that ask for it */
@@ -147,9 +98,10 @@ PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
     p.n = kept;
   }
   for (PetscInt i = 0; i < p.n; i++) list[i] = i;
-  PetscCall(Halve(&p, p.n, list, 0, size));
+  PetscCall(MeshBisect(3, weights, &p.places[0][0], p.work, p.n, list, 0, size, ranks));
+  for (PetscInt i = 0; i < p.n; i++) p.ranks[p.bodies[i]] = ranks[i];
   for (PetscInt b = 0; b < n && size > 1; b++) PetscCall(BodySetMeshRank(controller->bodies[begin + b], (PetscMPIInt)p.ranks[b]));
   PetscCall(PetscFree(asks));
-  PetscCall(PetscFree5(p.bodies, p.places, p.work, p.ranks, list));
+  PetscCall(PetscFree6(p.bodies, p.places, p.work, p.ranks, list, ranks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

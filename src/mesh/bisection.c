@@ -36,73 +36,66 @@ typedef struct {
   PetscBool  found; /* a division that is better than one without regard to contact */
 } Bisection;
 
-static PetscBool IsBefore(const Bisection *b, PetscInt axis, PetscInt cell, PetscInt other)
-{
-  const PetscReal x = b->centres[b->dim * cell + axis], y = b->centres[b->dim * other + axis];
-
-  return (PetscBool)(x < y || (x == y && cell < other));
-}
-
-/* Moves the k cells that come first along an axis to the front (Hoare's selection) */
-static void MoveFirst(const Bisection *b, PetscInt axis, PetscInt k, PetscInt n, PetscInt cells[])
-{
-  PetscInt low = 0, high = n - 1;
-
-  while (low < high) {
-    const PetscInt pivot = cells[low + (high - low) / 2];
-    PetscInt       i = low, j = high;
-
-    while (i <= j) {
-      while (IsBefore(b, axis, cells[i], pivot)) i++;
-      while (IsBefore(b, axis, pivot, cells[j])) j--;
-      if (i <= j) {
-        const PetscInt cell = cells[i];
-
-        cells[i++] = cells[j];
-        cells[j--] = cell;
-      }
-    }
-    if (k - 1 <= j) high = j;
-    else if (k - 1 >= i) low = i;
-    else break;
-  }
-}
-
-/* The axis along which these cells reach farthest, with the weights of the axes */
-static PetscInt FindLongest(const Bisection *b, PetscInt n, const PetscInt cells[])
+/* The axis along which points reach farthest, with the weights of the axes */
+static PetscInt FindLongest(PetscInt dim, const PetscReal weights[], const PetscReal points[], PetscInt n, const PetscInt list[])
 {
   PetscReal most = -1;
   PetscInt  axis = 0;
 
-  for (PetscInt d = 0; d < b->dim; d++) {
+  for (PetscInt d = 0; d < dim; d++) {
     PetscReal lower = PETSC_MAX_REAL, upper = -PETSC_MAX_REAL;
 
     for (PetscInt i = 0; i < n; i++) {
-      lower = PetscMin(lower, b->centres[b->dim * cells[i] + d]);
-      upper = PetscMax(upper, b->centres[b->dim * cells[i] + d]);
+      lower = PetscMin(lower, points[dim * list[i] + d]);
+      upper = PetscMax(upper, points[dim * list[i] + d]);
     }
-    if (upper <= lower || b->along[d] * (upper - lower) <= most) continue;
-    most = b->along[d] * (upper - lower);
+    if (upper <= lower || weights[d] * (upper - lower) <= most) continue;
+    most = weights[d] * (upper - lower);
     axis = d;
   }
   return axis;
 }
 
-/* Gives cells to the ranks from `first` on */
-static void Halve(Bisection *b, PetscInt n, PetscInt cells[], PetscMPIInt first, PetscMPIInt size)
+/* Gives points to the ranks from `first` on, as much work to each: halves them, again and again, across their longest extent. `weights`: of
+   the extents along the axes; `points`: dim numbers each; `work`: of each, NULL: all alike; `list`: n of them, which it changes; `ranks`:
+   of each of those that are listed */
+PetscErrorCode MeshBisect(PetscInt dim, const PetscReal weights[], const PetscReal points[], const PetscReal work[], PetscInt n,
+                          PetscInt list[], PetscMPIInt first, PetscMPIInt size, PetscInt ranks[])
 {
+  PetscReal *along;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &along));
   while (size > 1) {
     const PetscMPIInt below = size / 2;
-    const PetscInt    k     = (PetscInt)((2 * (PetscInt64)n * below + size) / (2 * size)); /* rounded */
+    const PetscInt    axis  = FindLongest(dim, weights, points, n, list);
+    PetscReal         all = 0, sum = 0;
+    PetscInt          k = 0;
 
-    if (k > 0 && k < n) MoveFirst(b, FindLongest(b, n, cells), k, n, cells);
-    Halve(b, k, cells, first, below); /* as deep as the logarithm of the number of ranks */
-    cells += k;
+    for (PetscInt i = 0; i < n; i++) {
+      along[i] = points[dim * list[i] + axis];
+      all += work ? work[list[i]] : 1;
+    }
+    PetscCall(PetscSortRealWithArrayInt(n, along, list));
+    for (PetscInt i = 0, next; i < n; i = next) { /* those at one place in the order of their numbers */
+      for (next = i + 1; next < n && along[next] == along[i];) next++;
+      PetscCall(PetscSortInt(next - i, list + i));
+    }
+    for (; k < n; k++) {
+      const PetscReal one = work ? work[list[k]] : 1;
+
+      if (sum + 0.5 * one >= all * below / size) break;
+      sum += one;
+    }
+    PetscCall(MeshBisect(dim, weights, points, work, k, list, first, below, ranks)); /* as deep as the logarithm of the number of ranks */
+    list += k;
     n -= k;
     first += below;
     size -= below;
   }
-  for (PetscInt i = 0; i < n; i++) b->part[cells[i]] = first;
+  for (PetscInt i = 0; i < n; i++) ranks[list[i]] = first;
+  PetscCall(PetscFree(along));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What a step costs with the parts as they are, in units of the work for an element */
@@ -191,7 +184,7 @@ static PetscErrorCode Compare(void *ctx)
     PetscReal cost = 0;
 
     for (PetscInt c = 0; c < b->n; c++) cells[c] = c;
-    Halve(b, b->n, cells, 0, b->size);
+    PetscCall(MeshBisect(b->dim, b->along, b->centres, NULL, b->n, cells, 0, b->size, b->part));
     PetscCall(FindCost(b, &cost));
     if (cost < least) {
       least    = cost;

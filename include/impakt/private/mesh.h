@@ -6,6 +6,8 @@ PETSC_EXTERN PetscErrorCode MeshCreate(MPI_Comm, const char[], const char[], DM 
 PETSC_EXTERN PetscErrorCode MeshCreateOnRanks(MPI_Comm, const char[], const char[], PetscMPIInt, const PetscMPIInt[], DM *);
 PETSC_EXTERN PetscErrorCode MeshEstimate(const char[], PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode MeshGetPlaceOption(const char[], const char *[], const char *[]);
+PETSC_EXTERN PetscErrorCode MeshBisect(PetscInt, const PetscReal[], const PetscReal[], const PetscReal[], PetscInt, PetscInt[], PetscMPIInt,
+                                       PetscMPIInt, PetscInt[]);
 PETSC_EXTERN PetscErrorCode MeshMayBeWhole(MPI_Comm, const char[], PetscBool *, PetscBool *);
 PETSC_EXTERN PetscErrorCode MeshCreateComposite(DM, DM *);
 PETSC_EXTERN PetscErrorCode MeshIsComposite(DM, PetscBool *);
