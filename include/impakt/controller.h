@@ -136,7 +136,6 @@ PETSC_EXTERN PetscErrorCode ControllerSetMonitorInterval(Controller, PetscInt);
 PETSC_EXTERN PetscErrorCode ControllerCheck(Controller, PetscViewer);
 PETSC_EXTERN PetscErrorCode ControllerSolve(Controller);
 PETSC_EXTERN PetscErrorCode ControllerView(Controller, PetscViewer);
-PETSC_EXTERN PetscErrorCode ControllerViewFromOptions(Controller, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ControllerDestroy(Controller *);
 PETSC_EXTERN PetscErrorCode ControllerGetBodies(Controller, PetscInt *, const Body *[]);
 PETSC_EXTERN PetscErrorCode ControllerGetContact(Controller, Contact *);

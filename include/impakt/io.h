@@ -53,5 +53,4 @@ PETSC_EXTERN PetscErrorCode OutputGetCheck(Output, PetscBool *);
 PETSC_EXTERN PetscErrorCode OutputCheck(Output);
 PETSC_EXTERN PetscErrorCode OutputReport(Output);
 PETSC_EXTERN PetscErrorCode OutputView(Output, PetscViewer);
-PETSC_EXTERN PetscErrorCode OutputViewFromOptions(Output, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode OutputDestroy(Output *);

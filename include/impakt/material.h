@@ -93,7 +93,6 @@ PETSC_EXTERN PetscErrorCode MaterialGetPoissonsRatio(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialSetFromOptions(Material);
 PETSC_EXTERN PetscErrorCode MaterialSetUp(Material);
 PETSC_EXTERN PetscErrorCode MaterialView(Material, PetscViewer);
-PETSC_EXTERN PetscErrorCode MaterialViewFromOptions(Material, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode MaterialDestroy(Material *);
 
 PETSC_EXTERN PetscErrorCode MaterialGetUniaxialModulus(Material, PetscReal *);

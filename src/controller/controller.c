@@ -97,7 +97,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   controller->setup_seconds += end - begin;
   controller->setup = PETSC_TRUE;
   PetscCall(StageEnd(logged));
-  PetscCall(ControllerViewFromOptions(controller, NULL, "-controller_view"));
+  PetscCall(PetscObjectViewFromOptions((PetscObject)controller, NULL, "-controller_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,7 +166,7 @@ PetscErrorCode ControllerSolve(Controller controller)
 
   Level: beginner
 
-.seealso: `Controller`, `ControllerViewFromOptions()`
+.seealso: `Controller`
 @*/
 PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
 {
@@ -188,31 +188,6 @@ PetscErrorCode ControllerView(Controller controller, PetscViewer viewer)
     PetscCall(PetscViewerASCIIPrintf(viewer, "  the largest step that resolves contact: %s\n", controller->step_reason));
   for (PetscInt b = 0; b < controller->n_bodies; b++) PetscCall(BodyView(controller->bodies[b], viewer));
   PetscCall(ContactView(controller->contact, viewer));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ControllerViewFromOptions - prints times, bodies and contact where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ controller - the `Controller`, set up
-. object     - has the prefix of the option, `NULL` for the controller
-- name       - the option
-
-  Options Database Key:
-. -controller_view - print them at the end of the set-up
-
-  Level: intermediate
-
-.seealso: `Controller`, `ControllerView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode ControllerViewFromOptions(Controller controller, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)controller, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -298,15 +298,6 @@ PetscErrorCode FieldsGetInterval(Fields fields, PetscInt *interval)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FieldsGetPaths - where the files are; either may be NULL */
-PetscErrorCode FieldsGetPaths(Fields fields, const char *path[], const char *xdmf[])
-{
-  PetscFunctionBegin;
-  if (path) *path = fields->path;
-  if (xdmf) *xdmf = fields->xdmf;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Frees the fields. After an error, which may be one of this rank alone, FieldsFinish() is not called, and the file is left as it is. The
    frames in it can be read, and the XDMF file lists them */
 PetscErrorCode FieldsDestroy(Fields *fields)

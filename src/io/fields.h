@@ -11,7 +11,6 @@ PETSC_INTERN void                FieldsKeepFirst(Fields);
 PETSC_INTERN PetscErrorCode      FieldsGetInterval(Fields, PetscInt *);
 PETSC_INTERN ControllerMonitorFn FieldsMonitor;
 PETSC_INTERN PetscErrorCode      FieldsFinish(Fields);
-PETSC_INTERN PetscErrorCode      FieldsGetPaths(Fields, const char *[], const char *[]);
 PETSC_INTERN PetscErrorCode      FieldsDestroy(Fields *);
 PETSC_INTERN PetscErrorCode      FieldsSync(Fields);
 PETSC_INTERN PetscErrorCode      FieldsVisit(Fields, MPI_Comm, PetscBool, Checkpoint);

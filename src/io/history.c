@@ -389,14 +389,6 @@ PetscErrorCode HistoryVisit(History history, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* HistoryGetPath - where the file is */
-PetscErrorCode HistoryGetPath(History history, const char *path[])
-{
-  PetscFunctionBegin;
-  *path = history->path;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* HistoryDestroy - writes what is left, unless writing has failed before, and frees a history */
 PetscErrorCode HistoryDestroy(History *history)
 {

@@ -8,7 +8,6 @@ typedef struct _n_History *History;
 PETSC_INTERN PetscErrorCode      HistoryCreate(Controller, const char[], History *);
 PETSC_INTERN ControllerMonitorFn HistoryMonitor;
 PETSC_INTERN PetscErrorCode      HistoryFlush(History);
-PETSC_INTERN PetscErrorCode      HistoryGetPath(History, const char *[]);
 PETSC_INTERN PetscErrorCode      HistoryDestroy(History *);
 PETSC_INTERN PetscErrorCode      HistorySync(History);
 PETSC_INTERN PetscErrorCode      HistoryVisit(History, Checkpoint);

@@ -5,6 +5,7 @@
 #include "report.h"
 #include "stopsignals.h"
 #include "summary.h"
+#include "xdmf.h"
 #include <sys/package.h>
 
 PetscClassId OUTPUT_CLASSID = 0;
@@ -172,7 +173,7 @@ PetscErrorCode OutputSetFromOptions(Output output)
   if (has_history) PetscCall(OutputSetHistory(output, history));
   if (has_fields) PetscCall(OutputSetFields(output, fields, interval, precision));
   PetscCall(OutputReadCheckpoints(output));
-  PetscCall(OutputViewFromOptions(output, NULL, "-output_view"));
+  PetscCall(PetscObjectViewFromOptions((PetscObject)output, NULL, "-output_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -253,12 +254,12 @@ PetscErrorCode OutputCheck(Output output)
 
   Level: intermediate
 
-.seealso: `Output`, `OutputViewFromOptions()`, `OutputReport()`
+.seealso: `Output`, `OutputReport()`
 @*/
 PetscErrorCode OutputView(Output output, PetscViewer viewer)
 {
-  const char *path;
-  PetscBool   ascii;
+  char      xdmf[PETSC_MAX_PATH_LEN];
+  PetscBool ascii;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
@@ -268,44 +269,16 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
   if (!ascii) PetscFunctionReturn(PETSC_SUCCESS);
   if (output->history || output->summary_path[0] || output->fields || output->checkpoints.path[0])
     PetscCall(PetscViewerASCIIPrintf(viewer, "files\n"));
-  if (output->history) {
-    PetscCall(HistoryGetPath(output->history, &path));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", path));
-  }
+  if (output->history) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", output->history_path));
   if (output->summary_path[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "summary", output->summary_path));
   if (output->fields) {
-    PetscCall(FieldsGetPaths(output->fields, NULL, &path));
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "fields", path));
+    PetscCall(XdmfGetPath(output->fields_path, sizeof(xdmf), xdmf));
+    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "fields", xdmf));
   }
   if (output->checkpoints.path[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "checkpoint", output->checkpoints.path));
   if (!output->history && !output->summary_path[0] && !output->fields)
     PetscCall(PetscViewerASCIIPrintf(viewer, "not written: history, summary and fields; -output_history h.h5 -output_summary s.json "
                                              "-output_fields f.h5 write them\n"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  OutputViewFromOptions - prints which files are written where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ output - the `Output`
-. object - has the prefix of the option, `NULL` for the output
-- name   - the option
-
-  Options Database Key:
-. -output_view - print them when the options have been read
-
-  Level: intermediate
-
-.seealso: `Output`, `OutputView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode OutputViewFromOptions(Output output, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)output, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -183,7 +183,7 @@ PetscErrorCode MaterialSetUp(Material material)
 
   Level: beginner
 
-.seealso: `Material`, `MaterialViewFromOptions()`
+.seealso: `Material`
 @*/
 PetscErrorCode MaterialView(Material material, PetscViewer viewer)
 {
@@ -199,31 +199,6 @@ PetscErrorCode MaterialView(Material material, PetscViewer viewer)
   PetscCall(PetscViewerASCIIPrintf(viewer, "  density %g%s%s\n", (double)material->density, UnitsOf((PetscObject)material, UNIT_DENSITY),
                                    material->plane_stress ? ", plane stress" : ""));
   PetscTryTypeMethod(material, view, viewer);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  MaterialViewFromOptions - prints a material where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ material - the `Material`
-. object   - has the prefix of the option, `NULL` for the material
-- name     - the option
-
-  Options Database Key:
-. -<body>_material_view - print the material of a body at its set-up
-
-  Level: intermediate
-
-.seealso: `Material`, `MaterialView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode MaterialViewFromOptions(Material material, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)material, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

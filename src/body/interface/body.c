@@ -213,9 +213,9 @@ PetscErrorCode BodySetUp(Body body)
   if (body->integrator->reads_start || body->loads || BodyIsDamped(body)) PetscCall(SetUpSubstepStart(body));
   if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &body->substep_start.damping));
   PetscCall(TSViewFromOptions(body->time.ts, NULL, "-ts_view"));
-  if (!body->model.blocks.n) PetscCall(MaterialViewFromOptions(body->model.material, (PetscObject)body, "-material_view"));
+  if (!body->model.blocks.n) PetscCall(PetscObjectViewFromOptions((PetscObject)body->model.material, (PetscObject)body, "-material_view"));
   for (PetscInt k = 0; k < body->model.blocks.n; k++)
-    PetscCall(MaterialViewFromOptions(body->model.blocks.materials[k], (PetscObject)body, "-material_view"));
+    PetscCall(PetscObjectViewFromOptions((PetscObject)body->model.blocks.materials[k], (PetscObject)body, "-material_view"));
   PetscCall(PetscObjectViewFromOptions((PetscObject)body->model.element, (PetscObject)body, "-element_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
