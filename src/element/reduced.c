@@ -159,14 +159,6 @@ static PetscErrorCode ElementTangent_Reduced(Element element, PetscInt e, PetscB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ElementDestroy_Reduced(Element element)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFree(((Solid *)element->data)->own));
-  PetscCall(PetscFree(element->data));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Constants of the material at zero strain, as MaterialLinearize() finds them */
 static PetscErrorCode GetConstants(Element element, Hourglass *constants)
 {
@@ -205,6 +197,5 @@ PetscErrorCode ElementCreate_Solid_Reduced(Element element)
   solid->point               = GetPoint;
   element->ops->tangent      = ElementTangent_Reduced;
   element->ops->viscousforce = SolidViscousForce;
-  element->ops->destroy      = ElementDestroy_Reduced;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -297,6 +297,7 @@ static PetscErrorCode ElementMass_Solid(Element element, PetscInt e, PetscScalar
 static PetscErrorCode ElementDestroy_Solid(Element element)
 {
   PetscFunctionBegin;
+  PetscCall(PetscFree(((Solid *)element->data)->own));
   PetscCall(PetscFree(element->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

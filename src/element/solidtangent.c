@@ -23,14 +23,6 @@ typedef struct {
   PetscReal D[MAX_DOFS], g[MAX_DOFS], work[MAX_DOFS]; /* g; P' : dF */
 } Point;
 
-static PetscReal Contract(const PetscReal a[9], const PetscReal b[9])
-{
-  PetscReal sum = 0;
-
-  for (PetscInt i = 0; i < 9; i++) sum += a[i] * b[i];
-  return sum;
-}
-
 /* F^-T, from which det F is returned */
 static PetscReal Invert(const PetscReal F[9], PetscReal inverse[9])
 {
@@ -92,8 +84,7 @@ static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscIn
   theta /= volume;
   for (PetscInt i = 0; i < n; i++) dtheta[i] /= volume;
   for (PetscInt g = 0; g < n_points; g++) {
-    Point    *point = &points[g];
-    PetscReal F[9];
+    Point *point = &points[g];
 
     point->ratio = finite ? PetscPowReal(theta / point->J, third) : 1; /* NaN where the point is inverted */
     if (finite)
@@ -104,8 +95,8 @@ static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscIn
       for (PetscInt i = 0; i < 9; i += 4) point->H[i] += change;
     }
     SolidPointStress(solid, e, g, point->H, point->P);
-    for (PetscInt i = 0; i < 9; i++) F[i] = (i % 4 ? 0 : 1) + point->H[i];
-    point->pi    = Contract(point->P, F);
+    point->pi = 0;
+    for (PetscInt i = 0; i < 9; i++) point->pi += point->P[i] * ((i % 4 ? 0 : 1) + point->H[i]);
     point->third = third * point->pi;
     for (PetscInt i = 0; i < n; i++) {
       point->g[i]    = third * (dtheta[i] / (finite ? theta : 1) - point->D[i]);
