@@ -17,7 +17,6 @@ PETSC_EXTERN PetscErrorCode ImpaktInitialized(PetscBool *);
 PETSC_EXTERN PetscErrorCode ImpaktFinalize(void);
 PETSC_EXTERN PetscErrorCode ImpaktRegisterAll(void);
 PETSC_EXTERN PetscErrorCode ImpaktGetVersion(char[], size_t);
-PETSC_EXTERN PetscErrorCode ImpaktGetVersionNumber(PetscInt *, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ImpaktCheckOptions(PetscInt, const char *const[]);
 PETSC_EXTERN PetscErrorCode ImpaktPrintOptions(void);
 PETSC_EXTERN int            ImpaktExit(PetscErrorCode);

@@ -2,7 +2,6 @@
 #include "report.h"
 #include "ranks.h"
 #include <math.h>
-#include <sys/stages.h>
 #include <sys/units.h>
 
 /* Times of first contact below this part of the duration of contact are printed as 0: round-off of start + gap / speed */
@@ -290,7 +289,6 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(ViewReactions(&report, bodies));
   if (exact) PetscCall(ViewErrors(&report, exact));
   PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)wall, (double)cpu));
-  PetscCall(StagesView(PetscObjectComm((PetscObject)controller), viewer));
   PetscCall(RanksView(&ranks, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

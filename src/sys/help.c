@@ -24,13 +24,7 @@
 #  define COMPILER "unknown compiler"
 #endif
 
-typedef enum {
-  REQUEST_NONE,
-  REQUEST_SCREEN,
-  REQUEST_TOPIC,
-  REQUEST_OPTIONS, /* the old name of the whole table */
-  REQUEST_VERSION
-} Request;
+typedef enum { REQUEST_NONE, REQUEST_SCREEN, REQUEST_TOPIC, REQUEST_VERSION } Request;
 
 /* What the command line asks for; `topic` is the word after -help */
 static PetscErrorCode FindRequest(int argc, char **argv, Request *request, const char **topic)
@@ -39,8 +33,8 @@ static PetscErrorCode FindRequest(int argc, char **argv, Request *request, const
     const char *option;
     Request     request;
   } known[] = {
-      {"-help", REQUEST_SCREEN},          {"--help", REQUEST_SCREEN},    {"-h", REQUEST_SCREEN},
-      {"-help_options", REQUEST_OPTIONS}, {"-version", REQUEST_VERSION}, {"--version", REQUEST_VERSION},
+      {"-help", REQUEST_SCREEN},     {"--help", REQUEST_SCREEN},     {"-h", REQUEST_SCREEN},
+      {"-version", REQUEST_VERSION}, {"--version", REQUEST_VERSION},
   };
 
   PetscFunctionBegin;
@@ -292,10 +286,7 @@ static PetscErrorCode Answer(Request request, const char topic[], PetscBool all)
   if (topic) PetscCall(PetscStrcmp(topic, "markdown", &markdown));
   if (request == REQUEST_VERSION) PetscCall(PrintVersions());
   else if (request == REQUEST_SCREEN) PetscCall(PrintScreen());
-  else if (request == REQUEST_OPTIONS) {
-    PetscCall(PetscFPrintf(PETSC_COMM_WORLD, stderr, "impakt: warning: -help_options is the old name of -help all\n"));
-    PetscCall(ImpaktPrintOptions());
-  } else if (all) PetscCall(PrintSolvers());
+  else if (all) PetscCall(PrintSolvers());
   else if (markdown) PetscCall(PrintTopics(PETSC_TRUE));
   else {
     PetscCall(FindTopic(topic, &found, topics, sizeof(topics)));

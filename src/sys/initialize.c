@@ -169,35 +169,12 @@ PetscErrorCode ImpaktFinalize(void)
   Note:
   The macros `IMPAKT_VERSION`, `IMPAKT_VERSION_MAJOR`, `IMPAKT_VERSION_GE()`, ... tell the version of the headers.
 
-.seealso: `ImpaktGetVersionNumber()`
+.seealso: `ImpaktInitialize()`
 @*/
 PetscErrorCode ImpaktGetVersion(char version[], size_t length)
 {
   PetscFunctionBegin;
   PetscAssertPointer(version, 1);
   PetscCall(PetscSNPrintf(version, length, "Impakt %s", IMPAKT_VERSION));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ImpaktGetVersionNumber - the version of the library in numbers
-
-  Not Collective
-
-  Output Parameters:
-+ major    - or `NULL`
-. minor    - or `NULL`
-- subminor - or `NULL`
-
-  Level: beginner
-
-.seealso: `ImpaktGetVersion()`
-@*/
-PetscErrorCode ImpaktGetVersionNumber(PetscInt *major, PetscInt *minor, PetscInt *subminor)
-{
-  PetscFunctionBegin;
-  if (major) *major = IMPAKT_VERSION_MAJOR;
-  if (minor) *minor = IMPAKT_VERSION_MINOR;
-  if (subminor) *subminor = IMPAKT_VERSION_SUBMINOR;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,4 @@
-/* Stages of a run for -log_view, and the same as a table at its end. */
-#include <petscviewer.h>
+/* Stages of a run for -log_view. */
 #include "stages.h"
 
 static const char *const names[N_STAGES] = {"Set-up", "Search", "Rows", "Sweeps", "Interface", "Output"};
@@ -45,31 +44,5 @@ PetscErrorCode StageEnd(PetscBool logged)
 {
   PetscFunctionBegin;
   if (logged) PetscCall(PetscLogStagePop());
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Time of the slowest rank in each stage and the operations of all ranks, where they are logged (-log_view); else nothing */
-PetscErrorCode StagesView(MPI_Comm comm, PetscViewer viewer)
-{
-  PetscLogHandler handler;
-  double          seconds[N_STAGES], operations[N_STAGES], total = 0;
-
-  PetscFunctionBegin;
-  PetscCall(PetscLogGetDefaultHandler(&handler));
-  if (!handler || !StagesInitialized) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt s = 0; s < N_STAGES; s++) {
-    PetscEventPerfInfo info;
-
-    PetscCall(PetscLogStageGetPerfInfo(stages[s], &info));
-    seconds[s]    = (double)info.time;
-    operations[s] = (double)info.flops;
-  }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, seconds, N_STAGES, MPI_DOUBLE, MPI_MAX, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, operations, N_STAGES, MPI_DOUBLE, MPI_SUM, comm));
-  for (PetscInt s = 0; s < N_STAGES; s++) total += seconds[s];
-  PetscCall(PetscViewerASCIIPrintf(viewer, "stages\n"));
-  for (PetscInt s = 0; s < N_STAGES; s++)
-    PetscCall(PetscViewerASCIIPrintf(viewer, "  %-32s %13.6g s    %5.1f %%  %.3g GFLOP\n", names[s], seconds[s],
-                                     total > 0 ? 100 * seconds[s] / total : 0., 1e-9 * operations[s]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -15,4 +15,3 @@ typedef enum {
 PETSC_INTERN PetscErrorCode StagesInitialize(void);
 PETSC_INTERN PetscErrorCode StageBegin(Stage, PetscBool *);
 PETSC_INTERN PetscErrorCode StageEnd(PetscBool);
-PETSC_INTERN PetscErrorCode StagesView(MPI_Comm, PetscViewer);

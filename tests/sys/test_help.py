@@ -14,7 +14,7 @@ OF_PETSC = {
     "options_file_yaml", "prefix_push", "prefix_pop", "pc_gamg_use_sa_esteig", "snes_type", "snes_anderson_m", "snes_anderson_beta",
     "snes_linesearch_damping", "snes_linesearch_type", "snes_vi_zero_tolerance", "snes_lag_jacobian_persists", "snes_lag_preconditioner_persists",
     "ts_view", "dm_view", "dm_distribute", "dm_distribute_overlap", "dm_plex_box_bd", "dm_plex_cell",
-    "dm_plex_interpolate", "dm_plex_reorder", "dm_plex_separate_marker", "petscpartitioner_type", "help", "help_options", "version", "h", "log_exclude",
+    "dm_plex_interpolate", "dm_plex_reorder", "dm_plex_separate_marker", "petscpartitioner_type", "help", "version", "h", "log_exclude",
 }  # fmt: skip
 
 
@@ -113,7 +113,6 @@ def test_topics(say):
     for line in ("Options of Impakt", "Options for all PETSc programs", "  -<body>_ts_type <", "  -<body>_ksp_type <", "  -<body>_pc_type <", "  -schwarz_snes_type <"):
         assert text.count(line) == 1, line
     assert text.index("Options of Impakt") < text.index("Options for all PETSc programs") < text.index("  -<body>_ts_type <")
-    assert in_table(say("-help_options", stderr="impakt: warning: -help_options is the old name of -help all\n")) == names
 
 
 # A word, the options that come first, and some that come later since their text has the word
