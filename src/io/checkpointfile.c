@@ -175,8 +175,8 @@ static PetscErrorCode CreateInMemory(const char path[], const CheckpointInfo *in
   PetscCall(HDF5Check(*file, "make a file in memory", path));
   PetscCall(HDF5Check(H5Pclose(access), "close a property list", path));
   PetscCall(WriteNumber(*file, "checkpoint", H5T_NATIVE_INT, &format, path));
-  PetscCall(HDF5WriteText(*file, "version", IMPAKT_VERSION, path));
-  PetscCall(HDF5WriteText(*file, "options", info->options, path));
+  PetscCall(HDF5WriteText(*file, "version", IMPAKT_VERSION, PETSC_FALSE, path));
+  PetscCall(HDF5WriteText(*file, "options", info->options, PETSC_FALSE, path));
   PetscCall(WriteNumber(*file, "step", H5T_NATIVE_LLONG, &step, path));
   PetscCall(WriteNumber(*file, "time", H5T_NATIVE_DOUBLE, &info->time, path));
   PetscCall(WriteNumber(*file, "ranks", H5T_NATIVE_INT, &info->ranks, path));
@@ -279,7 +279,7 @@ static PetscErrorCode WriteShared(hid_t file, const CheckpointContents *contents
     PetscCall(WriteDataset(file, place, H5T_NATIVE_DOUBLE, 2, length, values, path));
     dataset = H5Dopen2(file, place, H5P_DEFAULT);
     PetscCall(HDF5Check(dataset, "open a table", path));
-    PetscCall(HDF5WriteText(dataset, "name", name, path));
+    PetscCall(HDF5WriteText(dataset, "name", name, PETSC_FALSE, path));
     PetscCall(HDF5Check(H5Dclose(dataset), "write a table", path));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

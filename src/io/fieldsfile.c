@@ -48,29 +48,6 @@ PetscErrorCode FieldsFileGetDataset(FieldsKind field, PetscInt frame, size_t siz
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Writes the units as an attribute of fixed length, which is in the dataset's own header: with ten thousands of datasets, strings of
-   variable length would be slow */
-static PetscErrorCode WriteUnits(hid_t dataset, const char units[], const char path[])
-{
-  hid_t  type, space, attribute;
-  size_t length;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrlen(units, &length));
-  type = H5Tcopy(H5T_C_S1);
-  PetscCall(HDF5Check(H5Tset_size(type, length + 1), "make a string type", path));
-  PetscCall(HDF5Check(H5Tset_cset(type, H5T_CSET_UTF8), "make a string type", path));
-  space = H5Screate(H5S_SCALAR);
-  PetscCall(HDF5Check(space, "make a data space", path));
-  attribute = H5Acreate2(dataset, "units", type, space, H5P_DEFAULT, H5P_DEFAULT);
-  PetscCall(HDF5Check(attribute, "create an attribute", path));
-  PetscCall(HDF5Check(H5Awrite(attribute, type, units), "write an attribute", path));
-  PetscCall(HDF5Check(H5Aclose(attribute), "write an attribute", path));
-  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
-  PetscCall(HDF5Check(H5Tclose(type), "close a type", path));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Makes a dataset, with its place in the file. It is closed again if `dataset` is NULL. */
 static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, hsize_t rows, PetscInt components, UnitDimension dimension,
                                     Units units, const char path[], hid_t *dataset)
@@ -87,7 +64,7 @@ static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, h
   PetscCall(HDF5Check(H5Pset_obj_track_times(layout, 0), "place a dataset", path));
   created = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
   PetscCall(HDF5Check(created, "create a dataset", path));
-  PetscCall(WriteUnits(created, UnitsLabel(units, dimension), path));
+  PetscCall(HDF5WriteText(created, "units", UnitsLabel(units, dimension), PETSC_TRUE, path));
   PetscCall(HDF5Check(H5Pclose(layout), "close a property list", path));
   PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
   if (dataset) *dataset = created;
@@ -163,7 +140,7 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, Units units
     PetscCall(PetscSNPrintfCount(names + used, size - used, "%s%s", &length, b ? "," : "", name));
     used += length - 1; /* counted with the end of the text */
   }
-  PetscCall(HDF5WriteText(dataset, "names", names, path));
+  PetscCall(HDF5WriteText(dataset, "names", names, PETSC_FALSE, path));
   PetscCall(PetscFree(names));
   PetscCall(HDF5Check(H5Dclose(dataset), "create a dataset", path));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -44,7 +44,7 @@ static PetscErrorCode CreateDataset(hid_t file, const Series *series, hsize_t re
   PetscCall(HDF5Check(H5Pset_chunk(layout, rank, chunk), "make chunks", path));
   dataset = H5Dcreate2(file, series->name, series->integer ? H5T_STD_I32LE : H5T_IEEE_F64LE, space, links, layout, H5P_DEFAULT);
   PetscCall(HDF5Check(dataset, "create a dataset", path));
-  PetscCall(HDF5WriteText(dataset, "units", series->units, path));
+  PetscCall(HDF5WriteText(dataset, "units", series->units, PETSC_FALSE, path));
   PetscCall(HDF5Check(H5Dclose(dataset), "create a dataset", path));
   PetscCall(HDF5Check(H5Pclose(layout), "close a property list", path));
   PetscCall(HDF5Check(H5Pclose(links), "close a property list", path));
