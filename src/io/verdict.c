@@ -34,39 +34,18 @@
 /* -<body>_mass_redistribute near is worth a word where it leaves less of that than this part */
 #define NEAR_LEAVES 0.9
 
-static PetscErrorCode Append(Verdict *verdict, const char format[], va_list arguments)
+/* Adds a sentence; where it is on one of many bodies or pairs, of each kind the first few, and the others are counted */
+static PetscErrorCode Add(Verdict *verdict, VerdictKind kind, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
+static PetscErrorCode Add(Verdict *verdict, VerdictKind kind, const char format[], ...)
 {
+  va_list        arguments;
+  PetscErrorCode failure;
+
   PetscFunctionBegin;
+  if (kind != VERDICT_RUN && verdict->found[kind]++ >= VERDICT_OF_A_KIND) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(verdict->n < VERDICT_MAX, PETSC_COMM_SELF, PETSC_ERR_PLIB, "There are more than %d sentences on a run", VERDICT_MAX);
-  PetscCall(PetscVSNPrintf(verdict->text[verdict->n++], VERDICT_SIZE, format, NULL, arguments));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Adds a sentence */
-static PetscErrorCode Add(Verdict *verdict, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(2, 3);
-static PetscErrorCode Add(Verdict *verdict, const char format[], ...)
-{
-  va_list        arguments;
-  PetscErrorCode failure;
-
-  PetscFunctionBegin;
   va_start(arguments, format);
-  failure = Append(verdict, format, arguments);
-  va_end(arguments);
-  PetscFunctionReturn(failure);
-}
-
-/* Adds a sentence on one of many bodies or pairs: of each kind the first few, and the others are counted */
-static PetscErrorCode AddOfKind(Verdict *verdict, VerdictKind kind, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
-static PetscErrorCode AddOfKind(Verdict *verdict, VerdictKind kind, const char format[], ...)
-{
-  va_list        arguments;
-  PetscErrorCode failure;
-
-  PetscFunctionBegin;
-  if (verdict->found[kind]++ >= VERDICT_OF_A_KIND) PetscFunctionReturn(PETSC_SUCCESS);
-  va_start(arguments, format);
-  failure = Append(verdict, format, arguments);
+  failure = PetscVSNPrintf(verdict->text[verdict->n++], VERDICT_SIZE, format, NULL, arguments);
   va_end(arguments);
   PetscFunctionReturn(failure);
 }
@@ -91,8 +70,8 @@ static PetscErrorCode AddNumbers(Verdict *verdict)
     const PetscInt more = verdict->found[k] - VERDICT_OF_A_KIND;
 
     if (more > 0)
-      PetscCall(
-          Add(verdict, "as above, there %s %" PetscInt_FMT " more %s %s", more == 1 ? "is" : "are", more, kinds[k][more > 1], kinds[k][2]));
+      PetscCall(Add(verdict, VERDICT_RUN, "as above, there %s %" PetscInt_FMT " more %s %s", more == 1 ? "is" : "are", more,
+                    kinds[k][more > 1], kinds[k][2]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -111,7 +90,7 @@ static PetscErrorCode LookAtEnergy(Controller controller, Contact contact, const
   if (verdict->statics.all) { /* masses and waves are no matter there */
     if (verdict->statics.balanced)
       PetscCall(
-          Add(verdict,
+          Add(verdict, VERDICT_RUN,
               "the energy error is %+.3g %% at its worst: forces change too much within a load step for its work to be told from those "
               "at its ends; a smaller -time_step makes it less, where surfaces slide together with a smaller -contact_slip_bound",
               percent));
@@ -119,14 +98,14 @@ static PetscErrorCode LookAtEnergy(Controller controller, Contact contact, const
   }
   PetscCall(ControllerGetTimes(controller, NULL, &step, NULL));
   PetscCall(ControllerGetResolvedStep(controller, &resolved));
-  if (traits->takes && lost) PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst: %s", percent, traits->takes));
+  if (traits->takes && lost) PetscCall(Add(verdict, VERDICT_RUN, "the energy error is %+.3g %% at its worst: %s", percent, traits->takes));
   else if (traits->unlimited)
-    PetscCall(Add(verdict,
+    PetscCall(Add(verdict, VERDICT_RUN,
                   "the energy error is %+.3g %% at its worst, and contact may bring or take some, since %s; massless contact nodes "
                   "(-<body>_mass_redistribute, the default) keep it",
                   percent, traits->unlimited));
   else
-    PetscCall(Add(verdict, "the energy error is %+.3g %% at its worst; %s", percent,
+    PetscCall(Add(verdict, VERDICT_RUN, "the energy error is %+.3g %% at its worst; %s", percent,
                   resolved > 0 && resolved < step
                       ? "-time_step auto, or another smaller one, makes it less"
                       : "a smaller -time_step makes it less, where surfaces slide together with a smaller -contact_slip_bound"));
@@ -151,43 +130,43 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
   reason = traits.not_always;
   PetscCall(LookAtEnergy(controller, contact, &traits, gain, loss, results->energy_scale, verdict));
   if (reason && results->momentum_error_max > MOMENTUM_ERROR)
-    PetscCall(Add(verdict, "the momentum error is %.3g %%: %s; choose equal substeps, or leave -schwarz_transmission out",
+    PetscCall(Add(verdict, VERDICT_RUN, "the momentum error is %.3g %%: %s; choose equal substeps, or leave -schwarz_transmission out",
                   (double)(100 * results->momentum_error_max), reason));
   else if (always && results->momentum_scale > 0 && results->momentum_error_max > MOMENTUM_ERROR)
     PetscCall(
-        Add(verdict,
+        Add(verdict, VERDICT_RUN,
             "the momentum error is %.3g %%, and contact may lose some, since %s; massless contact nodes (-<body>_mass_redistribute, the "
             "default) keep it",
             (double)(100 * results->momentum_error_max), always));
   else if (results->momentum_scale > 0 && results->momentum_error_max > MOMENTUM_ERROR)
-    PetscCall(Add(verdict,
+    PetscCall(Add(verdict, VERDICT_RUN,
                   "the momentum error is %.3g %%, as where round-off of a body's stiffness hides its mass: check units and constants of "
                   "materials, or take a smaller -time_step",
                   (double)(100 * results->momentum_error_max)));
   if (results->momentum_scale > 0 && results->angular_momentum_error_max > ANGULAR_ERROR)
-    PetscCall(Add(verdict,
+    PetscCall(Add(verdict, VERDICT_RUN,
                   "the angular momentum error is %.3g %%; it is less with nonlinear materials where bodies turn, and with a smaller "
                   "-contact_slip_bound or finer surfaces where they slide",
                   (double)(100 * results->angular_momentum_error_max)));
   if (counts.unlimited_steps && !(gain <= traits.energy_excess))
-    PetscCall(Add(verdict, "%" PetscInt_FMT " step%s gained more energy at contact than -contact_energy_excess allows%s%s",
+    PetscCall(Add(verdict, VERDICT_RUN, "%" PetscInt_FMT " step%s gained more energy at contact than -contact_energy_excess allows%s%s",
                   counts.unlimited_steps, counts.unlimited_steps == 1 ? "" : "s", reason ? ", since " : "", reason ? reason : ""));
   if (counts.ambiguous_steps)
-    PetscCall(Add(verdict,
+    PetscCall(Add(verdict, VERDICT_RUN,
                   "in %" PetscInt_FMT " step%s friction may have had more than one solution, since its coefficient is large for the way in "
                   "which forces across a surface press on it; nodes that slide may stick as well",
                   counts.ambiguous_steps, counts.ambiguous_steps == 1 ? "" : "s"));
   if (counts.friction_tilt > TILT)
     PetscCall(
-        Add(verdict,
+        Add(verdict, VERDICT_RUN,
             "surfaces have turned since contact rows were built, or linear bodies have: along surfaces normal forces are off by up to "
             "%.3g %% of what friction can bear; take materials that are not linear, and a smaller -contact_angle_bound (1e-4)",
             (double)(100 * counts.friction_tilt)));
   if (counts.unconverged_steps)
-    PetscCall(Add(verdict, "%" PetscInt_FMT " step%s accepted without having converged (-schwarz_unconverged accept)",
+    PetscCall(Add(verdict, VERDICT_RUN, "%" PetscInt_FMT " step%s accepted without having converged (-schwarz_unconverged accept)",
                   counts.unconverged_steps, counts.unconverged_steps == 1 ? " was" : "s were"));
   if (cuts.lossy_steps && !(gain <= traits.energy_tolerance && loss <= traits.energy_tolerance))
-    PetscCall(Add(verdict,
+    PetscCall(Add(verdict, VERDICT_RUN,
                   "%" PetscInt_FMT " step%s accepted although contact took or brought more energy than -contact_energy_tolerance after "
                   "the last cut, to %.3g%s; a smaller -time_step, or more -controller_step_cuts, makes it less",
                   cuts.lossy_steps, cuts.lossy_steps == 1 ? " was" : "s were", (double)cuts.smallest_step,
@@ -213,11 +192,11 @@ static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const c
     thickness = PetscMin(thickness, upper[d] - lower[d]);
   }
   if (PetscSqrtReal(square) > CENTRE_SHIFT * thickness)
-    PetscCall(AddOfKind(verdict, VERDICT_CENTRE,
-                        "massless contact nodes move the centre of mass of body '%s' by %.3g%s, %.3g %% of its least extent: set "
-                        "-%s_mass_redistribute auto, which keeps it, or refine it across",
-                        name, (double)PetscSqrtReal(square), UnitsText(verdict->units, UNIT_LENGTH),
-                        (double)(100 * PetscSqrtReal(square) / thickness), name));
+    PetscCall(Add(verdict, VERDICT_CENTRE,
+                  "massless contact nodes move the centre of mass of body '%s' by %.3g%s, %.3g %% of its least extent: set "
+                  "-%s_mass_redistribute auto, which keeps it, or refine it across",
+                  name, (double)PetscSqrtReal(square), UnitsText(verdict->units, UNIT_LENGTH),
+                  (double)(100 * PetscSqrtReal(square) / thickness), name));
   else if (inertia > INERTIA_CHANGE) {
     char advice[256] = "";
 
@@ -225,10 +204,10 @@ static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const c
     if (near < NEAR_LEAVES * inertia)
       PetscCall(
           PetscSNPrintf(advice, sizeof(advice), ", or set -%s_mass_redistribute near, which leaves %.3g %%", name, (double)(100 * near)));
-    PetscCall(AddOfKind(verdict, VERDICT_INERTIA,
-                        "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; "
-                        "set -%s_mass_redistribute auto, which keeps them, or refine it across%s",
-                        name, (double)(100 * inertia), name, advice));
+    PetscCall(Add(verdict, VERDICT_INERTIA,
+                  "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; "
+                  "set -%s_mass_redistribute auto, which keeps them, or refine it across%s",
+                  name, (double)(100 * inertia), name, advice));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -243,16 +222,16 @@ static PetscErrorCode LookAtBody(Contact contact, PetscInt b, Body body, const P
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
   PetscCall(BodyDoubtUnits(body, box, doubt));
-  if (doubt[0]) PetscCall(AddOfKind(verdict, VERDICT_UNITS, "%s", doubt));
+  if (doubt[0]) PetscCall(Add(verdict, VERDICT_UNITS, "%s", doubt));
   PetscCall(LookAtMass(contact, b, body, name, verdict));
   PetscCall(BodyIsLinear(body, &linear));
   if (linear && statistics->rotation_max > STATISTICS_FAR_TURN)
-    PetscCall(AddOfKind(verdict, VERDICT_TURNED, "linear body '%s' has turned by %.3g rad: set a nonlinear -%s_material_type", name,
-                        (double)statistics->rotation_max, name));
+    PetscCall(Add(verdict, VERDICT_TURNED, "linear body '%s' has turned by %.3g rad: set a nonlinear -%s_material_type", name,
+                  (double)statistics->rotation_max, name));
   if (!statistics->inverted_max) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AddOfKind(verdict, VERDICT_INVERTED,
-                      "up to %" PetscInt_FMT " elements of linear body '%s' were inside out: its figures mean nothing from then on",
-                      statistics->inverted_max, name));
+  PetscCall(Add(verdict, VERDICT_INVERTED,
+                "up to %" PetscInt_FMT " elements of linear body '%s' were inside out: its figures mean nothing from then on",
+                statistics->inverted_max, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -271,7 +250,7 @@ static PetscErrorCode LookAtOverlap(Contact contact, Body body, const BodyStatis
   if (overlap->pair && penalty) advice = "set a larger -contact_penalty";
   else if (overlap->pair)
     advice = "refine them there, give the rows to the one with the sharper corners (-contact_rows), or take a smaller -time_step";
-  PetscCall(AddOfKind(
+  PetscCall(Add(
       verdict, VERDICT_INSIDE, "'%s' and '%s' were %.3g%s inside each other, %.3g %% of an element, at (%.4g, %.4g, %.4g) and %.4g%s: %s",
       name, other, (double)overlap->depth, UnitsText(verdict->units, UNIT_LENGTH), (double)(100 * overlap->part), (double)overlap->x[0],
       (double)overlap->x[1], (double)overlap->x[2], (double)statistics->overlap_time, UnitsText(verdict->units, UNIT_TIME), advice));
@@ -292,22 +271,20 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   PetscCall(ContactGetPairLaw(contact, p, &law));
   tied = (PetscBool)(law == CONTACT_LAW_TIED || law == CONTACT_LAW_GLUE);
   if (tied && !results->pairs[p].active_max)
-    PetscCall(AddOfKind(verdict, VERDICT_UNTIED, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
+    PetscCall(Add(verdict, VERDICT_UNTIED, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
   PetscCall(ContactPairIsNamed(contact, p, &named));
   if (named && !tied && !results->pairs[p].steps_in_contact) {
     if (results->pairs[p].gap_min < CONTACT_NO_GAP)
       PetscCall(PetscSNPrintf(nearest, sizeof(nearest), "its smallest gap was %.3g%s", (double)results->pairs[p].gap_min,
                               UnitsText(verdict->units, UNIT_LENGTH)));
     else PetscCall(PetscSNPrintf(nearest, sizeof(nearest), "no node of one surface ever lay opposite the other"));
-    PetscCall(
-        AddOfKind(verdict, VERDICT_APART,
+    PetscCall(Add(verdict, VERDICT_APART,
                   "pair %s never touched: %s; check where its bodies start (the boxes that are printed), where they move, and -time_end",
                   name, nearest));
   }
   if (state->beyond_impulse > BEYOND * PetscAbsReal(state->normal_impulse)) { /* ties pull as well as push */
     PetscCall(ContactGetPairRowSide(contact, p, &side));
-    PetscCall(
-        AddOfKind(verdict, VERDICT_BEYOND,
+    PetscCall(Add(verdict, VERDICT_BEYOND,
                   "nodes beyond the end of the partner bear %.3g %% of the impulse of %s, as if it reached there: what hangs over may not "
                   "tip; set -contact_rows %s, or refine the surface",
                   (double)(100 * state->beyond_impulse / PetscAbsReal(state->normal_impulse)), name, side ? "first" : "second"));

@@ -3,8 +3,9 @@
 #include "statistics.h"
 #include <sys/units.h>
 
-/* What may be amiss with each of many bodies or pairs */
+/* What may be amiss with the run, and with each of many bodies or pairs */
 typedef enum {
+  VERDICT_RUN = -1,
   VERDICT_UNITS,
   VERDICT_CENTRE,
   VERDICT_INERTIA,
