@@ -36,12 +36,11 @@ typedef struct {
 
 /* How the steps of a body answer to contact; pointers are owned by the body */
 typedef struct {
-  PetscBool          local;           /* one of several ranks has the whole body and makes its steps, see BodyGetStepProperties() */
-  PetscBool          free, forced;    /* all rows are; the same on every rank */
-  PetscBool          affine;          /* of linear bodies: displacements of rows are, in the contact forces at the ends of substeps */
-  PetscBool          feels_end_force; /* displacements at the end of the controller step depend on the contact forces there */
-  const PetscBool   *by_mean;         /* per row of this rank: see BodySetMeanForces(); NULL: none */
-  const StepFailure *failure; /* why the last integration failed, and the error that this becomes where nobody can repeat the step */
+  PetscBool          local;        /* one of several ranks has the whole body and makes its steps, see BodyGetStepProperties() */
+  PetscBool          free, forced; /* all rows are; the same on every rank */
+  PetscBool          affine;       /* of linear bodies: displacements of rows are, in the contact forces at the ends of substeps */
+  const PetscBool   *by_mean;      /* per row of this rank: see BodySetMeanForces(); NULL: none */
+  const StepFailure *failure;      /* why the last integration failed, and the error that this becomes where nobody can repeat the step */
 } BodyStepProperties;
 
 PETSC_EXTERN PetscErrorCode BodySetInterface(Body, Mat);

@@ -269,7 +269,6 @@ static PetscErrorCode SetUp(Body body)
   integrator->is_local        = (PetscBool)(body->mass.inverse || body->mass.blocks);
   integrator->depends_on_step = (PetscBool)(body->time.substeps > 1);
   integrator->reads_start     = layer;
-  integrator->feels_end_force = (PetscBool)(layer || body->time.substeps > 1);
   if (body->time.substeps == 1) integrator->ops.complete = Complete;
   else integrator->ops.step = Step;
   if (explicit->layer_alone) integrator->ops.repeat = RepeatLayer;

@@ -48,7 +48,6 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   PetscCall(PetscNew(&implicit));
   integrator->data               = implicit;
   integrator->reads_start        = PETSC_TRUE;
-  integrator->feels_end_force    = PETSC_TRUE;
   integrator->repeats_prescribed = PETSC_TRUE;
   integrator->ops.bringchanges   = BringChanges;
   integrator->ops.setrows        = BodyImplicitSetRows;

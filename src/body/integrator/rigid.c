@@ -243,7 +243,6 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionBegin;
   PetscCall(BodyRigidFindInertia(body));
   body->integrator->depends_on_step = PETSC_TRUE;
-  body->integrator->feels_end_force = PETSC_TRUE;
   PetscCall(TSRigidSetAdvance(body->time.ts, Advance, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

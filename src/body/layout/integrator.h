@@ -76,7 +76,6 @@ struct _n_BodyIntegrator {
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */
   PetscBool repeats_prescribed; /* repeat() can do it with prescribed rows */
   PetscBool repeats_constant;   /* repeat() can do it with forces that are the same throughout the step */
-  PetscBool feels_end_force;    /* displacements at the end of the controller step answer to the contact forces there */
   PetscBool answers_by_layer;   /* those of the rows do so by the massless layer alone, whose matrix is that of body->solver */
 };
 

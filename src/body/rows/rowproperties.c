@@ -35,12 +35,11 @@ PetscErrorCode BodyGetStepProperties(Body body, BodyStepProperties *properties)
   const PetscBool plain = (PetscBool)(!rows->n_robin && !rows->n_prescribed);
 
   PetscFunctionBegin;
-  properties->local           = body->local;
-  properties->free            = (PetscBool)(plain && !rows->n_forced);
-  properties->forced          = (PetscBool)(plain && rows->n_forced == rows->global);
-  properties->affine          = (PetscBool)(body->model.linear && body->integrator->affine);
-  properties->feels_end_force = body->integrator->feels_end_force;
-  properties->by_mean         = rows->by_mean;
-  properties->failure         = &body->failure;
+  properties->local   = body->local;
+  properties->free    = (PetscBool)(plain && !rows->n_forced);
+  properties->forced  = (PetscBool)(plain && rows->n_forced == rows->global);
+  properties->affine  = (PetscBool)(body->model.linear && body->integrator->affine);
+  properties->by_mean = rows->by_mean;
+  properties->failure = &body->failure;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,54 +1,29 @@
 /* What methods that close gaps by the force at the end of a step need of bodies. */
 #include "forwardimpl.h"
 
-static PetscErrorCode CheckBeforeObstacle(Contact contact, const ContactPair *pair, const char type[])
-{
-  const Body         body = contact->bodies[pair->body[0]];
-  const char        *name = ((PetscObject)body)->name;
-  BodyStepProperties properties;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetStepProperties(body, &properties));
-  PetscCheck(properties.feels_end_force, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_type %s closes the gap by the contact force at the end of the step, which does not move the explicit contact nodes "
-             "with mass of '%s' before the next step; set -%s_mass_redistribute true, give it -%s_ts_type alpha2, or use -contact_type "
-             "lagrange with all bodies explicit, with mass and without substeps",
-             type, name, name, name);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* StepperCheckBodies - the gap of a pair must answer to the force at the end of the step: explicit nodes with mass do not feel it before
    the next one (and several substeps of theirs feel it less than the force at the start, so that the forces would oscillate and grow) */
 PetscErrorCode StepperCheckBodies(Contact contact)
 {
-  const char *type = ((PetscObject)contact)->type_name;
-
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const char *name[2];
-    PetscBool   answers = PETSC_FALSE;
-    PetscInt    substeps[2];
+    const ContactPair *pair    = &contact->pairs[p];
+    PetscBool          answers = PETSC_FALSE;
+    const char        *name    = ((PetscObject)contact->bodies[pair->body[0]])->name;
 
-    if (contact->pairs[p].obstacle) {
-      PetscCall(CheckBeforeObstacle(contact, &contact->pairs[p], type));
-      continue;
-    }
-    for (PetscInt side = 0; side < 2; side++) {
-      const Body body = contact->bodies[contact->pairs[p].body[side]];
-      PetscBool  is_explicit, massless;
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+      PetscBool is_explicit, massless;
 
-      PetscCall(BodyIsExplicit(body, &is_explicit));
-      PetscCall(BodyIsRedistributed(body, &massless));
-      PetscCall(BodyGetSubsteps(body, &substeps[side]));
-      name[side] = ((PetscObject)body)->name;
-      if (!is_explicit || massless) answers = PETSC_TRUE;
+      PetscCall(BodyIsExplicit(contact->bodies[pair->body[side]], &is_explicit));
+      PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
+      answers = (PetscBool)(answers || !is_explicit || massless);
     }
-    PetscCheck(answers, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-               "-contact_type %s closes the gap by the contact force at the end of the step, which does not move explicit contact nodes "
-               "with mass before the next step, and both '%s' (%" PetscInt_FMT " substeps) and '%s' (%" PetscInt_FMT
-               " substeps) have such; set -%s_mass_redistribute true, give one of them -%s_ts_type alpha2, or use -contact_type lagrange "
-               "with one step for all bodies, explicit and with mass (-%s_ts_time_step and -%s_ts_time_step equal to -time_step)",
-               type, name[0], substeps[0], name[1], substeps[1], name[0], name[0], name[0], name[1]);
+    PetscCheck(
+        answers, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        "-contact_type %s closes the gap of %s by the contact force at the end of the step, which does not move explicit contact nodes "
+        "with mass before the next step; set -%s_mass_redistribute true, give it -%s_ts_type alpha2, or use -contact_type lagrange "
+        "with all bodies explicit, with mass, and with -time_step as their -<body>_ts_time_step",
+        ((PetscObject)contact)->type_name, pair->name, name, name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -73,7 +73,7 @@ static void other_bodies_are_refused(void **state)
 
   AddExplicitCollision(0);
   AddOptions("-left_ts_time_step 0.01");
-  refused(PETSC_ERR_USER_INPUT, "'left' (2 substeps)|'right'|-left_mass_redistribute true|-right_ts_time_step",
+  refused(PETSC_ERR_USER_INPUT, "left:right|-left_mass_redistribute true|-time_step as their -<body>_ts_time_step",
           SimulationCreate(simulation));
 }
 
