@@ -298,7 +298,7 @@ static const KnownOption options[] = {
      "impedance of impedance conditions [N s/m^3; 2-D N s/m^2; 1-D N s/m], default that of plane waves in the Neumann side"},
     {"alternation", OPTION_OF_RUN, "schwarz_predictor", "last|trial|extrapolate|inelastic",
      "where the first sweep of a controller step starts from, default inelastic"},
-    {"alternation", OPTION_OF_RUN, "schwarz_convergence", "auto|position|contact_position|mismatch",
+    {"alternation", OPTION_OF_RUN, "schwarz_convergence", "auto|position|mismatch",
      "what change of position is compared with the tolerance, default auto"},
     {"alternation", OPTION_OF_RUN, "schwarz_recheck", "true|false",
      "whether tensile nodes leave contact within the controller step, default true"},

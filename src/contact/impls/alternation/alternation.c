@@ -6,13 +6,12 @@
 #include <sys/units.h>
 #include <impakt/private/bodysweeps.h>
 
-static const char *const ConvergenceTests[] = {
-    "auto", "position", "contact_position", "mismatch", "SchwarzConvergence", "SCHWARZ_CONVERGENCE_", NULL};
-static const char *const Relaxations[]   = {"fixed", "aitken", "SchwarzRelaxation", "SCHWARZ_RELAXATION_", NULL};
-static const char *const Transmissions[] = {"dirichlet_neumann",     "robin", "impedance", "SchwarzTransmission",
-                                            "SCHWARZ_TRANSMISSION_", NULL};
-static const char *const Predictors[]    = {"last", "trial", "extrapolate", "inelastic", "SchwarzPredictor", "SCHWARZ_PREDICTOR_", NULL};
-static const char *const Waveforms[]     = {"linear", "constant", "SchwarzWaveform", "SCHWARZ_WAVEFORM_", NULL};
+static const char *const ConvergenceTests[] = {"auto", "position", "mismatch", "SchwarzConvergence", "SCHWARZ_CONVERGENCE_", NULL};
+static const char *const Relaxations[]      = {"fixed", "aitken", "SchwarzRelaxation", "SCHWARZ_RELAXATION_", NULL};
+static const char *const Transmissions[]    = {"dirichlet_neumann",     "robin", "impedance", "SchwarzTransmission",
+                                               "SCHWARZ_TRANSMISSION_", NULL};
+static const char *const Predictors[]       = {"last", "trial", "extrapolate", "inelastic", "SchwarzPredictor", "SCHWARZ_PREDICTOR_", NULL};
+static const char *const Waveforms[]        = {"linear", "constant", "SchwarzWaveform", "SCHWARZ_WAVEFORM_", NULL};
 
 static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
 {
@@ -78,8 +77,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
     alternation->offset[i] = *unknowns;
     *unknowns += alternation->room[contact->rows.pair[i]];
   }
-  PetscCall(PetscMalloc3(contact->rows.n, &alternation->left, 2 * contact->rows.n, &alternation->stall.force, 2 * contact->rows.n,
-                         &alternation->previous));
+  PetscCall(PetscMalloc2(contact->rows.n, &alternation->left, 2 * contact->rows.n, &alternation->stall.force));
   PetscCall(PetscMalloc1(contact->rows.n, &alternation->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -182,7 +180,7 @@ static PetscErrorCode ContactDestroy_Alternation(Contact contact)
   PetscCall(PetscFree5(alternation->levels[0], alternation->levels[1], alternation->trace, alternation->room, alternation->kinematic));
   PetscCall(PetscFree2(alternation->exchange, alternation->offset));
   PetscCall(PetscFree3(alternation->weight, alternation->mass[0], alternation->mass[1]));
-  PetscCall(PetscFree3(alternation->left, alternation->stall.force, alternation->previous));
+  PetscCall(PetscFree2(alternation->left, alternation->stall.force));
   PetscCall(PetscFree(alternation->row_work));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -210,9 +208,8 @@ static PetscErrorCode ContactDestroy_Alternation(Contact contact)
 .  -contact_constraint (gap|gap_rate)                            - close the gap in the first step in contact, or keep it as it is at its
                                                                    start
 .  -contact_swap_sides (true|false)                              - whether the sides change with every controller step
-.  -schwarz_convergence (auto|position|contact_position|mismatch) - what is compared with the tolerances from sweep to sweep: the change of
-                                                                   all positions (the paper's), of
-                                                                   those of the contact nodes, or the change of the contact nodes that a
+.  -schwarz_convergence (auto|position|mismatch)                 - what is compared with the tolerances from sweep to sweep: the change of
+                                                                   all positions (the paper's), or the change of the contact nodes that a
                                                                    plain sweep would bring
 .  -schwarz_recheck (true|false)                                 - whether tensile nodes leave contact within the step
 -  -schwarz_unconverged (error|accept)                           - what to do with a step that does not converge

@@ -22,14 +22,9 @@ typedef enum { SCHWARZ_WAVEFORM_LINEAR, SCHWARZ_WAVEFORM_CONSTANT } SchwarzWavef
 typedef enum { SCHWARZ_RELAXATION_FIXED, SCHWARZ_RELAXATION_AITKEN } SchwarzRelaxation;
 
 /* What change of position is compared with the tolerances of the outer iteration: position, for the plain alternation with fixed
-   relaxation, or mismatch; that of all nodes of every body from one sweep to the next (Hoy, Tezaur, Mota); that of its contact nodes; what
-   one more plain sweep would bring there */
-typedef enum {
-  SCHWARZ_CONVERGENCE_AUTO,
-  SCHWARZ_CONVERGENCE_POSITION,
-  SCHWARZ_CONVERGENCE_CONTACT_POSITION,
-  SCHWARZ_CONVERGENCE_MISMATCH
-} SchwarzConvergence;
+   relaxation, or mismatch; that of all nodes of every body from one sweep to the next (Hoy, Tezaur, Mota); what one more plain sweep would
+   bring at contact nodes */
+typedef enum { SCHWARZ_CONVERGENCE_AUTO, SCHWARZ_CONVERGENCE_POSITION, SCHWARZ_CONVERGENCE_MISMATCH } SchwarzConvergence;
 
 typedef struct {
   /* options */
@@ -68,7 +63,7 @@ typedef struct {
   /* the controller step under way */
   PetscInt *left;             /* per row: 1 once it has left in this step, 2 once it has joined again */
   PetscBool cycled;           /* one has joined again */
-  PetscBool swept;            /* `previous` is of this step */
+  PetscBool swept;            /* there has been a sweep of this iteration */
   PetscReal change, position; /* of the last sweep: the body with the worst ratio */
   struct {
     PetscInt     sweeps, steady; /* of this iteration; of these the last ones with steady forces and no smaller change of position */
@@ -77,7 +72,6 @@ typedef struct {
   } stall;
   PetscBool converged;
   /* work space */
-  PetscScalar *previous; /* displacements of the rows of both bodies of each pair in the last sweep */
   PetscScalar *row_work; /* one for each row */
 } Alternation;
 

@@ -29,36 +29,6 @@ PetscErrorCode AlternationGetForces(Contact contact, PetscScalar force[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the contact nodes of a body on one side of the pairs have moved since the last sweep, and where they are [m] */
-static PetscErrorCode MeasureRows(Contact contact, PetscInt side, PetscReal *change, PetscReal *position)
-{
-  Alternation *alternation = (Alternation *)contact->data;
-  PetscReal    sums[2]     = {0, 0};
-  PetscScalar *previous    = alternation->previous + side * contact->rows.n, *end;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair  = &contact->pairs[p];
-    const Trace        trace = contact->traces[pair->body[side]].displacement;
-    PetscInt           levels;
-
-    PetscCall(TraceGetSizes(trace, NULL, &levels));
-    PetscCall(TraceGetLevel(trace, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscScalar now = end[i - pair->shift[side]];
-
-      sums[0] += PetscSqr(now - previous[i]);
-      sums[1] += PetscSqr(now);
-      previous[i] = now;
-    }
-  }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  *change   = alternation->swept ? PetscSqrtReal(sums[0]) : PETSC_INFINITY;
-  *position = PetscSqrtReal(sums[1]);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Nodes with mass take the velocity of their partner as it was after the sweep before, which the residual does not see: how far what
    the Dirichlet side of row i was given is from what its partner has now, in terms of displacement [m] */
 static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
@@ -144,11 +114,9 @@ static PetscErrorCode FindStall(Contact contact)
 /* Compares the change of position with the tolerances, and notes the worst one */
 PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
 {
-  Alternation   *alternation = (Alternation *)contact->data;
-  const PetscInt measures    = alternation->convergence == SCHWARZ_CONVERGENCE_MISMATCH           ? 1
-                               : alternation->convergence == SCHWARZ_CONVERGENCE_CONTACT_POSITION ? 2
-                                                                                                  : contact->n_bodies;
-  PetscReal      worst       = -1;
+  Alternation    *alternation = (Alternation *)contact->data;
+  const PetscBool mismatch    = (PetscBool)(alternation->convergence == SCHWARZ_CONVERGENCE_MISMATCH);
+  PetscReal       worst       = -1;
 
   PetscFunctionBegin;
   if (!alternation->swept) {
@@ -156,11 +124,10 @@ PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
     alternation->stall.least                              = PETSC_MAX_REAL;
   }
   alternation->converged = PETSC_TRUE;
-  for (PetscInt k = 0; k < measures; k++) {
+  for (PetscInt k = 0; k < (mismatch ? 1 : contact->n_bodies); k++) {
     PetscReal change, position;
 
-    if (alternation->convergence == SCHWARZ_CONVERGENCE_MISMATCH) PetscCall(MeasureMismatch(contact, f, &change, &position));
-    else if (alternation->convergence == SCHWARZ_CONVERGENCE_CONTACT_POSITION) PetscCall(MeasureRows(contact, k, &change, &position));
+    if (mismatch) PetscCall(MeasureMismatch(contact, f, &change, &position));
     else PetscCall(BodyGetPositionChange(contact->bodies[k], &change, &position));
     if (!(change <= alternation->atol || change <= alternation->rtol * position)) alternation->converged = PETSC_FALSE;
     if (change <= worst) continue;
