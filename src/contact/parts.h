@@ -55,6 +55,8 @@ static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pa
 }
 
 PETSC_INTERN PetscErrorCode    ContactWarnOfStages(Contact, PetscBool);
+PETSC_INTERN PetscErrorCode    ContactGetStage(Body, PetscReal[2]);
+PETSC_INTERN PetscErrorCode    ContactGetTransit(Body, PetscReal, PetscReal *, PetscReal *);
 PETSC_INTERN PetscFunctionList ContactList;
 
 PETSC_INTERN PetscErrorCode ContactGetTime(Contact, PetscReal *);

@@ -89,7 +89,7 @@ PetscErrorCode ContactRefuseSlopes(Contact contact, const char prefix[], SNESLin
 
 /* Where in a substep the inertia and the forces of a body are in balance: alpha_m and alpha_f of the generalised-alpha method, 1 and 1 for
    others */
-static PetscErrorCode GetStage(Body body, PetscReal stage[2])
+PetscErrorCode ContactGetStage(Body body, PetscReal stage[2])
 {
   PetscBool newmark;
   TS        ts;
@@ -115,7 +115,7 @@ PetscErrorCode ContactWarnOfStages(Contact contact, PetscBool of_ties)
     PetscBool          differ, between;
 
     if (pair->obstacle) continue;
-    for (PetscInt side = 0; side < 2; side++) PetscCall(GetStage(contact->bodies[pair->body[side]], stage[side]));
+    for (PetscInt side = 0; side < 2; side++) PetscCall(ContactGetStage(contact->bodies[pair->body[side]], stage[side]));
     differ  = (PetscBool)(stage[0][0] != stage[1][0] || stage[0][1] != stage[1][1]);
     between = (PetscBool)(pair->keeps_mass && !(stage[0][0] == stage[0][1] && (stage[0][0] == 1 || stage[0][0] == 0.5)));
     if (of_ties ? differ || !between : !differ) continue;

@@ -113,15 +113,10 @@ static PetscErrorCode ChooseMethod(Contact contact)
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP) why = "-contact_constraint";
   if (contact->options.stabilization != CONTACT_STABILIZATION_NONE) why = "-contact_stabilization";
   for (PetscInt b = 0; b < contact->n_bodies && !why; b++) {
-    PetscReal alpha_m, alpha_f;
-    PetscBool implicit;
-    TS        ts;
+    PetscReal stage[2];
 
-    PetscCall(BodyGetTS(contact->bodies[b], &ts));
-    PetscCall(PetscObjectTypeCompare((PetscObject)ts, TSALPHA2, &implicit));
-    if (!implicit) continue;
-    PetscCall(TSAlpha2GetParams(ts, &alpha_m, &alpha_f, NULL, NULL));
-    if (alpha_m != 1 || alpha_f != 1) why = "generalized alpha (-<body>_ts_alpha_...)";
+    PetscCall(ContactGetStage(contact->bodies[b], stage));
+    if (stage[0] != 1 || stage[1] != 1) why = "generalized alpha (-<body>_ts_alpha_...)";
   }
   if (!why) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,

@@ -6,18 +6,19 @@
 /* Mean elements of two bodies are alike if the ratio of their edges is above this, so that round-off does not choose the sides */
 #define ALIKE 0.999
 
-/* Time that a plane wave takes through an element of a body [s] */
-static PetscErrorCode GetTransit(Body body, PetscReal size, PetscReal *transit)
+/* Time that a plane wave takes through an element of a body [s], and the impedance of these waves [N s/m^3] */
+PetscErrorCode ContactGetTransit(Body body, PetscReal size, PetscReal *transit, PetscReal *impedance)
 {
-  PetscReal density, impedance, cross_section;
+  PetscReal density, cross_section;
   Material  material;
 
   PetscFunctionBegin;
   PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetDensity(material, &density));
-  PetscCall(BodyGetScale(body, BODY_IMPEDANCE, &impedance));
+  PetscCall(BodyGetScale(body, BODY_IMPEDANCE, impedance));
   PetscCall(BodyGetScale(body, BODY_CROSS_SECTION, &cross_section));
-  *transit = impedance > 0 ? size * density * cross_section / impedance : 0;
+  *impedance /= cross_section;
+  *transit = *impedance > 0 ? size * density / *impedance : 0; /* h / c, c = Z / rho */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -25,12 +26,12 @@ static PetscErrorCode GetTransit(Body body, PetscReal size, PetscReal *transit)
    cross the elements of both sides, see ContactGetResolvedStep(). */
 static PetscErrorCode EstimateSubsteps(Contact contact, const PetscReal size[], ContactPreference preferences[])
 {
-  PetscReal *transit, step, least = PETSC_MAX_REAL, most = 0;
+  PetscReal *transit, step, least = PETSC_MAX_REAL, most = 0, impedance;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(contact->n_bodies, &transit));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(GetTransit(contact->bodies[b], size[b], &transit[b]));
+    PetscCall(ContactGetTransit(contact->bodies[b], size[b], &transit[b], &impedance));
     if (!preferences[b].is_explicit || !(transit[b] > 0)) continue;
     least = PetscMin(least, transit[b]);
     most  = PetscMax(most, transit[b]);

@@ -22,18 +22,10 @@ typedef struct {
 
 static PetscErrorCode GetSide(Body body, Side *side)
 {
-  PetscReal density, impedance, cross_section;
-  Material  material;
-
   PetscFunctionBegin;
   PetscCall(BodyIsRigid(body, &side->rigid));
   PetscCall(BodyGetScale(body, BODY_CONTACT_ELEMENT_SIZE, &side->size));
-  PetscCall(BodyGetScale(body, BODY_IMPEDANCE, &impedance));
-  PetscCall(BodyGetScale(body, BODY_CROSS_SECTION, &cross_section));
-  PetscCall(BodyGetSurfaceMaterial(body, &material));
-  PetscCall(MaterialGetDensity(material, &density));
-  side->impedance = impedance / cross_section;
-  side->transit   = side->size * density / side->impedance; /* h / c, c = Z / rho */
+  PetscCall(ContactGetTransit(body, side->size, &side->transit, &side->impedance));
   PetscCall(BodyGetInitialVelocity(body, side->velocity));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

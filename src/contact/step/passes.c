@@ -8,11 +8,6 @@
 
 #define MOST_PASSES 50
 
-static ContactStepper *Stepper(Contact contact)
-{
-  return (ContactStepper *)contact->data;
-}
-
 /* What a row reads, less what it may: by the law */
 static PetscReal Reading(Contact contact, const ContactStepper *stepper, PetscInt i)
 {

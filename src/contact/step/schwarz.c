@@ -18,11 +18,6 @@
 /* Turn of an obstacle's normal above which a row is laid again [rad], as rows between bodies are, see pairsupdate.c */
 #define STILL 1e-6
 
-static ContactStepper *Stepper(Contact contact)
-{
-  return (ContactStepper *)contact->data;
-}
-
 /* ContactStepperSetFromOptions - options of all contact types that are made of the step */
 PetscErrorCode ContactStepperSetFromOptions(Contact contact)
 {

@@ -6,11 +6,6 @@
 */
 #include "stepimpl.h"
 
-static ContactStepper *Stepper(Contact contact)
-{
-  return (ContactStepper *)contact->data;
-}
-
 /* Bounds that the law of friction has for touching nodes, on all ranks */
 static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
 {

@@ -226,6 +226,12 @@ PETSC_INTERN PetscErrorCode ContactStepperIterate(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperEndTies(Contact, ContactStepper *);
 
+/* What the step keeps */
+static inline ContactStepper *Stepper(Contact contact)
+{
+  return (ContactStepper *)contact->data;
+}
+
 /* The rule of a pair's set */
 static inline const ContactRule *ContactStepperRule(const ContactStepper *stepper, const ContactPair *pair)
 {
