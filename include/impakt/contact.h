@@ -94,7 +94,7 @@ typedef struct {
 
    Level: intermediate
 
-.seealso: `ContactGetOverlaps()`
+.seealso: `ContactGetPairStates()`
 S*/
 typedef struct {
   PetscInt  other; /* number of the other body; obstacles are counted after all bodies; -1: there is none */
@@ -172,7 +172,7 @@ typedef struct {
 
    Level: intermediate
 
-.seealso: `ContactFieldsCreate()`, `ContactFieldsCompute()`
+.seealso: `ContactGetPairStates()`
 S*/
 typedef struct _n_ContactFields *ContactFields;
 
@@ -192,18 +192,12 @@ PETSC_EXTERN PetscErrorCode ContactGetTraits(Contact, ContactTraits *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
 PETSC_EXTERN PetscErrorCode ContactStep(Contact);
-PETSC_EXTERN PetscErrorCode ContactGetOverlaps(Contact, ContactOverlap[]);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactViewFromOptions(Contact, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
 
 PETSC_EXTERN PetscErrorCode ContactGetNumPairs(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetPair(Contact, PetscInt, const char *[], Body *, Body *);
-PETSC_EXTERN PetscErrorCode ContactGetPairNormal(Contact, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactGetPairState(Contact, PetscInt, ContactPairState *);
 PETSC_EXTERN PetscErrorCode ContactGetPairStates(Contact, ContactPairState[]);
 PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);
-
-PETSC_EXTERN PetscErrorCode ContactFieldsCreate(Contact, ContactFields *);
-PETSC_EXTERN PetscErrorCode ContactFieldsCompute(ContactFields, PetscInt, PetscReal[]);
-PETSC_EXTERN PetscErrorCode ContactFieldsDestroy(ContactFields *);

@@ -2,6 +2,7 @@
 #include "exactimpl.h"
 #include <sys/units.h>
 #include <impakt/private/bodystart.h>
+#include <impakt/private/contactsteps.h>
 
 /* Bars move as a whole and undeformed if their energies are those of their mean velocity but for this part: round-off of sums over all
    nodes */

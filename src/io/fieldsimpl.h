@@ -3,6 +3,7 @@
 #include "fields.h"
 #include "fieldsobstacles.h"
 #include "hdf5file.h"
+#include <impakt/private/contactsteps.h>
 
 struct _n_Fields {
   MPI_Comm        comm;

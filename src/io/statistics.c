@@ -3,6 +3,7 @@
 #include <math.h>
 #include "linearlimits.h"
 #include <impakt/private/bodymeasures.h>
+#include <impakt/private/contactsteps.h>
 
 /* An energy of a body at the start that is smaller than this part of what the run comes to is round-off: errors are not compared with it.
    Neither is less of the kinetic energy than this part, where all bodies move alike. */

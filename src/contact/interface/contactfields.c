@@ -48,21 +48,7 @@ static PetscErrorCode MakeRoom(ContactFields f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactFieldsCreate - what is needed to compute nodal fields of contact
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up; it must outlive the fields
-
-  Output Parameter:
-. fields - the `ContactFields`
-
-  Level: intermediate
-
-.seealso: `ContactFields`, `ContactFieldsCompute()`
-@*/
+/* What is needed to compute nodal fields of a contact that has been set up, and outlives them. Collective. */
 PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
 {
   ContactFields f;
@@ -166,31 +152,11 @@ static void FrictionOf(PetscInt dim, PetscInt dof, PetscReal smallest, const Pet
   values[CONTACT_FIELDS_FRICTION_LOSS] = Ratio(dim, carried[CARRY_FRICTION_LOSS] + dof, area, smallest, 0);
 }
 
-/*@
-  ContactFieldsCompute - nodal fields of a body at the end of the last step
-
-  Collective
-
-  Input Parameters:
-+ fields - the `ContactFields`
-- body   - number of the body
-
-  Output Parameter:
-. values - for each node of this rank `CONTACT_FIELDS_SIZE` numbers: `CONTACT_FIELDS_FORCE` and following, the contact force
-           that acts on the body there; `CONTACT_FIELDS_PRESSURE`; `CONTACT_FIELDS_GAP`, not-a-number where there is none;
-           `CONTACT_FIELDS_ACTIVE`; and, zeros without friction, `CONTACT_FIELDS_TRACTION` and following, the force of friction on the body
-per area, `CONTACT_FIELDS_SLIDING`, `CONTACT_FIELDS_SLIP_DISTANCE`, `CONTACT_FIELDS_FRICTION_LOSS`. Zeros where the node is on no contact
-surface
-
-  Level: intermediate
-
-  Note:
-  A Dirichlet node has the values of its row. A Neumann node has means of the rows that act on it, weighed by the areas that
-  they bring there: the pressure is sum_i P_ij f_i / sum_i P_ij A_i, so that it is uniform on both sides if it is on one. It
-  touches if any of them does. A node on several contact surfaces has the mean of their values.
-
-.seealso: `ContactFields`, `ContactGetPairState()`
-@*/
+/* Nodal fields of a body at the end of the last step: for each node of this rank the CONTACT_FIELDS_SIZE numbers that contact.h lists; the
+   gap is not-a-number where there is none, the others are zeros where the node is on no contact surface. A Dirichlet node has the values
+   of its row, a Neumann node means of the rows that act on it, weighed by the areas that they bring there: the pressure is
+   sum_i P_ij f_i / sum_i P_ij A_i, so that it is uniform on both sides if it is on one. It touches if any of them does. A node on several
+   contact surfaces has the mean of their values. Collective. */
 PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscReal values[])
 {
   Contact            contact = fields->contact;
@@ -227,18 +193,7 @@ PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactFieldsDestroy - frees what `ContactFieldsCreate()` made
-
-  Collective
-
-  Input Parameter:
-. fields - the `ContactFields`, set to `NULL`
-
-  Level: intermediate
-
-.seealso: `ContactFields`
-@*/
+/* Frees what ContactFieldsCreate() made. Collective. */
 PetscErrorCode ContactFieldsDestroy(ContactFields *fields)
 {
   PetscFunctionBegin;

@@ -85,22 +85,7 @@ PetscErrorCode ContactPairIsNamed(Contact contact, PetscInt pair, PetscBool *nam
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetPairNormal - mean outward normal of the first body of a pair
-
-  Not Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up
-- pair    - 0 to the number of pairs - 1
-
-  Output Parameter:
-. normal - 3 numbers, zeros beyond the space dimension
-
-  Level: intermediate
-
-.seealso: `Contact`
-@*/
+/* Mean outward normal of the first body of a pair: 3 numbers, zeros beyond the space dimension */
 PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal normal[])
 {
   PetscFunctionBegin;

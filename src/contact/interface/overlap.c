@@ -215,25 +215,9 @@ PetscErrorCode ContactStartOverlaps(Contact contact, PetscBool of_state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactGetOverlaps - how deep bodies are inside each other and inside obstacles now, anywhere on their surfaces
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up
-
-  Output Parameter:
-. overlaps - for each body the deepest overlap with a body of a higher number, or an obstacle
-
-  Level: intermediate
-
-  Note:
-  Deepest is what is most in parts of an element. All faces of all bodies count, whichever have contact rows. Left out are obstacles that
-  are no pair of the body, and bodies that are no pair and overlap at the start; of tied bodies what is more than at the start counts.
-
-.seealso: `Contact`, `ContactOverlap`, `SurfacesFindDepths()`
-@*/
+/* How deep bodies are inside each other and inside obstacles now, anywhere on their surfaces: for each body the deepest overlap, in parts
+   of an element, with a body of a higher number, or an obstacle. Left out are obstacles that are no pair of the body, and bodies that are
+   no pair and overlap at the start; of tied bodies what is more than at the start counts. Collective. */
 PetscErrorCode ContactGetOverlaps(Contact contact, ContactOverlap overlaps[])
 {
   SurfaceDepth *depths;
