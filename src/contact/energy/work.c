@@ -92,6 +92,18 @@ static void AddSprings(Contact contact, PetscBool across, PetscReal sums[])
                                          contact->energy.broken[i];
 }
 
+/* What ranks have of numbers of pairs, with the forces of these */
+static PetscErrorCode AddUp(Contact contact, PetscReal sums[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    sums[2 * contact->rows.pair[i] + 1] += PetscMax(PetscAbsReal(contact->end.force[i]), PetscAbsReal(contact->energy.accepted_force[i]));
+  if (contact->ranks.size > 1)
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Work of contact on the bodies in the step as it has been made without changes at its start, and the forces of pairs that touch: for each
    pair, on all ranks. Collective. */
 PetscErrorCode ContactComputeWork(Contact contact)
@@ -103,12 +115,7 @@ PetscErrorCode ContactComputeWork(Contact contact)
   PetscCall(ContactComputeFrictionLoss(contact, energy->last_force));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddWorkOn(contact, b));
   AddSprings(contact, PETSC_FALSE, energy->pair_sums);
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    energy->pair_sums[2 * contact->rows.pair[i] + 1] += PetscMax(PetscAbsReal(contact->end.force[i]),
-                                                                 PetscAbsReal(energy->accepted_force[i]));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, energy->pair_sums, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM,
-                               PetscObjectComm((PetscObject)contact)));
+  PetscCall(AddUp(contact, energy->pair_sums));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,11 +129,7 @@ PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], Petsc
   PetscCall(BodyComputeEnergies(contact->n_bodies, contact->bodies, energy->sums, bodies));
   PetscCall(PetscArrayzero(springs, 2 * contact->n_pairs));
   AddSprings(contact, PETSC_TRUE, springs);
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    springs[2 * contact->rows.pair[i] + 1] += PetscMax(PetscAbsReal(contact->end.force[i]), PetscAbsReal(energy->accepted_force[i]));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, springs, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM,
-                               PetscObjectComm((PetscObject)contact)));
+  PetscCall(AddUp(contact, springs));
   for (PetscInt p = 0; p < contact->n_pairs && contact->friction.pair_step; p++)
     springs[2 * p] += contact->friction.pair_step[p] - contact->friction.pair_work[p];
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -187,11 +187,9 @@ static PetscErrorCode MakeStepOfFloating(Contact contact)
 {
   ContactFloating *f    = &contact->floating;
   PetscBool        rest = PETSC_FALSE;
-  TS               ts;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetTS(contact->bodies[f->bodies[0].body], &ts));
-  PetscCall(TSGetTime(ts, &f->time));
+  PetscCall(ContactGetTime(contact, &f->time));
   f->n_history = f->plain = 0;
   f->patience             = 2;
   f->leapt                = PETSC_FALSE;

@@ -1,4 +1,5 @@
-/* Ties: what holds the rows of a node where they are. */
+/* Ties: what holds the rows of a node where they are; and surfaces that have met and do not come apart, whose rows stay as closed as they
+   are, pushed or pulled. */
 #include "rowlaw.h"
 
 static void Project(PetscInt n, const PetscReal limit[2], const RowLawGlue *glue, const PetscReal p[], PetscReal force[],
@@ -18,5 +19,13 @@ PetscErrorCode RowLawCreate_tie(RowLaw *law)
   law->reads   = ROW_LAW_READS_END;
   law->pulls   = PETSC_TRUE;
   law->project = Project;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode RowLawCreate_hold(RowLaw *law)
+{
+  PetscFunctionBegin;
+  PetscCall(RowLawCreate_tie(law));
+  law->reads = ROW_LAW_READS_CLOSED;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -3,8 +3,11 @@
 #include <sys/statusline.h>
 #include <sys/units.h>
 
-PetscErrorCode ContactMonitorSetFromOptions(Contact contact, ContactMonitor *monitor)
+/* ContactStepperSetFromOptions - options of all contact types that are made of the step */
+PetscErrorCode ContactStepperSetFromOptions(Contact contact)
 {
+  ContactMonitor *monitor = &Stepper(contact)->monitor;
+
   PetscFunctionBegin;
   PetscCall(PetscViewerDestroy(&monitor->viewer));
   PetscObjectOptionsBegin((PetscObject)contact);

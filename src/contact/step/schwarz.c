@@ -18,14 +18,6 @@
 /* Turn of an obstacle's normal above which a row is laid again [rad], as rows between bodies are, see pairsupdate.c */
 #define STILL 1e-6
 
-/* ContactStepperSetFromOptions - options of all contact types that are made of the step */
-PetscErrorCode ContactStepperSetFromOptions(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(ContactMonitorSetFromOptions(contact, &Stepper(contact)->monitor));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode SetFromOptions(Contact contact)
 {
   const char *const rules[] = {"auto", "impulse", "linear"};

@@ -173,7 +173,6 @@ PETSC_INTERN PetscErrorCode ContactStepperEndGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperAcceptGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperVisitGlue(Contact, ContactStepper *, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyGlue(ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactMonitorSetFromOptions(Contact, ContactMonitor *);
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
 PETSC_INTERN PetscErrorCode ContactStepperGuess(Contact, ContactStepper *);

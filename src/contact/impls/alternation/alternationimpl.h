@@ -124,7 +124,6 @@ PETSC_INTERN PetscReal      AlternationResidualScale(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode AlternationSetUpSides(Contact);
 PETSC_INTERN PetscErrorCode AlternationSwapSides(Contact);
 PETSC_INTERN PetscErrorCode AlternationGetForces(Contact, PetscScalar[]);
-PETSC_INTERN PetscErrorCode AlternationSetUpAitken(Contact);
 PETSC_INTERN PetscErrorCode AlternationMeasureChange(Contact, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode AlternationTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);
 PETSC_INTERN PetscErrorCode AlternationCheckConverged(Contact);

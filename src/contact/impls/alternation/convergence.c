@@ -163,7 +163,6 @@ PetscErrorCode AlternationCheckConverged(Contact contact)
   Alternation        *alternation = (Alternation *)contact->data;
   SNESConvergedReason reason;
   PetscReal           time;
-  TS                  ts;
 
   PetscFunctionBegin;
   PetscCall(SNESGetConvergedReason(alternation->snes, &reason));
@@ -172,8 +171,7 @@ PetscErrorCode AlternationCheckConverged(Contact contact)
     contact->counts.unconverged_steps++;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(BodyGetTS(contact->bodies[0], &ts));
-  PetscCall(TSGetTime(ts, &time));
+  PetscCall(ContactGetTime(contact, &time));
   PetscCall(StepFailureSet(
       &contact->attempt.failure, STEP_DIVERGED_OUTER, PETSC_ERR_NOT_CONVERGED,
       "The Schwarz iteration did not converge in the step that ends at time %.9g s: after %" PetscInt_FMT

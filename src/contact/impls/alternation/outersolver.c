@@ -1,4 +1,4 @@
-/* The SNES of the sweeps: a fixed-point iteration, accelerated or not. */
+/* The SNES of the sweeps: a fixed-point iteration, accelerated or relaxed. */
 #include "alternationimpl.h"
 #include <sys/petsccompat.h>
 
@@ -63,6 +63,43 @@ static PetscErrorCode SetFromOptions(Contact contact, SNES snes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Aitken's relaxation for nrichardson, as a line search: x <- x - theta F with theta from the last two residuals */
+static PetscErrorCode ApplyAitken(SNESLineSearch line_search, void *ctx)
+{
+  Contact      contact     = (Contact)ctx;
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscReal    first, fnorm, xnorm, ynorm;
+  Vec          X, F, Y, W;
+  SNES         snes;
+  PetscInt     it;
+
+  PetscFunctionBegin;
+  PetscCall(SNESLineSearchGetVecs(line_search, &X, &F, &Y, &W, NULL));
+  PetscCall(SNESLineSearchGetSNES(line_search, &snes));
+  PetscCall(SNESLineSearchGetDamping(line_search, &first));
+  PetscCall(SNESGetIterationNumber(snes, &it));
+  if (it == 0) alternation->damping = first;
+  else {
+    PetscScalar dot, square;
+
+    PetscCall(VecAYPX(alternation->last_residual, -1, F)); /* F - last F */
+    PetscCall(VecDot(alternation->last_residual, alternation->last_residual, &square));
+    PetscCall(VecCopy(F, W));
+    PetscCall(VecAXPY(W, -1, alternation->last_residual)); /* last F */
+    PetscCall(VecDot(W, alternation->last_residual, &dot));
+    if (square > 0) alternation->damping *= -dot / square;
+    if (alternation->damping == 0) alternation->damping = first;
+  }
+  PetscCall(VecCopy(F, alternation->last_residual));
+  PetscCall(VecNorm(Y, NORM_2, &ynorm));
+  PetscCall(VecAXPY(X, -alternation->damping, Y));
+  PetscCall(SNESComputeFunction(snes, X, F));
+  PetscCall(VecNorm(F, NORM_2, &fnorm));
+  PetscCall(VecNorm(X, NORM_2, &xnorm));
+  PetscCall(SNESLineSearchSetNorms(line_search, xnorm, fnorm, PetscAbsReal(alternation->damping) * ynorm));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The outer iteration, of so many unknowns on this rank */
 PetscErrorCode AlternationSetUpOuterSolver(Contact contact, PetscInt unknowns)
 {
@@ -86,8 +123,10 @@ PetscErrorCode AlternationSetUpOuterSolver(Contact contact, PetscInt unknowns)
   if (alternation->relaxation == SCHWARZ_RELAXATION_AITKEN) {
     PetscCheck(richardson, comm, PETSC_ERR_USER_INPUT, "-schwarz_relaxation aitken goes with -schwarz_snes_type nrichardson only");
     PetscCall(PetscOptionsHasName(NULL, "schwarz_", "-snes_linesearch_damping", &damping_set));
-    PetscCall(AlternationSetUpAitken(contact));
+    PetscCall(VecDuplicate(alternation->x, &alternation->last_residual));
     PetscCall(SNESGetLineSearch(alternation->snes, &line_search));
+    PetscCall(SNESLineSearchSetType(line_search, SNESLINESEARCHSHELL));
+    PetscCall(SNESLineSearchShellSetApply(line_search, ApplyAitken, contact));
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
   if (alternation->convergence == SCHWARZ_CONVERGENCE_AUTO)
