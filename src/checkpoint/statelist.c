@@ -88,3 +88,31 @@ PetscErrorCode StateListVisit(const StateList *list, const char name[], Checkpoi
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* The numbers of n nodes with `each` rows, the first of which is row `begin`, to a table with a line for each node, or back. `keys`: where
+   the nodes lie in the mesh */
+PetscErrorCode StateListCopyNodes(const StateList *list, PetscInt begin, PetscInt n, PetscInt each, const PetscReal keys[],
+                                  const char name[], PetscBool back, Tables tables)
+{
+  const PetscInt   own = StateListGetWidth(list), width = TABLES_KEY + each * own;
+  const PetscReal *values = NULL;
+  PetscReal       *packed;
+  PetscInt         n_all, row;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(width * PetscMax(n, 1), &packed));
+  if (back) PetscCall(TablesGet(tables, name, width, &n_all, &values));
+  for (PetscInt i = 0; i < n; i++) {
+    PetscReal *line = packed + (back ? 0 : width * i);
+
+    PetscCall(PetscArraycpy(line, keys + TABLES_KEY * i, TABLES_KEY));
+    if (back) {
+      PetscCall(TablesFind(tables, name, line, &row));
+      PetscCall(PetscArraycpy(line, values + width * row, width));
+    }
+    for (PetscInt k = 0; k < each; k++) StateListCopyOne(list, begin + i * each + k, back, line + TABLES_KEY + k * own);
+  }
+  if (!back) PetscCall(TablesAdd(tables, name, n, width, packed));
+  PetscCall(PetscFree(packed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -25,3 +25,5 @@ PETSC_INTERN PetscErrorCode StateListCopy(const StateList *, PetscBool, PetscRea
 PETSC_INTERN void           StateListSaveSome(const StateList *, const PetscInt[2], PetscInt, const PetscInt[], PetscReal[]);
 PETSC_INTERN void           StateListCopyOne(const StateList *, PetscInt, PetscBool, PetscReal[]);
 PETSC_INTERN PetscErrorCode StateListVisit(const StateList *, const char[], Checkpoint);
+PETSC_INTERN PetscErrorCode StateListCopyNodes(const StateList *, PetscInt, PetscInt, PetscInt, const PetscReal[], const char[], PetscBool,
+                                               Tables);

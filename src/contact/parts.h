@@ -27,9 +27,6 @@ typedef struct ContactPreference {
 /* Length of the texts of ContactDescribeMoves() and ContactDescribeRound() */
 #define CONTACT_MOVES 256
 
-/* What checkpoints have of a row */
-#define CONTACT_ROW_NUMBERS 28
-
 /* Groups of bodies, each named by its first one. While groups are joined, `of` leads to that by way of others. */
 static inline PetscInt ContactGroupOf(const PetscInt of[], PetscInt b)
 {

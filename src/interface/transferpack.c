@@ -39,45 +39,20 @@ static PetscErrorCode PackShares(Transfer transfer, const char pair[], Tables ta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Numbers of the nodes of one side, to a table or back */
-static PetscErrorCode CopyNodes(const StateList *list, const PetscReal reference[], const char pair[], const char what[], PetscBool back,
-                                Tables tables)
-{
-  const PetscInt   width  = TABLES_KEY + StateListGetWidth(list);
-  const PetscReal *values = NULL;
-  PetscReal       *packed;
-  PetscInt         n;
-  char             name[256];
-
-  PetscFunctionBegin;
-  PetscCall(Name(pair, what, name, sizeof(name)));
-  PetscCall(PetscMalloc1(width * PetscMax(list->n, 1), &packed));
-  if (back) PetscCall(TablesGet(tables, name, width, &n, &values));
-  for (PetscInt i = 0; i < list->n; i++) {
-    PetscReal *line = packed + (back ? 0 : width * i);
-    PetscInt   row;
-
-    PetscCall(PetscArraycpy(line, reference + 3 * i, TABLES_KEY));
-    if (back) {
-      PetscCall(TablesFind(tables, name, line, &row));
-      PetscCall(PetscArraycpy(line, values + width * row, width));
-    }
-    StateListCopyOne(list, i, back, line + TABLES_KEY);
-  }
-  if (!back) PetscCall(TablesAdd(tables, name, list->n, width, packed));
-  PetscCall(PetscFree(packed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What the nodes of both sides have; obstacles have none */
+/* What the nodes of both sides have, to tables or back; obstacles have none */
 static PetscErrorCode CopySides(Transfer transfer, const char pair[], PetscBool back, Tables tables)
 {
-  StateList lists[2];
+  static const char *const names[]     = {"rows", "partners"};
+  const Surface            surfaces[2] = {transfer->dirichlet, transfer->neumann};
+  StateList                lists[2];
+  char                     name[256];
 
   PetscFunctionBegin;
   TransferListState(transfer, lists);
-  PetscCall(CopyNodes(&lists[0], transfer->dirichlet->data.reference, pair, "rows", back, tables));
-  if (transfer->neumann) PetscCall(CopyNodes(&lists[1], transfer->neumann->data.reference, pair, "partners", back, tables));
+  for (PetscInt side = 0; side < 2 && surfaces[side]; side++) {
+    PetscCall(Name(pair, names[side], name, sizeof(name)));
+    PetscCall(StateListCopyNodes(&lists[side], 0, lists[side].n, 1, surfaces[side]->data.reference, name, back, tables));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

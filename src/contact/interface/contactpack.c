@@ -41,11 +41,7 @@ static PetscErrorCode CopyImpulses(Contact contact, PetscBool back, Tables table
 /* All rows of a pair to a table, a line for each node, or back */
 static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, Tables tables)
 {
-  const PetscInt     components = pair->components, width = TABLES_KEY + components * CONTACT_ROW_NUMBERS;
-  const PetscReal   *values = NULL;
   const SurfaceData *data;
-  PetscReal         *packed;
-  PetscInt           n, n_all;
   StateList          list;
   char               name[256];
 
@@ -53,23 +49,8 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
   ContactListRowState(contact, &list);
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/contact", pair->name));
   PetscCall(SurfaceGetData(pair->surfaces[0], &data));
-  n = (pair->end - pair->begin) / components;
-  PetscCall(PetscCalloc1(PetscMax(n, 1) * width, &packed));
-  if (back) PetscCall(TablesGet(tables, name, width, &n_all, &values));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscReal *line = packed + (back ? 0 : i * width);
-    PetscInt   row;
-
-    PetscCall(PetscArraycpy(line, data->reference + 3 * i, 3));
-    if (back) {
-      PetscCall(TablesFind(tables, name, line, &row));
-      PetscCall(PetscArraycpy(line, values + row * width, width));
-    }
-    for (PetscInt k = 0; k < components; k++)
-      StateListCopyOne(&list, pair->begin + i * components + k, back, line + TABLES_KEY + k * CONTACT_ROW_NUMBERS);
-  }
-  if (!back) PetscCall(TablesAdd(tables, name, n, width, packed));
-  PetscCall(PetscFree(packed));
+  PetscCall(StateListCopyNodes(&list, pair->begin, (pair->end - pair->begin) / pair->components, pair->components, data->reference, name,
+                               back, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

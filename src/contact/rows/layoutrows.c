@@ -5,14 +5,12 @@
 */
 #include <contact/parts.h>
 
-/* Of each row, beside what checkpoints have of it: its first displacement */
-enum { ROW_DOF = CONTACT_ROW_NUMBERS, N_ROW };
-
 /* What is kept of rows and pairs, while they are laid out */
 typedef struct {
   PetscInt     n_pairs;
   ContactPair *pairs;
-  PetscReal   *rows;      /* per row: N_ROW */
+  PetscInt     width;     /* numbers of each row: what checkpoints have of it, and its first displacement */
+  PetscReal   *rows;      /* per row: those */
   PetscReal   *impulses;  /* per pair */
   PetscReal   *pair_sums; /* per pair: 2 */
   PetscReal   *friction;  /* per pair: what it has taken, and the work of an obstacle [J] */
@@ -25,11 +23,12 @@ static PetscErrorCode KeepRows(Contact contact, Kept *kept)
 
   PetscFunctionBegin;
   ContactListRowState(contact, &list);
-  PetscCall(PetscCalloc5(N_ROW * contact->rows.n, &kept->rows, CONTACT_IMPULSES * contact->n_pairs, &kept->impulses, 2 * contact->n_pairs,
-                         &kept->pair_sums, 2 * contact->n_pairs, &kept->friction, contact->n_pairs, &kept->goes_on));
+  kept->width = StateListGetWidth(&list) + 1;
+  PetscCall(PetscCalloc5(kept->width * contact->rows.n, &kept->rows, CONTACT_IMPULSES * contact->n_pairs, &kept->impulses,
+                         2 * contact->n_pairs, &kept->pair_sums, 2 * contact->n_pairs, &kept->friction, contact->n_pairs, &kept->goes_on));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    StateListCopyOne(&list, i, PETSC_FALSE, kept->rows + N_ROW * i);
-    kept->rows[N_ROW * i + ROW_DOF] = (PetscReal)contact->rows.dof[i];
+    StateListCopyOne(&list, i, PETSC_FALSE, kept->rows + kept->width * i);
+    kept->rows[kept->width * (i + 1) - 1] = (PetscReal)contact->rows.dof[i];
   }
   if (contact->n_pairs) PetscCall(PetscArraycpy(kept->impulses, contact->resultants.impulse, CONTACT_IMPULSES * contact->n_pairs));
   if (contact->n_pairs && contact->energy.pair_sums)
@@ -108,10 +107,10 @@ static PetscErrorCode PutBack(Contact contact, const Kept *kept, const PetscInt 
       continue;
     }
     for (PetscInt i = pair->begin; i < pair->end; i++) {
-      PetscReal *row = kept->rows + N_ROW * (old_begin[p] + i - pair->begin);
+      PetscReal *row = kept->rows + kept->width * (old_begin[p] + i - pair->begin);
 
       StateListCopyOne(&list, i, PETSC_TRUE, row);
-      contact->rows.dof[i] = (PetscInt)row[ROW_DOF];
+      contact->rows.dof[i] = (PetscInt)row[kept->width - 1];
     }
     PetscCall(
         PetscArraycpy(contact->resultants.impulse + CONTACT_IMPULSES * p, kept->impulses + CONTACT_IMPULSES * was[p], CONTACT_IMPULSES));

@@ -2,7 +2,7 @@
    touched first in the last step, as their guess is another one, what laws keep of glued nodes, what secants have shown, and what contact
    and damage have taken. */
 #include "stepimpl.h"
-#include <checkpoint/tables.h>
+#include <checkpoint/statelist.h>
 
 #define LOSS_NAME "step/loss"
 
@@ -19,45 +19,23 @@ static PetscErrorCode FindPlace(Contact contact, const ContactPair *pair, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of a node touch all together: a line for each node of the pair's first surface, to a table or back. `places`: of rows, on both
-   sides, in secants */
-static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, PetscReal *places[2], Tables tables)
+/* The rows of a pair, to a table with a line for each node of its first surface, or back. `places`: of rows, on both sides, in secants */
+static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBool back, PetscReal *const places[2], Tables tables)
 {
   const ContactStepper *stepper = (const ContactStepper *)contact->data;
-  const PetscInt        n = (pair->end - pair->begin) / pair->components, own = stepper->glued ? ROW_LAW_HISTORY : 0,
-                        width  = TABLES_KEY + 1 + 2 * pair->components + own;
-  const PetscReal      *values = NULL;
-  const SurfaceData    *data;
-  PetscReal            *packed;
-  PetscInt              n_all, row;
-  char                  name[256];
+  const StateList       list    = {
+      .n      = contact->rows.n,
+      .arrays = {{1, .bools = stepper->joined}, {1, places[0]}, {1, places[1]}, {stepper->glued ? ROW_LAW_HISTORY : 0, stepper->history}}};
+  const SurfaceData *data;
+  char               name[256];
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(name, sizeof(name), "%s/step", pair->name));
   PetscCall(SurfaceGetData(pair->surfaces[0], &data));
-  if (back) PetscCall(TablesGet(tables, name, width, &n_all, &values));
-  PetscCall(PetscMalloc1(PetscMax(n, 1) * width, &packed));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscBool *joined = stepper->joined + pair->begin + i * pair->components;
-    PetscReal *line = packed + i * width, *next = line + TABLES_KEY;
-
-    PetscCall(PetscArraycpy(line, data->reference + 3 * i, 3));
-    if (back) {
-      PetscCall(TablesFind(tables, name, line, &row));
-      PetscCall(PetscArraycpy(line, values + row * width, width));
-    }
-    TablesCopyBool(back, joined, &next);
-    for (PetscInt k = 1; k < pair->components; k++) joined[k] = joined[0];
-    for (PetscInt k = 0; k < 2 * pair->components; k++, next++) {
-      const PetscInt side = k % 2, of = pair->begin + i * pair->components + k / 2;
-
-      if (back) places[side][of] = *next;
-      else PetscCall(FindPlace(contact, pair, side, of, next));
-    }
-    if (own) TablesCopyReals(back, own, stepper->history + own * (pair->begin + i * pair->components), &next);
-  }
-  if (!back) PetscCall(TablesAdd(tables, name, n, width, packed));
-  PetscCall(PetscFree(packed));
+  for (PetscInt i = pair->begin; i < pair->end && !back; i++)
+    for (PetscInt side = 0; side < 2; side++) PetscCall(FindPlace(contact, pair, side, i, &places[side][i]));
+  PetscCall(StateListCopyNodes(&list, pair->begin, (pair->end - pair->begin) / pair->components, pair->components, data->reference, name,
+                               back, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -138,11 +116,13 @@ static PetscErrorCode UnpackAllSecants(Contact contact, PetscReal *const mine[2]
 /* Adds the tables; collective */
 PetscErrorCode ContactStepperPack(Contact contact, Tables tables)
 {
-  const PetscReal losses[] = {contact->counts.contact_loss, contact->counts.glue_loss};
+  const ContactStepper *stepper   = (const ContactStepper *)contact->data;
+  PetscReal *const      places[2] = {stepper->mine, stepper->before};
+  const PetscReal       losses[]  = {contact->counts.contact_loss, contact->counts.glue_loss};
 
   PetscFunctionBegin;
   PetscCall(TablesAddNumbers(tables, LOSS_NAME, 2, losses));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, NULL, tables));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CopyPair(contact, &contact->pairs[p], PETSC_FALSE, places, tables));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(PackSecants(contact, b, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
