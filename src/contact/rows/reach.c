@@ -1,10 +1,9 @@
 /*
    How far apart surfaces may be that touch in the next controller step. What counts is the motion of one body relative to the other, not
-   that of the frame in which both are described: velocities are told by their mean over the nodes of a body, and by the most by which that
-   of a node differs from this mean.
+   that of the frame in which both are described: velocities are told by their mean over the contact nodes of a body, and by the most by
+   which that of a node differs from this mean.
 */
 #include <contact/parts.h>
-#include <impakt/private/simd.h>
 
 /* Surfaces are looked for within this many times the way that bodies can make relative to each other in the step at their speeds */
 #define AHEAD 2
@@ -16,85 +15,30 @@ static PetscReal Norm(const PetscReal v[3])
   return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* Adds up the vectors of nodes, in as many sums at once as an instruction can */
-SIMD_CLONES static void AddNodes(PetscInt n, PetscInt dim, const PetscScalar values[], PetscReal sum[3])
-{
-  const PetscInt width = dim * SIMD_WIDTH;
-  PetscReal      sums[3 * SIMD_WIDTH];
-  PetscInt       i;
-
-  for (PetscInt k = 0; k < width; k++) sums[k] = 0;
-  for (i = 0; i + width <= n; i += width)
-    for (PetscInt k = 0; k < width; k++) sums[k] += PetscRealPart(values[i + k]);
-  for (PetscInt k = 0; i < n; i++, k++) sums[k] += PetscRealPart(values[i]);
-  for (PetscInt k = 0; k < width; k++) sum[k % dim] += sums[k];
-}
-
-/* The square of the most by which the vector of a node in space differs from `mean` */
-SIMD_CLONES static PetscReal LargestSquare(PetscInt n, const PetscScalar values[], const PetscReal mean[3])
-{
-  PetscReal means[3 * SIMD_WIDTH], squares[3 * SIMD_WIDTH];
-  SimdReal  most = {0};
-  PetscInt  i;
-
-  for (PetscInt k = 0; k < 3 * SIMD_WIDTH; k++) means[k] = mean[k % 3];
-  for (i = 0; i + 3 * SIMD_WIDTH <= n; i += 3 * SIMD_WIDTH) {
-    for (PetscInt k = 0; k < 3 * SIMD_WIDTH; k++) squares[k] = PetscSqr(PetscRealPart(values[i + k]) - means[k]);
-    for (PetscInt k = 0; k < SIMD_WIDTH; k++) {
-      const PetscReal square = squares[3 * k] + squares[3 * k + 1] + squares[3 * k + 2];
-
-      most[k] = square > most[k] ? square : most[k];
-    }
-  }
-  for (; i < n; i += 3) {
-    PetscReal square = 0;
-
-    for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscRealPart(values[i + d]) - mean[d]);
-    most[0] = square > most[0] ? square : most[0];
-  }
-  for (PetscInt k = 1; k < SIMD_WIDTH; k++) most[0] = most[k] > most[0] ? most[k] : most[0];
-  return most[0];
-}
-
-/* Adds up the vectors of the nodes of this rank, and their number */
-static PetscErrorCode SumNodes(Vec vec, PetscInt dim, PetscReal sum[4])
+/* Adds the vectors of the nodes of a surface that this rank owns, and their number, to `sum`; else (NULL) finds the most by which one of
+   them differs from `mean` */
+static PetscErrorCode LookAtNodes(const SurfaceData *data, Vec vec, PetscReal sum[4], const PetscReal mean[3], PetscReal *most)
 {
   const PetscScalar *values;
-  PetscInt           n;
+  PetscInt           first;
 
   PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(vec, &n));
+  PetscCall(VecGetOwnershipRange(vec, &first, NULL));
   PetscCall(VecGetArrayRead(vec, &values));
-  AddNodes(n, dim, values, sum);
-  sum[3] = (PetscReal)n / (PetscReal)dim;
+  for (PetscInt i = 0; i < data->n_owned; i++) {
+    PetscReal off[3] = {0};
+
+    for (PetscInt d = 0; d < data->dim; d++) off[d] = PetscRealPart(values[data->dofs[i] - first + d]) - (sum ? 0 : mean[d]);
+    for (PetscInt d = 0; d < 3 && sum; d++) sum[d] += off[d];
+    if (sum) sum[3] += 1;
+    else *most = PetscMax(*most, Norm(off));
+  }
   PetscCall(VecRestoreArrayRead(vec, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The most by which the vector of any node of this rank differs from `mean` */
-static PetscErrorCode FindSpread(Vec vec, PetscInt dim, const PetscReal mean[], PetscReal *spread)
-{
-  const PetscScalar *values;
-  PetscReal          most = 0;
-  PetscInt           n;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(vec, &n));
-  PetscCall(VecGetArrayRead(vec, &values));
-  if (dim == 3) most = LargestSquare(n, values, mean);
-  for (PetscInt i = 0; i < n && dim < 3; i += dim) {
-    PetscReal square = PetscSqr(PetscRealPart(values[i]) - mean[0]);
-
-    if (dim > 1) square += PetscSqr(PetscRealPart(values[i + 1]) - mean[1]);
-    most = square > most ? square : most;
-  }
-  PetscCall(VecRestoreArrayRead(vec, &values));
-  *spread = PetscSqrtReal(most);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The sum of the two largest speeds of all bodies relative to the frame in which obstacles rest, or else to the mean velocity of all nodes:
-   no two bodies come nearer faster. `gains`: with what accelerations add in the step: bodies at rest have no speed yet. */
+/* The sum of the two largest speeds of all bodies relative to the frame in which obstacles rest, or else to the mean velocity of all
+   contact nodes: no two bodies come nearer faster. `gains`: with what accelerations add in the step: bodies at rest have no speed yet. */
 static PetscReal TwoFastest(Contact contact, PetscBool gains)
 {
   const ContactReach *reach   = &contact->reach;
@@ -126,20 +70,23 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(mean, 4 * n));
-  for (PetscInt b = 0; b < n && n > 1; b++) { /* one body alone moves in the frame of its obstacles */
-    Vec velocity;
+  PetscCall(PetscArrayzero(spread, 2 * n)); /* accelerations follow */
+  for (PetscInt pass = 0; pass < 2; pass++) {
+    for (PetscInt s = 0; s < contact->n_surfaces; s++) {
+      const PetscInt     b = contact->surfaces[s].body;
+      const SurfaceData *data;
+      Vec                velocity, acceleration;
 
-    PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, NULL));
-    PetscCall(SumNodes(velocity, contact->dim, mean + 4 * b));
-  }
-  if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean, (PetscMPIInt)(4 * n), MPIU_REAL, MPIU_SUM, comm));
-  for (PetscInt b = 0; b < n; b++) {
-    Vec velocity, acceleration;
-
-    for (PetscInt d = 0; d < 3; d++) mean[4 * b + d] /= PetscMax(mean[4 * b + 3], 1);
-    PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, &acceleration));
-    PetscCall(FindSpread(velocity, contact->dim, mean + 4 * b, &spread[b]));
-    if (gains) PetscCall(FindSpread(acceleration, contact->dim, none, &contact->reach.acceleration[b]));
+      PetscCall(SurfaceGetData(contact->surfaces[s].surface, &data));
+      PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, &acceleration));
+      /* one body alone moves in the frame of its obstacles */
+      if (!pass && n > 1) PetscCall(LookAtNodes(data, velocity, mean + 4 * b, NULL, NULL));
+      if (pass) PetscCall(LookAtNodes(data, velocity, NULL, mean + 4 * b, &spread[b]));
+      if (pass && gains) PetscCall(LookAtNodes(data, acceleration, NULL, none, &contact->reach.acceleration[b]));
+    }
+    if (contact->ranks.size > 1 && !pass) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean, (PetscMPIInt)(4 * n), MPIU_REAL, MPIU_SUM, comm));
+    for (PetscInt i = 0; i < 4 * n && !pass; i++)
+      if (i % 4 < 3) mean[i] /= PetscMax(mean[i - i % 4 + 3], 1);
   }
   if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, spread, (PetscMPIInt)(2 * n), MPIU_REAL, MPIU_MAX, comm));
   *reach = contact->reach.all = AHEAD * contact->step * TwoFastest(contact, gains);
