@@ -31,8 +31,6 @@
 #define CENTRE_SHIFT 0.01
 /* The same of a moment of inertia, relative: 71 % in a plate that is two elements thick and may touch on both sides */
 #define INERTIA_CHANGE 0.2
-/* -<body>_mass_redistribute near is worth a word where it leaves less of that than this part */
-#define NEAR_LEAVES 0.9
 
 /* Adds a sentence; where it is on one of many bodies or pairs, of each kind the first few, and the others are counted */
 static PetscErrorCode Add(Verdict *verdict, VerdictKind kind, const char format[], ...) PETSC_ATTRIBUTE_FORMAT(3, 4);
@@ -175,15 +173,15 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
 }
 
 /* Where the mass that is left to a body with massless contact nodes cannot have the body's centre of mass */
-static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const char name[], Verdict *verdict)
+static PetscErrorCode LookAtMass(Body body, const char name[], Verdict *verdict)
 {
-  PetscReal shift[3] = {0}, lower[3], upper[3], thickness = PETSC_MAX_REAL, square = 0, inertia, near;
+  PetscReal shift[3] = {0}, lower[3], upper[3], thickness = PETSC_MAX_REAL, square = 0, inertia;
   PetscInt  dim;
   DM        dm;
 
   PetscFunctionBegin;
   PetscCall(BodyGetMassRedistribution(body, NULL, NULL, shift, NULL));
-  PetscCall(BodyGetInertiaChange(body, 0, NULL, &inertia));
+  PetscCall(BodyGetInertiaChange(body, &inertia));
   PetscCall(BodyGetDM(body, &dm));
   PetscCall(DMGetCoordinateDim(dm, &dim));
   PetscCall(DMGetBoundingBox(dm, lower, upper));
@@ -197,23 +195,15 @@ static PetscErrorCode LookAtMass(Contact contact, PetscInt b, Body body, const c
                   "-%s_mass_redistribute auto, which keeps it, or refine it across",
                   name, (double)PetscSqrtReal(square), UnitsText(verdict->units, UNIT_LENGTH),
                   (double)(100 * PetscSqrtReal(square) / thickness), name));
-  else if (inertia > INERTIA_CHANGE) {
-    char advice[256] = "";
-
-    PetscCall(ContactGetNearInertiaChange(contact, b, &near));
-    if (near < NEAR_LEAVES * inertia)
-      PetscCall(
-          PetscSNPrintf(advice, sizeof(advice), ", or set -%s_mass_redistribute near, which leaves %.3g %%", name, (double)(100 * near)));
+  else if (inertia > INERTIA_CHANGE)
     PetscCall(Add(verdict, VERDICT_INERTIA,
                   "massless contact nodes change moments of inertia of body '%s' by up to %.3g %%: it turns as another body does; "
-                  "set -%s_mass_redistribute auto, which keeps them, or refine it across%s",
-                  name, (double)(100 * inertia), name, advice));
-  }
+                  "set -%s_mass_redistribute auto, which keeps them, or refine it across",
+                  name, (double)(100 * inertia), name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode LookAtBody(Contact contact, PetscInt b, Body body, const PetscReal box[6], const BodyStatistics *statistics,
-                                 Verdict *verdict)
+static PetscErrorCode LookAtBody(Body body, const PetscReal box[6], const BodyStatistics *statistics, Verdict *verdict)
 {
   const char *name;
   char        doubt[DOUBT_SIZE];
@@ -223,7 +213,7 @@ static PetscErrorCode LookAtBody(Contact contact, PetscInt b, Body body, const P
   PetscCall(PetscObjectGetName((PetscObject)body, &name));
   PetscCall(BodyDoubtUnits(body, box, doubt));
   if (doubt[0]) PetscCall(Add(verdict, VERDICT_UNITS, "%s", doubt));
-  PetscCall(LookAtMass(contact, b, body, name, verdict));
+  PetscCall(LookAtMass(body, name, verdict));
   PetscCall(BodyIsLinear(body, &linear));
   if (linear && statistics->rotation_max > STATISTICS_FAR_TURN)
     PetscCall(Add(verdict, VERDICT_TURNED, "linear body '%s' has turned by %.3g rad: set a nonlinear -%s_material_type", name,
@@ -310,7 +300,7 @@ PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *resul
   PetscCall(BodyGetAllBoxes(results->n_bodies, bodies, boxes));
   PetscCall(LookAtSteps(controller, contact, results, verdict));
   for (PetscInt b = 0; b < results->n_bodies; b++) {
-    PetscCall(LookAtBody(contact, b, bodies[b], boxes + 6 * b, &results->bodies[b], verdict));
+    PetscCall(LookAtBody(bodies[b], boxes + 6 * b, &results->bodies[b], verdict));
     PetscCall(LookAtOverlap(contact, bodies[b], &results->bodies[b], verdict));
   }
   PetscCall(PetscFree(boxes));

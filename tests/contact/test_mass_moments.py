@@ -90,25 +90,6 @@ def test_thin_plates_say_what_they_lose(impakt, layers, more, words):
     assert all(words in text and "refine it across" in text for text in texts)
 
 
-# Faces that see the floor are one side of a plate; those that see one of three planes, three
-THREE = "-obstacles floor,roof,wall -roof_obstacle_type plane -roof_point 0,20,0 -roof_normal 0,-1,0 -wall_obstacle_type plane -wall_point -9,0 -wall_normal 1,0 -contact_pairs b:floor,b:roof,b:wall"
-FOUR = THREE.replace("roof,wall", "roof,wall,other").replace("b:wall", "b:wall,b:other") + " -other_obstacle_type plane -other_point 9,0 -other_normal -1,0"
-
-
-@pytest.mark.parametrize(("planes", "ranks"), [("", 1), (THREE, 1), (THREE, 2), (FOUR, 1)])
-def test_near_is_advised_where_it_helps(impakt, planes, ranks):
-    """With what it leaves, which the run that follows has; not where all nodes face a plane, so that it changes nothing, nor where it is set already."""
-    options = f"{COMMON} {box(2, 1, 2)} -contact_facing false {planes}"
-    run, near = (impakt(f"{options} {more}", ranks) for more in ("-b_mass_redistribute true", "-b_mass_redistribute near"))
-    before, after = (case.summary["bodies"]["b"]["mass"]["inertia_error"] for case in (run, near))
-    texts = [text for text in run.summary["warnings"] if "moments of inertia" in text]
-    assert len(texts) == 1
-    advice = f", or set -b_mass_redistribute near, which leaves {100 * after:.3g} %"
-    assert texts[0].endswith(f"refine it across{'' if planes == FOUR else advice}")
-    assert after == before if planes == FOUR else after < 0.5 * before
-    assert "redistribute near" not in near.stderr
-
-
 @pytest.mark.parametrize(
     ("held", "warns"),
     [

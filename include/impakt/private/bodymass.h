@@ -7,7 +7,7 @@ PETSC_EXTERN PetscBool      BodyChoosesMass(Body);
 PETSC_EXTERN PetscErrorCode BodyKeepMass(Body);
 PETSC_EXTERN PetscErrorCode BodyMassIsChosen(Body, PetscBool *, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetContactPart(Body, PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyGetInertiaChange(Body, PetscInt, const PetscInt[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyGetInertiaChange(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetForceOnMass(Body, const PetscReal[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyIntegratesLike(Body, Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyRequestsControllerStep(Body, PetscBool *);

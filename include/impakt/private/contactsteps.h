@@ -14,7 +14,6 @@ PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactStepBack(Contact);
 PETSC_EXTERN PetscErrorCode ContactSetStepLevel(Contact, PetscInt);
 PETSC_EXTERN PetscErrorCode ContactCanCut(Contact, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactGetNearInertiaChange(Contact, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactSetUpSurfaces(Contact);
 PETSC_EXTERN PetscErrorCode ContactAccept(Contact);
 PETSC_EXTERN PetscErrorCode ContactPairIsNamed(Contact, PetscInt, PetscBool *);

@@ -367,27 +367,12 @@ PetscErrorCode BodyFindMassFactor(Body body, PetscReal *less)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest relative change of a moment of inertia about an axis through the centre of mass by the massless layer, or by massless
-   `vertices` in its place if these are given, which is collective then. Axes about which held displacements keep the body from turning
-   do not count. */
-PetscErrorCode BodyGetInertiaChange(Body body, PetscInt n, const PetscInt vertices[], PetscReal *change)
+/* Largest relative change of a moment of inertia about an axis through the centre of mass by the massless layer. Axes about which held
+   displacements keep the body from turning do not count. */
+PetscErrorCode BodyGetInertiaChange(Body body, PetscReal *change)
 {
-  const BodyMass mass     = body->mass;
-  PetscBool     *contains = body->layer.contains;
-
   PetscFunctionBegin;
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call BodySetUp() first");
   *change = body->mass.turn_error;
-  if (!vertices) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscCalloc1(body->mesh.local_nodes, &body->layer.contains));
-  PetscCall(BodyMarkNodes(body, n, vertices, body->layer.contains));
-  body->mass.factor     = NULL;
-  body->mass.turn_error = 0;
-  PetscCall(BodyFindMassFactor(body, NULL));
-  *change = body->mass.turn_error;
-  PetscCall(PetscFree(body->mass.factor));
-  PetscCall(PetscFree(body->layer.contains));
-  body->mass           = mass;
-  body->layer.contains = contains;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

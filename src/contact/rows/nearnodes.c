@@ -1,5 +1,5 @@
 /* Bodies of which those contact nodes alone are massless that face a partner at the start (-<body>_mass_redistribute near): which nodes
-   these are, that contact comes to no others, and what other bodies would gain by it. */
+   these are, and that contact comes to no others. */
 #include <contact/parts.h>
 #include <impakt/private/bodymass.h>
 #include <impakt/private/bodymesh.h>
@@ -52,38 +52,5 @@ PetscErrorCode ContactCheckNear(Contact contact)
                "to true",
                ((PetscObject)contact->bodies[b])->name, ((PetscObject)contact->bodies[b])->name, (double)on_mass);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What -<body>_mass_redistribute near would change of the moments of inertia that a body turns with, as BodyGetInertiaChange() tells of the
-   massless nodes; the same as now where the body has it already, or where pairs come and go, which they do not with it. Collective. */
-PetscErrorCode ContactGetNearInertiaChange(Contact contact, PetscInt body, PetscReal *change)
-{
-  PetscBool near;
-  PetscInt  n_all = 0, *all = NULL;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(change, 3);
-  PetscCall(BodyGetMassRedistributeNear(contact->bodies[body], &near));
-  PetscCall(BodyGetInertiaChange(contact->bodies[body], 0, NULL, change));
-  if (near || contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(1, &all)); /* no NULL, which stands for the nodes as they are */
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    const PetscInt    *vertices;
-    PetscInt           n;
-    Surface            surfaces[2];
-
-    if (pair->keeps_mass || (pair->body[0] != body && (pair->obstacle || pair->body[1] != body))) continue;
-    PetscCall(ContactCreateFacing(contact, pair, surfaces));
-    PetscCall(SurfaceGetVertices(surfaces[pair->body[0] != body], &n, &vertices));
-    PetscCall(PetscRealloc((size_t)(n_all + n + 1) * sizeof(*all), &all));
-    PetscCall(PetscArraycpy(all + n_all, vertices, n));
-    n_all += n;
-    for (PetscInt s = 0; s < 2; s++) PetscCall(SurfaceDestroy(&surfaces[s]));
-  }
-  PetscCall(BodyGetInertiaChange(contact->bodies[body], n_all, all, change));
-  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
