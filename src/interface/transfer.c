@@ -97,11 +97,3 @@ PetscErrorCode TransferGetRows(Transfer transfer, TransferRows *rows)
   rows->bow      = set->bow;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* How often rows have been built, the first time included */
-PetscErrorCode TransferGetBuilds(Transfer transfer, PetscInt *builds)
-{
-  PetscFunctionBegin;
-  *builds = transfer->builds;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

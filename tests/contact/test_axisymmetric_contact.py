@@ -190,12 +190,12 @@ BOX = "-b_dm_plex_dim 2 -b_dm_plex_box_faces 2,2 -b_density 1000 -b_youngs_modul
 OTHER = BOX.replace("-b_", "-c_") + " -c_translate 0,1.01 -c_initial_velocity 0,-1"
 REFUSED = {
     "plane": ("-bodies b -obstacles o -o_obstacle_type plane -o_point 2,0,0 -o_normal -1,0,0 -contact_pairs b:o", ["plane 'o' is not", "must be along y", "cylinder"]),
-    "sphere": ("-bodies b -obstacles o -o_obstacle_type sphere -o_point 2,0,0 -o_radius 1 -contact_pairs b:o", ["sphere 'o'", "its centre must lie on the axis"]),
+    "sphere": ("-bodies b -obstacles o -o_obstacle_type sphere -o_point 2,0,0 -o_radius 1 -contact_pairs b:o", ["sphere 'o'", "the centre of a sphere lie on it"]),
     "disc": ("-bodies b -obstacles o -o_obstacle_type cylinder -o_point 0,-1,0 -o_radius 1 -contact_pairs b:o", ["cylinder 'o'", "-o_axis 0,1,0"]),
     "off": ("-bodies b -obstacles o -o_obstacle_type cylinder -o_point 1,-1,0 -o_axis 0,1,0 -o_radius 1 -contact_pairs b:o", ["cylinder 'o'"]),
     "belt": (
         "-bodies b -obstacles o -o_obstacle_type plane -o_point 0,0,0 -o_normal 0,1,0 -o_velocity 1,0 -contact_law coulomb -contact_friction 0.3 -contact_pairs b:o",
-        ["moves along itself"],
+        ["no surface may have a velocity along itself"],
     ),
     "mixed": (f"-bodies b,c {OTHER}", ["body 'b' is axisymmetric, body 'c' is not", "-c_axisymmetric true"]),
     "balance": (f"-bodies b,c {OTHER} -c_axisymmetric true -contact_pairs b:c -contact_balance true", ["-contact_balance: pair b:c is axisymmetric"]),

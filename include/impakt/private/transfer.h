@@ -88,5 +88,4 @@ PETSC_EXTERN PetscErrorCode TransferGetTilts(Transfer, PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferSetValues(Transfer, const PetscInt[2], PetscInt, const PetscReal[], const Mat[2]);
 PETSC_EXTERN PetscErrorCode TransferCountValues(Transfer, PetscInt[], PetscInt[]);
 PETSC_EXTERN PetscErrorCode TransferSetNeighbours(Transfer, PetscInt, PetscInt, PetscReal, Mat);
-PETSC_EXTERN PetscErrorCode TransferGetBuilds(Transfer, PetscInt *);
 PETSC_EXTERN PetscErrorCode TransferDestroy(Transfer *);

@@ -4,14 +4,12 @@
 /* Components of directions, and distances from the axis in parts of the mesh, that are smaller count as none */
 #define NONE 1e-9
 
-/* An obstacle that is the same all around the axis x = 0: a plane across it, a sphere on it, a cylinder about it. In three dimensions z
+/* An obstacle must be the same all around the axis x = 0: a plane across it, a sphere on it, a cylinder about it. In three dimensions z
    goes across the plane of the mesh. */
 static PetscErrorCode CheckObstacle(Contact contact, const ContactPair *pair)
 {
-  const char  *body = ((PetscObject)contact->bodies[pair->body[0]])->name;
-  MPI_Comm     comm = PetscObjectComm((PetscObject)contact);
   ObstacleType type;
-  PetscReal    point[3], direction[3], lower[3], upper[3], off;
+  PetscReal    point[3], direction[3], lower[3], upper[3], off, tilt;
   PetscBool    moves;
   const char  *name;
   DM           dm;
@@ -20,30 +18,18 @@ static PetscErrorCode CheckObstacle(Contact contact, const ContactPair *pair)
   PetscCall(ObstacleGetName(pair->obstacle, &name));
   PetscCall(ObstacleGetType(pair->obstacle, &type));
   PetscCall(ObstacleGetPlace(pair->obstacle, point, direction));
+  PetscCall(ObstacleGetVelocity(pair->obstacle, NULL, 0, NULL, &moves));
   PetscCall(BodyGetDM(contact->bodies[pair->body[0]], &dm));
   PetscCall(DMGetBoundingBox(dm, lower, upper));
-  off = PetscMax(PetscAbsReal(point[0]), PetscAbsReal(point[2])) / upper[0];
+  off  = type == OBSTACLE_PLANE ? 0 : PetscMax(PetscAbsReal(point[0]), PetscAbsReal(point[2])) / upper[0];
+  tilt = type == OBSTACLE_SPHERE ? 0 : PetscMax(PetscAbsReal(direction[0]), PetscAbsReal(direction[2]));
   PetscCheck(
-      type != OBSTACLE_PLANE || PetscMax(PetscAbsReal(direction[0]), PetscAbsReal(direction[2])) < NONE, comm, PETSC_ERR_USER_INPUT,
-      "-contact_pairs %s: body '%s' is axisymmetric, and plane '%s' is not: its normal (%g, %g, %g) must be along y, the axis; a wall "
-      "around the axis is a cylinder",
-      pair->name, body, name, (double)direction[0], (double)direction[1], (double)direction[2]);
-  PetscCheck(
-      type != OBSTACLE_SPHERE || off < NONE, comm, PETSC_ERR_USER_INPUT,
-      "-contact_pairs %s: body '%s' is axisymmetric, and sphere '%s' at (%g, %g, %g) m is not: its centre must lie on the axis, x = z = 0",
-      pair->name, body, name, (double)point[0], (double)point[1], (double)point[2]);
-  PetscCheck(
-      type != OBSTACLE_CYLINDER || (PetscMax(PetscAbsReal(direction[0]), PetscAbsReal(direction[2])) < NONE && off < NONE), comm,
-      PETSC_ERR_USER_INPUT,
-      "-contact_pairs %s: body '%s' is axisymmetric, and cylinder '%s' is not: it must lie about the axis, with -%s_axis 0,1,0 and x = z "
-      "= 0 in -%s_point",
-      pair->name, body, name, name, name);
-  PetscCall(ObstacleGetVelocity(pair->obstacle, NULL, 0, NULL, &moves));
-  PetscCheck(
-      !moves, comm, PETSC_ERR_USER_INPUT,
-      "-contact_pairs %s: the surface of obstacle '%s' moves along itself (-%s_velocity), which is not the same all around the axis of "
-      "body '%s'",
-      pair->name, name, name, body);
+      off < NONE && tilt < NONE && !moves, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "-contact_pairs %s: body '%s' is axisymmetric, and %s '%s' is not, at (%g, %g, %g) m along (%g, %g, %g): the normal of a plane "
+      "must be along y, the axis, the centre of a sphere lie on it, and a cylinder about it (-%s_axis 0,1,0, x = z = 0 in -%s_point), "
+      "which a wall around the axis is; and no surface may have a velocity along itself",
+      pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name, ObstacleTypes[type], name, (double)point[0], (double)point[1],
+      (double)point[2], (double)direction[0], (double)direction[1], (double)direction[2], name, name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

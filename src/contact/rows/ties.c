@@ -17,10 +17,10 @@ typedef enum { TIE_HOLDS, TIE_OVERLAPS, TIE_TOO_FAR, TIE_APART } TieState;
 
 /* Of one pair, on all ranks */
 typedef struct {
-  PetscInt  n[4];        /* nodes in each state */
-  PetscReal gap[4];      /* the largest distance without sign in that state, of nodes apart the smallest [m] */
-  PetscReal position[9]; /* reference positions of the nodes that overlap most, lie farthest, or are apart by least [m] */
-  PetscReal size[3];     /* edges of the faces there [m] */
+  PetscInt n[4]; /* nodes in each state */
+  struct {
+    PetscReal x[3], gap, size; /* its reference position, its gap without sign, and the edge of its face [m] */
+  } worst; /* node: the one that overlaps most or, if none does, is too far by most or, if none is, of those apart the nearest */
 } TieSummary;
 
 /* Edge of the elements at the contact point of a body in one dimension [m]; of others the transfer knows the faces */
@@ -68,34 +68,19 @@ PetscErrorCode ContactMeasureTies(Contact contact, const ContactPair *pair, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The worst node of a state on all ranks: its gap, position and face */
-static PetscErrorCode FindWorst(Contact contact, PetscReal gap, const PetscReal mine[4], TieState state, TieSummary *summary)
+/* That state of some nodes that is told of */
+static TieState WorstState(const TieSummary *summary)
 {
-  MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  return summary->n[TIE_OVERLAPS] ? TIE_OVERLAPS : summary->n[TIE_TOO_FAR] ? TIE_TOO_FAR : TIE_APART;
+}
+
+/* Counts the nodes of a pair in each state, then finds the worst one */
+static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSummary *summary)
+{
   struct {
     double value;
     int    rank;
-  } worst;
-  PetscMPIInt rank;
-  PetscReal   all[4];
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  worst.value = (double)(state == TIE_APART ? -gap : gap);
-  worst.rank  = rank;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, comm));
-  PetscCall(PetscArraycpy(all, mine, 4));
-  PetscCallMPI(MPI_Bcast(all, 4, MPIU_REAL, worst.rank, comm));
-  summary->gap[state] = PetscAbsReal((PetscReal)worst.value);
-  PetscCall(PetscArraycpy(summary->position + 3 * (state - 1), all, 3));
-  summary->size[state - 1] = all[3];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Counts the nodes of a pair in each state, and finds the worst ones */
-static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSummary *summary)
-{
-  PetscReal          worst[4] = {0, -1, -1, PETSC_MAX_REAL}, places[4][4] = {{0}};
+  } worst = {-PETSC_MAX_REAL, contact->ranks.rank};
   const PetscScalar *x;
   TransferRows       rows;
   Vec                positions;
@@ -105,53 +90,57 @@ static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSum
   PetscCall(TransferGetRows(pair->transfer, &rows));
   PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
   PetscCall(VecGetArrayRead(positions, &x));
-  for (PetscInt node = 0; node < rows.n; node++) {
-    const PetscInt  i   = pair->begin + node * pair->components;
-    const PetscReal gap = contact->ties.distance[i], distance = PetscAbsReal(gap);
-    PetscReal       size;
-    TieState        state;
+  for (PetscInt pass = 0; pass < 2; pass++) {
+    for (PetscInt node = 0; node < rows.n; node++) {
+      const PetscInt  i   = pair->begin + node * pair->components;
+      const PetscReal gap = PetscAbsReal(contact->ties.distance[i]);
+      PetscReal       size, bad;
+      TieState        state;
 
-    if (!rows.opposite[node]) continue;
-    PetscCall(GetFaceSize(contact, pair, &rows, node, &size));
-    state = JudgeDistance(contact, gap, size);
-    summary->n[state]++;
-    if (state == TIE_APART ? distance >= worst[state] : distance <= worst[state]) continue;
-    worst[state] = distance;
-    for (PetscInt d = 0; d < contact->dim; d++) places[state][d] = PetscRealPart(x[contact->rows.dof[i] + d]);
-    places[state][3] = size;
+      if (!rows.opposite[node]) continue;
+      PetscCall(GetFaceSize(contact, pair, &rows, node, &size));
+      state = JudgeDistance(contact, contact->ties.distance[i], size);
+      bad   = state == TIE_APART ? -gap : gap;
+      if (!pass) summary->n[state]++;
+      if (!pass || state != WorstState(summary) || bad <= worst.value) continue;
+      worst.value         = bad;
+      summary->worst.gap  = gap;
+      summary->worst.size = size;
+      for (PetscInt d = 0; d < contact->dim; d++) summary->worst.x[d] = PetscRealPart(x[contact->rows.dof[i] + d]);
+    }
+    if (!pass) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, summary->n, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
   }
   PetscCall(VecRestoreArrayRead(positions, &x));
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, summary->n, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt state = TIE_OVERLAPS; state <= TIE_APART; state++)
-    PetscCall(FindWorst(contact, worst[state], places[state], (TieState)state, summary));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, PetscObjectComm((PetscObject)contact)));
+  PetscCallMPI(MPI_Bcast(&summary->worst, sizeof(summary->worst), MPI_BYTE, worst.rank, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What overlaps, or is neither tied nor apart, is an error that says where */
 static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, const TieSummary *summary)
 {
-  MPI_Comm    comm  = PetscObjectComm((PetscObject)contact);
-  const char *first = ((PetscObject)contact->bodies[pair->body[0]])->name;
-  char        moves[CONTACT_MOVES];
+  const TieState   state = WorstState(summary);
+  const PetscReal *x = summary->worst.x, gap = summary->worst.gap, size = summary->worst.size;
+  char             moves[CONTACT_MOVES];
 
   PetscFunctionBegin;
-  for (TieState state = TIE_OVERLAPS; state <= TIE_TOO_FAR; state = (TieState)(state + 1)) {
-    const PetscReal *x = summary->position + 3 * (state - 1), gap = summary->gap[state], size = summary->size[state - 1];
+  if (state == TIE_APART) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+          "-contact_pairs %s: at the start %" PetscInt_FMT " of %" PetscInt_FMT " nodes of body '%s' opposite to the partner %s, and "
+          "-contact_law %s ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g%s, which "
+          "is %.3g of its face. Move one of the bodies (%s), name smaller surfaces in -contact_pairs, "
+          "or set -contact_tie_distance, now %g of a face, above that number to tie them as they are",
+          pair->name, summary->n[state], summary->n[TIE_HOLDS] + summary->n[TIE_OVERLAPS] + summary->n[TIE_TOO_FAR] + summary->n[TIE_APART],
+          ((PetscObject)contact->bodies[pair->body[0]])->name, state == TIE_OVERLAPS ? "overlap it" : "have a gap to it",
+          ContactNameLaw(contact, pair), (double)x[0], (double)x[1], (double)x[2], state == TIE_OVERLAPS ? "overlaps" : "is apart",
+          (double)gap, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)(gap / size), moves, (double)contact->options.tie_distance);
+}
 
-    if (!summary->n[state]) continue;
-    PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
-    SETERRQ(comm, PETSC_ERR_USER_INPUT,
-            "-contact_pairs %s: at the start %" PetscInt_FMT " of %" PetscInt_FMT " nodes of body '%s' opposite to the partner %s, and "
-            "-contact_law %s ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g%s, which "
-            "is %.3g of its face. Move one of the bodies (%s), name smaller surfaces in -contact_pairs, "
-            "or set -contact_tie_distance, now %g of a face, above that number to tie them as they are",
-            pair->name, summary->n[state],
-            summary->n[TIE_HOLDS] + summary->n[TIE_OVERLAPS] + summary->n[TIE_TOO_FAR] + summary->n[TIE_APART], first,
-            state == TIE_OVERLAPS ? "overlap it" : "have a gap to it", ContactNameLaw(contact, pair), (double)x[0], (double)x[1],
-            (double)x[2], state == TIE_OVERLAPS ? "overlaps" : "is apart", (double)gap, UnitsOf((PetscObject)contact, UNIT_LENGTH),
-            (double)(gap / size), moves, (double)contact->options.tie_distance);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+/* Of the nearest node of a pair that ties nothing [m] */
+static PetscReal Distance(const TieSummary *summary)
+{
+  return summary->n[TIE_APART] ? summary->worst.gap : PETSC_MAX_REAL;
 }
 
 /* Pairs that tie nothing: one that the user has named is an error, as is one of all possible pairs with a body that no pair ties. The pair
@@ -166,12 +155,12 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
     const PetscBool    expected = (PetscBool)(!pair->chosen || !tied[pair->body[0]] || (!pair->obstacle && !tied[pair->body[1]]));
 
     if (!ContactPairTies(pair) || summaries[p].n[TIE_HOLDS] || !expected) continue;
-    if (nearest < 0 || summaries[p].gap[TIE_APART] < summaries[nearest].gap[TIE_APART]) nearest = p;
+    if (nearest < 0 || Distance(&summaries[p]) < Distance(&summaries[nearest])) nearest = p;
   }
   if (nearest >= 0) {
     const ContactPair *pair    = &contact->pairs[nearest];
     const TieSummary  *summary = &summaries[nearest];
-    const PetscReal   *x       = summary->position + 3 * (TIE_APART - 1);
+    const PetscReal   *x       = summary->worst.x;
     char               moves[CONTACT_MOVES];
 
     PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
@@ -185,8 +174,8 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
             "-contact_tie_distance, now %g of a face; move one of the bodies (%s), or leave the pair out "
             "of -contact_pairs",
             pair->name, ContactNameLaw(contact, pair), ((PetscObject)contact->bodies[pair->body[0]])->name, (double)x[0], (double)x[1],
-            (double)x[2], (double)summary->gap[TIE_APART], UnitsOf((PetscObject)contact, UNIT_LENGTH),
-            (double)(summary->gap[TIE_APART] / summary->size[TIE_APART - 1]), (double)contact->options.tie_distance, moves);
+            (double)x[2], (double)summary->worst.gap, UnitsOf((PetscObject)contact, UNIT_LENGTH),
+            (double)(summary->worst.gap / summary->worst.size), (double)contact->options.tie_distance, moves);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
