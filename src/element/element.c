@@ -186,16 +186,6 @@ PetscErrorCode ElementView(Element element, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ElementCountWanted - the elements in batches that internalforce() does not leave out */
-PetscInt ElementCountWanted(Element element)
-{
-  PetscInt wanted = element->count;
-
-  for (PetscInt first = 0; first < element->count && element->skips; first += SIMD_WIDTH)
-    if (element->skips[first / SIMD_WIDTH]) wanted -= PetscMin(SIMD_WIDTH, element->count - first);
-  return wanted;
-}
-
 /* Frees the elements. Collective */
 PetscErrorCode ElementDestroy(Element *element)
 {

@@ -197,7 +197,6 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, const Solid *solid, PetscReal 
     Undeformed     shape[SIMD_PARTS];
     PetscInt       bad;
 
-    if (SolidSkips(solid, first)) continue;
     GetModes(connectivity, first, count, solid->coordinates, X);
     GetModes(connectivity, first, count, u, U);
     for (PetscInt part = 0; part < SIMD_PARTS; part++) {
@@ -277,7 +276,7 @@ static PetscErrorCode InternalForce(Element element, const PetscScalar u[], Pets
 {
   PetscFunctionBegin;
   element->inverted = AddForces((const Solid *)element->data, element->cross_section, element->count, element->connectivity, u, f);
-  PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)ElementCountWanted(element)));
+  PetscCall(PetscLogFlops(element->flops * (PetscLogDouble)element->count));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

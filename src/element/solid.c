@@ -314,7 +314,6 @@ PetscErrorCode ElementCreate_Solid(Element element, const SolidShape *shape)
   for (PetscInt g = 0; g < shape->n_load_points; g++)
     (*shape->shape)(shape->load_points + shape->dim * g, solid->load_shape + g * shape->nodes, solid->load_gradients[g]);
   solid->history               = &element->history;
-  solid->skips                 = &element->skips;
   element->data                = solid;
   element->dim                 = shape->dim;
   element->nodes               = shape->nodes;

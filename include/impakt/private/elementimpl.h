@@ -77,10 +77,9 @@ struct _p_Element {
   const PetscInt *connectivity; /* count x nodes: local node numbers, in VTK's order of vertices; owned by the body */
   PetscBool       setup;
   /* state */
-  ElementHistory   history;
-  PetscReal        plastic_work; /* of all elements of this rank: energy() finds it too, of a material with history [J] */
-  const PetscBool *skips;        /* per batch of 8 elements: internalforce() may leave its forces out; NULL: all are wanted */
-  PetscInt         inverted;     /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
+  ElementHistory history;
+  PetscReal      plastic_work; /* of all elements of this rank: energy() finds it too, of a material with history [J] */
+  PetscInt       inverted;     /* first element of this rank that the last internalforce() or energy() found inverted; -1: none */
 };
 
 PETSC_EXTERN PetscErrorCode ElementInitializePackage(void);
@@ -127,7 +126,6 @@ PETSC_INTERN PetscErrorCode ElementDuplicateOn(Element, MPI_Comm, Material, Elem
 PETSC_INTERN PetscErrorCode ElementCreateSelection(Element, PetscBool, PetscInt, const PetscInt[], const PetscInt[], const PetscReal[],
                                                    Element *);
 PETSC_INTERN PetscInt       ElementHistorySlot(Element, PetscInt);
-PETSC_INTERN PetscInt       ElementCountWanted(Element);
 PETSC_INTERN PetscErrorCode ElementApplyFormulation(Element);
 PETSC_INTERN PetscErrorCode ElementWarnOfLocking(Element);
 PETSC_INTERN PetscErrorCode ElementWarnOfOneLayer(Element);

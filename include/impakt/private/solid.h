@@ -26,14 +26,13 @@ typedef struct {
 } SolidTerm;
 
 typedef struct {
-  const SolidShape       *shape;
-  const PetscReal        *coordinates; /* of the rank's nodes; owned by the body */
-  const ElementHistory   *history;     /* of the element */
-  const PetscBool *const *skips;       /* of the element */
-  MaterialKernels         kernels;
-  MaterialKernels         unconstrained; /* of the same material when not in plane stress */
-  PetscInt  own_history; /* numbers of the formulation behind those of the material at each point, of materials with history */
-  PetscBool plane_stress, linear;
+  const SolidShape     *shape;
+  const PetscReal      *coordinates; /* of the rank's nodes; owned by the body */
+  const ElementHistory *history;     /* of the element */
+  MaterialKernels       kernels;
+  MaterialKernels       unconstrained; /* of the same material when not in plane stress */
+  PetscInt              own_history; /* numbers of the formulation behind those of the material at each point, of materials with history */
+  PetscBool             plane_stress, linear;
   PetscReal mean_share; /* of the mean of the element in the ratio of volumes at its points: 1 with a mean dilatation, 0 without */
   /* weight of a point of an element with the thickness, the gradients of the shape functions there, nodes x dim, and of rings what they
      add to F_33 for a displacement along r, else 0 */
@@ -47,12 +46,6 @@ typedef struct {
   SolidShape reduced; /* the shape with another rule, where a formulation has one */
   void      *own;     /* of the formulation */
 } Solid;
-
-/* Whether the forces of the batch that begins with element `first` are not wanted */
-SIMD_INLINE PetscBool SolidSkips(const Solid *solid, PetscInt first)
-{
-  return (PetscBool)(*solid->skips && (*solid->skips)[first / SIMD_WIDTH]);
-}
 
 /* The first number of the history of point g of a batch */
 SIMD_INLINE size_t SolidHistoryOffset(const ElementHistory *history, PetscInt first, PetscInt g)

@@ -24,9 +24,8 @@ SIMD_CLONES static PetscInt AddForces(const Solid *solid, PetscReal scale, Petsc
     ZeroModes(F);
     /* gradients one point ahead, where there is one point that of the next batch: read in whole right after it is written in parts, H would
        have to go through the cache */
-    if (POINTS == 1 && first + SIMD_WIDTH < count && !SolidSkips(solid, first + SIMD_WIDTH))
+    if (POINTS == 1 && first + SIMD_WIDTH < count)
       GetFirstGradients(solid, connectivity, first + SIMD_WIDTH, count, u, &at[(first / SIMD_WIDTH + 1) % 2]);
-    if (SolidSkips(solid, first)) continue;
     if (POINTS > 1) {
       GetModes(connectivity, first, count, solid->coordinates, X);
       GetModes(connectivity, first, count, u, U);
@@ -111,7 +110,7 @@ static PetscErrorCode InternalForce(Element element, const PetscScalar u[], Pets
   PetscFunctionBegin;
   element->inverted = AddForces(solid, WEIGHT * element->cross_section, element->count, element->connectivity, u, f, &n_affine);
   flops             = CountAffineFlops(solid->linear) * (PetscLogDouble)n_affine;
-  PetscCall(PetscLogFlops(flops + element->flops * (PetscLogDouble)(ElementCountWanted(element) - n_affine)));
+  PetscCall(PetscLogFlops(flops + element->flops * (PetscLogDouble)(element->count - n_affine)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

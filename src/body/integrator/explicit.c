@@ -130,7 +130,6 @@ static PetscErrorCode ComputeAcceleration(TS ts, PetscReal t, Vec U, Vec V, Vec 
 
   PetscFunctionBegin;
   PetscCall(PlaceRows(body, t, U, force));
-  PetscCall(FrontStepNote(((BodyExplicit *)body->integrator->data)->front, body, U, V));
   if (body->state.damping) PetscCall(BodyMultiplyDamping(body, U, V, body->state.damping));
   if (IsEarly(body)) {
     PetscCall(LeaveIncomplete(body, U, A));
@@ -229,14 +228,6 @@ static PetscErrorCode Complete(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One of several substeps */
-static PetscErrorCode Step(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(FrontStepMake(&((BodyExplicit *)body->integrator->data)->front, body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Central differences know where nodes with mass get in a step before the force at its end. So rows that are all on massless nodes ask for
    the balance of the layer, as often as sweeps want it, and the acceleration is computed once, when the step is complete. */
 static PetscErrorCode SetUp(Body body)
@@ -270,7 +261,6 @@ static PetscErrorCode SetUp(Body body)
   integrator->depends_on_step = (PetscBool)(body->time.substeps > 1);
   integrator->reads_start     = layer;
   if (body->time.substeps == 1) integrator->ops.complete = Complete;
-  else integrator->ops.step = Step;
   if (explicit->layer_alone) integrator->ops.repeat = RepeatLayer;
   else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
@@ -282,7 +272,6 @@ static PetscErrorCode SetUp(Body body)
 static PetscErrorCode Destroy(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(FrontStepDestroy(&((BodyExplicit *)body->integrator->data)->front));
   PetscCall(LayerBalanceDestroy(&((BodyExplicit *)body->integrator->data)->layer));
   PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);

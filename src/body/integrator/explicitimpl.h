@@ -4,12 +4,10 @@
 
 typedef struct _n_LayerBalance *LayerBalance;
 typedef struct _n_LayerRows    *LayerRows;
-typedef struct _n_FrontStep    *FrontStep;
 
 typedef struct {
   LayerBalance layer;       /* NULL: no node is massless, on any rank */
   PetscBool    layer_alone; /* where rows get in a step, and what holds them, is known before the acceleration: the layer alone answers */
-  FrontStep    front;       /* NULL until a substep of several is made that may be made again in a part of the nodes */
 } BodyExplicit;
 
 static inline LayerBalance GetLayerBalance(Body body)
@@ -32,8 +30,5 @@ PETSC_INTERN PetscErrorCode LayerBalanceRestore(Body);
 PETSC_INTERN PetscErrorCode LayerBalanceAgree(Body);
 PETSC_INTERN PetscErrorCode LayerBalanceVisit(Body, PetscInt, Checkpoint);
 PETSC_INTERN PetscErrorCode LayerBalanceCopyPoint(Body, PetscBool, Vec, PetscReal[2]);
-PETSC_INTERN PetscErrorCode FrontStepDestroy(FrontStep *);
-PETSC_INTERN PetscErrorCode FrontStepMake(FrontStep *, Body);
-PETSC_INTERN PetscErrorCode FrontStepNote(FrontStep, Body, Vec, Vec);
 PETSC_INTERN PetscBool      BodyHasOutsideForce(Body, PetscBool);
 PETSC_INTERN PetscErrorCode BodyComputeOutsideForce(Body, PetscReal, PetscReal, PetscBool, Vec, Vec);

@@ -2,7 +2,6 @@
    Displacements of nodes under unit forces on them, at the end of a controller step of many substeps of an explicit body, by these substeps
    where they count alone. In each substep a force is felt one element farther, and what is far from the nodes asked for when the step ends
    does not come back to them in time. Ahead of the wave displacements fall below round-off: nodes join as their neighbours have moved.
-   integrator/frontstep.c makes whole steps again in such a way.
 */
 #include "complianceimpl.h"
 #include <impakt/private/simd.h>
