@@ -283,7 +283,6 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(PetscFree(b->mass.factor));
   PetscCall(PetscFree(b->layer.dofs));
   PetscCall(PetscFree(b->layer.contains));
-  PetscCall(NodeElementsDestroy(&b->mesh.around));
   if (b->mesh.connectivity != b->mesh.cell_connectivity) PetscCall(PetscFree(b->mesh.connectivity));
   PetscCall(PetscFree(b->mesh.cell_connectivity));
   PetscCall(PetscFree(b->mesh.coordinates));

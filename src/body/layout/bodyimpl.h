@@ -14,7 +14,6 @@
 #include <impakt/private/elementimpl.h>
 #include <solver/constrainedsolver.h>
 #include <body/layout/integrator.h>
-#include <body/layout/nodeelements.h>
 
 typedef struct _n_LayerElements *LayerElements;
 typedef struct _n_LayerSolver   *LayerSolver;
@@ -31,7 +30,6 @@ typedef struct {
   PetscInt       vertex_start;   /* point of the first vertex in the DM */
   PetscInt      *node_of_vertex; /* of the vertices in their order */
   PetscInt      *connectivity;   /* nodes of the elements, element by element */
-  NodeElements   around;         /* the elements of the nodes; NULL until BodyGetNodeElements() */
   /* the cells of the DM, which are the elements but for composite ones: each of these is made of several cells that follow each other */
   PetscInt    n_cells, cell_nodes, cells_of_element;
   PetscInt   *cell_connectivity; /* `connectivity`, where cells are elements */

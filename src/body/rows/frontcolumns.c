@@ -129,30 +129,48 @@ static void MakeColumns(Front *front, PetscInt n, const PetscInt dofs[], BodyFor
   }
 }
 
+/* How many nodes away each node is from those of some displacements, as far as the substeps reach; `queue`: room for all nodes */
+static void FindDistances(Front *front, PetscInt n, const PetscInt dofs[], PetscInt most, PetscInt queue[])
+{
+  PetscInt count = 0;
+
+  for (PetscInt i = 0; i < n; i++) {
+    if (front->distance[dofs[i] / front->dim] == 0) continue;
+    front->distance[dofs[i] / front->dim] = 0;
+    queue[count++]                        = dofs[i] / front->dim;
+  }
+  for (PetscInt k = 0; k < count && front->distance[queue[k]] < most; k++) {
+    const PetscInt row = queue[k] * front->dim, next = front->distance[queue[k]] + 1;
+
+    for (PetscInt e = front->begin[row]; e < front->begin[row + 1]; e += front->dim) {
+      const PetscInt other = front->columns[e] / front->dim;
+
+      if (front->distance[other] <= next) continue;
+      front->distance[other] = next;
+      queue[count++]         = other;
+    }
+  }
+}
+
 /* FrontCreateMatrix - the stiffness of the undeformed body, of nodes that forces on contact nodes can reach, and act back from on contact
    nodes, before a controller step ends */
 PetscErrorCode FrontCreateMatrix(Body body, Mat *stiffness)
 {
-  const PetscInt n = body->mesh.owned_nodes, far = (body->time.substeps + 1) / 2;
-  PetscInt      *contact, *distance, *order, n_contact = 0, found;
-  PetscBool     *marked;
-  NodeElements   around;
+  const PetscInt n = body->model.element->nodes, count = body->model.element->count, *nodes = body->mesh.connectivity;
+  PetscBool     *marked, *reached;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(n, &contact, n, &distance, n, &order));
-  PetscCall(PetscCalloc1(body->model.element->count, &marked));
-  PetscCall(BodyGetNodeElements(body, &around));
-  for (PetscInt i = 0; i < n; i++) {
-    distance[i] = PETSC_INT_MAX;
-    if (body->layer.contains[i]) contact[n_contact++] = i;
+  PetscCall(PetscMalloc1(body->mesh.local_nodes, &reached));
+  PetscCall(PetscCalloc1(count, &marked));
+  PetscCall(PetscArraycpy(reached, body->layer.contains, body->mesh.local_nodes));
+  for (PetscInt ring = 0; ring <= (body->time.substeps + 1) / 2; ring++) {
+    for (PetscInt i = 0; i < count * n; i++) marked[i / n] = (PetscBool)(marked[i / n] || reached[nodes[i]]);
+    for (PetscInt i = 0; i < count * n; i++) reached[nodes[i]] = (PetscBool)(reached[nodes[i]] || marked[i / n]);
   }
-  PetscCall(NodeElementsFindDistances(around, n_contact, 1, contact, far, distance, &found, order));
-  for (PetscInt k = 0; k < found; k++)
-    for (PetscInt j = around->begin[order[k]]; j < around->begin[order[k] + 1]; j++) marked[around->elements[j]] = PETSC_TRUE;
   PetscCall(BodyCreateMatrix(body, marked, stiffness));
   PetscCall(BodyAssembleTangent(body, NULL, marked, *stiffness));
   PetscCall(PetscFree(marked));
-  PetscCall(PetscFree3(contact, distance, order));
+  PetscCall(PetscFree(reached));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -164,8 +182,7 @@ PetscErrorCode FrontProbe(Body body, Mat stiffness, BodyForceShape shape, PetscI
   const PetscReal still   = body->model.linear ? STILL : STILL_NONLINEAR;
   const Vec       inverse = body->work.nodes[0], column = body->work.nodes[1];
   PetscScalar    *values;
-  PetscInt        n_rows, n_known, found, some[TOGETHER], count = 0;
-  NodeElements    around;
+  PetscInt        n_rows, n_known, some[TOGETHER], count = 0;
   PetscBool       done;
 
   PetscFunctionBegin;
@@ -179,9 +196,8 @@ PetscErrorCode FrontProbe(Body body, Mat stiffness, BodyForceShape shape, PetscI
   PetscCall(PetscMalloc2(front.n, &front.distance, front.n, &front.moved));
   for (PetscInt i = 0; i < front.n; i++) front.distance[i] = PETSC_INT_MAX;
   ComplianceGetRows(compliance, &n_known, &known, NULL);
-  PetscCall(BodyGetNodeElements(body, &around));
-  PetscCall(NodeElementsFindDistances(around, n_known, front.dim, known, body->time.substeps, front.distance, &found, front.moved));
-  PetscCall(NodeElementsFindDistances(around, n, front.dim, dofs, body->time.substeps, front.distance, &found, front.moved));
+  FindDistances(&front, n_known, known, body->time.substeps, front.moved);
+  FindDistances(&front, n, dofs, body->time.substeps, front.moved);
   for (PetscInt i = 0; i < n; i++) {
     if (!ComplianceKnows(compliance, dofs[i])) some[count++] = dofs[i];
     if (!count || (count < TOGETHER && i < n - 1)) continue;
