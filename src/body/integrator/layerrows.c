@@ -6,7 +6,7 @@
 
 struct _n_LayerRows {
   Mat        matrix;
-  PetscInt   n;        /* of a body that one of several ranks has: how many, */
+  PetscInt   n;        /* of a body that one rank has: how many, */
   PetscInt  *list;     /* and all of them, ascending; else NULL */
   PetscInt64 laid_out; /* what the rows of the body counted when the matrix was made */
 };
@@ -26,7 +26,7 @@ PetscErrorCode LayerRowsDestroy(LayerRows *rows)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A part of the matrix of the body, in place where entries are where they were; collective */
+/* A part of the matrix of the body, in place where entries are where they were; collective. It takes memory of PETSc each time. */
 static PetscErrorCode Extract(LayerRows rows, Body body)
 {
   const MatReuse reuse = rows->matrix && body->rows.same_pattern ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX;
@@ -34,6 +34,7 @@ static PetscErrorCode Extract(LayerRows rows, Body body)
 
   PetscFunctionBegin;
   if (reuse == MAT_INITIAL_MATRIX) PetscCall(MatDestroy(&rows->matrix));
+  rows->laid_out = body->rows.laid_out;
   PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, body->rows.begin, 1, &own));
   PetscCall(MatCreateSubMatrix(body->rows.free_matrix, own, body->layer.global, reuse, &rows->matrix));
   PetscCall(ISDestroy(&own));
@@ -102,14 +103,15 @@ static PetscErrorCode Fill(LayerRows rows, Body body)
 PetscErrorCode LayerRowsUpdate(LayerRows rows, Body body)
 {
   const PetscBool others = (PetscBool)(!rows->matrix || rows->laid_out != body->rows.laid_out);
+  const PetscBool anew   = (PetscBool)(others || !body->rows.same_pattern);
 
   PetscFunctionBegin;
-  if (!rows->list) {
+  if (!rows->list || (anew && !body->mesh.whole)) {
     PetscCall(Extract(rows, body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (others) PetscCall(CreateWhole(rows, body));
-  if (others || !body->rows.same_pattern) PetscCall(MakeRoom(rows, body));
+  if (anew) PetscCall(MakeRoom(rows, body));
   PetscCall(Fill(rows, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -124,7 +126,7 @@ PetscErrorCode LayerRowsCreate(Body body, LayerRows *created)
   PetscFunctionBegin;
   PetscCall(PetscNew(created));
   rows = *created;
-  if (!body->mesh.whole) {
+  if (body->mesh.ghosted) {
     PetscCall(Extract(rows, body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
