@@ -57,7 +57,6 @@ SIMD_INLINE PetscInt AddBatches(PetscBool linear, PetscBool mean, const Solid *s
     Means    means;
     PetscInt bad;
 
-    if (SolidSkips(solid, first)) continue;
     GetBatch(solid, connectivity, first, count, &batch);
     GetValues(connectivity, first, count, u, &values);
     FindPoints(linear, mean, SHARE(solid), &batch, &values, H, at, &means);

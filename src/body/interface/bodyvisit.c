@@ -58,7 +58,6 @@ static PetscErrorCode VisitConditions(Body body, Checkpoint checkpoint)
   PetscCall(CheckpointVisitInts(checkpoint, "n_robin", 1, &rows->n_robin));
   PetscCall(CheckpointVisitVec(checkpoint, "stage balance", rows->stage_balance));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyAgreeOnGram(body));
   PetscCall(BodyUpdateGram(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -196,7 +196,7 @@ typedef struct {
   PetscBool        at_home;     /* the mesh is whole on one of several ranks, and no other has rows */
   PetscBool        expected;    /* rows may come in the course of the run */
   BodyGram         gram;        /* of prescribed rows that are not orthonormal */
-  PetscBool        any_oblique; /* on any rank there are rows of one node that are not orthonormal */
+  PetscBool        any_oblique; /* on any rank it has blocks */
   PetscBool       *by_mean;     /* per local row: see BodySetMeanForces(); NULL: none */
   PetscBool        any_by_mean; /* on any rank */
   const PetscReal *weights;     /* of rows that depend on each other; borrowed, NULL: they are equal */
@@ -532,8 +532,6 @@ PETSC_INTERN PetscErrorCode BodyDestroyRowArrays(Body);
 PETSC_INTERN PetscErrorCode RowPatternNote(RowPattern *, Mat, PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode RowPatternDestroy(RowPattern *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
-PETSC_INTERN PetscErrorCode BodySetUpGram(Body);
-PETSC_INTERN PetscErrorCode BodyAgreeOnGram(Body);
 PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);
 PETSC_INTERN void           BodyUnmarkDependent(Body, PetscBool[]);
 PETSC_INTERN void           BodyDivideByGram(Body, PetscScalar[]);

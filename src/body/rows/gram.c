@@ -20,27 +20,23 @@
 /* Rows with a length so near to one are taken for unit vectors */
 #define UNIT 1e-12
 
-/* The rows of this rank that a block may be made of, side by side where they share a node, and the blocks of those that are prescribed */
+/* The blocks of the rows of this rank that are prescribed */
 struct _n_BodyGram {
-  PetscInt     n_runs, *run_offsets, *candidates;
-  PetscReal   *directions; /* of candidates: 3 each, without held dofs */
   PetscInt     n_blocks, *offsets, *rows;
   PetscInt    *starts; /* of each block in: */
   PetscScalar *inverses;
   PetscBool   *dependent; /* of each of `rows`: on those before it in its block */
   PetscScalar *work;      /* room for a row vector, and for the eigenvalues of a block */
   PetscInt     work_room, inverse_room;
-  PetscInt    *nodes, *order; /* work space, per row */
-  PetscReal   *all;           /* the same: directions of all rows */
+  PetscInt    *nodes;      /* work space, per row */
+  PetscReal   *directions; /* of all rows: 3 each, without held dofs */
 };
 
 PetscErrorCode BodyGramDestroy(BodyGram *gram)
 {
   PetscFunctionBegin;
   if (!*gram) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree3((*gram)->run_offsets, (*gram)->candidates, (*gram)->directions));
-  PetscCall(PetscFree4((*gram)->offsets, (*gram)->rows, (*gram)->dependent, (*gram)->starts));
-  PetscCall(PetscFree3((*gram)->nodes, (*gram)->order, (*gram)->all));
+  PetscCall(PetscFree6((*gram)->offsets, (*gram)->rows, (*gram)->dependent, (*gram)->starts, (*gram)->nodes, (*gram)->directions));
   PetscCall(PetscFree((*gram)->work));
   PetscCall(PetscFree((*gram)->inverses));
   PetscCall(PetscFree(*gram));
@@ -80,45 +76,6 @@ static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Rows sorted by node: those that share one, or are alone and no unit vectors, become candidates. Returns the sum of squares of their
-   numbers, and the largest one. */
-static PetscErrorCode FindCandidates(Body body, const PetscInt nodes[], PetscInt order[], const PetscReal directions[], PetscInt *size,
-                                     PetscInt *most)
-{
-  BodyGram       gram  = body->rows.gram;
-  const PetscInt n     = body->rows.local;
-  PetscInt       count = 0;
-
-  PetscFunctionBegin;
-  *size = *most = 0;
-  for (PetscInt begin = 0, end; begin < n; begin = end) {
-    const PetscReal *first = directions + 3 * order[begin];
-
-    for (end = begin + 1; end < n && nodes[end] == nodes[begin];) end++;
-    if (nodes[begin] < 0 || (end == begin + 1 && PetscAbsReal(Dot(first, first) - 1) <= UNIT)) continue;
-    PetscCall(PetscSortInt(end - begin, order + begin));
-    for (PetscInt k = begin; k < end; k++) {
-      for (PetscInt d = 0; d < 3; d++) gram->directions[3 * count + d] = directions[3 * order[k] + d];
-      gram->candidates[count++] = order[k];
-    }
-    gram->run_offsets[++gram->n_runs] = count;
-    *size += PetscSqr(end - begin);
-    *most = PetscMax(*most, end - begin);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Room for as many blocks and runs as there can be rows */
-static PetscErrorCode Create(PetscInt n, BodyGram *gram)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscNew(gram));
-  PetscCall(PetscCalloc3(n + 1, &(*gram)->run_offsets, n, &(*gram)->candidates, 3 * n, &(*gram)->directions));
-  PetscCall(PetscCalloc4(n + 1, &(*gram)->offsets, n, &(*gram)->rows, n, &(*gram)->dependent, n, &(*gram)->starts));
-  PetscCall(PetscMalloc3(n, &(*gram)->nodes, n, &(*gram)->order, 3 * n, &(*gram)->all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* An array of at least so many numbers; what was in it is lost where it grows */
 static PetscErrorCode Grow(PetscInt n, PetscInt *room, PetscScalar *values[])
 {
@@ -127,39 +84,6 @@ static PetscErrorCode Grow(PetscInt n, PetscInt *room, PetscScalar *values[])
   PetscCall(PetscFree(*values));
   PetscCall(PetscCalloc1(n, values));
   *room = n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* With the rows as they are now; which of them are prescribed is for BodyUpdateGram() */
-PetscErrorCode BodySetUpGram(Body body)
-{
-  const PetscInt n = body->rows.local;
-  PetscInt       size, most;
-  BodyGram       gram;
-
-  PetscFunctionBegin;
-  if (!body->rows.gram) PetscCall(Create(n, &body->rows.gram));
-  gram           = body->rows.gram;
-  gram->n_blocks = gram->n_runs = 0;
-  for (PetscInt i = 0; i < n; i++) {
-    PetscCall(GetRowNode(body, i, &gram->nodes[i], gram->all + 3 * i));
-    gram->order[i] = i;
-  }
-  PetscCall(PetscSortIntWithArray(n, gram->nodes, gram->order));
-  PetscCall(FindCandidates(body, gram->nodes, gram->order, gram->all, &size, &most));
-  body->rows.any_oblique = (PetscBool)(gram->n_runs > 0);
-  /* of a body at home its rank alone has rows, and tells the others when they take part: BodyAgreeOnGram() */
-  if (!body->local || !body->rows.at_home) PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
-  PetscCall(Grow(most * (most + 5), &gram->work_room, &gram->work));
-  PetscCall(Grow(size, &gram->inverse_room, &gram->inverses));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What the rank of a local body alone knows of its rows, before all ranks take part in prescribing some */
-PetscErrorCode BodyAgreeOnGram(Body body)
-{
-  PetscFunctionBegin;
-  if (body->local && (body->rows.n_prescribed || body->rows.n_robin)) PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,21 +111,19 @@ static PetscBool Invert(PetscInt n, PetscScalar A[], PetscScalar diagonal[], Pet
   return (PetscBool)!any;
 }
 
-/* G of some candidates, with the square roots of weights on both sides */
-static void FillBlock(const BodyGram gram, PetscInt n, const PetscInt candidates[], const PetscReal weights[], PetscScalar block[])
+/* G of some rows, with the square roots of weights on both sides */
+static void FillBlock(const BodyGram gram, PetscInt n, const PetscInt rows[], const PetscReal weights[], PetscScalar block[])
 {
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 0; j < n; j++) {
-      const PetscInt  a = candidates[i], b = candidates[j];
-      const PetscReal scale = weights ? PetscSqrtReal(weights[gram->candidates[a]] * weights[gram->candidates[b]]) : 1;
+      const PetscReal scale = weights ? PetscSqrtReal(weights[rows[i]] * weights[rows[j]]) : 1;
 
-      block[i * n + j] = scale * Dot(gram->directions + 3 * a, gram->directions + 3 * b);
+      block[i * n + j] = scale * Dot(gram->directions + 3 * rows[i], gram->directions + 3 * rows[j]);
     }
 }
 
 /* A^{1/2} M^+ A^{1/2} of such a block M with weights */
-static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscInt candidates[], const PetscReal weights[],
-                                   PetscScalar block[])
+static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscInt rows[], const PetscReal weights[], PetscScalar block[])
 {
   PetscScalar *vectors = gram->work, *values = vectors + n * n, *work = values + n;
   PetscBLASInt order, lwork, info;
@@ -209,7 +131,7 @@ static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscI
   PetscFunctionBegin;
   PetscCall(PetscBLASIntCast(n, &order));
   PetscCall(PetscBLASIntCast(4 * n, &lwork));
-  FillBlock(gram, n, candidates, weights, vectors);
+  FillBlock(gram, n, rows, weights, vectors);
   PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &order, vectors, &order, values, work, &lwork, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev info %d", (int)info);
   for (PetscInt i = 0; i < n; i++)
@@ -217,39 +139,83 @@ static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscI
       block[i * n + j] = 0;
       for (PetscInt k = 0; k < n; k++)
         if (values[k] > DEPENDENT * values[n - 1]) block[i * n + j] += vectors[k * n + i] * vectors[k * n + j] / values[k];
-      if (weights) block[i * n + j] *= PetscSqrtReal(weights[gram->candidates[candidates[i]]] * weights[gram->candidates[candidates[j]]]);
+      if (weights) block[i * n + j] *= PetscSqrtReal(weights[rows[i]] * weights[rows[j]]);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The blocks of the rows that are prescribed now */
-PetscErrorCode BodyUpdateGram(Body body)
+/* The rows that have a condition, with their nodes by which they are sorted; their number */
+static PetscErrorCode SortRows(Body body, PetscInt *n)
 {
-  BodyGram gram  = body->rows.gram;
-  PetscInt count = 0, size = 0;
+  const BodyGram gram = body->rows.gram;
+
+  PetscFunctionBegin;
+  *n = 0;
+  for (PetscInt i = 0; i < body->rows.local; i++) {
+    if (body->rows.conditions[i] == BODY_FREE) continue;
+    PetscCall(GetRowNode(body, i, &gram->nodes[*n], gram->directions + 3 * i));
+    gram->rows[(*n)++] = i;
+  }
+  PetscCall(PetscSortIntWithArray(*n, gram->nodes, gram->rows));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Keeps the rows of blocks: prescribed ones of a node that have others beside them, or are no unit vectors */
+static PetscErrorCode FindBlocks(Body body, PetscInt n)
+{
+  const BodyGram gram  = body->rows.gram;
+  PetscInt       count = 0, size = 0, most = 0;
 
   PetscFunctionBegin;
   gram->n_blocks = 0;
-  for (PetscInt run = 0; run < gram->n_runs; run++) {
-    const PetscInt first = count;
-    PetscInt       n;
-    PetscScalar   *block = gram->inverses + size;
+  for (PetscInt begin = 0, end; begin < n; begin = end) {
+    const PetscReal *direction = gram->directions + 3 * gram->rows[begin];
+    const PetscInt   first     = count;
+    const PetscBool  unit      = (PetscBool)(PetscAbsReal(Dot(direction, direction) - 1) <= UNIT);
 
-    for (PetscInt k = gram->run_offsets[run]; k < gram->run_offsets[run + 1]; k++)
-      if (body->rows.conditions[gram->candidates[k]] == BODY_PRESCRIBED) gram->rows[count++] = k;
-    n = count - first;
-    FillBlock(gram, n, gram->rows + first, NULL, block);
-    if (!n || (n == 1 && PetscAbsReal(PetscRealPart(block[0]) - 1) <= UNIT)) {
-      count = first;
-      continue;
-    }
-    if (!Invert(n, block, gram->work, gram->dependent + first))
-      PetscCall(PseudoInvert(gram, n, gram->rows + first, body->rows.weights, block));
-    for (PetscInt i = first; i < count; i++) gram->rows[i] = gram->candidates[gram->rows[i]];
+    for (end = begin + 1; end < n && gram->nodes[end] == gram->nodes[begin];) end++;
+    if (gram->nodes[begin] < 0 || (end == begin + 1 && unit)) continue;
+    PetscCall(PetscSortInt(end - begin, gram->rows + begin));
+    for (PetscInt k = begin; k < end; k++)
+      if (body->rows.conditions[gram->rows[k]] == BODY_PRESCRIBED) gram->rows[count++] = gram->rows[k];
+    if (count == first) continue;
     gram->starts[gram->n_blocks++] = size;
     gram->offsets[gram->n_blocks]  = count;
-    size += n * n;
+    size += PetscSqr(count - first);
+    most = PetscMax(most, count - first);
   }
+  PetscCall(Grow(most * (most + 5), &gram->work_room, &gram->work));
+  PetscCall(Grow(size, &gram->inverse_room, &gram->inverses));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* With the rows and conditions as they are now. Collective. */
+PetscErrorCode BodyUpdateGram(Body body)
+{
+  const PetscInt n = body->rows.local;
+  PetscInt       count;
+  BodyGram       gram;
+
+  PetscFunctionBegin;
+  if (!body->rows.gram) {
+    PetscCall(PetscNew(&gram));
+    PetscCall(PetscCalloc6(n + 1, &gram->offsets, n, &gram->rows, n, &gram->dependent, n, &gram->starts, n, &gram->nodes, 3 * n,
+                           &gram->directions));
+    body->rows.gram = gram;
+  }
+  gram = body->rows.gram;
+  PetscCall(SortRows(body, &count));
+  PetscCall(FindBlocks(body, count));
+  for (PetscInt b = 0; b < gram->n_blocks; b++) {
+    const PetscInt first = gram->offsets[b], size = gram->offsets[b + 1] - first;
+    PetscScalar   *block = gram->inverses + gram->starts[b];
+
+    FillBlock(gram, size, gram->rows + first, NULL, block);
+    if (!Invert(size, block, gram->work, gram->dependent + first))
+      PetscCall(PseudoInvert(gram, size, gram->rows + first, body->rows.weights, block));
+  }
+  body->rows.any_oblique = (PetscBool)(gram->n_blocks > 0);
+  if (body->rows.n_prescribed) PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

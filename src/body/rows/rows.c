@@ -40,7 +40,7 @@ static PetscErrorCode FillFreeRows(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of the interface without held dofs, which no contact force moves, and what prescribing them takes */
+/* The rows of the interface without held dofs, which no contact force moves */
 PetscErrorCode BodySetUpFreeRows(Body body)
 {
   BodyRows *rows = &body->rows;
@@ -54,7 +54,6 @@ PetscErrorCode BodySetUpFreeRows(Body body)
     PetscCall(MatDestroy(&rows->free_matrix));
     rows->free_matrix = rows->matrix;
   }
-  PetscCall(BodySetUpGram(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,7 +111,6 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
 PetscErrorCode BodySetConstraints(Body body)
 {
   PetscFunctionBegin;
-  PetscCall(BodyAgreeOnGram(body));
   PetscCall(BodyUpdateGram(body));
   for (PetscInt i = 0; i < body->rows.local; i++) {
     body->rows.constrained[i] = (PetscBool)(body->rows.conditions[i] == BODY_PRESCRIBED || body->rows.conditions[i] == BODY_ROBIN);
