@@ -129,15 +129,12 @@ SIMD_INLINE void AddMaterialPart(PetscBool mean, PetscBool symmetric, Element el
     PetscReal stress[9];
 
     for (PetscInt k = 0; k < 9; k++) {
-      stress[k] = tangent[9 * k + 8] * apart[j];
-      for (PetscInt l = start[j]; l < start[j] + length; l++) stress[k] += tangent[9 * k + l] * variation[j][l];
-      stress[k] *= point->weight;
+      stress[k] = point->weight * tangent[9 * k + 8] * apart[j];
+      for (PetscInt l = start[j]; l < start[j] + length; l++) stress[k] += point->weight * tangent[9 * k + l] * variation[j][l];
     }
     for (PetscInt i = 0; i < (symmetric ? j + 1 : n); i++) {
-      PetscReal sum = apart[i] * stress[8];
-
-      for (PetscInt k = start[i]; k < start[i] + length; k++) sum += variation[i][k] * stress[k];
-      K[i * n + j] += sum;
+      K[i * n + j] += apart[i] * stress[8];
+      for (PetscInt k = start[i]; k < start[i] + length; k++) K[i * n + j] += variation[i][k] * stress[k];
     }
   }
 }
@@ -171,7 +168,8 @@ PetscErrorCode ElementTangent_Solid(Element element, PetscInt e, PetscBool visco
   const Solid    *solid    = (const Solid *)element->data;
   const PetscInt  n_points = solid->shape->n_points, n = element->nodes * element->dim;
   const PetscBool finite = (PetscBool)(viscous || !solid->linear), mean = (PetscBool)(solid->mean_share > 0);
-  const PetscBool symmetric = (PetscBool)!solid->history->start; /* where nothing flows, and half of K is enough */
+  /* half of K is enough where nothing flows; of linear materials it is found once */
+  const PetscBool symmetric = (PetscBool)(!solid->linear && !solid->history->start);
   Point           points[SOLID_MAX_POINTS];
   PetscReal       dtheta[MAX_DOFS], theta = 1, volume = 0, pressure = 0;
 
