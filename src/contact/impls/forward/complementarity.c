@@ -25,8 +25,8 @@ PetscErrorCode ComplementarityDestroy(Complementarity *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* C, with the rows as they are: B M^{-1} B^T of all bodies, times a number */
-PetscErrorCode ComplementaritySetCompliance(Contact contact, PetscReal scale, Complementarity *problem)
+/* C, with the rows as they are: B M^{-1} B^T of all bodies */
+PetscErrorCode ComplementaritySetCompliance(Contact contact, Complementarity *problem)
 {
   PetscFunctionBegin;
   PetscCall(MatDestroy(&problem->compliance));
@@ -35,7 +35,6 @@ PetscErrorCode ComplementaritySetCompliance(Contact contact, PetscReal scale, Co
     Mat matrix;
 
     PetscCall(BodyComputeInverseMass(contact->bodies[b], PETSC_FALSE, &matrix));
-    PetscCall(MatScale(matrix, scale));
     PetscCall(ContactAddBodyMatrix(contact, b, matrix, problem->compliance));
     PetscCall(MatDestroy(&matrix));
   }
@@ -135,13 +134,16 @@ PetscErrorCode ComplementaritySolve(Contact contact, Complementarity *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces on the rows of a body, as it takes them */
-PetscErrorCode ComplementarityGetBodyForces(Contact contact, PetscInt b, const Complementarity *problem, PetscScalar forces[])
+/* Adds the effect of the forces to the states of all bodies: so much of their impulse to displacements, velocities and accelerations */
+PetscErrorCode ComplementarityApply(Contact contact, Complementarity *problem, BodyStepSide when, const PetscReal parts[3])
 {
-  const ContactBodyRows *of = &contact->body_rows[b];
-
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < of->n; k++)
-    forces[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * problem->forces[of->rows[k]];
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of = &contact->body_rows[b];
+
+    for (PetscInt k = 0; k < of->n; k++)
+      problem->mine[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * problem->forces[of->rows[k]];
+    PetscCall(BodyAddImpulses(contact->bodies[b], when, PETSC_FALSE, parts, problem->mine));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

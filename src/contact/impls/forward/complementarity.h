@@ -2,6 +2,7 @@
 #pragma once
 #include <contact/parts.h>
 #include <contact/solve/lawproblem.h>
+#include <impakt/private/bodyforces.h>
 
 typedef struct {
   Mat        compliance; /* C, of all rows */
@@ -17,8 +18,8 @@ typedef struct {
 } Complementarity;
 
 PETSC_INTERN PetscErrorCode ComplementarityCreate(Contact, Complementarity *);
-PETSC_INTERN PetscErrorCode ComplementaritySetCompliance(Contact, PetscReal, Complementarity *);
+PETSC_INTERN PetscErrorCode ComplementaritySetCompliance(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementaritySolve(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementaritySolveActive(Contact, Complementarity *);
-PETSC_INTERN PetscErrorCode ComplementarityGetBodyForces(Contact, PetscInt, const Complementarity *, PetscScalar[]);
+PETSC_INTERN PetscErrorCode ComplementarityApply(Contact, Complementarity *, BodyStepSide, const PetscReal[3]);
 PETSC_INTERN PetscErrorCode ComplementarityDestroy(Complementarity *);

@@ -69,10 +69,7 @@ static PetscErrorCode Accept(Contact contact)
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) corrections->impulses.forces[i] = -TIMES * contact->end.force[i];
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(ComplementarityGetBodyForces(contact, b, &corrections->impulses, corrections->impulses.mine));
-    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, PETSC_FALSE, parts, corrections->impulses.mine));
-  }
+  PetscCall(ComplementarityApply(contact, &corrections->impulses, BODY_AT_END, parts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -80,7 +77,7 @@ static PetscErrorCode RowsChanged(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(ContactStepperRowsChanged(contact));
-  PetscCall(ComplementaritySetCompliance(contact, 1, &CorrectionsOf(contact)->impulses));
+  PetscCall(ComplementaritySetCompliance(contact, &CorrectionsOf(contact)->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -88,7 +85,7 @@ static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   PetscCall(ContactStepperVisit(contact, checkpoint));
-  if (CheckpointLoads(checkpoint)) PetscCall(ComplementaritySetCompliance(contact, 1, &CorrectionsOf(contact)->impulses));
+  if (CheckpointLoads(checkpoint)) PetscCall(ComplementaritySetCompliance(contact, &CorrectionsOf(contact)->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -4,18 +4,13 @@
    C = dt^2 sum_bodies B M^{-1} B^T, so that after a free trial step with gaps g
 
      g + C lambda >= 0,   lambda >= 0,   lambda . (g + C lambda) = 0.
+
+   All is divided by dt^2: so the same matrix finds the impulses that close the rate beside the gap.
 */
 #include "forwardimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
 #include <impakt/private/bodyforces.h>
-
-typedef struct {
-  Complementarity forces; /* C: [m/N] */
-  /* for the rate beside the gap */
-  Complementarity impulses;
-  PetscBool       close_rate;
-} ForwardLagrange;
 
 /* Part of a penetration at the start of a step that is taken back in it. Where rows are built again on surfaces that have slid, gaps jump
    by a small part of an element; to close that within one explicit step would take velocities that have nothing to do with the impact. */
@@ -34,8 +29,8 @@ static PetscReal GapToClose(Contact contact, PetscInt i)
 
 static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
 {
-  const PetscReal  parts[]  = {0, 0.5 * contact->step, 1};
-  ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
+  const PetscReal  parts[] = {0, 0.5 * contact->step, 1};
+  Complementarity *problem = (Complementarity *)contact->data;
   PetscBool        penetrating;
   PetscLogDouble   begin, end;
   int              any = 0;
@@ -44,21 +39,18 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   PetscCall(ContactIntegrateFree(contact, &penetrating));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    lagrange->forces.gaps[i] = contact->rows.tied[i] ? contact->end.gap[i] : GapToClose(contact, i);
-    any |= contact->rows.tied[i] || (lagrange->forces.gaps[i] < 0 && (penetrating || contact->start.active[i]));
+    problem->gaps[i] = (contact->rows.tied[i] ? contact->end.gap[i] : GapToClose(contact, i)) / PetscSqr(contact->step);
+    any |= contact->rows.tied[i] || (problem->gaps[i] < 0 && (penetrating || contact->start.active[i]));
   }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&begin));
-  PetscCall(ComplementaritySolve(contact, &lagrange->forces));
+  PetscCall(ComplementaritySolve(contact, problem));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(ComplementarityGetBodyForces(contact, b, &lagrange->forces, lagrange->forces.mine));
-    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_START, PETSC_FALSE, parts, lagrange->forces.mine));
-  }
+  PetscCall(ComplementarityApply(contact, problem, BODY_AT_START, parts));
   PetscCall(ContactIntegrateBodies(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    contact->end.force[i]  = lagrange->forces.forces[i];
+    contact->end.force[i]  = problem->forces[i];
     contact->end.active[i] = (PetscBool)(contact->rows.tied[i] || contact->end.force[i] > 0);
   }
   if (!ContactFailed(contact)) PetscCall(ContactComputeGaps(contact));
@@ -72,22 +64,19 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
    with the force of the step */
 static PetscErrorCode ContactAccept_ForwardLagrange(Contact contact)
 {
-  ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
+  Complementarity *problem = (Complementarity *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(LagrangeCloseRate(contact, PETSC_TRUE, &lagrange->impulses));
+  PetscCall(LagrangeCloseRate(contact, PETSC_TRUE, problem));
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (contact->end.active[i]) contact->end.force[i] += lagrange->impulses.forces[i] / contact->step;
+    if (contact->end.active[i]) contact->end.force[i] += problem->forces[i] / contact->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ContactRowsChanged_ForwardLagrange(Contact contact)
 {
-  ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
-
   PetscFunctionBegin;
-  PetscCall(ComplementaritySetCompliance(contact, PetscSqr(contact->step), &lagrange->forces));
-  if (lagrange->close_rate) PetscCall(ComplementaritySetCompliance(contact, 1, &lagrange->impulses));
+  PetscCall(ComplementaritySetCompliance(contact, (Complementarity *)contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -101,11 +90,10 @@ static PetscErrorCode ContactVisit_ForwardLagrange(Contact contact, Checkpoint c
 
 static PetscErrorCode ContactDestroy_ForwardLagrange(Contact contact)
 {
-  ForwardLagrange *lagrange = (ForwardLagrange *)contact->data;
+  Complementarity *problem = (Complementarity *)contact->data;
 
   PetscFunctionBegin;
-  PetscCall(ComplementarityDestroy(&lagrange->forces));
-  if (lagrange->close_rate) PetscCall(ComplementarityDestroy(&lagrange->impulses));
+  PetscCall(ComplementarityDestroy(problem));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -113,23 +101,18 @@ static PetscErrorCode ContactDestroy_ForwardLagrange(Contact contact)
 /* For bodies that have been found to be explicit, with one step and mass on their contact nodes */
 PetscErrorCode LagrangeSetUpForward(Contact contact)
 {
-  ForwardLagrange *lagrange;
+  Complementarity *problem;
 
   PetscFunctionBegin;
   PetscCall(ImpaktCite(CITE_FORWARD_LAGRANGE));
-  PetscCall(PetscNew(&lagrange));
-  contact->data                = lagrange;
+  PetscCall(PetscNew(&problem));
+  contact->data                = problem;
   contact->attempt.moves_start = PETSC_TRUE;
   contact->ops->step           = ContactStep_ForwardLagrange;
   contact->ops->rowschanged    = ContactRowsChanged_ForwardLagrange;
   contact->ops->visit          = ContactVisit_ForwardLagrange;
   contact->ops->destroy        = ContactDestroy_ForwardLagrange;
-  PetscCall(ComplementarityCreate(contact, &lagrange->forces));
-  if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) {
-    contact->ops->accept = ContactAccept_ForwardLagrange;
-    lagrange->close_rate = PETSC_TRUE;
-    PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", &lagrange->impulses));
-  }
-  PetscCall(ComplementaritySetCompliance(contact, PetscSqr(contact->step), &lagrange->forces));
+  if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) contact->ops->accept = ContactAccept_ForwardLagrange;
+  PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -20,7 +20,7 @@ PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Compl
                option, ((PetscObject)first)->name, ((PetscObject)second)->name, ((PetscObject)first)->name);
   }
   PetscCall(ComplementarityCreate(contact, impulses));
-  PetscCall(ComplementaritySetCompliance(contact, 1, impulses));
+  PetscCall(ComplementaritySetCompliance(contact, impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -38,10 +38,7 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
   for (PetscInt i = 0; i < contact->rows.n; i++)
     impulses->active[i] = (PetscBool)(contact->end.active[i] && (contact->rows.tied[i] || !pushing_only || impulses->gaps[i] < 0));
   PetscCall(ComplementaritySolveActive(contact, impulses));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
-    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, PETSC_FALSE, parts, impulses->mine));
-  }
+  PetscCall(ComplementarityApply(contact, impulses, BODY_AT_END, parts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,9 +59,6 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ComplementaritySolve(contact, impulses));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(ComplementarityGetBodyForces(contact, b, impulses, impulses->mine));
-    PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_START, PETSC_FALSE, parts, impulses->mine));
-  }
+  PetscCall(ComplementarityApply(contact, impulses, BODY_AT_START, parts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
