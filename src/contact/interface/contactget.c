@@ -225,3 +225,14 @@ PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], Pets
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* Where the bodies are, for messages [s] */
+PetscErrorCode ContactGetTime(Contact contact, PetscReal *time)
+{
+  TS ts;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetTS(contact->bodies[0], &ts));
+  PetscCall(TSGetTime(ts, time));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

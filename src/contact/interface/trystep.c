@@ -8,17 +8,6 @@ enum { MOST_PAIRS = 3 }; /* that a message names */
 
 static const char *const Unconvergeds[] = {"error", "accept", "SchwarzUnconverged", "SCHWARZ_UNCONVERGED_", NULL};
 
-/* Where the bodies are, for messages [s] */
-PetscErrorCode ContactGetTime(Contact contact, PetscReal *time)
-{
-  TS ts;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetTS(contact->bodies[0], &ts));
-  PetscCall(TSGetTime(ts, time));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What becomes of a step whose outer iteration does not converge, from the options; for methods that have one */
 PetscErrorCode ContactReadUnconverged(Contact contact)
 {
