@@ -31,35 +31,9 @@ PetscInt ElementHistorySlot(Element element, PetscInt e)
   return blocks ? blocks->first_slot[blocks->block[e]] + blocks->local[e] : e;
 }
 
-/* Gives elements several materials, before ElementSetUp(). `materials`: n, one for each block; `block`: that of each of the `count`
-   elements of this rank */
-PetscErrorCode ElementSetBlocks(Element element, PetscInt n, const Material materials[], PetscInt count, const PetscInt block[])
-{
-  ElementBlocks blocks;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
-  PetscCheck(!element->setup && !element->blocks, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE,
-             "Call once, before ElementSetUp()");
-  PetscCall(PetscNew(&blocks));
-  element->blocks = blocks;
-  blocks->n       = n;
-  element->count  = count;
-  PetscCall(PetscCalloc6(n, &blocks->materials, n, &blocks->formulations, n, &blocks->parts, n, &blocks->numbers, n, &blocks->connectivity,
-                         n, &blocks->first_slot));
-  PetscCall(PetscMalloc2(count, &blocks->block, count, &blocks->local));
-  PetscCall(PetscArraycpy(blocks->block, block, count));
-  for (PetscInt k = 0; k < n; k++) {
-    PetscCall(PetscObjectReference((PetscObject)materials[k]));
-    blocks->materials[k] = materials[k];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ElementBlocksDestroy(ElementBlocks *blocks)
+static PetscErrorCode BlocksDestroy(ElementBlocks *blocks)
 {
   PetscFunctionBegin;
-  if (!*blocks) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < (*blocks)->n; k++) {
     PetscCall(MaterialDestroy(&(*blocks)->materials[k]));
     PetscCall(PetscFree((*blocks)->formulations[k]));
@@ -293,8 +267,8 @@ static PetscErrorCode SetUpHistory(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ElementSetUpBlocks - the part of ElementSetUp() that makes the elements of each block */
-PetscErrorCode ElementSetUpBlocks(Element element, const PetscReal coordinates[])
+/* The part of ElementSetUp() that makes the elements of each block */
+static PetscErrorCode SetUpBlocks(Element element, const PetscReal coordinates[])
 {
   const ElementBlocks blocks = element->blocks;
   PetscInt           *counts, largest = 0;
@@ -332,11 +306,39 @@ PetscErrorCode ElementSetUpBlocks(Element element, const PetscReal coordinates[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ElementWarnOfLockingBlocks - ElementWarnOfLocking() for each block */
-PetscErrorCode ElementWarnOfLockingBlocks(Element element)
+/* ElementWarnOfLocking() for each block */
+static PetscErrorCode WarnOfLocking(Element element)
 {
   PetscFunctionBegin;
   for (PetscInt k = 0; k < element->blocks->n; k++) PetscCall(ElementWarnOfLocking(element->blocks->parts[k]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static const ElementBlocksOps ops = {SetUpBlocks, WarnOfLocking, BlocksDestroy};
+
+/* Gives elements several materials, before ElementSetUp(). `materials`: n, one for each block; `block`: that of each of the `count`
+   elements of this rank */
+PetscErrorCode ElementSetBlocks(Element element, PetscInt n, const Material materials[], PetscInt count, const PetscInt block[])
+{
+  ElementBlocks blocks;
+
+  PetscFunctionBegin;
+  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
+  PetscCheck(!element->setup && !element->blocks, PetscObjectComm((PetscObject)element), PETSC_ERR_ARG_WRONGSTATE,
+             "Call once, before ElementSetUp()");
+  PetscCall(PetscNew(&blocks));
+  element->blocks     = blocks;
+  element->blocks_ops = &ops;
+  blocks->n           = n;
+  element->count      = count;
+  PetscCall(PetscCalloc6(n, &blocks->materials, n, &blocks->formulations, n, &blocks->parts, n, &blocks->numbers, n, &blocks->connectivity,
+                         n, &blocks->first_slot));
+  PetscCall(PetscMalloc2(count, &blocks->block, count, &blocks->local));
+  PetscCall(PetscArraycpy(blocks->block, block, count));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(PetscObjectReference((PetscObject)materials[k]));
+    blocks->materials[k] = materials[k];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

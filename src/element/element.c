@@ -135,7 +135,7 @@ PetscErrorCode ElementSetUp(Element element, PetscInt count, const PetscInt conn
              "Blocks have been given for %" PetscInt_FMT " elements, not for %" PetscInt_FMT, element->count, count);
   element->count        = count;
   element->connectivity = connectivity;
-  if (element->blocks) PetscCall(ElementSetUpBlocks(element, coordinates));
+  if (element->blocks) PetscCall((*element->blocks_ops->setup)(element, coordinates));
   else {
     PetscCall(ElementApplyFormulation(element));
     PetscUseTypeMethod(element, setup, coordinates);
@@ -197,7 +197,7 @@ PetscErrorCode ElementDestroy(Element *element)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscTryTypeMethod(*element, destroy);
-  PetscCall(ElementBlocksDestroy(&(*element)->blocks));
+  if ((*element)->blocks) PetscCall((*(*element)->blocks_ops->destroy)(&(*element)->blocks));
   PetscCall(PetscFree((*element)->formulation));
   PetscCall(MaterialDestroy(&(*element)->material));
   PetscCall(PetscHeaderDestroy(element));

@@ -30,6 +30,53 @@ PetscErrorCode ElementRegister(DMPolytopeType cell_type, PetscErrorCode (*create
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* The name in the registry: of the shape and of the formulation */
+PetscErrorCode ElementFormulationKey(DMPolytopeType cell_type, PetscBool axisymmetric, const char formulation[], size_t size, char key[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(key, size, "%s%s/%s", axisymmetric ? "axisymmetric " : "", DMPolytopeTypes[cell_type], formulation));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/*@C
+  ElementRegisterFormulation - adds a formulation of the elements of one shape to the registry
+
+  Not Collective
+
+  Input Parameters:
++ cell_type   - shape of the cell
+. formulation - its name
+- create      - function that is given an `Element` as the one of `ElementRegister()` has made it, with its material, before its set-up;
+                it replaces those operations that differ
+
+  Level: developer
+
+.seealso: `Element`, `ElementRegister()`
+@*/
+PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
+{
+  char key[128];
+
+  PetscFunctionBegin;
+  PetscAssertPointer(formulation, 2);
+  PetscCall(ElementInitializePackage());
+  PetscCall(ElementFormulationKey(cell_type, PETSC_FALSE, formulation, sizeof(key), key));
+  PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The same for elements that are rings about an axis, which have their formulations, the full one among them, for themselves */
+PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
+{
+  char key[128];
+
+  PetscFunctionBegin;
+  PetscCall(ElementInitializePackage());
+  PetscCall(ElementFormulationKey(cell_type, PETSC_TRUE, formulation, sizeof(key), key));
+  PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* All that Impakt brings */
 static PetscErrorCode RegisterAll(void)
 {

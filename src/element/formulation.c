@@ -12,53 +12,6 @@ static const char *Prefix(Element element)
   return ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "";
 }
 
-/* The name in the registry: of the shape and of the formulation */
-static PetscErrorCode GetKey(DMPolytopeType cell_type, PetscBool axisymmetric, const char formulation[], size_t size, char key[])
-{
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(key, size, "%s%s/%s", axisymmetric ? "axisymmetric " : "", DMPolytopeTypes[cell_type], formulation));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-  ElementRegisterFormulation - adds a formulation of the elements of one shape to the registry
-
-  Not Collective
-
-  Input Parameters:
-+ cell_type   - shape of the cell
-. formulation - its name
-- create      - function that is given an `Element` as the one of `ElementRegister()` has made it, with its material, before its set-up;
-                it replaces those operations that differ
-
-  Level: developer
-
-.seealso: `Element`, `ElementRegister()`
-@*/
-PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
-{
-  char key[128];
-
-  PetscFunctionBegin;
-  PetscAssertPointer(formulation, 2);
-  PetscCall(ElementInitializePackage());
-  PetscCall(GetKey(cell_type, PETSC_FALSE, formulation, sizeof(key), key));
-  PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same for elements that are rings about an axis, which have their formulations, the full one among them, for themselves */
-PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
-{
-  char key[128];
-
-  PetscFunctionBegin;
-  PetscCall(ElementInitializePackage());
-  PetscCall(GetKey(cell_type, PETSC_TRUE, formulation, sizeof(key), key));
-  PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Chooses what the elements do against locking, before their set-up: one of the names that README.md explains, or one of
    ElementRegisterFormulation(); NULL: the default */
 PetscErrorCode ElementSetFormulation(Element element, const char formulation[])
@@ -105,7 +58,7 @@ static PetscErrorCode GetNames(DMPolytopeType cell_type, PetscBool axisymmetric,
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(names, ELEMENT_FULL, size));
-  PetscCall(GetKey(cell_type, axisymmetric, "", sizeof(shape), shape));
+  PetscCall(ElementFormulationKey(cell_type, axisymmetric, "", sizeof(shape), shape));
   PetscCall(PetscFunctionListGet(ElementFormulationList, &known, &n));
   for (int i = 0; i < n; i++) {
     const size_t length = strlen(shape);
@@ -158,7 +111,7 @@ static PetscErrorCode ChooseFormulation(Element element)
   }
   PetscCall(GetPoissonsRatio(element, &ratio));
   PetscCall(HasHistory(element, &flows));
-  PetscCall(GetKey(element->cell_type, element->axisymmetric, ELEMENT_MEAN_DILATATION, sizeof(key), key));
+  PetscCall(ElementFormulationKey(element->cell_type, element->axisymmetric, ELEMENT_MEAN_DILATATION, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
   PetscCall(PetscStrallocpy(create && (ratio > LOCKING_RATIO || flows) && !element->plane_stress ? ELEMENT_MEAN_DILATATION : ELEMENT_FULL,
                             &element->formulation));
@@ -176,7 +129,7 @@ PetscErrorCode ElementApplyFormulation(Element element)
   if (!element->formulation) PetscCall(ChooseFormulation(element));
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_FULL, &full));
   if (full && !element->axisymmetric) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetKey(element->cell_type, element->axisymmetric, element->formulation, sizeof(key), key));
+  PetscCall(ElementFormulationKey(element->cell_type, element->axisymmetric, element->formulation, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
   if (!create) {
     char names[1024];
@@ -215,14 +168,14 @@ PetscErrorCode ElementWarnOfLocking(Element element)
 
   PetscFunctionBegin;
   if (element->blocks) {
-    PetscCall(ElementWarnOfLockingBlocks(element));
+    PetscCall((*element->blocks_ops->warnoflocking)(element));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscStrcmp(element->formulation, ELEMENT_FULL, &full));
   PetscCall(GetPoissonsRatio(element, &ratio));
   PetscCall(HasHistory(element, &flows));
   if (!full || element->dim == 1 || element->plane_stress || (ratio <= LOCKING_RATIO && !flows)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetKey(element->cell_type, element->axisymmetric, ELEMENT_MEAN_DILATATION, sizeof(key), key));
+  PetscCall(ElementFormulationKey(element->cell_type, element->axisymmetric, ELEMENT_MEAN_DILATATION, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
   if (create && ratio <= STRONG_RATIO && !flows) PetscFunctionReturn(PETSC_SUCCESS);
   if (flows) PetscCall(PetscStrncpy(material, "a material that flows", sizeof(material)));
@@ -258,7 +211,7 @@ PetscErrorCode ElementWarnOfOneLayer(Element element)
   PetscCall(PetscStrcmp(formulation, ELEMENT_FULL, &full));
   if (!element->history.n || element->dim == 1 || full) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscStrcmp(formulation, ELEMENT_ENHANCED, &enhanced));
-  PetscCall(GetKey(element->cell_type, element->axisymmetric, ELEMENT_ENHANCED, sizeof(key), key));
+  PetscCall(ElementFormulationKey(element->cell_type, element->axisymmetric, ELEMENT_ENHANCED, sizeof(key), key));
   PetscCall(PetscFunctionListFind(ElementFormulationList, key, &create));
   if (create && !enhanced) PetscCall(PetscSNPrintf(other, sizeof(other), ", or -%selement_formulation enhanced", Prefix(element)));
   PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)element), stderr,

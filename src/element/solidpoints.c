@@ -19,6 +19,32 @@ static PetscReal GetDeterminant(PetscInt nodes, PetscInt dim, const PetscReal X[
          x[0][2] * (x[1][0] * x[2][1] - x[1][1] * x[2][0]);
 }
 
+/* Shape functions at a point of an element and their gradients by the undeformed position (nodes x dim); returns det(dX/dxi) */
+PetscReal SolidGetShape(Element element, PetscInt e, const PetscReal xi[], PetscReal N[], PetscReal gradient[])
+{
+  const Solid    *solid = (const Solid *)element->data;
+  const PetscInt *nodes = element->connectivity + e * element->nodes;
+  const PetscInt  dim   = element->dim;
+  PetscReal       dN[SOLID_MAX_NODES * 3], x[3][3] = {{0}}, cofactor[3][3], determinant;
+
+  (*solid->shape->shape)(xi, N, dN);
+  if (dim == 2) x[2][2] = 1;
+  for (PetscInt a = 0; a < element->nodes; a++)
+    for (PetscInt i = 0; i < dim; i++)
+      for (PetscInt j = 0; j < dim; j++) x[i][j] += solid->coordinates[dim * nodes[a] + i] * dN[dim * a + j];
+  for (PetscInt i = 0; i < 3; i++)
+    for (PetscInt j = 0; j < 3; j++)
+      cofactor[i][j] = x[(i + 1) % 3][(j + 1) % 3] * x[(i + 2) % 3][(j + 2) % 3] -
+                       x[(i + 1) % 3][(j + 2) % 3] * x[(i + 2) % 3][(j + 1) % 3];
+  determinant = x[0][0] * cofactor[0][0] + x[0][1] * cofactor[0][1] + x[0][2] * cofactor[0][2];
+  for (PetscInt a = 0; a < element->nodes; a++)
+    for (PetscInt i = 0; i < dim; i++) {
+      gradient[dim * a + i] = 0;
+      for (PetscInt j = 0; j < dim; j++) gradient[dim * a + i] += cofactor[i][j] * dN[dim * a + j] / determinant;
+    }
+  return determinant;
+}
+
 /* Points at which loads of the body are integrated, with the part of the element's volume that each stands for */
 PetscErrorCode ElementPoints_Solid(Element element, PetscInt e, PetscReal positions[], PetscReal weights[])
 {

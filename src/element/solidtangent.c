@@ -23,6 +23,63 @@ typedef struct {
   PetscReal D[MAX_DOFS], g[MAX_DOFS], work[MAX_DOFS]; /* g; P' : dF */
 } Point;
 
+/* Of a linear material: tangent_ijkl = F_im C_mjnl F_kn with F = 1 + H, in place of C */
+void SolidTurnTangent(const PetscReal H[9], PetscReal tangent[81])
+{
+  PetscReal half[81];
+
+  for (PetscInt i = 0; i < 3; i++)
+    for (PetscInt jkl = 0; jkl < 27; jkl++) {
+      half[27 * i + jkl] = tangent[27 * i + jkl];
+      for (PetscInt m = 0; m < 3; m++) half[27 * i + jkl] += H[3 * i + m] * tangent[27 * m + jkl];
+    }
+  for (PetscInt ij = 0; ij < 9; ij++)
+    for (PetscInt k = 0; k < 3; k++)
+      for (PetscInt l = 0; l < 3; l++) {
+        tangent[9 * ij + 3 * k + l] = half[9 * ij + 3 * k + l];
+        for (PetscInt n = 0; n < 3; n++) tangent[9 * ij + 3 * k + l] += H[3 * k + n] * half[9 * ij + 3 * n + l];
+      }
+}
+
+/* The history of point g of element e at the start of the step */
+static void GetHistory(const ElementHistory *history, PetscInt e, PetscInt g, PetscReal start[])
+{
+  for (PetscInt c = 0; c < history->n; c++)
+    start[c] = history->start[SolidHistoryOffset(history, e, g) + (size_t)(c * SIMD_WIDTH + e % SIMD_WIDTH)];
+}
+
+/* The derivative of the stress at point g of element e, at displacement gradient H */
+void SolidTangent(const Solid *solid, PetscInt e, PetscInt g, const PetscReal H[9], PetscReal tangent[81])
+{
+  PetscReal start[SOLID_MAX_HISTORY];
+
+  if (!solid->history->start) {
+    (*solid->kernels.tangent)(solid->kernels.data, H, tangent);
+    return;
+  }
+  GetHistory(solid->history, e, g, start);
+  (*solid->kernels.advancetangent)(solid->kernels.data, solid->history->step, H, start, tangent);
+}
+
+/* The stress there */
+void SolidPointStress(const Solid *solid, PetscInt e, PetscInt g, const PetscReal H[9], PetscReal P[9])
+{
+  SimdReal all_H[9], all_P[9], all_start[SOLID_MAX_HISTORY];
+
+  for (PetscInt i = 0; i < 9; i++)
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) all_H[i][p] = H[i];
+  if (solid->history->start) {
+    PetscReal start[SOLID_MAX_HISTORY];
+
+    GetHistory(solid->history, e, g, start);
+    for (PetscInt c = 0; c < solid->history->n; c++)
+      for (PetscInt p = 0; p < SIMD_WIDTH; p++) all_start[c][p] = start[c];
+    (*solid->kernels.advance)(solid->kernels.data, solid->history->step, (const PetscReal(*)[SIMD_WIDTH])all_H,
+                              (const PetscReal(*)[SIMD_WIDTH])all_start, NULL, all_P);
+  } else (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])all_H, all_P);
+  for (PetscInt i = 0; i < 9; i++) P[i] = all_P[i][0];
+}
+
 /* F^-T, from which det F is returned */
 static PetscReal Invert(const PetscReal F[9], PetscReal inverse[9])
 {

@@ -9,6 +9,13 @@
 
 typedef struct _n_ElementBlocks *ElementBlocks;
 
+/* What elements of several materials do otherwise: their set-up, the warning of locking, and their end */
+typedef struct {
+  PetscErrorCode (*setup)(Element, const PetscReal[]);
+  PetscErrorCode (*warnoflocking)(Element);
+  PetscErrorCode (*destroy)(ElementBlocks *);
+} ElementBlocksOps;
+
 /* Cross-sections of bars [m^2] and thicknesses of plane bodies [m] */
 #define SECTION_SMALLEST 1e-60
 #define SECTION_LARGEST  1e60
@@ -66,11 +73,12 @@ struct _p_Element {
   PetscBool      composite;         /* triangles of six nodes, or tetrahedra of ten: each of 4 or 8 cells of the mesh */
   char          *formulation;       /* NULL: the default, which the set-up finds */
   /* set by the constructor of the shape */
-  PetscInt         dim, nodes; /* space dimension; nodes of one element */
-  PetscInt         n_points;   /* load points of one element: a rule exact for quadratic functions at least */
-  const PetscReal *shape;      /* shape functions there, n_points x nodes; owned by the element */
-  void            *data;
-  ElementBlocks    blocks; /* of elements of several materials; NULL: they have one */
+  PetscInt                dim, nodes; /* space dimension; nodes of one element */
+  PetscInt                n_points;   /* load points of one element: a rule exact for quadratic functions at least */
+  const PetscReal        *shape;      /* shape functions there, n_points x nodes; owned by the element */
+  void                   *data;
+  ElementBlocks           blocks; /* of elements of several materials; NULL: they have one */
+  const ElementBlocksOps *blocks_ops;
   /* set-up */
   PetscInt        count;        /* elements of this rank */
   PetscLogDouble  flops;        /* of the internal force of one element, about, for -log_view */
@@ -100,6 +108,7 @@ PETSC_EXTERN PetscErrorCode ElementView(Element, PetscViewer);
 PETSC_EXTERN PetscErrorCode ElementDestroy(Element *);
 
 PETSC_INTERN PetscFunctionList ElementList, ElementFormulationList;
+PETSC_INTERN PetscErrorCode    ElementFormulationKey(DMPolytopeType, PetscBool, const char[], size_t, char[]);
 
 PETSC_INTERN PetscErrorCode ElementCreate_Bar2(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Tri3(Element);
@@ -119,9 +128,6 @@ PETSC_INTERN PetscErrorCode ElementCreate_Quad4_AxisymmetricMeanDilatation(Eleme
 PETSC_INTERN PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType, const char[], PetscErrorCode (*)(Element));
 PETSC_INTERN PetscErrorCode ElementSetComposite(Element);
 PETSC_INTERN PetscErrorCode ElementSetBlocks(Element, PetscInt, const Material[], PetscInt, const PetscInt[]);
-PETSC_INTERN PetscErrorCode ElementSetUpBlocks(Element, const PetscReal[]);
-PETSC_INTERN PetscErrorCode ElementBlocksDestroy(ElementBlocks *);
-PETSC_INTERN PetscErrorCode ElementWarnOfLockingBlocks(Element);
 PETSC_INTERN PetscErrorCode ElementDuplicateOn(Element, MPI_Comm, Material, Element *);
 PETSC_INTERN PetscErrorCode ElementCreateSelection(Element, PetscBool, PetscInt, const PetscInt[], const PetscInt[], const PetscReal[],
                                                    Element *);
