@@ -108,19 +108,12 @@ static inline PetscInt SideIndex(Contact contact, PetscInt p)
   return 2 * p + contact->pairs[p].dirichlet;
 }
 
-/* What active rows mean to the bodies */
-static inline ContactConditions AlternationConditions(const Alternation *alternation)
-{
-  return alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? CONDITIONS_SCHWARZ : CONDITIONS_ROBIN;
-}
-
 PETSC_INTERN PetscErrorCode ContactStep_Alternation(Contact);
 PETSC_INTERN PetscErrorCode AlternationSweep(SNES, Vec, Vec, void *);
 PETSC_INTERN PetscReal      AlternationOffset(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscErrorCode AlternationPredict(Contact);
 PETSC_INTERN PetscErrorCode AlternationSetUpTransmission(Contact);
 PETSC_INTERN PetscErrorCode AlternationSetStepLevel(Contact);
-PETSC_INTERN PetscReal      AlternationResidualScale(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode AlternationSetUpSides(Contact);
 PETSC_INTERN PetscErrorCode AlternationSwapSides(Contact);
 PETSC_INTERN PetscErrorCode AlternationGetForces(Contact, PetscScalar[]);

@@ -64,7 +64,8 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const ContactPair *pair  = &contact->pairs[contact->rows.pair[i]];
-    const PetscReal    scale = AlternationResidualScale(contact, i);
+    const PetscBool    robin = (PetscBool)(alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
+    const PetscReal    scale = robin ? 1 / (2 * alternation->weight[i]) : 1; /* metres for a unit of the residual */
     PetscScalar       *start;
     PetscReal          lag;
 

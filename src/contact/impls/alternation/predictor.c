@@ -11,15 +11,6 @@ PetscReal AlternationOffset(Contact contact, PetscInt i, PetscReal part)
   return contact->rows.initial_gap[i] - contact->start.gap[i] * left;
 }
 
-/* All bodies through the step without contact, for where their contact nodes go */
-static PetscErrorCode IntegrateTrial(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
-  PetscCall(ContactIntegrateBodies(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Predicted displacement of the Neumann side of row i */
 static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time, PetscReal part, PetscScalar *displacement)
 {
@@ -60,8 +51,10 @@ PetscErrorCode AlternationPredict(Contact contact)
   PetscScalar *x;
 
   PetscFunctionBegin;
-  if (alternation->predictor == SCHWARZ_PREDICTOR_TRIAL) PetscCall(IntegrateTrial(contact));
-  else
+  if (alternation->predictor == SCHWARZ_PREDICTOR_TRIAL) { /* for where contact nodes go */
+    PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
+    PetscCall(ContactIntegrateBodies(contact));
+  } else
     for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
   PetscCall(VecZeroEntries(alternation->x));
   PetscCall(VecGetArray(alternation->x, &x));

@@ -9,7 +9,8 @@ static PetscErrorCode SolveActive(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(AlternationPredict(contact));
-  PetscCall(ContactSetConditions(contact, AlternationConditions(alternation)));
+  PetscCall(ContactSetConditions(contact, alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? CONDITIONS_SCHWARZ
+                                                                                                              : CONDITIONS_ROBIN));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   alternation->swept = PETSC_FALSE;
   PetscCall(SNESSolve(alternation->snes, NULL, alternation->x));

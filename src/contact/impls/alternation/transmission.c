@@ -196,11 +196,3 @@ PetscErrorCode AlternationSetStepLevel(Contact contact)
   PetscCall(SetRobin(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* Metres of mismatch between both sides for a unit of the residual in row i */
-PetscReal AlternationResidualScale(Contact contact, PetscInt i)
-{
-  const Alternation *alternation = (const Alternation *)contact->data;
-
-  return alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? 1 : 1 / (2 * alternation->weight[i]);
-}
