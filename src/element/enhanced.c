@@ -50,7 +50,7 @@ static PetscErrorCode GetPoints(Element element, PetscInt first, const PetscScal
     }
     for (PetscInt g = 0; g < enhanced.n_points; g++) {
       for (PetscInt k = 0; k < 9; k++) H[g][k][p] = isnan(forces[0]) ? forces[0] : enhanced.H[k][g];
-      weights[g][p] = enhanced.weight[g];
+      weights[g][p] = enhanced.weight[g] / element->cross_section;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -273,16 +273,21 @@ static void flat_elements_are_accepted(void **state)
 
 static void thickness_multiplies_what_is_integrated(void **state)
 {
-  PetscReal u[MAX_DOFS], f[2][MAX_DOFS], energy[2], K[2][ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], stress[2][6 * MAX_CELLS];
-  Mesh      mesh;
-  Solid     solid;
+  static const char *const formulations[] = {"full", "full", "mean_dilatation", "enhanced",
+                                             "reduced"}; /* of triangles, then quadrilaterals */
+  PetscReal                u[MAX_DOFS], f[2][MAX_DOFS], energy[2], K[2][ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], stress[2][6 * MAX_CELLS];
+  Mesh                     mesh;
+  Solid                    solid;
 
   (void)state;
-  for (PetscInt s = 0; s < 2; s++) {
-    mesh_box(&mesh, shapes[s], (PetscInt[3]){1, 1, 0}, 0.1);
+  for (PetscInt s = 0; s < 5; s++) {
+    char options[128];
+
+    mesh_box(&mesh, shapes[PetscMin(s, 1)], (PetscInt[3]){1, 1, 0}, 0.1);
     set_scattered(&mesh, 0.05, u);
     for (PetscInt thick = 0; thick < 2; thick++) { /* 1 m, which is the default, or 0.25 m */
-      solid_create(&solid, &mesh, MATERIAL_NEO_HOOKEAN, thick ? "-thickness 0.25" : "");
+      ok(PetscSNPrintf(options, sizeof(options), "-element_formulation %s%s", formulations[s], thick ? " -thickness 0.25" : ""));
+      solid_create(&solid, &mesh, MATERIAL_NEO_HOOKEAN, options);
       assert_true(solid.element->cross_section == (thick ? 0.25 : 1));
       get_force(&solid, &mesh, u, f[thick]);
       energy[thick] = get_energy(&solid, u);
