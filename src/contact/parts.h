@@ -51,6 +51,12 @@ static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pa
   return contact->n_bodies + o;
 }
 
+/* A number for a pair that comes and goes; pairs are in the order of these. `second`: of a body, or as ContactPairPartner() tells */
+static inline PetscInt ContactNumberPair(Contact contact, PetscInt first, PetscInt second)
+{
+  return first * (contact->n_bodies + contact->n_obstacles) + second;
+}
+
 PETSC_INTERN PetscErrorCode    ContactWarnOfStages(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode    ContactGetStage(Body, PetscReal[2]);
 PETSC_INTERN PetscErrorCode    ContactGetTransit(Body, PetscReal, PetscReal *, PetscReal *);
@@ -66,13 +72,14 @@ PETSC_INTERN PetscErrorCode ContactFindDimension(Contact);
 PETSC_INTERN PetscErrorCode ContactAddAllPairs(Contact);
 PETSC_INTERN PetscErrorCode ContactAddEachPair(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseAllPairs(Contact);
-PETSC_INTERN PetscErrorCode ContactAppendNeighbours(Contact, PetscInt, PetscInt, ContactPair **);
+PETSC_INTERN PetscErrorCode ContactAppendNeighbours(Contact, PetscInt, ContactPair **);
 PETSC_INTERN PetscErrorCode ContactDestroyPair(ContactPair *);
 PETSC_INTERN PetscErrorCode ContactHasMany(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactSuitsNeighbours(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactSetUpNeighbours(Contact, ContactPreference[]);
 PETSC_INTERN PetscErrorCode ContactMeasureNeighbours(Contact);
 PETSC_INTERN PetscErrorCode ContactFindNeighbours(Contact, PetscReal, PetscInt *);
+PETSC_INTERN PetscErrorCode ContactNoteNeighbours(Contact, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscBool      ContactNeighboursUsed(Contact, PetscReal);
 PETSC_INTERN PetscErrorCode ContactDestroyNeighbours(Contact);
 PETSC_INTERN PetscErrorCode ContactLayOutRows(Contact);

@@ -393,19 +393,20 @@ typedef struct {
 
 /* Which bodies are near each other where pairs come and go, see src/contact/rows/neighbours.c */
 typedef struct {
-  PetscBool                 all;          /* the program is to choose all pairs, and has not yet */
-  PetscBool                 come_and_go;  /* pairs have rows while their bodies are near */
-  char                      stay[256];    /* why they have all the time, where there are many; else empty */
-  struct ContactPreference *preferences;  /* per body */
-  PetscInt                 *place;        /* per body: its place in the order of the bodies */
-  PetscReal                *edge;         /* per body: of its contact elements [m] */
-  PetscReal                *boxes;        /* per body: lower corner, and the upper one with its sign changed [m] */
-  PetscReal                 near;         /* how far apart bodies may touch in a step, when pairs were looked for last [m] */
-  PetscReal                 room_left;    /* by which bodies that are no pair may come nearer until they are looked for again [m] */
-  PetscInt                  layouts;      /* how often pairs have come or gone */
-  PetscInt                  room, *found; /* pairs found: two numbers each */
-  PetscReal                *lower;        /* work space, per body */
-  PetscInt                 *sorted;       /* the same */
+  PetscBool                 all;               /* the program is to choose all pairs, and has not yet */
+  PetscBool                 come_and_go;       /* pairs have rows while their bodies are near */
+  char                      stay[256];         /* why they have all the time, where there are many; else empty */
+  struct ContactPreference *preferences;       /* per body */
+  PetscInt                 *place;             /* per body: its place in the order of the bodies */
+  PetscReal                *edge;              /* per body: of its contact elements [m] */
+  PetscReal                *boxes;             /* per body: lower corner, and the upper one with its sign changed [m] */
+  PetscReal                 near;              /* how far apart bodies may touch in a step, when pairs were looked for last [m] */
+  PetscReal                 room_left;         /* by which bodies that are no pair may come nearer until they are looked for again [m] */
+  PetscInt                  layouts;           /* how often pairs have come or gone */
+  PetscInt                  room, *found;      /* pairs found, by ContactNumberPair() */
+  PetscInt                  n_living, *living; /* those that have rows, ascending */
+  PetscReal                *lower;             /* work space, per body */
+  PetscInt                 *sorted;            /* the same */
   ContactTold               told;
 } ContactNeighbours;
 

@@ -149,17 +149,12 @@ static PetscErrorCode VisitNeighbours(Contact contact, Checkpoint checkpoint)
   if (!neighbours->come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(CheckpointVisitInts(checkpoint, "pairs that are near", 1, &n));
   PetscCheck(n >= 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has %" PetscInt_FMT " pairs", n);
-  PetscCall(PetscMalloc1(2 * n, &list));
-  for (PetscInt p = 0; p < n && !CheckpointLoads(checkpoint); p++) {
-    list[2 * p]     = contact->pairs[p].body[0];
-    list[2 * p + 1] = ContactPairPartner(contact, &contact->pairs[p]);
-  }
-  PetscCall(CheckpointVisitInts(checkpoint, "their bodies", 2 * n, list));
+  PetscCall(PetscMalloc1(n, &list));
+  if (!CheckpointLoads(checkpoint)) PetscCall(PetscArraycpy(list, neighbours->living, n));
+  PetscCall(CheckpointVisitInts(checkpoint, "their numbers", n, list));
   for (PetscInt p = 0; p < n; p++)
-    PetscCheck(list[2 * p] >= 0 && list[2 * p] < contact->n_bodies && list[2 * p + 1] >= 0 &&
-                   list[2 * p + 1] < contact->n_bodies + contact->n_obstacles && list[2 * p] != list[2 * p + 1],
-               PetscObjectComm((PetscObject)contact), PETSC_ERR_FILE_UNEXPECTED,
-               "The checkpoint has a pair of bodies that are not there: it is of another problem");
+    PetscCheck(list[p] >= 0 && list[p] < ContactNumberPair(contact, contact->n_bodies, 0), PetscObjectComm((PetscObject)contact),
+               PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has a pair of bodies that are not there: it is of another problem");
   PetscCall(CheckpointVisitReals(checkpoint, "near", 1, &neighbours->near));
   PetscCall(CheckpointVisitReals(checkpoint, "room left", 1, &neighbours->room_left));
   if (CheckpointLoads(checkpoint)) PetscCall(ContactReplacePairs(contact, n, list));

@@ -275,8 +275,9 @@ PetscErrorCode ContactChooseAllPairs(Contact contact)
 }
 
 /* Adds a pair that is near. The first body comes before the second in the order of the bodies. */
-PetscErrorCode ContactAppendNeighbours(Contact contact, PetscInt first, PetscInt second, ContactPair **pair)
+PetscErrorCode ContactAppendNeighbours(Contact contact, PetscInt number, ContactPair **pair)
 {
+  const PetscInt           first = number / ContactNumberPair(contact, 1, 0), second = number % ContactNumberPair(contact, 1, 0);
   const ContactPreference *preferences = contact->neighbours.preferences;
   const char              *why         = NULL;
 

@@ -125,48 +125,41 @@ static PetscInt LongestAxis(Contact contact)
   return axis;
 }
 
-static PetscErrorCode Append(ContactNeighbours *neighbours, PetscInt *n, PetscInt first, PetscInt second)
+/* Takes a pair whose boxes are near enough, `edge` being that of its larger contact elements [m] */
+static PetscErrorCode Consider(Contact contact, PetscInt first, PetscInt second, PetscReal distance, PetscReal near, PetscReal edge,
+                               PetscInt *n)
 {
+  ContactNeighbours *neighbours = &contact->neighbours;
+  const PetscInt     number     = ContactNumberPair(contact, first, second);
+  PetscInt           place;
+
   PetscFunctionBegin;
+  PetscCall(PetscFindInt(number, neighbours->n_living, neighbours->living, &place));
+  if (distance > near + (place < 0 ? TAKEN : DROPPED) * edge) PetscFunctionReturn(PETSC_SUCCESS);
   if (*n == neighbours->room) {
     neighbours->room = 2 * neighbours->room + 16;
-    PetscCall(PetscRealloc((size_t)(2 * neighbours->room) * sizeof(PetscInt), &neighbours->found));
+    PetscCall(PetscRealloc((size_t)neighbours->room * sizeof(PetscInt), &neighbours->found));
   }
-  neighbours->found[2 * *n]         = first;
-  neighbours->found[2 * (*n)++ + 1] = second;
+  neighbours->found[(*n)++] = number;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a pair has rows at present. Pairs are in order. */
-static PetscBool Lives(Contact contact, PetscInt first, PetscInt second)
+/* Notes which pairs have rows from now on, in order */
+PetscErrorCode ContactNoteNeighbours(Contact contact, PetscInt n, const PetscInt numbers[])
 {
-  PetscInt low = 0, high = contact->n_pairs;
+  ContactNeighbours *neighbours = &contact->neighbours;
 
-  while (low < high) {
-    const PetscInt     middle = (low + high) / 2;
-    const ContactPair *pair   = &contact->pairs[middle];
-    const PetscInt     other  = ContactPairPartner(contact, pair);
-
-    if (pair->body[0] == first && other == second) return PETSC_TRUE;
-    if (pair->body[0] < first || (pair->body[0] == first && other < second)) low = middle + 1;
-    else high = middle;
-  }
-  return PETSC_FALSE;
+  PetscFunctionBegin;
+  PetscCall(PetscRealloc((size_t)(n + 1) * sizeof(PetscInt), &neighbours->living));
+  PetscCall(PetscArraycpy(neighbours->living, numbers, n));
+  neighbours->n_living = n;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Which of two bodies has the rows: that which comes first in the order of the bodies */
 static PetscBool ComesFirst(const ContactNeighbours *neighbours, PetscInt a, PetscInt b)
 {
   return (PetscBool)(neighbours->place[a] < neighbours->place[b]);
-}
-
-static int ComparePairs(const void *a, const void *b, void *context)
-{
-  const PetscInt *first = (const PetscInt *)a, *second = (const PetscInt *)b;
-
-  (void)context;
-  if (first[0] != second[0]) return first[0] < second[0] ? -1 : 1;
-  return first[1] < second[1] ? -1 : first[1] > second[1];
 }
 
 /* The pairs of bodies whose boxes are near */
@@ -192,8 +185,7 @@ static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
       const PetscReal edge     = PetscMax(neighbours->edge[a], neighbours->edge[b]);
       const PetscReal distance = BoxDistance(neighbours->boxes + 6 * a, neighbours->boxes + 6 * b);
 
-      if (distance > near + DROPPED * edge || (distance > near + TAKEN * edge && !Lives(contact, first, second))) continue;
-      PetscCall(Append(neighbours, n, first, second));
+      PetscCall(Consider(contact, first, second, distance, near, edge, n));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -210,10 +202,7 @@ static PetscErrorCode FindObstacles(Contact contact, PetscReal near, PetscInt *n
       PetscReal distance;
 
       PetscCall(ObstacleDistance(neighbours->boxes + 6 * b, contact->obstacles[o], &distance));
-      if (distance > near + DROPPED * neighbours->edge[b] ||
-          (distance > near + TAKEN * neighbours->edge[b] && !Lives(contact, b, contact->n_bodies + o)))
-        continue;
-      PetscCall(Append(neighbours, n, b, contact->n_bodies + o));
+      PetscCall(Consider(contact, b, contact->n_bodies + o, distance, near, neighbours->edge[b], n));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -227,7 +216,8 @@ static PetscReal LeastTaken(Contact contact)
   return (TAKEN - NEAR) * least;
 }
 
-/* The near pairs, in order, into neighbours->found; `near`: bodies that far apart may touch in the next controller step [m] */
+/* The numbers of the near pairs, in order, into neighbours->found; `near`: bodies that far apart may touch in the next controller step [m]
+ */
 PetscErrorCode ContactFindNeighbours(Contact contact, PetscReal near, PetscInt *n)
 {
   ContactNeighbours *neighbours = &contact->neighbours;
@@ -237,7 +227,7 @@ PetscErrorCode ContactFindNeighbours(Contact contact, PetscReal near, PetscInt *
   PetscCall(BodyGetAllBoxes(contact->n_bodies, contact->bodies, neighbours->boxes));
   PetscCall(FindBodies(contact, near, n));
   PetscCall(FindObstacles(contact, near, n));
-  if (*n > 1) PetscCall(PetscTimSort(*n, neighbours->found, 2 * sizeof(PetscInt), ComparePairs, NULL));
+  PetscCall(PetscSortInt(*n, neighbours->found));
   neighbours->room_left = LeastTaken(contact);
   neighbours->near      = near;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -287,6 +277,7 @@ PetscErrorCode ContactDestroyNeighbours(Contact contact)
   PetscCall(PetscFree5(neighbours->boxes, neighbours->edge, neighbours->lower, neighbours->sorted, neighbours->place));
   PetscCall(PetscFree(neighbours->preferences));
   PetscCall(PetscFree(neighbours->found));
+  PetscCall(PetscFree(neighbours->living));
   PetscCall(ContactDestroyTold(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -163,8 +163,9 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
   for (PetscInt p = 0; p < n_found; p++) {
     ContactPair *pair;
 
-    PetscCall(ContactAppendNeighbours(contact, contact->neighbours.found[2 * p], contact->neighbours.found[2 * p + 1], &pair));
+    PetscCall(ContactAppendNeighbours(contact, contact->neighbours.found[p], &pair));
   }
+  PetscCall(ContactNoteNeighbours(contact, n_found, contact->neighbours.found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
