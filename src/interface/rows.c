@@ -342,15 +342,20 @@ PetscErrorCode RowSetGetColumns(const RowSet *set, const PetscReal vectors[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Work space for vectors of the columns of rows that have just been built */
-PetscErrorCode TransferAllocateColumns(Transfer transfer)
+/* Room for vectors of the columns of rows that have just come, and where these lie in the mesh. `connects`: makes the star forest first */
+PetscErrorCode TransferSetUpColumns(Transfer transfer, PetscBool connects)
 {
-  const PetscInt n = 3 * transfer->rows.n_columns;
+  RowSet  *rows = &transfer->rows;
+  PetscInt n;
 
   PetscFunctionBegin;
   transfer->columns_present = PETSC_FALSE;
+  if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
+  if (connects) PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, transfer->n, rows));
+  n = 3 * rows->n_columns;
   PetscCall(PetscFree4(transfer->column_x, transfer->column_normals, transfer->column_moved, transfer->column_reference));
   PetscCall(PetscMalloc4(n, &transfer->column_x, n, &transfer->column_normals, n, &transfer->column_moved, n, &transfer->column_reference));
+  PetscCall(RowSetGetColumns(rows, transfer->neumann->data.reference, transfer->column_reference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -391,8 +396,7 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
-  PetscCall(TransferAllocateColumns(transfer));
-  PetscCall(PetscArraycpy(transfer->column_reference, reference, 3 * set.n_columns));
+  PetscCall(TransferSetUpColumns(transfer, PETSC_FALSE));
   PetscCall(PetscFree4(x, reference, normals, smooth));
   PetscCall(PetscFree4(marks, lumped, ends, seen));
   PetscFunctionReturn(PETSC_SUCCESS);

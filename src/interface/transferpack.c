@@ -143,10 +143,7 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
   PetscCall(PetscFree(shares));
   PetscCall(TablesDestroy(&own));
   PetscCall(TablesDestroy(&owners));
-  if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, transfer->n, &transfer->rows));
-  PetscCall(TransferAllocateColumns(transfer));
-  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.reference, transfer->column_reference));
+  PetscCall(TransferSetUpColumns(transfer, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -72,10 +72,7 @@ static PetscErrorCode RestoreShares(Transfer transfer)
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = saved->rows;
   PetscCall(PetscMemzero(&saved->rows, sizeof(saved->rows)));
-  if (transfer->neumann) {
-    PetscCall(TransferAllocateColumns(transfer));
-    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.reference, transfer->column_reference));
-  }
+  PetscCall(TransferSetUpColumns(transfer, PETSC_FALSE));
   PetscCall(SaveShares(transfer)); /* the step may have to be made once more */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

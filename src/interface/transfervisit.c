@@ -17,10 +17,7 @@ static PetscErrorCode VisitShares(Transfer transfer, Checkpoint checkpoint)
   }
   PetscCall(CheckpointVisitInts(checkpoint, "offsets", n + 1, rows->offsets));
   PetscCall(CheckpointVisitBytes(checkpoint, "share", (size_t)n_shares * sizeof(*rows->shares), rows->shares));
-  if (!CheckpointLoads(checkpoint) || !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, n, rows));
-  PetscCall(TransferAllocateColumns(transfer));
-  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.reference, transfer->column_reference));
+  if (CheckpointLoads(checkpoint)) PetscCall(TransferSetUpColumns(transfer, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -61,10 +61,8 @@ static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec 
 static PetscErrorCode CreateNeighbours(Contact contact, Mat *neighbours)
 {
   PetscFunctionBegin;
-  PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), neighbours));
-  PetscCall(MatSetSizes(*neighbours, contact->rows.n, contact->rows.n, contact->rows.n_all, contact->rows.n_all));
-  PetscCall(MatSetType(*neighbours, MATAIJ));
-  PetscCall(MatSetUp(*neighbours));
+  PetscCall(ContactCreateRowMatrix(contact, neighbours));
+  PetscCall(MatSetOption(*neighbours, MAT_NO_OFF_PROC_ENTRIES, PETSC_FALSE)); /* edges have nodes of other ranks */
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair  = &contact->pairs[p];
     const PetscReal    slope = ContactPairTies(pair) ? PETSC_MAX_REAL : PARALLEL;

@@ -123,40 +123,29 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode RefuseHeld(Contact contact, const ContactPair *pair)
-{
-  Body body = contact->bodies[pair->body[0]];
-
-  PetscFunctionBegin;
-  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-          "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
-          "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
-          pair->name, ((PetscObject)body)->name, pair->turned ? "set -contact_rows first" : "name that body second",
-          ((PetscObject)body)->name);
-}
-
-/* Ends with an error if all rows of a pair that have a partner opposite are held: then the pair would have no contact at all */
+/* Ends with an error if all rows of a pair that have a partner opposite are held, so that the pair would have no contact at all. Where
+   bodies answer to forces held rows are conditions on the partner. */
 static PetscErrorCode CheckHeld(Contact contact)
 {
-  PetscInt held = 0;
-  int     *any; /* for each pair: rows with a partner opposite, and those that are not held */
-
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(2 * contact->n_pairs, &any));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+  for (PetscInt p = 0; p < contact->n_pairs && contact->prescribes; p++) {
     const ContactPair *pair = &contact->pairs[p];
+    const Body         body = contact->bodies[pair->body[0]];
+    int                any = 0, free = 0; /* rows with a partner opposite, and those that are not held */
     TransferRows       rows;
 
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    for (PetscInt i = 0; i < rows.n; i++) any[2 * p] |= rows.opposite[i];
-    for (PetscInt i = pair->begin; i < pair->end; i++) any[2 * p + 1] |= contact->rows.opposite[i];
+    for (PetscInt i = 0; i < rows.n; i++) any |= rows.opposite[i];
+    for (PetscInt i = pair->begin; i < pair->end; i++) free |= contact->rows.opposite[i];
+    PetscCall(ContactOr(contact, &any));
+    PetscCall(ContactOr(contact, &free));
+    PetscCheck(
+        free || !any, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        "-contact_pairs %s: the displacement of all nodes of body '%s' that may touch is prescribed across the surface, so that they "
+        "cannot follow the other side; %s, or prescribe less in -%s_boundary_displacement",
+        pair->name, ((PetscObject)body)->name, pair->turned ? "set -contact_rows first" : "name that body second",
+        ((PetscObject)body)->name);
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, any, (PetscMPIInt)(2 * contact->n_pairs), MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
-  while (held < contact->n_pairs && !(any[2 * held] && !any[2 * held + 1])) held++;
-  PetscCall(PetscFree(any));
-  if (held < contact->n_pairs) PetscCall(RefuseHeld(contact, &contact->pairs[held]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
