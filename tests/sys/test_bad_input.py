@@ -57,7 +57,7 @@ CASES = {
     "three-without-pairs": ("-options_file options/three-bars.opts -contact_pairs", ["-contact_pairs"]),
     "penalty-scale": ("-options_file options/bars-high-speed.opts -contact_type penalty -contact_penalty_scale -1", ["-contact_penalty_scale -1", "positive"]),
     "penalty-negative": (f"{PENALTY} -contact_penalty -1", ["-contact_penalty", "positive"]),
-    "lagrange-substeps": ("-options_file options/impact-lagrange.opts -left_ts_time_step 1e-8", ["lagrange", "'left' (10 substeps)", "-left_mass_redistribute true"]),
+    "lagrange-substeps": ("-options_file options/impact-lagrange.opts -left_ts_time_step 1e-8", ["lagrange", "left:right", "-left_mass_redistribute true", "-<body>_ts_time_step"]),
     "augmented-explicit": (
         "-options_file options/impact-lagrange.opts -contact_type augmented_lagrangian -contact_penalty 1e8",
         ["augmented_lagrangian", "left", "right", "-left_mass_redistribute true", "-left_ts_type alpha2"],
