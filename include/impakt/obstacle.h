@@ -43,5 +43,4 @@ PETSC_EXTERN PetscErrorCode ObstacleGetPlace(Obstacle, PetscReal[], PetscReal[])
 PETSC_EXTERN PetscErrorCode ObstacleGetGap(Obstacle, const PetscReal[], PetscReal *, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ObstacleGetName(Obstacle, const char *[]);
 PETSC_EXTERN PetscErrorCode ObstacleView(Obstacle, PetscViewer);
-PETSC_EXTERN PetscErrorCode ObstacleViewFromOptions(Obstacle, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode ObstacleDestroy(Obstacle *);

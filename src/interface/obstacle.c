@@ -172,7 +172,7 @@ PetscErrorCode ObstacleSetUp(Obstacle obstacle)
   PetscCheck(obstacle->complete, PetscObjectComm((PetscObject)obstacle), PETSC_ERR_ARG_WRONGSTATE,
              "Obstacle '%s' has no shape: call ObstacleSetPlane(), ObstacleSetSphere(), ObstacleSetCylinder() or ObstacleSetFromOptions()",
              ((PetscObject)obstacle)->name);
-  PetscCall(ObstacleViewFromOptions(obstacle, NULL, "-obstacle_view"));
+  PetscCall(PetscObjectViewFromOptions((PetscObject)obstacle, NULL, "-obstacle_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -316,9 +316,12 @@ PetscErrorCode ObstacleGetName(Obstacle obstacle, const char *name[])
 + obstacle - the `Obstacle`
 - viewer   - an ASCII viewer, `NULL` for standard output
 
+  Options Database Key:
+. -<obstacle>_obstacle_view - print the obstacle when it is added to a contact problem
+
   Level: intermediate
 
-.seealso: `Obstacle`, `ObstacleViewFromOptions()`
+.seealso: `Obstacle`
 @*/
 PetscErrorCode ObstacleView(Obstacle obstacle, PetscViewer viewer)
 {
@@ -341,31 +344,6 @@ PetscErrorCode ObstacleView(Obstacle obstacle, PetscViewer viewer)
                                      (double)n[1], (double)n[2]));
   if (obstacle->type != OBSTACLE_PLANE) PetscCall(PetscViewerASCIIPrintf(viewer, ", radius %g%s", (double)obstacle->radius, unit));
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ObstacleViewFromOptions - prints an obstacle where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ obstacle - the `Obstacle`
-. object   - has the prefix of the option, `NULL` for the obstacle
-- name     - the option
-
-  Options Database Key:
-. -<obstacle>_obstacle_view - print the obstacle when it is added to a contact problem
-
-  Level: intermediate
-
-.seealso: `Obstacle`, `ObstacleView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode ObstacleViewFromOptions(Obstacle obstacle, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)obstacle, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

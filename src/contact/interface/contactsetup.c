@@ -214,7 +214,7 @@ PetscErrorCode ContactSetUp(Contact contact)
   contact->setup = PETSC_TRUE;
   StatusLineTell("first state");
   PetscCall(ContactCheckInitialGap(contact));
-  PetscCall(ContactViewFromOptions(contact, NULL, "-contact_view"));
+  PetscCall(PetscObjectViewFromOptions((PetscObject)contact, NULL, "-contact_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

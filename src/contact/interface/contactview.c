@@ -56,9 +56,12 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
 + contact - the `Contact`
 - viewer  - an ASCII viewer, `NULL` for standard output
 
+  Options Database Key:
+. -contact_view - print pairs and method at the end of the set-up
+
   Level: beginner
 
-.seealso: `Contact`, `ContactViewFromOptions()`
+.seealso: `Contact`
 @*/
 PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
 {
@@ -107,30 +110,5 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
         viewer, "  energy limited: contact may gain %g of it in all%s%s\n", (double)contact->options.energy_excess,
         contact->energy.not_always ? "; not in every step, since " : "", contact->energy.not_always ? contact->energy.not_always : ""));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, view, viewer); /* without rows the method has not been set up */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ContactViewFromOptions - prints pairs and method where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up
-. object  - has the prefix of the option, `NULL` for the contact
-- name    - the option
-
-  Options Database Key:
-. -contact_view - print them at the end of the set-up
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode ContactViewFromOptions(Contact contact, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)contact, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
