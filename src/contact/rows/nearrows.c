@@ -181,7 +181,7 @@ static PetscErrorCode ListPair(Contact contact, ContactPair *pair, PetscReal *sm
   pair->near_begin = of->n_near;
   for (PetscInt node = 0; node < rows.n; node++) {
     const PetscInt first = pair->begin + node * pair->components;
-    PetscBool      near = (PetscBool)(pair->bonded || (of->opposite[first] && contact->start.gap[first] <= most * rows.size[node]));
+    PetscBool      near  = (PetscBool)(pair->bonded || (of->opposite[first] && contact->start.gap[first] <= most * rows.size[node]));
 
     *smallest = PetscMin(*smallest, rows.size[node]);
     for (PetscInt i = first; i < first + pair->components; i++)
