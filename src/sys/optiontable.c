@@ -188,9 +188,9 @@ static const KnownOption options[] = {
      "pairs that may touch, Dirichlet side first, or, with a tilde, in the order that is better; a.xmax:b.xmin for certain surfaces, a.all "
      "for the whole boundary; a:o with an obstacle; "
      "auto: all with all; more than 100 pairs of bodies come and go as bodies are near, where -contact_facing is false"},
-    {"contact", OPTION_OF_RUN, "contact_rows", "first|second|finer",
+    {"contact", OPTION_OF_RUN, "contact_rows", "first|second",
      "which body of a pair has a contact row for each of its nodes, and takes displacements: the one named first, which is the default, or "
-     "second, or the one whose surface is finer; or a value for each pair, with commas"},
+     "second; or a value for each pair, with commas"},
     {"contact", OPTION_OF_RUN, "contact_type", "schwarz|alternation|penalty|lagrange|augmented_lagrangian",
      "contact method, default schwarz, the contact step, where contact nodes may have mass, as in sheets and plates; "
      "alternation: displacements one way, tractions the other, as in the paper; force "

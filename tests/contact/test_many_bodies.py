@@ -375,11 +375,11 @@ def test_set_up_goes_with_the_number_of_bodies(impakt):
     ("more", "why"),
     [
         ("-contact_facing true", "-contact_facing false lets pairs come and go"),
-        ("-contact_rows finer", "-contact_rows"),
+        ("-contact_rows second", "-contact_rows"),
         ("-d19_boundary_displacement back -d19_boundary_displacement_back free,0", "body 'd19' has prescribed displacements"),
         ("-d3_mass_redistribute near", "body 'd3' has -mass_redistribute near"),
     ],
-    ids=["facing", "finer", "held", "near"],
+    ids=["facing", "second", "held", "near"],
 )
 def test_a_run_says_why_all_pairs_have_rows(more, why, shared_run):
     """Rows of all pairs take memory with the square of the number of bodies, which nobody could guess from one body that is held."""

@@ -39,10 +39,6 @@ struct _ContactOps {
   PetscErrorCode (*destroy)(Contact);
 };
 
-/* Which body of a pair has a contact row for each of its nodes: the first, the second, or the finer one */
-typedef enum { CONTACT_ROW_SIDE_FIRST, CONTACT_ROW_SIDE_SECOND, CONTACT_ROW_SIDE_FINER } ContactRowSide;
-PETSC_INTERN const char *const ContactRowSides[];
-
 /* What contact forces keep from becoming negative: the gap, or, where bodies touch, the rate at which it changes over a controller step
    (the persistency condition of Laursen and Chawla 1997), or both */
 typedef enum { CONTACT_CONSTRAINT_GAP, CONTACT_CONSTRAINT_GAP_RATE, CONTACT_CONSTRAINT_BOTH } ContactConstraint;
@@ -58,35 +54,34 @@ typedef enum { SCHWARZ_UNCONVERGED_ERROR, SCHWARZ_UNCONVERGED_ACCEPT } SchwarzUn
 
 /* Two bodies, or a body and an obstacle, that may touch */
 typedef struct {
-  char          *name;        /* as given: left:right */
-  PetscInt       body[2];     /* numbers of the body that has a node for each row, and of the other; n_bodies if that is an obstacle */
-  PetscBool      turned;      /* the body that has the rows is the one that the user names second */
-  PetscInt       dirichlet;   /* which of them takes displacements in this controller step: 0 or 1 */
-  char          *surface[2];  /* names of the surfaces; NULL for all faces that see the other body */
-  Obstacle       obstacle;    /* in place of the second body, or NULL; borrowed */
-  PetscBool      chosen;      /* the program has chosen the pair, not the user */
-  const char    *why;         /* why the program has the first body take displacements; NULL: the user says so */
-  ContactRowSide row_side;    /* which body is to have the rows, if `own_side` */
-  PetscBool      own_side;    /* the pair has been given a side of its own */
-  Surface        surfaces[2]; /* those of the bodies */
-  PetscInt       place[2];    /* these in contact->surfaces */
-  Transfer       transfer;    /* between the surfaces */
-  PetscBool      owned;       /* one of several ranks has all of both surfaces, and looks at them alone */
-  PetscInt       components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
-  PetscInt       begin, end;  /* rows of this rank: begin to end - 1 */
-  PetscInt       near_begin, near_end; /* of them those near contact, in rows.near */
-  PetscInt       acts_begin, acts_end; /* of these those that act, in rows.acting */
-  PetscInt       shift[2];             /* row i of this rank has the number i - shift[side] among those of the body on that side */
-  PetscReal      normal[3];            /* mean outward normal of the body that has the rows */
-  PetscBool      bonded;     /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
-  PetscBool      keeps_mass; /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
-  PetscBool      rests;      /* one of its bodies has no inertia */
-  PetscBool      ahead;      /* its rows are laid where the last attempt at the step has ended, see src/contact/rows/layahead.c */
-  PetscInt       intervals;  /* of the controller step, between whose ends its force is linear */
-  PetscBool      own_law;    /* it has a law of its own */
-  ContactLaw     law;        /* what its surfaces do to each other */
-  PetscInt       named;      /* that of glue or friction, in contact->laws */
-  PetscReal      parameters[CONTACT_LAW_PARAMETERS]; /* its own; less than 0: those of all pairs */
+  char       *name;        /* as given: left:right */
+  PetscInt    body[2];     /* numbers of the body that has a node for each row, and of the other; n_bodies if that is an obstacle */
+  PetscBool   turned;      /* the body that has the rows is the one that the user names second */
+  PetscInt    dirichlet;   /* which of them takes displacements in this controller step: 0 or 1 */
+  char       *surface[2];  /* names of the surfaces; NULL for all faces that see the other body */
+  Obstacle    obstacle;    /* in place of the second body, or NULL; borrowed */
+  PetscBool   chosen;      /* the program has chosen the pair, not the user */
+  const char *why;         /* why the program has the first body take displacements; NULL: the user says so */
+  PetscBool   rows_second; /* the second body is to have the rows */
+  Surface     surfaces[2]; /* those of the bodies */
+  PetscInt    place[2];    /* these in contact->surfaces */
+  Transfer    transfer;    /* between the surfaces */
+  PetscBool   owned;       /* one of several ranks has all of both surfaces, and looks at them alone */
+  PetscInt    components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
+  PetscInt    begin, end;  /* rows of this rank: begin to end - 1 */
+  PetscInt    near_begin, near_end; /* of them those near contact, in rows.near */
+  PetscInt    acts_begin, acts_end; /* of these those that act, in rows.acting */
+  PetscInt    shift[2];             /* row i of this rank has the number i - shift[side] among those of the body on that side */
+  PetscReal   normal[3];            /* mean outward normal of the body that has the rows */
+  PetscBool   bonded;     /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
+  PetscBool   keeps_mass; /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
+  PetscBool   rests;      /* one of its bodies has no inertia */
+  PetscBool   ahead;      /* its rows are laid where the last attempt at the step has ended, see src/contact/rows/layahead.c */
+  PetscInt    intervals;  /* of the controller step, between whose ends its force is linear */
+  PetscBool   own_law;    /* it has a law of its own */
+  ContactLaw  law;        /* what its surfaces do to each other */
+  PetscInt    named;      /* that of glue or friction, in contact->laws */
+  PetscReal   parameters[CONTACT_LAW_PARAMETERS]; /* its own; less than 0: those of all pairs */
 } ContactPair;
 
 /* A surface of a body, for all pairs that have the same */
@@ -115,7 +110,7 @@ typedef struct {
   ContactLaw           law; /* of pairs that have none of their own */
   ContactConstraint    constraint;
   ContactStabilization stabilization;
-  ContactRowSide       row_side;         /* which body of a pair has the rows, unless the pair says otherwise */
+  PetscBool            rows_second;      /* the second body of all pairs of two bodies is to have the rows */
   PetscBool            separation;       /* surfaces that have met may come apart again */
   PetscBool            facing;           /* pairs of whole bodies keep only the faces that see each other at the start */
   PetscReal            slip_bound;       /* slip after which rows are built again [parts of a face] */

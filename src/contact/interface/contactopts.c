@@ -133,21 +133,16 @@ static PetscErrorCode TakeRowSides(Contact contact, PetscInt n, char *names[])
              "-contact_rows has %" PetscInt_FMT " values for %" PetscInt_FMT " pairs; give one for all, or one for each", n,
              contact->n_pairs);
   for (PetscInt p = 0; p < n; p++) {
-    PetscEnum side;
-    PetscBool found;
+    PetscBool first, second;
 
-    PetscCall(PetscEnumFind(ContactRowSides, names[p], &side, &found));
-    PetscCheck(found, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_rows %s is none of first, second, finer",
-               names[p]);
-    if (n == 1) contact->options.row_side = (ContactRowSide)side;
-    else {
-      ContactPair *pair = &contact->pairs[p];
-
-      PetscCheck(!pair->obstacle || side != (PetscEnum)CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-                 "-contact_rows second: pair %s is that of a body and an obstacle, which has no rows; say first", pair->name);
-      pair->row_side = (ContactRowSide)side;
-      pair->own_side = PETSC_TRUE;
-    }
+    PetscCall(PetscStrcmp(names[p], "first", &first));
+    PetscCall(PetscStrcmp(names[p], "second", &second));
+    PetscCheck(first || second, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_rows %s is none of first, second; a~b in -contact_pairs gives the rows to the body with the finer mesh", names[p]);
+    PetscCheck(n == 1 || first || !contact->pairs[p].obstacle, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+               "-contact_rows second: pair %s is that of a body and an obstacle, which has no rows; say first", contact->pairs[p].name);
+    if (n == 1) contact->options.rows_second = second;
+    else contact->pairs[p].rows_second = second;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -199,7 +194,7 @@ static PetscErrorCode TakeAlternation(Contact contact, size_t size, char type[])
 + -contact_pairs a:b,b~c                                       - pairs of bodies, Dirichlet side first, or, with a tilde, in the order
                                                                  that is better; a.top:b.bottom for certain surfaces; default: the two
                                                                  bodies, where there are two
-. -contact_rows (first|second|finer)                            - which body of a pair has the rows; or a value for each pair
+. -contact_rows (first|second)                                  - which body of a pair has the rows; or a value for each pair
 . -contact_type (schwarz|alternation|penalty|lagrange|augmented_lagrangian) - the contact method
 . -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
 . -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass

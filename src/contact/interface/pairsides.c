@@ -145,11 +145,10 @@ static PetscErrorCode OrderByPreference(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bodies in an order in which every Dirichlet side comes before its Neumann side. Pairs that have been turned round for their finer
-   surface, and form a circle by that, are turned back, the last one first. */
+/* Bodies in an order in which every Dirichlet side comes before its Neumann side */
 PetscErrorCode ContactOrderBodies(Contact contact)
 {
-  PetscInt done, last;
+  PetscInt done;
 
   PetscFunctionBegin;
   if (contact->neighbours.come_and_go) {
@@ -157,11 +156,6 @@ PetscErrorCode ContactOrderBodies(Contact contact)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(FindOrder(contact, &done));
-  for (last = contact->n_pairs - 1; done < contact->n_bodies && last >= 0; last--) {
-    if (!contact->pairs[last].turned || contact->pairs[last].row_side != CONTACT_ROW_SIDE_FINER) continue;
-    ContactTurnPair(&contact->pairs[last]);
-    PetscCall(FindOrder(contact, &done));
-  }
   PetscCheck(done == contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs: the pairs form a circle, each body waiting for the reaction of the one before; turn one pair round (b:a "
              "instead of a:b, or another side in -contact_rows)");

@@ -36,7 +36,7 @@ static const char *FindUnsuited(Contact contact)
   for (ContactLaw law = CONTACT_LAW_TIED; law < CONTACT_LAW_FRICTION; law = (ContactLaw)(law + 1))
     if (ContactAnyPairHas(contact, law)) return "-contact_law ties or bonds them";
   if (contact->options.balance) return "of -contact_balance";
-  if (contact->options.row_side != CONTACT_ROW_SIDE_FIRST) return "of -contact_rows, which is not first";
+  if (contact->options.rows_second) return "of -contact_rows, which is not first";
   if (contact->options.stabilization != CONTACT_STABILIZATION_NONE) return "of -contact_stabilization";
   if (!contact->ops->mayreplacerows || !(*contact->ops->mayreplacerows)(contact)) return "the contact method cannot begin anew in a run";
   return NULL;

@@ -62,7 +62,7 @@ PetscErrorCode ContactTurnRigid(Contact contact, ContactPair *pair)
     if (!contact->impulses) PetscCall(RefuseRigid(contact, pair));
   } else if (first) {
     PetscCheck(
-        pair->row_side != CONTACT_ROW_SIDE_SECOND, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        !pair->rows_second, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
         "-contact_rows second: the second body of pair %s, '%s', is rigid, and takes forces; rows lie on its partner. Leave the option "
         "out for this pair",
         pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);

@@ -47,10 +47,10 @@ static void Run(Simulation *simulation, const char options[], const char name[],
 }
 
 /* To the last bit what the other order gives, or to round-off where ranks add in the order in which messages come; signs alone follow the
-   names. `turned`: the names of the runs are not in the same order. */
-static void check_same(const Answer *a, const Answer *b, PetscBool turned)
+   names, which are not in the same order. */
+static void check_same(const Answer *a, const Answer *b)
 {
-  const PetscReal sign = turned ? -1 : 1;
+  const PetscReal sign = -1;
   PetscMPIInt     ranks;
   PetscReal       off;
 
@@ -72,23 +72,20 @@ static void check_same(const Answer *a, const Answer *b, PetscBool turned)
 
 static void check_sides(Simulation *simulation, PetscInt dim, const char more[])
 {
-  Answer first, second, finer, other, coarser;
+  Answer first, second, other, coarser;
 
   AddBlocks(dim);
   AddOptions(more);
   Run(simulation, "-contact_pairs a:b -contact_rows first", "a:b", &first);
   Run(simulation, "-contact_rows second", "a:b", &second);
-  Run(simulation, "-contact_rows finer", "a:b", &finer);
-  Run(simulation, "-contact_pairs b:a", "b:a", &other);
+  Run(simulation, "-contact_pairs b:a -contact_rows first", "b:a", &other);
   Run(simulation, "-contact_rows second", "b:a", &coarser);
   assert_int_equal(first.side, 0);
   assert_int_equal(second.side, 1);
-  assert_int_equal(finer.side, 1);
   assert_int_equal(other.side, 0);
   assert_int_equal(coarser.side, 1);
-  check_same(&second, &finer, PETSC_FALSE);
-  check_same(&second, &other, PETSC_TRUE);
-  check_same(&first, &coarser, PETSC_TRUE);
+  check_same(&second, &other);
+  check_same(&first, &coarser);
   between(first.normal[0], 0.9, 1); /* outward of a */
   between(second.normal[0], 0.9, 1);
   assert_true(first.pair.force_vector[0] > 0 && second.pair.force_vector[0] > 0);             /* on b */
@@ -106,50 +103,6 @@ static void names_hold_whoever_has_the_rows(void **state)
   check_sides(simulation, 2, "-b_ts_type centraldifference -b_ts_time_step 0.0125");
   check_sides(simulation, 2, "-contact_type penalty");
   check_sides(simulation, 3, "-a_ts_type centraldifference -b_ts_type centraldifference");
-}
-
-/* Places of the nodes count, not shapes: two triangles make a quadrilateral, and alike surfaces leave the rows where they are */
-static void the_finer_surface_is_found(void **state)
-{
-  static const struct {
-    const char *options;
-    PetscInt    side;
-  } cases[] = {
-      {"-a_dm_plex_dim 2 -b_dm_plex_dim 2 -a_dm_plex_box_faces 3,3 -b_dm_plex_box_faces 5,3 -b_dm_plex_box_lower 1.01,0 "
-       "-b_dm_plex_box_upper 2.01,1",
-       0},
-      {"-a_dm_plex_dim 2 -b_dm_plex_dim 2 -a_dm_plex_box_faces 3,3 -b_dm_plex_box_faces 5,3 -b_dm_plex_box_lower 1.01,0 "
-       "-b_dm_plex_box_upper 2.01,0.9995",
-       0},
-      {"-a_dm_plex_dim 2 -b_dm_plex_dim 2 -a_dm_plex_box_faces 3,3 -b_dm_plex_box_faces 5,3 -b_dm_plex_box_lower 1.01,0 "
-       "-b_dm_plex_box_upper 2.01,0.998",
-       1},
-      {"-a_dm_plex_dim 3 -b_dm_plex_dim 3 -a_dm_plex_box_faces 2,2,2 -b_dm_plex_box_faces 1,1,1 -b_dm_plex_box_lower 1.01,0,0 "
-       "-b_dm_plex_box_upper 2.01,1,1 "
-       "-b_dm_plex_simplex 1 -b_dm_refine 1",
-       0},
-      {"-a_dm_plex_dim 3 -b_dm_plex_dim 3 -a_dm_plex_box_faces 2,2,2 -b_dm_plex_box_faces 1,2,3 -b_dm_plex_box_lower 1.01,0,0 "
-       "-b_dm_plex_box_upper 2.01,1,1",
-       1},
-      {"-a_dm_plex_dim 1 -b_dm_plex_dim 1 -a_dm_plex_box_faces 2 -b_dm_plex_box_faces 9 -b_dm_plex_box_lower 1.01 -b_dm_plex_box_upper 2",
-       0},
-  };
-  Simulation *simulation = (Simulation *)*state;
-
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(cases); i++) {
-    PetscInt side;
-
-    AddOptions("-all_mass_redistribute true -a_dm_plex_simplex 0 -b_dm_plex_simplex 0 -a_density 1 -b_density 1 -a_youngs_modulus 1 "
-               "-b_youngs_modulus 1 -bodies a,b "
-               "-time_step 0.01 -time_end 1 -contact_pairs a:b -contact_rows finer");
-    AddOptions(cases[i].options);
-    ok(SimulationCreate(simulation));
-    ok(ContactGetPairRowSide(simulation->contact, 0, &side));
-    if (side != cases[i].side) fail_msg("%s: rows on body %d", cases[i].options, (int)side);
-    ok(ControllerDestroy(&simulation->controller));
-    options_drop(simulation->options);
-    simulation->options = options_begin("");
-  }
 }
 
 static void AddBox(const char name[], const char faces[], const char lower[], const char upper[])
@@ -173,27 +126,22 @@ static void check_rows(Simulation *simulation, PetscInt n, const PetscInt rows[]
   }
 }
 
-/* Each pair has a side of its own, and circles that come of that are turned back or refused where bodies wait for each other */
+/* Each pair has a side of its own, and circles that come of that are refused where bodies wait for each other */
 static void pairs_have_sides_of_their_own(void **state)
 {
-  static const PetscInt rows[] = {0, 1, 1}, finer[] = {1, 0}, circle[] = {0, 0, 0};
+  static const PetscInt rows[]     = {0, 1, 1};
   Simulation           *simulation = (Simulation *)*state;
 
   AddBox("a", "1,4", "0,0", "1,1"); /* fine at x = 1, coarse at y = 1 */
   AddBox("b", "3,2", "1.01,0", "2.01,1");
   AddBox("c", "3,2", "0,1.01", "2.01,2.01");
   AddOptions("-bodies a,b,c -time_step 0.01 -time_end 0.1 -contact_pairs a.ymax:c.ymin,b.ymax:c.ymin,b.xmin:a.xmax -contact_rows "
-             "first,second,finer -contact_type alternation");
+             "first,second,second -contact_type alternation");
   ok(SimulationCreate(simulation));
   check_rows(simulation, 3, rows);
   ok(ContactStep(simulation->contact));
-  /* where they meet c is finer than a, a than b, and b than c: the pair that has been turned round is turned back */
-  SimulationRepeat(simulation, "-contact_pairs a.ymax:c.ymin,a.xmax:b.xmin -contact_rows finer");
-  check_rows(simulation, 2, finer);
-  SimulationRepeat(simulation, "-contact_pairs a.ymax:c.ymin,a.xmax:b.xmin,b.ymax:c.ymin");
-  check_rows(simulation, 3, circle);
   ok(ControllerDestroy(&simulation->controller));
-  AddOptions("-contact_rows second,first,first");
+  AddOptions("-contact_pairs a.ymax:c.ymin,a.xmax:b.xmin,b.ymax:c.ymin -contact_rows second,first,first");
   refused(PETSC_ERR_USER_INPUT, "circle|-contact_rows", SimulationCreate(simulation));
 }
 
@@ -202,7 +150,7 @@ static void bad_sides_are_refused(void **state)
   static const struct {
     const char *options, *words;
   } cases[] = {
-      {"-contact_rows third", "third|first, second, finer"},
+      {"-contact_rows third", "third|first, second"},
       {"-contact_rows first,second", "2 values for 1 pair"},
       {"-obstacles floor -floor_obstacle_type plane -floor_point 0,-1 -floor_normal 0,1 -contact_pairs a:b,a:floor -contact_rows "
        "first,second",
@@ -229,7 +177,6 @@ int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
       simulation_test(names_hold_whoever_has_the_rows),
-      simulation_test(the_finer_surface_is_found),
       simulation_test(pairs_have_sides_of_their_own),
       simulation_test(bad_sides_are_refused),
   };
