@@ -18,7 +18,7 @@ static PetscErrorCode GetNewGaps(Transfer transfer, Vec u_dirichlet, Vec u_neuma
     gaps[row] = transfer->rows.opposite[row] ? TransferPresentGap(transfer, row) : PETSC_MAX_REAL;
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = kept;
-  PetscCall(TransferSetUpColumns(transfer, PETSC_FALSE));
+  PetscCall(TransferSetUpColumns(transfer, &transfer->rows, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

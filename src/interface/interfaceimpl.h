@@ -224,7 +224,7 @@ PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, Pe
                                               Share *[]);
 PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetGetColumns(const RowSet *, const PetscReal[], PetscReal[]);
-PETSC_INTERN PetscErrorCode TransferSetUpColumns(Transfer, PetscBool);
+PETSC_INTERN PetscErrorCode TransferSetUpColumns(Transfer, RowSet *, PetscBool);
 PETSC_INTERN void           TransferListState(Transfer, StateList[2]);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
 PETSC_INTERN PetscErrorCode TransferSetUpTurns(Transfer);

@@ -114,8 +114,7 @@ PetscErrorCode RowSetConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n,
 
 /* Corrects the goals of a row that goes on from where it is. Its present gap is to be that of its goals, so that what it is off is known.
  */
-static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[], PetscReal end, PetscReal *gap,
-                           PetscReal *present, RowSet *set)
+static PetscErrorCode GoOn(Transfer transfer, PetscInt row, PetscReal end, PetscReal *gap, PetscReal *present, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
@@ -127,8 +126,8 @@ static PetscErrorCode GoOn(Transfer transfer, PetscInt row, const PetscReal x[],
     PetscReal now = 0, there = 0;
 
     for (PetscInt j = 0; j < n; j++) {
-      now += set->shares[first + j].value * x[3 * set->columns[first + j] + d];
-      there += set->shares[first + j].value * reference[3 * set->columns[first + j] + d];
+      now += set->shares[first + j].value * transfer->column_x[3 * set->columns[first + j] + d];
+      there += set->shares[first + j].value * transfer->column_reference[3 * set->columns[first + j] + d];
     }
     *gap += normal[d] * (there - data->reference[3 * row + d] - (now - data->positions[3 * row + d]));
   }
@@ -156,10 +155,9 @@ static PetscBool SeesSmooth(Transfer transfer, PetscInt node, const PetscReal se
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes
    that touch, and ahead [m]. The weights of a node beyond the end of
    the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
-   touches when the end of the partner does, not before or after.
-   `columns`: normals of the partner's nodes, and the same without those on sharp edges. */
-static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal reference[],
-                                const PetscReal *columns[2], PetscReal end, const PetscReal seen[], PetscReal ahead, PetscReal behind,
+   touches when the end of the partner does, not before or after. Normals of the partner's nodes, those on sharp edges too, are in
+   `column_moved`. */
+static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, const PetscReal seen[], PetscReal ahead, PetscReal behind,
                                 RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
@@ -174,12 +172,12 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
   PetscCall(PetscMalloc4(n, &weights, n, &partners, n, &normals, n, &smooth));
   for (PetscInt j = 0; j < n; j++) {
     weights[j]  = set->shares[first + j].goal;
-    partners[j] = x + 3 * set->columns[first + j];
-    normals[j]  = columns[0] + 3 * set->columns[first + j];
-    smooth[j]   = columns[1] + 3 * set->columns[first + j];
+    partners[j] = transfer->column_x + 3 * set->columns[first + j];
+    normals[j]  = transfer->column_moved + 3 * set->columns[first + j];
+    smooth[j]   = transfer->column_normals + 3 * set->columns[first + j];
   }
   if (SeesSmooth(transfer, row, seen, set->area[row], set->partner + 3 * row)) {
-    (void)RowPartnerNormal(transfer->dirichlet, set, row, x, normal); /* as it is found again later, from slopes */
+    (void)RowPartnerNormal(transfer->dirichlet, set, row, transfer->column_x, normal); /* as it is found again later, from slopes */
     for (PetscInt d = 0; d < 3; d++) normal[d] = -normal[d];
   } else if (transfer->options.curved) RowNormal(dim, n, transfer->options.share, data->normals + 3 * row, smooth, weights, normal);
   for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
@@ -190,7 +188,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     PetscReal there = 0, now = 0;
 
     for (PetscInt j = 0; j < n; j++) {
-      there += weights[j] * reference[3 * set->columns[first + j] + d];
+      there += weights[j] * transfer->column_reference[3 * set->columns[first + j] + d];
       now += weights[j] * partners[j][d];
     }
     gap += normal[d] * (there - data->reference[3 * row + d]);
@@ -207,7 +205,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, const PetscReal
     if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
   }
   PetscCall(PetscFree4(weights, partners, normals, smooth));
-  if (transfer->goes_on[row]) PetscCall(GoOn(transfer, row, x, reference, end, &gap, &present, set));
+  if (transfer->goes_on[row]) PetscCall(GoOn(transfer, row, end, &gap, &present, set));
   else if (set->beyond[row]) {
     gap += end - present;
     present = end;
@@ -343,9 +341,8 @@ PetscErrorCode RowSetGetColumns(const RowSet *set, const PetscReal vectors[], Pe
 }
 
 /* Room for vectors of the columns of rows that have just come, and where these lie in the mesh. `connects`: makes the star forest first */
-PetscErrorCode TransferSetUpColumns(Transfer transfer, PetscBool connects)
+PetscErrorCode TransferSetUpColumns(Transfer transfer, RowSet *rows, PetscBool connects)
 {
-  RowSet  *rows = &transfer->rows;
   PetscInt n;
 
   PetscFunctionBegin;
@@ -364,7 +361,7 @@ PetscErrorCode TransferSetUpColumns(Transfer transfer, PetscBool connects)
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;
-  PetscReal         *lumped, *ends, *seen, *x, *reference, *normals, *smooth, behind;
+  PetscReal         *lumped, *ends, *seen, behind;
   PetscInt           n_shares, *marks;
   Share             *shares;
   RowSet             set;
@@ -378,26 +375,20 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &set));
   PetscCall(MergeShares(transfer->n, transfer->keep, lumped, dirichlet->areas, n_shares, shares, &set));
   PetscCall(PetscFree(shares));
-  PetscCall(RowSetConnectColumns(transfer->comm, neumann->n_owned, transfer->n, &set));
-  PetscCall(PetscMalloc4(3 * set.n_columns, &x, 3 * set.n_columns, &reference, 3 * set.n_columns, &normals, 3 * set.n_columns, &smooth));
-  PetscCall(RowSetGetColumns(&set, neumann->normals, normals));
-  PetscCall(RowSetGetColumns(&set, transfer->neumann->smooth, smooth));
-  PetscCall(RowSetGetColumns(&set, neumann->positions, x));
-  PetscCall(RowSetGetColumns(&set, neumann->reference, reference));
+  PetscCall(TransferSetUpColumns(transfer, &set, PETSC_TRUE));
+  PetscCall(RowSetGetColumns(&set, neumann->positions, transfer->column_x));
+  PetscCall(RowSetGetColumns(&set, transfer->neumann->smooth, transfer->column_normals));
+  PetscCall(RowSetGetColumns(&set, neumann->normals, transfer->column_moved)); /* free until bodies move again */
   for (PetscInt row = 0; row < transfer->n; row++) {
     set.beyond[row] = (PetscBool)(transfer->keep[row] ? transfer->rows.beyond[row] : marks[row] == MARK_BEYOND);
     set.area[row]   = lumped[row];
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
-    else
-      PetscCall(
-          FinishRow(transfer, row, x, reference, (const PetscReal *[2]){normals, smooth}, ends[row], seen + 3 * row, near, behind, &set));
+    else PetscCall(FinishRow(transfer, row, ends[row], seen + 3 * row, near, behind, &set));
     if (!set.opposite[row]) set.area[row] = 0;
   }
   CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = set;
-  PetscCall(TransferSetUpColumns(transfer, PETSC_FALSE));
-  PetscCall(PetscFree4(x, reference, normals, smooth));
   PetscCall(PetscFree4(marks, lumped, ends, seen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -143,7 +143,7 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
   PetscCall(PetscFree(shares));
   PetscCall(TablesDestroy(&own));
   PetscCall(TablesDestroy(&owners));
-  PetscCall(TransferSetUpColumns(transfer, PETSC_TRUE));
+  PetscCall(TransferSetUpColumns(transfer, &transfer->rows, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

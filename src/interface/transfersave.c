@@ -72,7 +72,7 @@ static PetscErrorCode RestoreShares(Transfer transfer)
   PetscCall(RowSetDestroy(&transfer->rows));
   transfer->rows = saved->rows;
   PetscCall(PetscMemzero(&saved->rows, sizeof(saved->rows)));
-  PetscCall(TransferSetUpColumns(transfer, PETSC_FALSE));
+  PetscCall(TransferSetUpColumns(transfer, &transfer->rows, PETSC_FALSE));
   PetscCall(SaveShares(transfer)); /* the step may have to be made once more */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,7 +17,7 @@ static PetscErrorCode VisitShares(Transfer transfer, Checkpoint checkpoint)
   }
   PetscCall(CheckpointVisitInts(checkpoint, "offsets", n + 1, rows->offsets));
   PetscCall(CheckpointVisitBytes(checkpoint, "share", (size_t)n_shares * sizeof(*rows->shares), rows->shares));
-  if (CheckpointLoads(checkpoint)) PetscCall(TransferSetUpColumns(transfer, PETSC_TRUE));
+  if (CheckpointLoads(checkpoint)) PetscCall(TransferSetUpColumns(transfer, &transfer->rows, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
