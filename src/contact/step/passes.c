@@ -224,16 +224,6 @@ PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *steppe
   PetscCall(SNESSetErrorIfNotConverged(stepper->outer, PETSC_FALSE));
   PetscCall(SNESSetFromOptions(stepper->outer));
   PetscCall(SNESGetType(stepper->outer, &type));
-  PetscCall(PetscStrcmp(type, SNESNEWTONLS, &known));
-  if (known) { /* the default of older versions */
-    PetscCall(PetscFPrintf(comm, stderr,
-                           "impakt: warning: -schwarz_snes_type newtonls has no effect any more: the law of rows is solved by Newton's "
-                           "method inside each pass of nrichardson; leave it out\n"));
-    PetscCall(SNESSetType(stepper->outer, SNESNRICHARDSON));
-    PetscCall(SNESGetLineSearch(stepper->outer, &line_search));
-    PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-    PetscCall(SNESGetType(stepper->outer, &type));
-  }
   PetscCall(PetscObjectTypeCompareAny((PetscObject)stepper->outer, &known, SNESNRICHARDSON, SNESANDERSON, SNESNGMRES, SNESQN, ""));
   PetscCheck(known, comm, PETSC_ERR_USER_INPUT,
              "-schwarz_snes_type %s: the outer iteration of -contact_type schwarz has no Jacobian, since the law of rows is solved inside "

@@ -21,6 +21,8 @@ REFUSED = {
     "balance": ("-contact_balance true", ["-contact_balance", "both linear elastic"]),
     "balance-on-mass": (f"{MASS} -contact_balance true", ["-contact_balance", "massless contact nodes"]),
     "outer-type": ("-schwarz_snes_type newtontr", ["-schwarz_snes_type newtontr", "nrichardson", "anderson", "ngmres", "qn"]),
+    "newton": ("-schwarz_snes_type newtonls", ["-schwarz_snes_type newtonls", "no Jacobian", "nrichardson"]),
+    "newton-alternation": ("-contact_type alternation -schwarz_snes_type newtonls", ["-schwarz_snes_type 'newtonls'", "anderson"]),
     "line-search": ("-schwarz_snes_linesearch_type nleqerr", ["-schwarz_snes_linesearch_type nleqerr", "secant"]),
     # not read by this method
     "traction": ("-schwarz_traction internal", ["-schwarz_traction", "needs -contact_type alternation"]),
@@ -60,9 +62,7 @@ LEFT = {
     "-left_ts_alpha_alpha_m 0.9": "generalized alpha (-<body>_ts_alpha_...) goes with -contact_type alternation, which is taken",
     "-contact_type schwarz -schwarz_traction reaction": "-schwarz_traction is an option of -contact_type alternation, which is taken",
     f"{FRICTION} -contact_friction_dense_limit 10": "-contact_friction_dense_limit 10 has no effect any more",
-    "-schwarz_snes_type newtonls": "-schwarz_snes_type newtonls has no effect any more",
     "-schwarz_condense 1": "-schwarz_condense 1 has no effect any more",
-    "-contact_type alternation -schwarz_snes_type newtonls": "-schwarz_snes_type newtonls has no effect any more: sweeps have no Jacobian, and anderson is taken",
     "-contact_type alternation -schwarz_dense_limit 0": "-schwarz_dense_limit 0 has no effect any more",
     "-contact_type alternation -schwarz_interface_ksp_rtol 1e-9": "-schwarz_interface_ksp_rtol 1e-9 has no effect any more",
 }

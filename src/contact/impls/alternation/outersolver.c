@@ -9,24 +9,15 @@
 /* Relative tolerance on positions: round-off of their sums, so that it is the absolute one that counts but far from the origin */
 #define POSITION_RTOL 1e-15
 
-/* The type of the iteration, as the options have it: Newton's method needs a Jacobian, and Anderson's acceleration serves where there is
-   none */
+/* The type of the iteration, as the options have it. Sweeps have no Jacobian: Anderson's acceleration serves. */
 static PetscErrorCode ReadType(Contact contact, char type[], size_t size)
 {
   const char *known[] = {SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
-  PetscBool   newton, same = PETSC_FALSE;
+  PetscBool   same    = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(PetscStrncpy(type, SNESANDERSON, size));
   PetscCall(PetscOptionsGetString(NULL, "schwarz_", "-snes_type", type, size, NULL));
-  PetscCall(PetscStrcmp(type, SNESNEWTONLS, &newton));
-  if (newton) { /* the default of older versions */
-    PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,
-                           "impakt: warning: -schwarz_snes_type newtonls has no effect any more: sweeps have no Jacobian, and anderson is "
-                           "taken; leave it out\n"));
-    PetscCall(PetscStrncpy(type, SNESANDERSON, size));
-    PetscCall(PetscOptionsSetValue(NULL, "-schwarz_snes_type", type));
-  }
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(known) && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
   PetscCheck(same, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
              "Unknown -schwarz_snes_type '%s'; known: anderson, nrichardson, ngmres, qn", type);
