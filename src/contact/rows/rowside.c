@@ -31,14 +31,88 @@ PetscErrorCode ContactGetPairRowSide(Contact contact, PetscInt pair, PetscInt *b
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Turns a pair round if its second body is to have the rows. Its surfaces must be known. */
+/* The number of rigid bodies in a pair, and whether its first one is */
+static PetscErrorCode CountRigid(Contact contact, const ContactPair *pair, PetscInt *n, PetscBool *first)
+{
+  PetscBool second = PETSC_FALSE;
+
+  PetscFunctionBegin;
+  PetscCall(BodyIsRigid(contact->bodies[pair->body[0]], first));
+  if (!pair->obstacle) PetscCall(BodyIsRigid(contact->bodies[pair->body[1]], &second));
+  *n = *first + second;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, which other methods do not have. Nor do
+   springs of a penalty: a rigid disc on a rigid plate, both with default parameters, gained 5 % within 800 steps, and lost 35 % with softer
+   springs and friction. */
+static PetscErrorCode RefuseRigid(Contact contact, const ContactPair *pair)
+{
+  PetscFunctionBegin;
+  PetscCheck(
+      !pair->obstacle, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "-contact_pairs %s: body '%s' is rigid, and so is the obstacle; nothing gives where they meet: choose -contact_type schwarz, let the "
+      "body deform, or put a body that deforms in place of the obstacle",
+      pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+          "-contact_pairs %s: both bodies are rigid, and nothing gives where they meet: choose -contact_type schwarz, let one of them "
+          "deform, or "
+          "leave the pair out (where 'auto' has chosen it, name the other pairs)",
+          pair->name);
+}
+
+/* Turns a pair round, before it has a transfer */
+static void TurnPair(ContactPair *pair)
+{
+  const ContactPair was = *pair;
+
+  for (PetscInt side = 0; side < 2; side++) {
+    pair->body[side]     = was.body[1 - side];
+    pair->surface[side]  = was.surface[1 - side];
+    pair->surfaces[side] = was.surfaces[1 - side];
+    pair->place[side]    = was.place[1 - side];
+  }
+  pair->turned = (PetscBool)!was.turned;
+}
+
+/* Turns a pair round, whose surfaces are known, if its second body is to have the rows, or if its first one is rigid: rows lie on the side
+   that takes displacements, and a rigid body takes forces, so that its partner has to give unless the method takes pairs of rigid bodies */
 PetscErrorCode ContactChooseRowSide(Contact contact, ContactPair *pair)
 {
+  PetscInt  n     = 0;
+  PetscBool first = PETSC_FALSE;
+
   PetscFunctionBegin;
   if (!pair->obstacle && (pair->rows_second || contact->options.rows_second)) {
     pair->rows_second = PETSC_TRUE;
-    ContactTurnPair(pair);
+    TurnPair(pair);
   }
-  PetscCall(ContactTurnRigid(contact, pair));
+  PetscCall(CountRigid(contact, pair, &n, &first));
+  if (n == 2 || (n && pair->obstacle)) {
+    if (!contact->impulses) PetscCall(RefuseRigid(contact, pair));
+  } else if (first) {
+    PetscCheck(
+        !pair->rows_second, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        "-contact_rows second: the second body of pair %s, '%s', is rigid, and takes forces; rows lie on its partner. Leave the option "
+        "out for this pair",
+        pair->name, ((PetscObject)contact->bodies[pair->body[0]])->name);
+    TurnPair(pair);
+    pair->why = "the rigid body takes forces";
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Whether any body in a pair is rigid */
+PetscErrorCode ContactHasRigid(Contact contact, PetscBool *has)
+{
+  PetscFunctionBegin;
+  *has = PETSC_FALSE;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscInt  n     = 0;
+    PetscBool first = PETSC_FALSE;
+
+    PetscCall(CountRigid(contact, &contact->pairs[p], &n, &first));
+    *has = (PetscBool)(*has || n);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
