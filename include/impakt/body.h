@@ -137,7 +137,6 @@ PETSC_EXTERN PetscErrorCode BodySetMassRedistribute(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodySetFromOptions(Body);
 PETSC_EXTERN PetscErrorCode BodySetUp(Body);
 PETSC_EXTERN PetscErrorCode BodyView(Body, PetscViewer);
-PETSC_EXTERN PetscErrorCode BodyViewFromOptions(Body, PetscObject, const char[]);
 PETSC_EXTERN PetscErrorCode BodyDestroy(Body *);
 
 PETSC_EXTERN PetscErrorCode BodyAddDisplacement(Body, const char[], const char[]);

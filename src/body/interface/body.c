@@ -219,7 +219,7 @@ PetscErrorCode BodySetUp(Body body)
   PetscCall(PetscObjectViewFromOptions((PetscObject)body->model.element, (PetscObject)body, "-element_view"));
   body->setup = PETSC_TRUE;
   PetscCall(BodySetInitialState(body, NULL, NULL));
-  PetscCall(BodyViewFromOptions(body, NULL, "-body_view"));
+  PetscCall(PetscObjectViewFromOptions((PetscObject)body, NULL, "-body_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -73,9 +73,12 @@ static PetscErrorCode ViewLayer(Body body, PetscViewer viewer)
 + body   - the `Body`
 - viewer - an ASCII viewer, `NULL` for standard output
 
+  Options Database Key:
+. -<body>_body_view - print the body at its set-up, by `PetscObjectViewFromOptions()`
+
   Level: beginner
 
-.seealso: `Body`, `BodyViewFromOptions()`
+.seealso: `Body`, `BodySetUp()`
 @*/
 PetscErrorCode BodyView(Body body, PetscViewer viewer)
 {
@@ -112,31 +115,6 @@ PetscErrorCode BodyView(Body body, PetscViewer viewer)
                                      " displacement%s, moved until they do not pull; motions that nothing drives stay as they are\n",
                                      (double)body->springs.stiffness, UnitsOf((PetscObject)body, UNIT_STIFFNESS), body->springs.n,
                                      body->springs.n == 1 ? "" : "s"));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  BodyViewFromOptions - prints a body where an option asks for it
-
-  Collective
-
-  Input Parameters:
-+ body   - the `Body`, set up
-. object - has the prefix of the option, `NULL` for the body
-- name   - the option
-
-  Options Database Key:
-. -<body>_body_view - print the body at its set-up
-
-  Level: intermediate
-
-.seealso: `Body`, `BodyView()`, `PetscObjectViewFromOptions()`
-@*/
-PetscErrorCode BodyViewFromOptions(Body body, PetscObject object, const char name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscCall(PetscObjectViewFromOptions((PetscObject)body, object, name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,4 +1,5 @@
 /* Energies, momentum, mean rotation, and boxes about bodies. */
+#include <body/integrator/rigidmotion.h>
 #include <body/layout/bodyimpl.h>
 
 /* Of the kinetic energy this part counts even where all bodies move alike: less is round-off of it */
@@ -168,8 +169,8 @@ static PetscErrorCode Finish(Body body, const PetscReal sums[], BodyMeasures *me
   measures->damping_work        = sums[N_SUMS + 1];
   measures->plastic_work        = sums[15] - body->plastic_before;
   measures->hourglass_energy    = sums[14];
-  BodyFinishRotation(body, sums + 11, measures->rotation);
-  PetscCall(BodyGetDamping(body, &drag, NULL)); /* which takes momentum */
+  RigidMultiply(body->mass.inverse_inertia, sums + 11, measures->rotation); /* of sum m (X - C) x u */
+  PetscCall(BodyGetDamping(body, &drag, NULL));                             /* which takes momentum */
   measures->loaded = (PetscBool)(BodyIsLoaded(body) || drag > 0);
   for (PetscInt d = 0; d < 3; d++) {
     measures->momentum[d]         = sums[2 + d];

@@ -166,15 +166,6 @@ typedef struct {
   Vec       force;  /* that of contact on all nodes at its end; NULL until needed [N] */
 } BodyExchange;
 
-/* Where the rows of this rank have entries, see src/body/rows/pattern.c */
-typedef struct {
-  PetscInt  n;                 /* rows */
-  PetscInt *offsets, *columns; /* of each row among the columns, n + 1; global numbers */
-  /* columns of other ranks that the matrix has room for, ascending: entries are stored by their places here, and there may be more of these
-     than rows have entries in */
-  PetscInt n_elsewhere, *elsewhere;
-} RowPattern;
-
 /* Some rows of this rank */
 typedef struct {
   PetscInt n, *numbers; /* ascending */
@@ -184,9 +175,9 @@ typedef struct {
 
 /* The rows of the interface */
 typedef struct {
-  Mat              matrix;      /* B: rows of all ranks x displacements */
-  Mat              free_matrix; /* without held dofs; the same matrix where none is held */
-  RowPattern       pattern;
+  Mat              matrix;       /* B: rows of all ranks x displacements */
+  Mat              free_matrix;  /* without held dofs; the same matrix where none is held */
+  unsigned long    pattern;      /* hash of where the rows of this rank have entries; 0: there were none */
   PetscBool        same_pattern; /* the last new rows have entries where those before had them; on this rank, if its body is local */
   PetscInt64       laid_out;     /* how often there have been other rows */
   Vec              free_dofs;    /* 1, 0 on held dofs; NULL until needed */
@@ -380,7 +371,6 @@ PETSC_INTERN PetscErrorCode BodyFindTurns(Body, PetscInt *, PetscReal[9]);
 PETSC_INTERN PetscErrorCode BodySetUpMassSolver(Body);
 PETSC_INTERN PetscErrorCode BodySumNodes(Body, PetscReal *, PetscReal *, PetscReal *, PetscReal[3], PetscReal[3], PetscReal[3],
                                          PetscReal[3]);
-PETSC_INTERN void           BodyFinishRotation(Body, const PetscReal[3], PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodyGetElementMassParts(Body, PetscInt, PetscBool, PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyGetElementMass(Body, PetscInt, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyFindMassFactor(Body, PetscReal *);
@@ -529,8 +519,6 @@ PETSC_INTERN PetscErrorCode BodyCreateTraces(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyTraces(Body);
 PETSC_INTERN PetscErrorCode BodyCreateRowArrays(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyRowArrays(Body);
-PETSC_INTERN PetscErrorCode RowPatternNote(RowPattern *, Mat, PetscBool, PetscBool *);
-PETSC_INTERN PetscErrorCode RowPatternDestroy(RowPattern *);
 PETSC_INTERN PetscErrorCode BodySetUpFreeRows(Body);
 PETSC_INTERN PetscErrorCode BodyUpdateGram(Body);
 PETSC_INTERN void           BodyUnmarkDependent(Body, PetscBool[]);

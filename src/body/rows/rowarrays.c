@@ -75,7 +75,7 @@ PetscErrorCode BodyDestroyRowArrays(Body body)
   PetscCall(BodyDestroyNearRows(body));
   for (PetscInt k = 0; k < 3; k++) PetscCall(VecDestroy(&body->work.rows[k]));
   PetscCall(MatDestroy(&rows->free_matrix));
-  PetscCall(RowPatternDestroy(&rows->pattern));
+  rows->pattern = 0;
   PetscCall(BodyGramDestroy(&rows->gram));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

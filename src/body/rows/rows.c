@@ -40,6 +40,47 @@ static PetscErrorCode FillFreeRows(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* FNV-1a (G. Fowler, L. C. Noll, P. Vo), of whole numbers in place of bytes */
+static void Hash(PetscInt n, const PetscInt numbers[], unsigned long *hash)
+{
+  for (PetscInt k = -1; k < n; k++) {
+    *hash = (*hash ^ (unsigned long)(k < 0 ? n : numbers[k])) * 0x100000001b3UL;
+    *hash ^= *hash >> 32;
+  }
+}
+
+/* Whether new rows have entries where those before had them: then what has been made of their matrix (that without held dofs, that of the
+   massless layer) gets new values in the same places, and nothing is allocated. `agree`: on every rank, collective */
+static PetscErrorCode NotePattern(Body body, PetscBool agree)
+{
+  BodyRows       *rows = &body->rows;
+  unsigned long   hash = 0xcbf29ce484222325UL;
+  PetscInt        begin, end, n;
+  const PetscInt *columns;
+  PetscBool       many, differs;
+  Mat             block;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRange(rows->matrix, &begin, &end));
+  for (PetscInt row = begin; row < end; row++) {
+    PetscCall(MatGetRow(rows->matrix, row, &n, &columns, NULL));
+    Hash(n, columns, &hash);
+    PetscCall(MatRestoreRow(rows->matrix, row, &n, &columns, NULL));
+  }
+  /* entries in columns of other ranks are stored by their places among those that there is room for, which may be more */
+  PetscCall(PetscObjectTypeCompare((PetscObject)rows->matrix, MATMPIAIJ, &many));
+  if (many) {
+    PetscCall(MatMPIAIJGetSeqAIJ(rows->matrix, NULL, &block, &columns));
+    PetscCall(MatGetSize(block, NULL, &n));
+    Hash(n, columns, &hash);
+  }
+  differs       = (PetscBool)(hash != rows->pattern);
+  rows->pattern = hash;
+  if (agree) PetscCall(BodyAnyRank(body, &differs));
+  rows->same_pattern = (PetscBool)!differs;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The rows of the interface without held dofs, which no contact force moves */
 PetscErrorCode BodySetUpFreeRows(Body body)
 {
@@ -47,7 +88,7 @@ PetscErrorCode BodySetUpFreeRows(Body body)
 
   PetscFunctionBegin;
   /* the layer of a local body needs no other rank for its rows, but a copy of them without held dofs is made on all */
-  PetscCall(RowPatternNote(&rows->pattern, rows->matrix, (PetscBool)(!body->local || body->held.any), &rows->same_pattern));
+  PetscCall(NotePattern(body, (PetscBool)(!body->local || body->held.any)));
   if (body->held.any) PetscCall(FillFreeRows(body));
   else {
     PetscCall(PetscObjectReference((PetscObject)rows->matrix));

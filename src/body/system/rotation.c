@@ -5,22 +5,14 @@
    The angle is I^-1 sum m (X - C) x u with the inertia tensor I about the centre of mass C: u = R X - X of a rotation R by a small angle,
    in the least squares. Vibrations of a free body, which are orthogonal to its rigid motions, do not count.
 */
+#include <body/integrator/rigidmotion.h>
 #include <body/layout/bodyimpl.h>
-
-/* An inertia tensor is singular, and the body a line, if its determinant is below this part of the cube of its trace */
-#define SINGULAR 1e-12
-
-/* a x b */
-static void Cross(const PetscReal a[3], const PetscReal b[3], PetscReal c[3])
-{
-  for (PetscInt d = 0; d < 3; d++) c[d] = a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3];
-}
 
 /* Centre of mass and inverse inertia tensor; plane bodies turn about the third axis alone */
 PetscErrorCode BodySetUpInertia(Body body)
 {
   const PetscInt     dim     = body->mesh.dim;
-  PetscReal          sums[9] = {0}, inertia[9], trace, determinant = 0;
+  PetscReal          sums[9] = {0}, inertia[9], trace;
   const PetscScalar *mass;
 
   PetscFunctionBegin;
@@ -30,6 +22,7 @@ PetscErrorCode BodySetUpInertia(Body body)
   for (PetscInt d = 0; d < 3; d++) body->mass.centre[d] = sums[d] / body->mass.total;
   if (body->model.element->axisymmetric) { /* rings lie about the axis, and do not turn */
     body->mass.centre[0] = 0;
+    PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscArrayzero(sums, 9));
@@ -45,19 +38,6 @@ PetscErrorCode BodySetUpInertia(Body body)
   trace = sums[0] + sums[4] + sums[8];
   for (PetscInt k = 0; k < 9; k++) inertia[k] = (k % 4 ? 0 : trace) - sums[k];
   if (dim == 2 && trace > 0) body->mass.inverse_inertia[8] = 1 / trace;
-  if (dim < 3) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt row = 0; row < 3; row++) Cross(inertia + 3 * ((row + 1) % 3), inertia + 3 * ((row + 2) % 3), sums + 3 * row);
-  for (PetscInt k = 0; k < 3; k++) determinant += inertia[k] * sums[k];
-  if (determinant <= SINGULAR * trace * trace * trace) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < 9; k++) body->mass.inverse_inertia[k] = sums[k] / determinant; /* cofactors of a symmetric matrix */
+  if (dim == 3 && !RigidInvert(inertia, body->mass.inverse_inertia)) PetscCall(PetscArrayzero(body->mass.inverse_inertia, 9));
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The mean rotation from sum m (X - C) x u over all ranks, see BodySumNodes() [rad] */
-void BodyFinishRotation(Body body, const PetscReal sum[3], PetscReal rotation[3])
-{
-  for (PetscInt d = 0; d < 3; d++) {
-    rotation[d] = 0;
-    for (PetscInt k = 0; k < 3; k++) rotation[d] += body->mass.inverse_inertia[3 * d + k] * sum[k];
-  }
 }
