@@ -29,8 +29,7 @@ static PetscErrorCode AddRun(MeshFile *file, const Ball *ball, PetscInt dim, Pet
   const DMPolytopeType        shape        = shapes[dim - 1][ball->simplex];
 
   PetscFunctionBegin;
-  if (ball->step == 1) PetscCall(MeshFileAddRun(file, shape, n_groups, groups));
-  else PetscCall(MeshFileAddSecondOrderRun(file, shape, n_groups, groups));
+  PetscCall(MeshFileAddRun(file, shape, (PetscBool)(ball->step == 2), n_groups, groups));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,8 +92,8 @@ static void FindNodes(const BallGrid *grid, const BallBlock *block, PetscInt n_a
 }
 
 /* Adds the elements between the places begin[d] and end[d] of a block along each axis d, or those faces of them that lie along some axes */
-static PetscErrorCode AddRange(const BallGrid *grid, const BallBlock *block, PetscInt n_axes, const PetscInt axes[],
-                               const PetscInt begin[3], const PetscInt end[3])
+PetscErrorCode BallAddRange(const BallGrid *grid, const BallBlock *block, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3],
+                            const PetscInt end[3])
 {
   const Ball     *ball     = grid->ball;
   const PetscBool mirrored = BallBlockIsMirrored(block);
@@ -153,7 +152,7 @@ static PetscErrorCode AddCells(const BallGrid *grid)
   for (PetscInt section = 0; section < PetscMax(grid->ball->sections, 1); section += grid->ball->step)
     for (PetscInt b = 0; b < grid->n_blocks; b++) {
       GetRange(grid, &grid->blocks[b], section, begin, end);
-      PetscCall(AddRange(grid, &grid->blocks[b], dim, all, begin, end));
+      PetscCall(BallAddRange(grid, &grid->blocks[b], dim, all, begin, end));
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -169,7 +168,7 @@ static PetscErrorCode AddFaces(const BallGrid *grid, const BallBlock *block, Pet
     if (d != axis) axes[n_axes++] = d;
   begin[axis] = place;
   end[axis]   = place + 1;
-  PetscCall(AddRange(grid, block, n_axes, axes, begin, end));
+  PetscCall(BallAddRange(grid, block, n_axes, axes, begin, end));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

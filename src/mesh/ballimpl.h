@@ -35,6 +35,8 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode BallCreate(MPI_Comm, Ball *, const char[], PetscMPIInt, DM *, MeshMiddles *, PetscReal *);
 PETSC_INTERN PetscErrorCode MeshFillBall(BallGrid *);
+PETSC_INTERN PetscErrorCode BallAddRange(const BallGrid *, const BallBlock *, PetscInt, const PetscInt[], const PetscInt[3],
+                                         const PetscInt[3]);
 PETSC_INTERN PetscErrorCode BallChooseOrder(const char[], Ball *);
 PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);
 PETSC_INTERN PetscInt       BallGetNode(const BallGrid *, const BallBlock *, const PetscInt[3]);

@@ -102,13 +102,14 @@ static PetscReal Volume(const Ball *ball, const Sphere *sphere, PetscReal share)
 }
 
 /* The corner of a cell, or of a face or edge of it that lies along some axes, at which the walks of its simplices begin: bit i is 1 if it
-   is the farther one along axes[i], where the number of elements to the nearer one is odd */
+   is the farther one along axes[i], where the number of elements to the nearer one is odd; cells of a box, which has no divisions, are all
+   cut the same way */
 PetscInt BallFirstCorner(const Ball *ball, const BallBlock *block, PetscInt n_axes, const PetscInt axes[], const PetscInt at[3])
 {
   const PetscInt half  = ball->divisions / ball->step / 2; /* elements from the plane in the middle to the lower side, or to the layers */
   PetscInt       first = 0;
 
-  for (PetscInt i = 0; i < n_axes; i++) {
+  for (PetscInt i = 0; i < n_axes && ball->divisions; i++) {
     const PetscInt  d        = axes[i];
     const PetscBool from_cut = (PetscBool)(d < ball->n_cuts && d != block->axis);
 

@@ -1,5 +1,5 @@
 /* Boxes from options: DMPLEX's own, and boxes of triangles and tetrahedra, for which PETSc alone has no generator. */
-#include "meshimpl.h"
+#include "ballimpl.h"
 
 typedef struct {
   MeshFile      *file;
@@ -119,59 +119,18 @@ static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], const cha
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddSimplex(MeshFile *file, PetscInt n, const PetscInt corners[])
-{
-  PetscInt *nodes;
-
-  PetscFunctionBegin;
-  PetscCall(MeshFileAddElement(file, file->n_elements + 1, &nodes));
-  for (PetscInt k = 0; k < n; k++) nodes[k] = corners[k];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Adds the simplices that fill one cell of a grid, or a face of a cell: one for each way to walk from its lowest corner to its highest
-   along the axes (Kuhn 1960). Two cells that touch cut their common face along the same diagonal. */
-static PetscErrorCode DivideCell(MeshFile *file, PetscInt n_axes, const PetscInt axes[], PetscInt lowest, const PetscInt stride[])
-{
-  static const PetscInt orders[3][6][3] = {{{0}}, {{0, 1}, {1, 0}}, {{0, 1, 2}, {1, 2, 0}, {2, 0, 1}, {0, 2, 1}, {2, 1, 0}, {1, 0, 2}}};
-  const PetscInt        n_orders        = n_axes == 3 ? 6 : n_axes;
-
-  PetscFunctionBegin;
-  for (PetscInt o = 0; o < n_orders; o++) {
-    PetscInt corners[4] = {lowest};
-
-    for (PetscInt k = 0; k < n_axes; k++) corners[k + 1] = corners[k] + stride[axes[orders[n_axes - 1][o][k]]];
-    if (o >= n_orders / 2 && n_axes > 1) { /* odd permutations of the axes: their simplices would be inverted */
-      const PetscInt corner = corners[n_axes];
-
-      corners[n_axes]     = corners[n_axes - 1];
-      corners[n_axes - 1] = corner;
-    }
-    PetscCall(AddSimplex(file, n_axes + 1, corners));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Adds the simplices of the cells begin[d] to end[d] - 1 along each axis d, or of those faces of these cells that lie along some axes */
-static PetscErrorCode DivideRange(MeshFile *file, PetscInt n_axes, const PetscInt axes[], const PetscInt begin[3], const PetscInt end[3],
-                                  const PetscInt stride[3])
-{
-  PetscFunctionBegin;
-  for (PetscInt k = begin[2]; k < end[2]; k++)
-    for (PetscInt j = begin[1]; j < end[1]; j++)
-      for (PetscInt i = begin[0]; i < end[0]; i++)
-        PetscCall(DivideCell(file, n_axes, axes, i * stride[0] + j * stride[1] + k * stride[2], stride));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Fills a file with a box of triangles or tetrahedra, whose sides have the numbers that DMPLEX gives to those of its boxes */
+/* Fills a file with a box of triangles or tetrahedra, cut all the same way; sides have the numbers that DMPLEX gives to those of its boxes
+ */
 static PetscErrorCode DivideBox(void *ctx)
 {
   static const DMPolytopeType shapes[] = {DM_POLYTOPE_SEGMENT, DM_POLYTOPE_TRIANGLE, DM_POLYTOPE_TETRAHEDRON};
   MeshFile                   *file     = ((Division *)ctx)->file;
   const MeshBox              *box      = ((Division *)ctx)->box;
   const PetscInt              dim = box->dim, all[3] = {0, 1, 2}, begin[3] = {0};
-  PetscInt                    end[3] = {1, 1, 1}, nodes[3] = {1, 1, 1}, stride[3];
+  const Ball                  cuts   = {.dim = dim, .step = 1, .simplex = PETSC_TRUE};
+  const BallBlock             block  = {.axis = -1};
+  BallGrid                    grid   = {.file = file, .ball = &cuts};
+  PetscInt                    end[3] = {1, 1, 1}, nodes[3] = {1, 1, 1}, *stride = grid.stride;
 
   PetscFunctionBegin;
   for (PetscInt d = 0; d < dim; d++) {
@@ -192,8 +151,8 @@ static PetscErrorCode DivideBox(void *ctx)
 
       file->coordinates[3 * node + d] = box->lower[d] + (box->upper[d] - box->lower[d]) * place / box->faces[d];
     }
-  PetscCall(MeshFileAddRun(file, shapes[dim - 1], 0, NULL));
-  PetscCall(DivideRange(file, dim, all, begin, end, stride));
+  PetscCall(MeshFileAddRun(file, shapes[dim - 1], PETSC_FALSE, 0, NULL));
+  PetscCall(BallAddRange(&grid, &block, dim, all, begin, end));
   for (PetscInt side = 0; side < 2 * dim; side++) {
     PetscInt axes[2] = {0}, from[3] = {0}, to[3], group, n = 0;
 
@@ -204,8 +163,8 @@ static PetscErrorCode DivideBox(void *ctx)
     to[side / 2]   = from[side / 2] + 1;
     PetscCall(MeshFileAddGroup(file, MESH_SIDE_SET, dim - 1, MeshBoxSideNumber(dim, side), &group));
     /* NOLINTNEXTLINE(clang-analyzer-core.CallAndMessage): boxes of one dimension are made elsewhere */
-    PetscCall(MeshFileAddRun(file, shapes[dim - 2], 1, &group));
-    PetscCall(DivideRange(file, dim - 1, axes, from, to, stride));
+    PetscCall(MeshFileAddRun(file, shapes[dim - 2], PETSC_FALSE, 1, &group));
+    PetscCall(BallAddRange(&grid, &block, dim - 1, axes, from, to));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

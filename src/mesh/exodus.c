@@ -117,8 +117,7 @@ static PetscErrorCode ReadBlock(Exodus *exodus, PetscInt i)
   PetscCall(ReadType(exodus, i, type));
   PetscCall(FindShape(exodus, type, n_nodes, block));
   PetscCall(ExodusReadInts(exodus, "connect", i + 1, block->n * n_nodes, 0, &connected));
-  if (n_nodes > DMPolytopeTypeGetNumVertices(block->shape)) PetscCall(MeshFileAddSecondOrderRun(file, block->shape, 1, &group));
-  else PetscCall(MeshFileAddRun(file, block->shape, 1, &group));
+  PetscCall(MeshFileAddRun(file, block->shape, (PetscBool)(n_nodes > DMPolytopeTypeGetNumVertices(block->shape)), 1, &group));
   block->first_node = file->n_element_nodes;
   for (PetscInt e = 0; e < block->n; e++) {
     PetscInt *nodes;
@@ -197,7 +196,7 @@ static PetscErrorCode ReadSideSet(Exodus *exodus, PetscInt i)
     PetscCheck(corners, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
                "side set %" PetscInt_FMT " names side %d of element %d (%s), which has no such %s", number, side, element,
                DMPolytopeTypes[exodus->blocks[b].shape], exodus->blocks[b].shell ? "edge" : "side");
-    PetscCall(MeshFileAddRun(file, shapes[n_corners], 1, &group));
+    PetscCall(MeshFileAddRun(file, shapes[n_corners], PETSC_FALSE, 1, &group));
     PetscCall(MeshFileAddElement(file, element, &nodes));
     cell = file->element_nodes + exodus->blocks[b].first_node + (element - 1 - exodus->blocks[b].first) * exodus->blocks[b].nodes;
     for (PetscInt k = 0; k < n_corners; k++) nodes[k] = cell[corners[k] - 1];
@@ -220,7 +219,7 @@ static PetscErrorCode ReadNodeSet(Exodus *exodus, PetscInt i)
   PetscCall(ExodusGetDimensionOf(exodus, "num_nod_ns", i + 1, &n));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ExodusReadInts(exodus, "node_ns", i + 1, n, 0, &nodes));
-  PetscCall(MeshFileAddRun(file, DM_POLYTOPE_POINT, 1, &group));
+  PetscCall(MeshFileAddRun(file, DM_POLYTOPE_POINT, PETSC_FALSE, 1, &group));
   for (PetscInt k = 0; k < n; k++) {
     PetscInt *node;
 

@@ -108,14 +108,6 @@ static PetscInt CountNodes(DMPolytopeType shape, PetscBool second_order)
   return second_order ? corners * (corners + 1) / 2 : corners;
 }
 
-static PetscErrorCode AddRun(Gmsh *gmsh, DMPolytopeType shape, PetscBool second_order, PetscInt n_groups, const PetscInt groups[])
-{
-  PetscFunctionBegin;
-  if (second_order) PetscCall(MeshFileAddSecondOrderRun(gmsh->file, shape, n_groups, groups));
-  else PetscCall(MeshFileAddRun(gmsh->file, shape, n_groups, groups));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds an element, whose nodes are given by their numbers in the file */
 static PetscErrorCode AddElement(Gmsh *gmsh, PetscInt64 number, PetscInt n, const PetscInt64 numbers[])
 {
@@ -180,7 +172,7 @@ PetscErrorCode GmshReadElements22(Gmsh *gmsh)
         PetscCall(GmshCheckNumber(gmsh, tag, &group));
         PetscCall(MeshFileAddGroup(gmsh->file, MESH_UNDECIDED, DMPolytopeTypeGetDim(shape), group, &group));
       }
-      PetscCall(AddRun(gmsh, shape, second_order, tag ? 1 : 0, &group));
+      PetscCall(MeshFileAddRun(gmsh->file, shape, second_order, tag ? 1 : 0, &group));
       PetscCall(AddElement(gmsh, number, nodes, values));
     }
     done += (PetscInt)count;
@@ -216,8 +208,9 @@ PetscErrorCode GmshReadElements41(Gmsh *gmsh)
     GmshCheck(gmsh, e < gmsh->n_entities || !gmsh->entities,
               "elements of an entity %" PetscInt64_FMT " of dimension %" PetscInt64_FMT ", which is not in $Entities", entity[1],
               entity[0]);
-    if (gmsh->entities) PetscCall(AddRun(gmsh, shape, second_order, gmsh->entities[e][3], gmsh->groups + gmsh->entities[e][2]));
-    else PetscCall(AddRun(gmsh, shape, second_order, 0, NULL));
+    if (gmsh->entities)
+      PetscCall(MeshFileAddRun(gmsh->file, shape, second_order, gmsh->entities[e][3], gmsh->groups + gmsh->entities[e][2]));
+    else PetscCall(MeshFileAddRun(gmsh->file, shape, second_order, 0, NULL));
     for (PetscInt i = 0; i < count; i++) {
       PetscCall(GmshReadWords(gmsh, nodes + 1, values));
       PetscCall(AddElement(gmsh, values[0], nodes, values + 1));

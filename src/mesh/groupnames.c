@@ -19,29 +19,14 @@ PetscErrorCode MeshLabelIsInternal(const char name[], PetscBool *internal)
 /* Whether any rank has points from `start` to `end` - 1 in a label */
 PetscErrorCode MeshLabelHasPoints(DM dm, DMLabel label, PetscInt start, PetscInt end, PetscBool *has)
 {
-  IS              values;
-  const PetscInt *value;
-  PetscInt        n, any = 0;
+  PetscInt value, none, any = 0;
 
   PetscFunctionBegin;
-  PetscCall(DMLabelGetValueIS(label, &values));
-  PetscCall(ISGetLocalSize(values, &n));
-  PetscCall(ISGetIndices(values, &value));
-  for (PetscInt i = 0; i < n && !any; i++) {
-    IS              points;
-    const PetscInt *point;
-    PetscInt        n_points;
-
-    PetscCall(DMLabelGetStratumIS(label, value[i], &points));
-    if (!points) continue;
-    PetscCall(ISGetLocalSize(points, &n_points));
-    PetscCall(ISGetIndices(points, &point));
-    for (PetscInt p = 0; p < n_points && !any; p++) any = point[p] >= start && point[p] < end;
-    PetscCall(ISRestoreIndices(points, &point));
-    PetscCall(ISDestroy(&points));
+  PetscCall(DMLabelGetDefaultValue(label, &none));
+  for (PetscInt p = start; p < end && !any; p++) {
+    PetscCall(DMLabelGetValue(label, p, &value));
+    any = value != none;
   }
-  PetscCall(ISRestoreIndices(values, &value));
-  PetscCall(ISDestroy(&values));
   PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
   *has = (PetscBool)any;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -47,14 +47,6 @@ static PetscErrorCode ReadFile(void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Names or numbers of the blocks that make the body */
-static PetscErrorCode ReadWanted(const char prefix[], MeshFile *file)
-{
-  PetscFunctionBegin;
-  PetscCall(NamesRead(prefix, "-mesh_blocks", &file->n_wanted, &file->wanted, NULL));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The mesh of a file, all of it on the first rank, and where the nodes in the middle of its edges are */
 PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char name[], const char path[], DM *dm, MeshMiddles *middles)
 {
@@ -68,7 +60,7 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &asked, &set));
   PetscCall(MeshFileInitialize(&file, path));
-  PetscCall(ReadWanted(prefix, &file));
+  PetscCall(NamesRead(prefix, "-mesh_blocks", &file.n_wanted, &file.wanted, NULL));
   PetscCall(FindReader(path, &reading.read));
   PetscCall(PetscSNPrintf(where, sizeof(where), "Body '%s', mesh file '%s'", name, path));
   error = MeshOnRank(comm, file.rank, ReadFile, &reading, where);

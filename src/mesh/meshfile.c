@@ -65,13 +65,16 @@ PetscErrorCode MeshFileAddGroup(MeshFile *file, MeshGroupKind kind, PetscInt dim
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode AddRun(MeshFile *file, DMPolytopeType shape, PetscInt middles, PetscInt n_groups, const PetscInt groups[])
+/* Begins a run: elements that are added from now on have this shape and are in these groups. `second_order`: with a node in the middle of
+   each edge, after their corners: lines, triangles, tetrahedra */
+PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscBool second_order, PetscInt n_groups, const PetscInt groups[])
 {
-  const PetscInt corners = DMPolytopeTypeGetNumVertices(shape);
-  MeshRun       *run     = file->n_runs ? &file->runs[file->n_runs - 1] : NULL;
+  const PetscInt corners = DMPolytopeTypeGetNumVertices(shape), dim = DMPolytopeTypeGetDim(shape);
+  const PetscInt nodes = corners + (second_order ? dim * (dim + 1) / 2 : 0);
+  MeshRun       *run   = file->n_runs ? &file->runs[file->n_runs - 1] : NULL;
 
   PetscFunctionBegin;
-  if (run && run->shape == shape && run->nodes == corners + middles && run->n_groups == n_groups) {
+  if (run && run->shape == shape && run->nodes == nodes && run->n_groups == n_groups) {
     PetscInt same = 0;
 
     while (same < n_groups && file->run_groups[run->first_group + same] == groups[same]) same++;
@@ -81,9 +84,9 @@ static PetscErrorCode AddRun(MeshFile *file, DMPolytopeType shape, PetscInt midd
   PetscCall(Reserve(&file->run_groups, sizeof(*file->run_groups), file->n_run_groups + n_groups, &file->max_run_groups));
   run              = &file->runs[file->n_runs++];
   run->shape       = shape; /* NOLINT(clang-analyzer-core.NullDereference): Reserve() has set runs, through a void pointer */
-  run->dim         = DMPolytopeTypeGetDim(shape);
+  run->dim         = dim;
   run->corners     = corners;
-  run->nodes       = corners + middles;
+  run->nodes       = nodes;
   run->n           = 0;
   run->first       = file->n_elements;
   run->first_node  = file->n_element_nodes;
@@ -91,24 +94,6 @@ static PetscErrorCode AddRun(MeshFile *file, DMPolytopeType shape, PetscInt midd
   run->first_group = file->n_run_groups;
   run->chosen      = PETSC_FALSE;
   for (PetscInt g = 0; g < n_groups; g++) file->run_groups[file->n_run_groups++] = groups[g];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Begins a run: elements that are added from now on have this shape and are in these groups */
-PetscErrorCode MeshFileAddRun(MeshFile *file, DMPolytopeType shape, PetscInt n_groups, const PetscInt groups[])
-{
-  PetscFunctionBegin;
-  PetscCall(AddRun(file, shape, 0, n_groups, groups));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same of elements with a node in the middle of each edge, after their corners: lines, triangles, tetrahedra */
-PetscErrorCode MeshFileAddSecondOrderRun(MeshFile *file, DMPolytopeType shape, PetscInt n_groups, const PetscInt groups[])
-{
-  const PetscInt dim = DMPolytopeTypeGetDim(shape);
-
-  PetscFunctionBegin;
-  PetscCall(AddRun(file, shape, dim * (dim + 1) / 2, n_groups, groups));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -130,11 +115,7 @@ PetscErrorCode MeshFileAddElement(MeshFile *file, PetscInt number, PetscInt *nod
 /* Prepares the search for nodes by the numbers that the file gives them */
 PetscErrorCode MeshFileNumberNodes(MeshFile *file)
 {
-  PetscBool consecutive = PETSC_TRUE;
-
   PetscFunctionBegin;
-  for (PetscInt i = 1; i < file->n_nodes && consecutive; i++) consecutive = (PetscBool)(file->node_numbers[i] == file->node_numbers[0] + i);
-  if (consecutive) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(file->n_nodes, &file->sorted_numbers));
   PetscCall(PetscMalloc1(file->n_nodes, &file->sorted_nodes));
   PetscCall(PetscArraycpy(file->sorted_numbers, file->node_numbers, file->n_nodes));
@@ -150,14 +131,8 @@ PetscErrorCode MeshFileNumberNodes(MeshFile *file)
 PetscErrorCode MeshFileFindNode(MeshFile *file, PetscInt number, PetscInt *node)
 {
   PetscFunctionBegin;
-  if (!file->sorted_numbers) {
-    const PetscInt64 offset = file->n_nodes ? (PetscInt64)number - file->node_numbers[0] : -1;
-
-    *node = offset >= 0 && offset < file->n_nodes ? (PetscInt)offset : -1;
-  } else {
-    PetscCall(PetscFindInt(number, file->n_nodes, file->sorted_numbers, node));
-    if (*node >= 0) *node = file->sorted_nodes[*node];
-  }
+  PetscCall(PetscFindInt(number, file->n_nodes, file->sorted_numbers, node));
+  if (*node >= 0) *node = file->sorted_nodes[*node];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -42,7 +42,7 @@ typedef struct {
   PetscInt   n_nodes;
   PetscReal *coordinates;
   PetscInt  *node_numbers;                  /* in the file; NULL: 1, 2, 3 ... */
-  PetscInt  *sorted_numbers, *sorted_nodes; /* the same in ascending order, unless they are consecutive */
+  PetscInt  *sorted_numbers, *sorted_nodes; /* the same in ascending order */
   /* groups and elements of all dimensions */
   PetscInt   n_groups, max_groups;
   MeshGroup *groups;
@@ -105,8 +105,7 @@ typedef struct {
 PETSC_INTERN PetscErrorCode MeshFileInitialize(MeshFile *, const char[]);
 PETSC_INTERN PetscErrorCode MeshFileDestroy(MeshFile *);
 PETSC_INTERN PetscErrorCode MeshFileAddGroup(MeshFile *, MeshGroupKind, PetscInt, PetscInt, PetscInt *);
-PETSC_INTERN PetscErrorCode MeshFileAddRun(MeshFile *, DMPolytopeType, PetscInt, const PetscInt[]);
-PETSC_INTERN PetscErrorCode MeshFileAddSecondOrderRun(MeshFile *, DMPolytopeType, PetscInt, const PetscInt[]);
+PETSC_INTERN PetscErrorCode MeshFileAddRun(MeshFile *, DMPolytopeType, PetscBool, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode MeshFileAddElement(MeshFile *, PetscInt, PetscInt *[]);
 PETSC_INTERN PetscErrorCode MeshFileNumberNodes(MeshFile *);
 PETSC_INTERN PetscErrorCode MeshFileFindNode(MeshFile *, PetscInt, PetscInt *);
