@@ -80,7 +80,7 @@ static PetscErrorCode FindReason(const char name[], PetscInt n, const char *cons
   PetscBool known, named = PETSC_TRUE;
 
   PetscFunctionBegin;
-  PetscCall(OptionsFindOverridden(name, n, bodies, reason, size));
+  PetscCall(OptionsFindOverridden(name, reason, size));
   if (reason[0]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(OptionsFindNeed(name, need, sizeof(need)));
   PetscCall(OptionsSuggest(name, n, bodies, &known, text, sizeof(text)));

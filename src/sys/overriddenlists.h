@@ -2,4 +2,4 @@
 #pragma once
 #include <petscsys.h>
 
-PETSC_INTERN PetscErrorCode OptionsFindOverridden(const char[], PetscInt, const char *const[], char[], size_t);
+PETSC_INTERN PetscErrorCode OptionsFindOverridden(const char[], char[], size_t);
