@@ -1,4 +1,4 @@
-"""Elements of linear bodies that are inside out: a warning, once for each body, and their number in the summary."""
+"""Elements of linear bodies that are inside out: a warning, once for the first body, and their number in the summary."""
 
 import pytest
 from cases import long
