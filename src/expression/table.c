@@ -1,6 +1,8 @@
 /* Tables of a value over time, read from text files. */
+#define _POSIX_C_SOURCE 200809L /* getline() */
 #include "expressionimpl.h"
 #include <errno.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 
 struct _n_Table {
@@ -38,67 +40,41 @@ static char *ReadNumber(char text[], PetscReal *value)
   return end;
 }
 
-/* Reads a line without its end, which is that of any system; `whole`: it fits. Whether there was one */
-static PetscBool ReadLine(FILE *file, char line[], size_t size, PetscBool *whole)
-{
-  size_t n = 0;
-  int    c;
-
-  *whole = PETSC_TRUE;
-  while ((c = getc(file)) != EOF && c != '\n' && c != '\r') {
-    if (n + 1 < size) line[n++] = c ? (char)c : '?'; /* binary, and no end of the line */
-    else *whole = PETSC_FALSE;
-  }
-  line[n] = 0;
-  if (c == '\r') {
-    const int next = getc(file);
-
-    if (next != '\n' && next != EOF) (void)ungetc(next, file);
-  }
-  return (PetscBool)(n > 0 || c != EOF);
-}
-
 /* Reads a table. If the file is none, `problem` says why. */
 static PetscErrorCode ReadRows(FILE *file, Table table, char problem[], size_t size)
 {
-  char      line[1024];
-  PetscInt  number = 0;
-  PetscBool whole;
+  char    *line   = NULL;
+  PetscInt number = 0;
+  size_t   room   = 0;
+  ssize_t  length;
 
   PetscFunctionBegin;
   errno = 0;
-  while (ReadLine(file, line, sizeof(line), &whole)) {
+  while (!problem[0] && (length = getline(&line, &room, file)) >= 0) {
     PetscReal time, value;
-    char     *rest = line, *comment;
+    char     *rest;
 
     number++;
-    if (!whole) {
-      PetscCall(PetscSNPrintf(problem, size, "line %" PetscInt_FMT " is longer than %d characters", number, (int)sizeof(line) - 1));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    comment = strchr(line, '#');
-    if (comment) *comment = 0;
-    rest += strspn(rest, " \t");
+    while (length && strchr("\r\n", line[length - 1])) line[--length] = 0;
+    for (ssize_t i = 0; i < length; i++)
+      if (!line[i] || line[i] == '\r') line[0] = '?'; /* binary, or lines that end as no system's do any more */
+    line[strcspn(line, "#")] = 0;
+    rest                     = line + strspn(line, " \t");
     if (!*rest) continue;
     rest = ReadNumber(rest, &time);
     if (rest) rest = ReadNumber(rest, &value);
-    if (!rest || *rest) {
+    if (!rest || *rest)
       PetscCall(PetscSNPrintf(
           problem, size, "line %" PetscInt_FMT " is not a time and a value, two finite numbers separated by blanks or a comma", number));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    if (table->n && time <= table->times[table->n - 1]) {
+    else if (table->n && time <= table->times[table->n - 1])
       PetscCall(PetscSNPrintf(problem, size,
                               "line %" PetscInt_FMT ": time %g does not come after %g, that of the line before; times must ascend", number,
                               (double)time, (double)table->times[table->n - 1]));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    if (table->n == TABLE_ROWS_MAX) {
-      PetscCall(PetscSNPrintf(problem, size, "it has more than %d lines", TABLE_ROWS_MAX));
-      PetscFunctionReturn(PETSC_SUCCESS);
-    }
-    PetscCall(AddRow(table, time, value));
+    else if (table->n == TABLE_ROWS_MAX) PetscCall(PetscSNPrintf(problem, size, "it has more than %d lines", TABLE_ROWS_MAX));
+    else PetscCall(AddRow(table, time, value));
   }
+  free(line);
+  if (problem[0]) PetscFunctionReturn(PETSC_SUCCESS);
   if (ferror(file)) PetscCall(PetscSNPrintf(problem, size, "it cannot be read: %s", strerror(errno)));
   else if (!table->n) PetscCall(PetscSNPrintf(problem, size, "there is no line with a time and a value in it"));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -148,7 +124,8 @@ PetscErrorCode TableRead(MPI_Comm comm, const char option[], const char path[], 
 /* The value at a time: linear between lines, constant before the first and after the last */
 PetscReal TableEvaluate(Table table, PetscReal t)
 {
-  PetscInt low = 0, high = table->n - 1;
+  PetscInt  low = 0, high = table->n - 1;
+  PetscReal part;
 
   if (t <= table->times[0]) return table->values[0];
   if (t >= table->times[high]) return table->values[high];
@@ -158,11 +135,8 @@ PetscReal TableEvaluate(Table table, PetscReal t)
     if (table->times[middle] <= t) low = middle;
     else high = middle;
   }
-  {
-    const PetscReal part = (t - table->times[low]) / (table->times[high] - table->times[low]);
-
-    return (1 - part) * table->values[low] + part * table->values[high];
-  }
+  part = (t - table->times[low]) / (table->times[high] - table->times[low]);
+  return (1 - part) * table->values[low] + part * table->values[high];
 }
 
 PetscErrorCode TableIsConstant(Table table, PetscBool *constant)
