@@ -126,48 +126,31 @@ static void keys_and_numbers(void **state)
   remove(PATH);
 }
 
-/* Each number of an object is that of the other, also within objects of it */
-static PetscInt compare(json_t *a, json_t *b)
+/* How many numbers an object has, with those of objects in it */
+static int count(json_t *object)
 {
   const char *key;
   json_t     *value;
-  PetscInt    n = 0;
+  int         n = 0;
 
-  json_object_foreach(a, key, value)
-  {
-    json_t *other = json_object_get(b, key);
-
-    assert_non_null(other);
-    if (json_is_object(value)) n += compare(value, other);
-    else {
-      near(json_number_value(other), json_number_value(value), 1e-10);
-      n++;
-    }
-  }
+  json_object_foreach(object, key, value) n += json_is_object(value) ? count(value) : json_is_number(value);
   return n;
 }
 
-/* Both kinds are the same solution for these bars, and so give the same 18 errors, to the round-off of times */
+/* All of them are numbers, and those of the bar on the Dirichlet side stand there twice */
 static void errors_against_the_exact_solution(void **state)
 {
-  const char *const options[]  = {"-exact impact", "-exact characteristics"};
-  Simulation       *simulation = (Simulation *)*state;
-  json_t           *root[2]    = {NULL};
+  json_t *root;
 
   AddWholeImpact();
-  for (PetscInt kind = 0; kind < 2; kind++) {
-    Run(simulation, options[kind]);
-    MPI_Barrier(PETSC_COMM_WORLD);
-    if (IsFirst()) {
-      root[kind] = Load();
-      remove(PATH);
-    }
-    MPI_Barrier(PETSC_COMM_WORLD);
-  }
+  Run((Simulation *)*state, "-exact characteristics");
+  MPI_Barrier(PETSC_COMM_WORLD);
   if (!IsFirst()) return;
-  assert_int_equal(compare(Find(root[0], "errors"), Find(root[1], "errors")), 18);
-  near(Number(root[0], "errors.bodies.left.kinetic"), Number(root[0], "errors.kinetic"), 0);
-  for (PetscInt kind = 0; kind < 2; kind++) json_decref(root[kind]);
+  root = Load();
+  remove(PATH);
+  assert_int_equal(count(Find(root, "errors")), 18);
+  near(Number(root, "errors.bodies.left.kinetic"), Number(root, "errors.kinetic"), 0);
+  json_decref(root);
 }
 
 /* Refused before anything is computed, with nothing left behind */
