@@ -1,12 +1,14 @@
 /* Writes displacement, velocity, stress and contact of all bodies, every so many controller steps. */
 #define _POSIX_C_SOURCE 200809L
-#include "freespace.h"
 #include "fieldsimpl.h"
 #include "outputfile.h"
 #include "outputpaths.h"
 #include "xdmf.h"
 #include <petsctime.h>
 #include <stdio.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <unistd.h>
 #include <impakt/private/bodymeasures.h>
 
@@ -44,14 +46,23 @@ static PetscErrorCode SetInterval(Fields fields, PetscInt steps, PetscInt interv
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error if the frames of the whole run would not fit on the disk */
+/* Ends with an error if the frames of the whole run would not fit on the disk, the space of a file that they replace included */
 static PetscErrorCode CheckSpace(Fields fields)
 {
   const double needed = (double)FieldsFileGetSize(&fields->mesh, fields->set, fields->n_frames, fields->precision);
   double       space  = 0;
 
   PetscFunctionBegin;
-  if (fields->first_rank) space = OutputFreeSpace(fields->path);
+  if (fields->first_rank) {
+    const char    *slash = strrchr(fields->path, '/');
+    char           folder[PETSC_MAX_PATH_LEN];
+    struct statvfs system;
+    struct stat    old;
+
+    PetscCall(PetscStrncpy(folder, slash ? fields->path : ".", slash ? (size_t)(slash - fields->path) + 2 : 2));
+    if (statvfs(folder, &system) || !system.f_blocks) space = PETSC_MAX_REAL; /* it does not tell */
+    else space = (double)system.f_bavail * (double)system.f_frsize + (stat(fields->path, &old) ? 0 : 512. * (double)old.st_blocks);
+  }
   PetscCallMPI(MPI_Bcast(&space, 1, MPI_DOUBLE, 0, fields->comm));
   PetscCheck(needed <= space, fields->comm, PETSC_ERR_USER_INPUT,
              "-output_fields %s will have %" PetscInt_FMT
@@ -103,7 +114,7 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscCall(PetscStrncpy(f->path, path, sizeof(f->path)));
   if (f->first_rank) PetscCall(OutputFileGetPart(path, sizeof(f->part), f->part));
   PetscCallMPI(MPI_Bcast(f->part, (PetscMPIInt)sizeof(f->part), MPI_CHAR, 0, f->comm));
-  PetscCall(XdmfGetPath(path, sizeof(f->xdmf), f->xdmf));
+  PetscCall(XdmfGetPath(path, XDMF_BODIES, sizeof(f->xdmf), f->xdmf));
   PetscCall(OutputFileCheck(f->comm, "-output_fields, beside it,", f->xdmf));
   PetscCall(ControllerGetTimes(controller, NULL, NULL, &steps));
   PetscCall(SetInterval(f, steps, interval));

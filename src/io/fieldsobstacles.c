@@ -163,7 +163,7 @@ PetscErrorCode FieldsObstaclesCheckPath(Contact contact, const char fields[])
   PetscFunctionBegin;
   PetscCall(ContactGetNumObstacles(contact, &n));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(XdmfGetObstaclesPath(fields, sizeof(path), path));
+  PetscCall(XdmfGetPath(fields, XDMF_OBSTACLES, sizeof(path), path));
   PetscCall(OutputFileCheck(PetscObjectComm((PetscObject)contact), "-output_fields, beside it,", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -272,7 +272,7 @@ PetscErrorCode OutputView(Output output, PetscViewer viewer)
   if (output->history) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "history", output->history_path));
   if (output->summary_path[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "summary", output->summary_path));
   if (output->fields) {
-    PetscCall(XdmfGetPath(output->fields_path, sizeof(xdmf), xdmf));
+    PetscCall(XdmfGetPath(output->fields_path, XDMF_BODIES, sizeof(xdmf), xdmf));
     PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "fields", xdmf));
   }
   if (output->checkpoints.path[0]) PetscCall(PetscViewerASCIIPrintf(viewer, "  %-20s %s\n", "checkpoint", output->checkpoints.path));

@@ -12,7 +12,7 @@ PetscErrorCode OutputCheckPaths(MPI_Comm comm, const char summary[], const char 
   const char *const paths[5]                 = {history, summary, fields, xdmf, checkpoint};
 
   PetscFunctionBegin;
-  if (fields[0]) PetscCall(XdmfGetPath(fields, sizeof(xdmf), xdmf));
+  if (fields[0]) PetscCall(XdmfGetPath(fields, XDMF_BODIES, sizeof(xdmf), xdmf));
   PetscCall(OutputPathsCheck(comm, 5, options, paths));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,32 +22,17 @@ static PetscBool EndsWith(const char text[], const char end[])
   return (PetscBool)(n > m && !strcmp(text + n - m, end));
 }
 
-/* Where the XDMF file of an HDF5 file is */
-PetscErrorCode XdmfGetPath(const char fields[], size_t size, char path[])
+/* Where the XDMF file of an HDF5 file is, which ends so in place of .h5 */
+PetscErrorCode XdmfGetPath(const char fields[], const char ending[], size_t size, char path[])
 {
   size_t length = strlen(fields);
 
   PetscFunctionBegin;
   if (EndsWith(fields, ".h5")) length -= 3;
   else if (EndsWith(fields, ".hdf5")) length -= 5;
-  PetscCheck(length + sizeof(".xdmf") <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "The output path '%s' is too long: %zu characters at most", fields, size - sizeof(".xdmf"));
-  PetscCall(PetscSNPrintf(path, size, "%.*s.xdmf", (int)length, fields));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* XdmfGetObstaclesPath - where the XDMF file of the obstacles is: -obstacles.xdmf in place of .xdmf */
-PetscErrorCode XdmfGetObstaclesPath(const char fields[], size_t size, char path[])
-{
-  const char ending[] = "-obstacles.xdmf";
-  size_t     length;
-
-  PetscFunctionBegin;
-  PetscCall(XdmfGetPath(fields, size, path));
-  length = strlen(path) - strlen(".xdmf");
-  PetscCheck(length + sizeof(ending) <= size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
-             "The output path '%s' is too long: %zu characters at most", fields, size - sizeof(ending));
-  PetscCall(PetscStrncpy(path + length, ending, size - length));
+  PetscCheck(length + strlen(ending) < size, PETSC_COMM_SELF, PETSC_ERR_ARG_OUTOFRANGE,
+             "The output path '%s' is too long: %zu characters at most", fields, size - strlen(ending) - 1);
+  PetscCall(PetscSNPrintf(path, size, "%.*s%s", (int)length, fields, ending));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -180,7 +165,7 @@ PetscErrorCode XdmfWrite(const char fields[], const FieldsMesh *mesh, FieldsSet 
   char path[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;
-  PetscCall(XdmfGetPath(fields, sizeof(path), path));
+  PetscCall(XdmfGetPath(fields, XDMF_BODIES, sizeof(path), path));
   PetscCall(OutputFileWrite(path, WriteList, &list, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -231,7 +216,7 @@ PetscErrorCode XdmfWriteObstacles(const char fields[], PetscInt n, const Obstacl
 
   PetscFunctionBegin;
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(XdmfGetObstaclesPath(fields, sizeof(path), path));
+  PetscCall(XdmfGetPath(fields, XDMF_OBSTACLES, sizeof(path), path));
   PetscCall(OutputFileWrite(path, WriteObstacles, &list, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

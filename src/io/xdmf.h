@@ -3,8 +3,10 @@
 #include "fieldsfile.h"
 #include "fieldsobstacles.h"
 
-PETSC_INTERN PetscErrorCode XdmfGetPath(const char[], size_t, char[]);
-PETSC_INTERN PetscErrorCode XdmfGetObstaclesPath(const char[], size_t, char[]);
+#define XDMF_BODIES    ".xdmf"
+#define XDMF_OBSTACLES "-obstacles.xdmf"
+
+PETSC_INTERN PetscErrorCode XdmfGetPath(const char[], const char[], size_t, char[]);
 PETSC_INTERN PetscErrorCode XdmfCheckPath(MPI_Comm, const char[]);
 PETSC_INTERN PetscErrorCode XdmfWrite(const char[], const FieldsMesh *, FieldsSet, OutputPrecision, PetscInt, const PetscReal[]);
 PETSC_INTERN PetscErrorCode XdmfWriteObstacles(const char[], PetscInt, const ObstacleGrid[], PetscReal);
