@@ -2,7 +2,6 @@
 #include <impakt/private/elementimpl.h>
 #include <impakt/private/materialimpl.h>
 #include <impakt/private/simd.h>
-#include <sys/units.h>
 
 typedef struct {
   PetscBool        linear;
@@ -14,25 +13,6 @@ typedef struct {
 
 /* Shape functions at the two Gauss points, (1 +- 1 / sqrt 3) / 2 */
 static const PetscReal shape[4] = {0.78867513459481288225, 0.21132486540518711775, 0.21132486540518711775, 0.78867513459481288225};
-
-static PetscErrorCode ElementSetFromOptions_Bar2(Element element)
-{
-  PetscReal area = element->cross_section;
-  PetscBool set;
-
-  PetscFunctionBegin;
-  PetscObjectOptionsBegin((PetscObject)element);
-  PetscCall(PetscOptionsReal("-cross_section", "Cross-sectional area [m^2]", "ElementSetCrossSection", area, &area, &set));
-  PetscOptionsEnd();
-  PetscCheck(area > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%scross_section is %g%s; it must be positive",
-             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area, UnitsOf((PetscObject)element, UNIT_AREA));
-  PetscCheck(area >= SECTION_SMALLEST && area <= SECTION_LARGEST, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
-             "-%scross_section is %g%s; it must lie between %g and %g%s",
-             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)area, UnitsOf((PetscObject)element, UNIT_AREA),
-             SECTION_SMALLEST, SECTION_LARGEST, UnitsOf((PetscObject)element, UNIT_AREA));
-  if (set) PetscCall(ElementSetCrossSection(element, area));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 static PetscErrorCode ElementSetUp_Bar2(Element element, const PetscReal coordinates[])
 {
@@ -228,7 +208,7 @@ PetscErrorCode ElementCreate_Bar2(Element element)
   element->nodes               = 2;
   element->n_points            = 2;
   element->shape               = shape;
-  element->ops->setfromoptions = ElementSetFromOptions_Bar2;
+  element->ops->setfromoptions = ElementReadSection;
   element->ops->setup          = ElementSetUp_Bar2;
   element->ops->internalforce  = ElementInternalForce_Bar2;
   element->ops->energy         = ElementEnergy_Bar2;

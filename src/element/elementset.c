@@ -1,5 +1,6 @@
 /* What programs set of elements beside their options. */
 #include <impakt/private/elementimpl.h>
+#include <sys/units.h>
 
 static PetscErrorCode SetCrossSection(Element element, PetscInt dim, PetscReal value)
 {
@@ -9,6 +10,27 @@ static PetscErrorCode SetCrossSection(Element element, PetscInt dim, PetscReal v
              dim == 1 ? "A cross-section of" : "A thickness of", (double)value);
   element->cross_section     = value;
   element->cross_section_dim = dim;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Reads -cross_section of bars, or -thickness of plane elements */
+PetscErrorCode ElementReadSection(Element element)
+{
+  const PetscBool bar    = (PetscBool)(element->dim == 1);
+  const char     *option = bar ? "-cross_section" : "-thickness", *unit = UnitsOf((PetscObject)element, bar ? UNIT_AREA : UNIT_LENGTH);
+  PetscReal       value = element->cross_section;
+  PetscBool       set;
+
+  PetscFunctionBegin;
+  PetscObjectOptionsBegin((PetscObject)element);
+  PetscCall(PetscOptionsReal(option, bar ? "Cross-sectional area [m^2]" : "Thickness of a plane body [m]", "ElementReadSection", value,
+                             &value, &set));
+  PetscOptionsEnd();
+  PetscCheck(value >= SECTION_SMALLEST && value <= SECTION_LARGEST, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
+             "-%s%s is %g%s; it must be positive, between %g and %g%s",
+             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", option + 1, (double)value, unit, SECTION_SMALLEST,
+             SECTION_LARGEST, unit);
+  if (set) PetscCall(SetCrossSection(element, element->dim, value));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,5 @@
 /* Solid elements: set-up, and what is found of one element at a time. */
 #include <impakt/private/solid.h>
-#include <sys/units.h>
 
 /* Below this, times the largest extent of an element to the power of the dimension, a determinant is round-off */
 #define DEGENERATE 1e-14
@@ -88,24 +87,15 @@ static PetscErrorCode CheckElements(Element element)
 
 static PetscErrorCode ElementSetFromOptions_Solid(Element element)
 {
-  PetscReal thickness    = element->cross_section;
-  PetscBool plane_stress = element->plane_stress, set;
+  PetscBool plane_stress = element->plane_stress;
 
   PetscFunctionBegin;
   if (element->dim == 3) PetscFunctionReturn(PETSC_SUCCESS);
   PetscObjectOptionsBegin((PetscObject)element);
-  PetscCall(PetscOptionsReal("-thickness", "Thickness of a plane body [m]", "ElementSetThickness", thickness, &thickness, &set));
   PetscCall(
       PetscOptionsBool("-plane_stress", "Plane stress, else plane strain", "ElementSetPlaneStress", plane_stress, &plane_stress, NULL));
   PetscOptionsEnd();
-  PetscCheck(thickness > 0, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT, "-%sthickness is %g%s; it must be positive",
-             ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "", (double)thickness,
-             UnitsOf((PetscObject)element, UNIT_LENGTH));
-  PetscCheck(thickness >= SECTION_SMALLEST && thickness <= SECTION_LARGEST, PetscObjectComm((PetscObject)element), PETSC_ERR_USER_INPUT,
-             "-%sthickness is %g%s; it must lie between %g and %g%s", ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "",
-             (double)thickness, UnitsOf((PetscObject)element, UNIT_LENGTH), SECTION_SMALLEST, SECTION_LARGEST,
-             UnitsOf((PetscObject)element, UNIT_LENGTH));
-  if (set) PetscCall(ElementSetThickness(element, thickness));
+  PetscCall(ElementReadSection(element));
   PetscCall(ElementSetPlaneStress(element, plane_stress));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

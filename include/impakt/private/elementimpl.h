@@ -110,6 +110,7 @@ PETSC_EXTERN PetscErrorCode ElementDestroy(Element *);
 PETSC_INTERN PetscFunctionList ElementList, ElementFormulationList;
 PETSC_INTERN PetscErrorCode    ElementFormulationKey(DMPolytopeType, PetscBool, const char[], size_t, char[]);
 
+PETSC_INTERN PetscErrorCode ElementReadSection(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Bar2(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Tri3(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4(Element);
