@@ -89,8 +89,8 @@ static PetscErrorCode CreateBuffers(Fields fields)
 }
 
 /* Fields of a run, in an HDF5 file with an XDMF file beside it. `interval`: a frame every so many controller steps, and at the end; 0: at
-   most 100 frames. Collective */
-PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt interval, OutputPrecision precision, Fields *fields)
+   most 100 frames, and it becomes what that takes. Collective */
+PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt *interval, OutputPrecision precision, Fields *fields)
 {
   const Body   *bodies;
   Contact       contact;
@@ -117,7 +117,8 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt i
   PetscCall(XdmfGetPath(path, XDMF_BODIES, sizeof(f->xdmf), f->xdmf));
   PetscCall(OutputFileCheck(f->comm, "-output_fields, beside it,", f->xdmf));
   PetscCall(ControllerGetTimes(controller, NULL, NULL, &steps));
-  PetscCall(SetInterval(f, steps, interval));
+  PetscCall(SetInterval(f, steps, *interval));
+  *interval = f->interval;
   PetscCall(ControllerGetBodies(controller, &n_bodies, &bodies));
   PetscCall(FieldsMeshCreate(n_bodies, bodies, &f->mesh));
   PetscCall(ControllerGetContact(controller, &contact));
@@ -298,14 +299,6 @@ PetscErrorCode FieldsVisit(Fields fields, MPI_Comm comm, PetscBool same_ranks, C
              "; give another path, where the fields begin with the restart, or the same -output_fields_interval and -time_end",
              fields->path, numbers[1], numbers[2], fields->n_frames, fields->interval);
   fields->goes_on = numbers[0];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* FieldsGetInterval - controller steps from frame to frame */
-PetscErrorCode FieldsGetInterval(Fields fields, PetscInt *interval)
-{
-  PetscFunctionBegin;
-  *interval = fields->interval;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,9 +6,8 @@
 
 typedef struct _n_Fields *Fields;
 
-PETSC_INTERN PetscErrorCode      FieldsCreate(Controller, const char[], PetscInt, OutputPrecision, Fields *);
+PETSC_INTERN PetscErrorCode      FieldsCreate(Controller, const char[], PetscInt *, OutputPrecision, Fields *);
 PETSC_INTERN void                FieldsKeepFirst(Fields);
-PETSC_INTERN PetscErrorCode      FieldsGetInterval(Fields, PetscInt *);
 PETSC_INTERN ControllerMonitorFn FieldsMonitor;
 PETSC_INTERN PetscErrorCode      FieldsFinish(Fields);
 PETSC_INTERN PetscErrorCode      FieldsDestroy(Fields *);

@@ -220,10 +220,9 @@ PetscErrorCode OutputSetFields(Output output, const char path[], PetscInt interv
   comm = PetscObjectComm((PetscObject)output);
   PetscCheck(!output->fields, comm, PETSC_ERR_ARG_WRONGSTATE, "The fields are written to %s already", output->fields_path);
   PetscCall(OutputCheckPaths(comm, output->summary_path, output->history_path, path, output->checkpoints.path));
-  PetscCall(FieldsCreate(output->controller, path, interval, precision, &output->fields));
+  PetscCall(FieldsCreate(output->controller, path, &interval, precision, &output->fields));
   if (output->checks) FieldsKeepFirst(output->fields);
   PetscCall(ControllerMonitorSet(output->controller, FieldsMonitor, output->fields, NULL));
-  PetscCall(FieldsGetInterval(output->fields, &interval));
   PetscCall(StatisticsSetFrames(output->statistics, interval));
   PetscCall(PetscStrncpy(output->fields_path, path, sizeof(output->fields_path)));
   PetscFunctionReturn(PETSC_SUCCESS);
