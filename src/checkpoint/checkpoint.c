@@ -1,7 +1,5 @@
-/*
-   A stream of records: a name, what kind of values there are, how many, and the values. While a checkpoint is loaded each visit names the
-   record that it expects, so that a checkpoint of another problem, or of another version, is found out by the first record that differs.
-*/
+/* A stream of records: a name, what kind of values there are, how many, and the values. While a checkpoint is loaded each visit names the
+   record that it expects, so that a checkpoint of another problem, or of another version, is found out by the first record that differs. */
 #include "checkpoint.h"
 #include <string.h>
 
@@ -238,8 +236,7 @@ static PetscErrorCode CheckColumns(Checkpoint c, const char name[], PetscInt siz
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* CheckpointVisitMat - a matrix of type AIJ with its explicit zeros; loaded, it is made anew, as large as the one that is there. Collective
- */
+/* CheckpointVisitMat - a matrix of type AIJ with its explicit zeros; loading makes it anew, of the same size. Collective */
 PetscErrorCode CheckpointVisitMat(Checkpoint c, const char name[], Mat *mat)
 {
   PetscInt     begin, end, n, width, count = 0, *offsets, *columns;

@@ -1,8 +1,6 @@
-/*
-   The state of a run as one stream of named records for each rank: what a checkpoint file is filled with, and what a run that is continued
+/* The state of a run as one stream of named records for each rank: what a checkpoint file is filled with, and what a run that is continued
    is filled from. Each class lists its state once, in a function XVisit(X, Checkpoint), which serves both directions: a visit writes the
-   value to the stream or, while a checkpoint is loaded, overwrites it.
-*/
+   value to the stream or, while a checkpoint is loaded, overwrites it. */
 #pragma once
 #include <impakt/private/trace.h>
 #include <petscmat.h>

@@ -89,8 +89,7 @@ PetscErrorCode StateListVisit(const StateList *list, const char name[], Checkpoi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The numbers of n nodes with `each` rows, the first of which is row `begin`, to a table with a line for each node, or back. `keys`: where
-   the nodes lie in the mesh */
+/* The numbers of n nodes with `each` rows, from row `begin` on, to a table with a line per node, or back. `keys`: the nodes' places */
 PetscErrorCode StateListCopyNodes(const StateList *list, PetscInt begin, PetscInt n, PetscInt each, const PetscReal keys[],
                                   const char name[], PetscBool back, Tables tables)
 {

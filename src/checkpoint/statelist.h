@@ -1,7 +1,5 @@
-/*
-   What a class remembers of each of its nodes or rows: a list of arrays. One list of a class serves all that copies its state: what is put
-   aside for a step that may have to be made again, checkpoints, and tables by which a run is continued on another number of ranks.
-*/
+/* What a class remembers of each of its nodes or rows: a list of arrays. One list of a class serves all that copies its state: what is put
+   aside for a step that may have to be made again, checkpoints, and tables by which a run is continued on another number of ranks. */
 #pragma once
 #include <checkpoint/checkpoint.h>
 #include <checkpoint/tables.h>

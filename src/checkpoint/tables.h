@@ -1,5 +1,4 @@
-/* Numbers of the nodes of all ranks, found by the places of the nodes in the mesh: what a run is continued from on another number of ranks.
- */
+/* Numbers of the nodes of all ranks by their places in the mesh: what a run is continued from on another number of ranks. */
 #pragma once
 #include <petscsys.h>
 

@@ -4,7 +4,6 @@
 #include <impakt/private/box.h>
 #include <impakt/private/contactimpl.h>
 
-/* For setters */
 #define ContactCheckNotSetUp(contact)                                                                                                      \
   PetscCheck(!(contact)->setup, PetscObjectComm((PetscObject)(contact)), PETSC_ERR_ARG_WRONGSTATE, "Call %s() before ContactSetUp()",      \
              PETSC_FUNCTION_NAME)
@@ -171,8 +170,7 @@ PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
-/* Numbers of a pair of which the least of all ranks count: how its surfaces have moved; -1 where it touches, or has; -1 where it may in the
-   step */
+/* Numbers of a pair whose least over ranks counts: motion of its surfaces; -1 where it touches, or has; -1 where it may in the step */
 enum { MOTION_TOUCHES = TRANSFER_MOTION, MOTION_CLOSES, CONTACT_MOTION };
 /* What ContactUpdatePairs() says of the rows of a pair */
 enum { ROWS_STAY, ROWS_FOLLOWED, ROWS_REBUILT };

@@ -75,8 +75,7 @@ PetscErrorCode ControllerChooseStep(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest step that resolves contact, which -time_step auto takes. `step`: [s]; infinity where no bodies with inertia can come into
-   contact */
+/* The largest step that resolves contact, which -time_step auto takes. `step`: [s]; infinity without contact of bodies with inertia */
 PetscErrorCode ControllerGetResolvedStep(Controller controller, PetscReal *step)
 {
   PetscFunctionBegin;

@@ -1,4 +1,3 @@
-/* The class and its time loop. */
 #include "controllerimpl.h"
 #include <impakt/private/bodymeasures.h>
 #include <impakt/private/bodystep.h>
@@ -227,8 +226,7 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the run cost. `setup`: wall time of the set-up, from the meshes on [s]; `wall`: wall time of the time loop [s]; `cpu`: CPU time of
-   this process in the time loop [s] */
+/* Cost of the run. `setup`: wall time of the set-up [s]; `wall`, `cpu`: wall and CPU time of this process in the time loop [s] */
 PetscErrorCode ControllerGetTimings(Controller controller, PetscLogDouble *setup, PetscLogDouble *wall, PetscLogDouble *cpu)
 {
   PetscFunctionBegin;
@@ -239,8 +237,7 @@ PetscErrorCode ControllerGetTimings(Controller controller, PetscLogDouble *setup
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the process needs by itself. `bytes`: most memory that this process had when the controller was created, before there were bodies
-   [B] */
+/* What the process needs by itself. `bytes`: most memory of this process before there were bodies [B] */
 PetscErrorCode ControllerGetStartMemory(Controller controller, PetscLogDouble *bytes)
 {
   PetscFunctionBegin;

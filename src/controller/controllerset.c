@@ -56,7 +56,6 @@ PetscErrorCode ControllerAddBody(Controller controller, Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The bodies that -bodies names */
 static PetscErrorCode ReadBodies(Controller controller)
 {
   MPI_Comm       comm  = PetscObjectComm((PetscObject)controller);

@@ -3,8 +3,7 @@
 #include <sys/units.h>
 #include <impakt/private/bodystep.h>
 
-/* An element whose stable step is so many times shorter than the median of its body is worth a warning; it is 2.5 times in
-   hertz-impact.opts, graded on purpose by 64 */
+/* A stable step so many times shorter than the body's median is worth a warning; hertz-impact.opts, graded by 64, has 2.5 */
 #define MUCH_SHORTER 20
 /* Products of inertia that are smaller, in parts of the largest moment, are round-off */
 #define ROUND_OFF 1e-12
@@ -24,7 +23,6 @@ static PetscErrorCode GetRatio(Body body, const BodyStepBounds **bounds, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Substeps of a body in a controller step */
 static PetscErrorCode CountSubsteps(Controller controller, Body body, PetscInt *substeps)
 {
   PetscInt parts;
@@ -36,8 +34,7 @@ static PetscErrorCode CountSubsteps(Controller controller, Body body, PetscInt *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells where an element has a much shorter stable step than the others of its body: of the body in which that is worst, and how many more
-   there are */
+/* Tells where an element has a much shorter stable step than others of its body, for the worst body, and how many more there are */
 PetscErrorCode ControllerWarnOfElements(Controller controller)
 {
   const BodyStepBounds *bounds, *of_worst = NULL;
@@ -75,7 +72,6 @@ PetscErrorCode ControllerWarnOfElements(Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Centre of mass and moments of inertia of a body that can turn */
 static PetscErrorCode ViewInertia(Body body, PetscViewer viewer)
 {
   PetscReal centre[3], inertia[9], largest = 0, mass;
@@ -101,7 +97,6 @@ static PetscErrorCode ViewInertia(Body body, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The elements that bound the stable step of an explicit body */
 static PetscErrorCode ViewBounds(Body body, PetscViewer viewer)
 {
   const BodyStepBounds *bounds;

@@ -39,7 +39,6 @@ PetscErrorCode ControllerSetEnergyGuard(Controller controller, PetscReal part)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -energy_guard */
 PetscErrorCode ControllerReadEnergyGuard(Controller controller)
 {
   PetscReal part = controller->guard.part;

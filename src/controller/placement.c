@@ -1,15 +1,12 @@
-/*
-   Bodies that are whole on one rank. A body that is divided is integrated by all ranks together, which wait for each other in each of its
+/* Bodies that are whole on one rank. A body that is divided is integrated by all ranks together, which wait for each other in each of its
    steps: with few elements that takes longer than the elements. Where there are many small bodies, each is given to one rank, and those
    that are near each other to the same one as far as they can: their places are halved across their longest extent, with as much work on
-   both sides, until there is a part for each rank (recursive coordinate bisection, MeshBisect()).
-*/
+   both sides, until there is a part for each rank (recursive coordinate bisection, MeshBisect()). */
 #include "controllerimpl.h"
 #include <impakt/private/mesh.h>
 #include <impakt/private/tssecondorder.h>
 
-/* Cells up to which a body is small: the elements of one with more take as long as some reductions. Static bodies are not asked: all ranks
-   take part in each of their steps, wherever their meshes are. */
+/* Most cells of a small body: more take as long as some reductions. Static bodies do not count: all ranks make their steps. */
 #define SMALL 2000
 /* So many small bodies for each rank, at least: the ranks are to have as much work each, to a quarter */
 #define MANY 4

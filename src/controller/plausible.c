@@ -1,7 +1,4 @@
-/*
-   Densities, Young's moduli, gravity and sizes that no body has in the units of -units: most often they are in other units, of which the
-   message names the one that fits best. Nothing is changed by it, and the run goes on.
-*/
+/* Densities, Young's moduli, gravity and sizes that no body has in the units of -units: the message names the units that fit best. */
 #include "plausible.h"
 #include <impakt/private/bodymesh.h>
 #include "controllerimpl.h"

@@ -1,9 +1,6 @@
-/*
-   Controller steps that cannot be made as they are: a step that does not converge, that inverts an element, or in which contact takes or
+/* Controller steps that cannot be made as they are: a step that does not converge, that inverts an element, or in which contact takes or
    brings more energy than it may, is undone and made again in halves, each of which may be cut again. What follows the two halves is a step
-   of the size that has been cut: so the steps that a run makes hang on its solution alone, and not on what happened before. Observers see
-   the ends of whole controller steps.
-*/
+   of the size that has been cut: steps hang on the solution alone. Observers see the ends of whole controller steps. */
 #include "controllerimpl.h"
 
 /* Part of the stable step up to which explicit steps may be mixed with halves of them */
@@ -77,7 +74,6 @@ PetscErrorCode ControllerGetCuts(Controller controller, ControllerCuts *cuts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads -controller_step_cuts */
 PetscErrorCode ControllerReadStepControl(Controller controller)
 {
   PetscInt  cuts = controller->most_cuts;
@@ -114,7 +110,6 @@ static PetscErrorCode IsNearInstability(Body body, PetscBool *near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After the contact problem has been set up */
 PetscErrorCode ControllerSetUpStepControl(Controller controller)
 {
   ControllerStatics statics;

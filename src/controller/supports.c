@@ -1,4 +1,3 @@
-/* What holds the bodies: their surfaces with prescribed displacements, and obstacles. */
 #include "controllerimpl.h"
 
 /* A list of all, with room for their forces; after the set-up of the contact problem, which finishes that of the bodies */

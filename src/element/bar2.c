@@ -43,7 +43,6 @@ static PetscReal GetStrain(const Bar2 *bar, const PetscInt nodes[], PetscInt e, 
   return (u[nodes[2 * e + 1]] - u[nodes[2 * e]]) * bar->inverse_length[e];
 }
 
-/* Strains of all elements at displacement u, and stresses */
 static PetscErrorCode ComputeStress(Element element, const PetscScalar u[])
 {
   const Bar2 *bar = (const Bar2 *)element->data;

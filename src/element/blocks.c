@@ -1,9 +1,7 @@
-/*
-   Elements of several materials: each block of the mesh has elements of its own, with one material, whose loops are those of a body with
+/* Elements of several materials: each block of the mesh has elements of its own, with one material, whose loops are those of a body with
    that material alone. What is asked of all elements goes to each of them in turn, and what is asked of one to the block that it is in.
 
-   Elements keep their numbers. Their history lies block by block, each from a whole batch on: see ElementHistorySlot().
-*/
+   Elements keep their numbers. Their history lies block by block, each from a whole batch on: see ElementHistorySlot(). */
 #include <impakt/private/elementimpl.h>
 
 struct _n_ElementBlocks {
@@ -214,7 +212,6 @@ static PetscErrorCode ElementView_Blocks(Element element, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What all blocks can do */
 static void SetOps(Element element)
 {
   PetscBool hourglass = PETSC_TRUE, viscous = PETSC_TRUE, plastic = PETSC_FALSE, nearest = PETSC_TRUE;
@@ -306,7 +303,6 @@ static PetscErrorCode SetUpBlocks(Element element, const PetscReal coordinates[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ElementWarnOfLocking() for each block */
 static PetscErrorCode WarnOfLocking(Element element)
 {
   PetscFunctionBegin;
@@ -316,8 +312,7 @@ static PetscErrorCode WarnOfLocking(Element element)
 
 static const ElementBlocksOps ops = {SetUpBlocks, WarnOfLocking, BlocksDestroy};
 
-/* Gives elements several materials, before ElementSetUp(). `materials`: n, one for each block; `block`: that of each of the `count`
-   elements of this rank */
+/* Gives elements several materials, before ElementSetUp(). `materials`: n, by block; `block`: of each of the `count` elements here */
 PetscErrorCode ElementSetBlocks(Element element, PetscInt n, const Material materials[], PetscInt count, const PetscInt block[])
 {
   ElementBlocks blocks;

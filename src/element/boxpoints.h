@@ -1,12 +1,10 @@
-/*
-   What pointloops.h asks for, of quadrilaterals, triangles and hexahedra. A template: a shape's header, and then this; RING for rings about
+/* What pointloops.h asks for, of quadrilaterals, triangles and hexahedra. A template: a shape's header, and then this; RING for rings about
    the axis x = 0, which x is the distance from, with WEIGHT times 2 pi.
 
    Points of rings have the weight 2 pi r. The deformation gradient has F_33 = 1 + u_r / r across the plane, so that the force of a
    point is the stress in the plane against the gradients there, times r, and the stress P_33 along the ring against the shape functions
    (O. C. Zienkiewicz, R. L. Taylor, The Finite Element Method, volume 1, section 5.3). On straight-sided quadrilaterals and triangles the
-   rules integrate r and products of gradients with it exactly, so that patch tests hold to round-off on any mesh.
-*/
+   rules integrate r and products of gradients with it exactly, so that patch tests hold to round-off on any mesh. */
 #include <impakt/private/solidbatch.h>
 #include <impakt/private/solidaffine.h>
 

@@ -1,5 +1,4 @@
-/*
-   Composite elements: set-up, and what is found of one element at a time.
+/* Composite elements: set-up, and what is found of one element at a time.
 
    P. Thoutireddy, J. F. Molinari, E. A. Repetto, M. Ortiz, International Journal for Numerical Methods in Engineering 53 (2002);
    J. T. Ostien, J. W. Foulk, A. Mota, M. G. Veilleux, ibid. 107 (2016): displacements are linear in each of 12 tetrahedra between the ten
@@ -16,8 +15,7 @@
    Shih, International Journal for Numerical Methods in Engineering 29, 1990). Of the mean alone, s = 1, tetrahedra have three motions that
    store nothing, those that change angles nowhere and volumes not on average; in plane strain angles to the plane change with them. What a
    change of volume that is not the mean stores is (1 - s)^2 kappa, which is made STIFFNESS times the shear modulus mu, as changes of shape
-   store whatever Poisson's ratio is.
-*/
+   store whatever Poisson's ratio is. */
 #include "composite.h"
 
 /* Modulus of changes of volume within tetrahedra, in parts of the shear modulus. A copper rod of 6 x 44 elements that flattens on a wall
@@ -67,7 +65,6 @@ static void AddToNodes(const CompositeShape *shape, PetscInt part, const PetscRe
   }
 }
 
-/* Volume of a part, and the gradients of its barycentric coordinates */
 static PetscReal GetPart(const Geometry *at, PetscInt part, PetscReal gradient[4][3])
 {
   const PetscInt  dim = at->dim, *nodes = at->shape->parts + part * at->corners;
@@ -91,7 +88,6 @@ static PetscReal GetPart(const Geometry *at, PetscInt part, PetscReal gradient[4
   return unit_volume * determinant;
 }
 
-/* Barycentric coordinates of the element at its nodes */
 static void GetBarycentric(const CompositeShape *shape, PetscReal lambda[COMPOSITE_MAX_NODES + 1][4])
 {
   static const PetscInt edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};

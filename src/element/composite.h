@@ -4,14 +4,12 @@
 
 enum { COMPOSITE_MAX_PARTS = 12, COMPOSITE_MAX_NODES = 10 };
 
-/* How an element is made of linear ones. Its nodes are the corners, then the middles of the edges in VTK's order; a node after the last is
-   the mean of the middles. */
+/* How an element is made of linear ones. Nodes: corners, then mid-edges in VTK's order; one after the last is the mean of these. */
 typedef struct {
   SolidShape      solid;
   PetscInt        n_parts;
   const PetscInt *parts; /* nodes of each linear element, dim + 1 */
-  /* barycentric coordinates of point g, of which there is one near each corner: that of corner g, and those of the others. The rule is
-     exact for quadratic functions. */
+  /* barycentric coordinates of point g, near corner g: that of corner g, and those of others. Exact for quadratic functions. */
   PetscReal near, far;
 } CompositeShape;
 

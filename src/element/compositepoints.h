@@ -1,8 +1,6 @@
-/*
-   The loops over all composite elements of one shape. A template: DIM, NODES, POINTS, WEIGHT 1, and then this.
+/* The loops over all composite elements of one shape. A template: DIM, NODES, POINTS, WEIGHT 1, and then this.
 
-   What pointloops.h asks for. Gradients at the points are linear functions of the displacements of all nodes, see composite.c.
-*/
+   What pointloops.h asks for. Gradients at the points are linear functions of the displacements of all nodes, see composite.c. */
 #include "composite.h"
 
 #define SHARE(solid) ((solid)->mean_share)

@@ -1,5 +1,4 @@
-/*
-   What a mean dilatation does at the points of a batch. A template: DIM, POINTS, and then this.
+/* What a mean dilatation does at the points of a batch. A template: DIM, POINTS, and then this.
 
    J. C. Simo, R. L. Taylor, K. S. Pister, Computer Methods in Applied Mechanics and Engineering 51 (1985): in an element the ratio of
    volumes is constant, theta, the deformed volume over the undeformed one. Materials are given F' = (theta / J)^(1/3) F in place of the
@@ -10,20 +9,17 @@
 
    Of linear materials, for small displacements: the trace of H is replaced by its mean (T. J. R. Hughes, International Journal for
    Numerical Methods in Engineering 15, 1980: B-bar). Where points keep a part of their own volume the share s of the mean, which is less
-   than 1, stands with each third (composite.c).
-*/
+   than 1, stands with each third (composite.c). */
 #include <impakt/private/simd.h>
 #include <petscmath.h>
 
-/* Where |theta / J - 1| is larger, powers are taken by the library; the series of the cube root has an error of 3e-7 there, and the step of
-   Halley's method after that one of 1e-20 */
+/* Where |theta / J - 1| is larger, the library takes powers; the cube root's series errs by 3e-7 there, Halley's step after it by 1e-20 */
 #define SERIES_LIMIT 0.1
 
 /* The components that do not vanish */
 #define IN_SPACE(i) (DIM == 3 || (i) == 8 || ((i) < 5 && (i) != 2))
 
-/* What changes F into F' at a point of a batch, and back. In whole rather than by parts, as materials do it: compilers take registers twice
-   as wide for it where there are some. */
+/* What changes F into F' at a point of a batch, and back. In whole, not by parts: compilers can take wider registers for it. */
 typedef struct {
   SimdReal j;              /* J - 1 with F as it is; of linear materials the trace of H */
   SimdReal ratio, inverse; /* r, 1 / J */
@@ -95,8 +91,7 @@ static __attribute__((noinline)) void TakePowers(const SimdReal s, PetscReal pow
     if (!(PetscAbsReal(s[p]) <= SERIES_LIMIT)) y[p] = 1 + s[p] > 0 ? expm1(power * log1p(s[p])) : NAN;
 }
 
-/* y = r - 1 with theta / J = 1 + s. Cube roots by a series, and Halley's method without its division, for what is left is so small that two
-   terms of a geometric series do */
+/* y = r - 1 with theta / J = 1 + s. Cube roots by a series, and Halley's method without its division, of which two terms of a series do */
 SIMD_INLINE void FindRatio(PetscReal share, const Means *means, Dilated *at, SimdReal y)
 {
   SimdReal  s;

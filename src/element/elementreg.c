@@ -77,7 +77,6 @@ PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All that Impakt brings */
 static PetscErrorCode RegisterAll(void)
 {
   PetscFunctionBegin;

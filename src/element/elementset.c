@@ -1,4 +1,3 @@
-/* What programs set of elements beside their options. */
 #include <impakt/private/elementimpl.h>
 #include <sys/units.h>
 
@@ -54,8 +53,7 @@ PetscErrorCode ElementSetThickness(Element element, PetscReal thickness)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether plane elements are free of stress across their plane, or of strain. `plane_stress`: `PETSC_TRUE` for plane stress,
-   `PETSC_FALSE` (default) for plane strain */
+/* Whether plane elements are free of stress across their plane (`plane_stress`), or of strain (default) */
 PetscErrorCode ElementSetPlaneStress(Element element, PetscBool plane_stress)
 {
   PetscFunctionBegin;

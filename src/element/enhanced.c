@@ -1,5 +1,4 @@
-/*
-   Enhanced quadrilaterals and hexahedra: to the displacements of each element come modes that its neighbours do not see, (xi_m^2 - 1) / 2
+/* Enhanced quadrilaterals and hexahedra: to the displacements of each element come modes that its neighbours do not see, (xi_m^2 - 1) / 2
    along each coordinate xi_m of the reference element, by which it bends without shear (R. L. Taylor, P. J. Beresford, E. L. Wilson,
    International Journal for Numerical Methods in Engineering 10, 1976; for finite deformations J. C. Simo, F. Armero, the same 33, 1992).
    With the Jacobian j and the matrix J_0 of derivatives of X by xi, at the middle of the element where j is j_0,
@@ -12,8 +11,7 @@
 
    Of materials with history, force and energy depend on the history of the points at the start of the step too. Newton's method then begins
    with the amplitudes of that time, which lie behind the history of the points: a state far from those that flow would have other
-   solutions.
-*/
+   solutions. */
 #include "enhanced.h"
 
 static PetscErrorCode ElementInternalForce_Enhanced(Element element, const PetscScalar u[], PetscScalar f[])
@@ -78,8 +76,7 @@ static PetscErrorCode Condense(const Enhanced *enhanced, const PetscReal whole[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `viscous`: with the displacement gradients of the nodes alone, and rates of the modes that leave them without viscous force: objective,
-   and never negative */
+/* `viscous`: by displacement gradients of nodes alone, and rates of modes without viscous force: objective, never negative */
 static PetscErrorCode ElementTangent_Enhanced(Element element, PetscInt e, PetscBool viscous, const PetscScalar u[], PetscScalar K[])
 {
   const Solid *solid = (const Solid *)element->data;

@@ -63,7 +63,6 @@ static void LoadHistory(const Solid *solid, Enhanced *enhanced)
   }
 }
 
-/* Those at the end of the step */
 static void StoreHistory(const Solid *solid, Enhanced *enhanced)
 {
   const ElementHistory *history = solid->history;
@@ -118,7 +117,6 @@ static void SumForces(const Enhanced *enhanced, PetscInt first, PetscReal f[])
     }
 }
 
-/* The force on each node and mode */
 static void GetForces(const Solid *solid, Enhanced *enhanced, PetscReal f[])
 {
   EnhancedGetGradients(enhanced);
@@ -170,9 +168,8 @@ PetscErrorCode EnhancedSolve(PetscInt n, PetscInt n_rhs, PetscReal K[], PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The matrix of the modes at amplitudes of which `f` are the forces. With history by differences, as the material computes stresses of
-   eight points in a small part of the time of one tangent; their error of 1e-5 slows Newton's method down, but does not move where it ends.
- */
+/* The matrix of the modes at amplitudes of which `f` are the forces. With history by differences, as stresses of eight points take a small
+   part of the time of one tangent; their error of 1e-5 slows Newton's method, no more. */
 static void GetMatrixOfModes(const Solid *solid, Enhanced *enhanced, const PetscReal f[], PetscReal K[])
 {
   const PetscInt dim = enhanced->dim, n = enhanced->n_modes, first = enhanced->shapes - dim;

@@ -12,8 +12,7 @@ static const char *Prefix(Element element)
   return ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "";
 }
 
-/* Chooses what the elements do against locking, before their set-up: one of the names that README.md explains, or one of
-   ElementRegisterFormulation(); NULL: the default */
+/* Formulation against locking, before set-up: a name of README.md or ElementRegisterFormulation(); NULL: the default */
 PetscErrorCode ElementSetFormulation(Element element, const char formulation[])
 {
   PetscFunctionBegin;
@@ -84,7 +83,6 @@ static PetscErrorCode GetPoissonsRatio(Element element, PetscReal *ratio)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the material has a history, as that of metals that flow */
 static PetscErrorCode HasHistory(Element element, PetscBool *has)
 {
   MaterialKernels kernels;
@@ -96,7 +94,6 @@ static PetscErrorCode HasHistory(Element element, PetscBool *has)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The formulation that nobody has chosen */
 static PetscErrorCode ChooseFormulation(Element element)
 {
   PetscErrorCode (*create)(Element);
@@ -198,8 +195,7 @@ PetscErrorCode ElementWarnOfLocking(Element element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A warning where a body that flows has one element through its thickness; called where it has, on all ranks. Bars do not bend, and
-   elements that lock have a warning of their own. */
+/* A warning, on all ranks, where a body that flows has one element through its thickness. Bars do not bend; locking has its own. */
 PetscErrorCode ElementWarnOfOneLayer(Element element)
 {
   PetscErrorCode (*create)(Element) = NULL;

@@ -1,5 +1,4 @@
-/* Eight-node hexahedron, trilinear, 2 x 2 x 2 Gauss points. Vertices: the lower four counterclockwise seen from above, then the upper.
- * Fully integrated. */
+/* Eight-node hexahedron, trilinear, fully integrated (8 points). Vertices: lower four counterclockwise seen from above, then the upper. */
 #include <element/hex8.h>
 #include <impakt/private/solidloops.h>
 

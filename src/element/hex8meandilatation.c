@@ -1,4 +1,3 @@
-/* hex8 with a mean dilatation. */
 #include <element/hex8.h>
 #include <element/boxpoints.h>
 

@@ -1,4 +1,3 @@
-/* hex8 with one point of integration. */
 #include <element/hex8.h>
 #include <element/reducedloops.h>
 

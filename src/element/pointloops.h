@@ -1,5 +1,4 @@
-/*
-   The loops over all elements of one shape, with a mean dilatation or without one, that find displacement gradients at all points of a
+/* The loops over all elements of one shape, with a mean dilatation or without one, that find displacement gradients at all points of a
    batch before they ask the material. A template: boxpoints.h or compositepoints.h, which define
 
      Batch, GetBatch(solid, connectivity, first, count, batch)   a batch of undeformed elements, with the weights of its points
@@ -10,8 +9,7 @@
                                                                  has one which is no number, -1: none
      SHARE(solid)                                                share of the mean in the ratio of volumes at a point
 
-   and then this.
-*/
+   and then this. */
 #include <element/dilatation.h>
 
 /* Displacement gradients at all points of a batch; then H' in their place, where there is a mean dilatation */

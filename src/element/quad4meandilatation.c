@@ -1,4 +1,3 @@
-/* quad4 with a mean dilatation. */
 #include <element/quad4.h>
 #include <element/boxpoints.h>
 

@@ -1,4 +1,3 @@
-/* quad4 with one point of integration. */
 #include <element/quad4.h>
 #include <element/reducedloops.h>
 

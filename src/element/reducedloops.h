@@ -1,5 +1,4 @@
-/*
-   The loops over all elements of one shape with one point of integration. A template: a shape's header, and then this.
+/* The loops over all elements of one shape with one point of integration. A template: a shape's header, and then this.
 
    The stress is that of the mean displacement gradient H of the element (D. P. Flanagan, T. Belytschko, International Journal for Numerical
    Methods in Engineering 17, 1981). What H does not see are the amplitudes q_a of products h_a of the reference coordinates, with what
@@ -10,8 +9,7 @@
 
      c_kl / a_k^2, bending, of stress that is plane,  (c_kk + c_ll) / (a_k a_l), twisting,  and c_k4 / (a_k a_l) of xi eta zeta,
 
-   a square, of which the forces are the derivative.
-*/
+   a square, of which the forces are the derivative. */
 #include <element/reduced.h>
 #include <impakt/private/solidbatch.h>
 
@@ -24,8 +22,7 @@ typedef struct {
   SimdVector squares[DIM];         /* 1 / a_k^2 */
 } Undeformed;
 
-/* The number of the hourglass whose product leaves coordinate k out, among the modes of the shape; in two dimensions there is one for both
- */
+/* The number of the hourglass whose product leaves coordinate k out; in two dimensions there is one for both */
 SIMD_INLINE PetscInt Without(PetscInt k)
 {
   return DIM == 2 ? 2 : k == 2 ? 3 : 4 + k;
@@ -67,7 +64,6 @@ SIMD_INLINE void GetUndeformed(SimdVector X[DIM][MODES], Undeformed *shape)
   InvertAll(shape->squares);
 }
 
-/* The mean displacement gradient */
 SIMD_INLINE void GetMeanGradient(PetscInt part, const Undeformed *shape, SimdVector U[DIM][MODES], SimdReal H[9])
 {
 #pragma GCC unroll 3
@@ -129,8 +125,7 @@ SIMD_INLINE PetscInt ModeOf(PetscInt a)
   return DIM == 3 && a == 3 ? 6 : Without(a);
 }
 
-/* The forces F of the hourglasses times a scale, and what the stress, times the volume and the scale, has less for them; twice their energy
- */
+/* Forces F of hourglasses times a scale, and by how much they lower the stress times volume and scale; twice their energy */
 SIMD_INLINE void GetHourglasses(PetscBool linear, PetscInt part, const Hourglass *constants, const Undeformed *shape,
                                 SimdVector X[DIM][MODES], SimdVector U[DIM][MODES], SimdReal H[9], PetscReal scale,
                                 SimdVector F[DIM][MODES], SimdVector stress[DIM][DIM], SimdVector *twice)

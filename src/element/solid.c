@@ -145,7 +145,6 @@ static PetscErrorCode ElementSetUp_Solid(Element element, const PetscReal coordi
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A point of integration of the shape */
 static PetscReal GetPoint(Element element, PetscInt e, PetscInt g, PetscReal gradient[], PetscReal hoop[])
 {
   const Solid      *solid = (const Solid *)element->data;

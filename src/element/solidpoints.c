@@ -85,8 +85,7 @@ static void MoveInside(Element element, PetscReal xi[])
   for (PetscInt i = 0; i < dim && simplex && sum > 1; i++) xi[i] /= sum;
 }
 
-/* Shape functions at reference coordinates, and what is missing from there to a position [m]; with `change`, the step of the reference
-   coordinates by which Newton's method goes there */
+/* Shape functions at reference coordinates, and the residual to a position [m]; `change`: Newton's step of the reference coordinates */
 static void GetMiss(Element element, PetscInt e, const PetscReal xi[], const PetscReal x[], PetscReal N[], PetscReal miss[3],
                     PetscReal change[3])
 {

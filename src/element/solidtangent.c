@@ -1,5 +1,4 @@
-/*
-   The tangent and the viscosity of solid elements, one at a time: fully integrated, with a mean dilatation (dilatation.h), and
+/* The tangent and the viscosity of solid elements, one at a time: fully integrated, with a mean dilatation (dilatation.h), and
    rings (boxpoints.h), whose strain along them is one more term.
 
    With D = F^-T : dF at a point and d theta = sum of w J D / V over the points, of weights w and volume V,
@@ -7,8 +6,7 @@
    and the second derivative of F' adds, with pi = P' : F',
      r (P' : d1F g2 + P' : d2F g1) + pi g1 g2 + pi / 3 (d2theta / theta - d1theta d2theta / theta^2 + T)
    where T is the trace of F^-1 d1F F^-1 d2F, and d2theta the sum of w J (D1 D2 - T) / V. A share of the mean less than 1, which composite
-   elements have, is the factor of 1/3 wherever it stands. Without a mean dilatation F' is F, and g is 0.
-*/
+   elements have, is the factor of 1/3 wherever it stands. Without a mean dilatation F' is F, and g is 0. */
 #include <impakt/private/solid.h>
 
 enum { MAX_DOFS = SOLID_MAX_NODES * 3 };
@@ -94,8 +92,7 @@ static PetscReal Invert(const PetscReal F[9], PetscReal inverse[9])
   return J;
 }
 
-/* The displacement gradient; the rest is what a mean dilatation takes. `finite`: with regard to rotations and changes of volume; else F is
-   1 in all but H */
+/* The displacement gradient; the rest is for mean dilatation. `finite`: with rotations and changes of volume; else F is 1 in all but H */
 static void FillPoint(Element element, PetscInt e, PetscInt g, PetscBool mean, PetscBool finite, const PetscScalar u[], Point *point)
 {
   const Solid    *solid = (const Solid *)element->data;
@@ -123,8 +120,7 @@ static void FillPoint(Element element, PetscInt e, PetscInt g, PetscBool mean, P
   }
 }
 
-/* What has to do with the mean: theta, and its derivative by each degree of freedom; then F' and the stress of each point. Returns theta.
- */
+/* Of the mean: theta, and its derivative by each degree of freedom; then F' and the stress of each point. Returns theta. */
 static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscInt n_points, Point points[], PetscReal dtheta[])
 {
   const Solid    *solid = (const Solid *)element->data;
@@ -164,8 +160,7 @@ static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscIn
   return theta;
 }
 
-/* dF' for the displacement of each degree of freedom: without a mean dilatation a row of it, and along rings F_33. `mean` is known to the
-   compiler; `symmetric`: the upper half. */
+/* dF' for the displacement of each degree of freedom: a row of it without mean dilatation, and F_33 of rings. `symmetric`: upper half. */
 SIMD_INLINE void AddMaterialPart(PetscBool mean, PetscBool symmetric, Element element, const Point *point, const PetscReal tangent[81],
                                  PetscScalar K[])
 {

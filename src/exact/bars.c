@@ -4,8 +4,7 @@
 #include <impakt/private/bodystart.h>
 #include <impakt/private/contactsteps.h>
 
-/* Bars move as a whole and undeformed if their energies are those of their mean velocity but for this part: round-off of sums over all
-   nodes */
+/* Bars move as a whole, undeformed, if their energies are those of their mean velocity but for this part: round-off of sums */
 #define ENERGY_ROUND_OFF 1e-9
 /* Bars approach each other if the difference of their mean velocities is more than this part of them: round-off of the same sums */
 #define VELOCITY_ROUND_OFF 1e-12
@@ -40,7 +39,6 @@ static PetscErrorCode GetExtent(Vec positions, PetscInt dim, const PetscReal nor
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A bar and its energies at the start */
 static PetscErrorCode GetBar(Body body, const PetscReal normal[], ExactBar *bar, BodyMeasures *measures)
 {
   Material  material;
@@ -125,8 +123,7 @@ static PetscErrorCode CheckBars(MPI_Comm comm, Exact exact, const ExactBar bars[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error unless the bars meet with the whole of their end faces: along each direction across the normal they begin and end at
-   the same place. In one dimension they do. */
+/* An error unless the bars meet with the whole of their end faces: the same extent along each direction across the normal. */
 static PetscErrorCode CheckFaces(MPI_Comm comm, Exact exact, const Body sides[2])
 {
   const PetscReal *normal = exact->normal;

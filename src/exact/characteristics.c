@@ -1,5 +1,4 @@
-/*
-   Impact of two linear elastic bars of any lengths, materials and cross-sections by the method of characteristics.
+/* Impact of two linear elastic bars of any lengths, materials and cross-sections by the method of characteristics.
 
    In a bar of wave speed c = sqrt(E / rho) and impedance Z = sqrt(E rho) A, velocity and compressive force are v = o + i and
    f = +-Z (o - i). The wave o runs from the contact face inwards, the wave i runs towards the contact face, both with speed c and without
@@ -8,8 +7,7 @@
    A contact force f >= 0 makes o = i -+ f / Z, with a minus on the Dirichlet side, whose contact normal points to the partner. While the
    gap is closed, both faces have the same velocity if f = 2 (i_0 - i_1) / (1/Z_0 + 1/Z_1). If this f is a pull, the force is zero instead,
    and the gap opens at the rate 2 (i_1 - i_0). So velocities and force at the contact faces are constant from one event to the next. An
-   event is the return of a wave that went out in an earlier event, or the closing of an open gap.
-*/
+   event is the return of a wave that went out in an earlier event, or the closing of an open gap. */
 #include "exactimpl.h"
 #include <math.h>
 
@@ -86,7 +84,6 @@ static PetscReal NextArrival(const Characteristics *c, State *state, PetscInt si
   return *k < c->n ? events[*k].time + c->period[side] : PETSC_INFINITY;
 }
 
-/* Finds all events of the run */
 static PetscErrorCode FindEvents(MPI_Comm comm, Characteristics *c, const ExactBar bars[2], PetscReal start)
 {
   const PetscReal small       = ROUND_OFF * c->time_scale;
@@ -136,10 +133,8 @@ static PetscInt FindEvent(const Characteristics *c, PetscReal time)
   return before;
 }
 
-/*
-   Integrals over a bar of o + i, (o + i)^2 and (o - i)^2 with respect to s = x/c, the time that a wave takes from the contact face to x. At
-   x, o left the contact face a time s ago, and i a time 2 L/c - s ago.
-*/
+/* Integrals over a bar of o + i, (o + i)^2 and (o - i)^2 with respect to s = x/c, the time that a wave takes from the contact face to x. At
+   x, o left the contact face a time s ago, and i a time 2 L/c - s ago. */
 static void Integrate(const Characteristics *c, PetscInt side, PetscReal time, PetscReal integrals[3])
 {
   const PetscReal period = c->period[side], before = c->before[side];

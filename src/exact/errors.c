@@ -1,4 +1,3 @@
-/* How far a run is from the exact solution. */
 #include "exactimpl.h"
 #include <math.h>
 
@@ -7,7 +6,6 @@ enum { CONTACT_POSITION, CONTACT_VELOCITY, CONTACT_FORCE_VALUE, KINETIC, POTENTI
 
 _Static_assert(sizeof(ExactSolution) == EXACT_QUANTITIES * sizeof(PetscReal), "ExactSolution is read as an array here");
 
-/* Component along the normal */
 static PetscReal Along(const PetscReal normal[], const PetscReal x[])
 {
   return normal[0] * x[0] + normal[1] * x[1] + normal[2] * x[2];
@@ -64,8 +62,7 @@ static PetscReal RelativeMaximum(const ExactDistance *distance)
   return distance->largest > 0 ? distance->worst / distance->largest : NAN;
 }
 
-/* The distance between the run and the solution. The error of the peak of the potential energy is not-a-number if the run ends before the
-   peak; that of the release if it ends in contact */
+/* Distance of the run from the solution. Errors of the potential energy's peak, or of the release, are not-a-number before these */
 PetscErrorCode ExactGetErrors(Exact exact, ExactErrors *errors)
 {
   const ExactDistance *distance = exact->distance[0];

@@ -14,8 +14,7 @@ PetscErrorCode ExactInitializePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An exact solution for the bodies of a controller that is set up, in their initial state. An error gives the reason where it is not the
-   solution for these bodies. Collective */
+/* An exact solution for the bodies of a controller in their initial state. An error says why it does not fit them. Collective */
 PetscErrorCode ExactCreate(Controller controller, ExactType type, Exact *exact)
 {
   MPI_Comm       comm = PetscObjectComm((PetscObject)controller);
@@ -83,7 +82,6 @@ PetscErrorCode ExactView(Exact exact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Frees the solution. Collective */
 PetscErrorCode ExactDestroy(Exact *exact)
 {
   PetscFunctionBegin;

@@ -30,8 +30,7 @@ static PetscBool Assigns(const char text[])
   return PETSC_FALSE;
 }
 
-/* Compiles a formula. `reason` says why that is not possible, and is empty if it is; `position` is the character in question, from 1, or 0
-   if it is not known. */
+/* Compiles a formula. `reason` says why that is not possible (else empty); `position`: the character in question, from 1, 0: not known. */
 static PetscErrorCode Compile(muParserHandle_t parser, const char text[], char reason[], size_t size, PetscInt *position)
 {
   int n_values = 0;
@@ -77,8 +76,7 @@ static PetscErrorCode FindVariables(Expression expression)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Parses a formula, finds out what it depends on, and keeps the parser if that is anything. All ranks parse the same text, so that all of
-   them succeed or none. */
+/* Parses a formula, and keeps the parser unless it is constant. All ranks parse the same text: all succeed or none. */
 PetscErrorCode ExpressionParse(Expression expression, MPI_Comm comm)
 {
   const char *const positions[] = {"x", "y", "z"}, *const normals[] = {"nx", "ny", "nz"};
@@ -114,7 +112,6 @@ PetscErrorCode ExpressionParse(Expression expression, MPI_Comm comm)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The value of a formula at expression->point */
 PetscErrorCode ExpressionEvaluateFormula(Expression expression, PetscReal *value)
 {
   PetscFunctionBegin;

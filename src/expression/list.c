@@ -1,4 +1,3 @@
-/* Several expressions in one text. */
 #include "expressionimpl.h"
 
 /* Length of the text up to the next comma outside parentheses, or to its end */
@@ -15,7 +14,6 @@ static size_t FindComma(const char text[])
   return i;
 }
 
-/* How many components a text has */
 PetscErrorCode ExpressionListCount(const char text[], PetscInt *n)
 {
   const char *c = text + FindComma(text);
@@ -49,8 +47,7 @@ static PetscErrorCode CreateComponent(MPI_Comm comm, const char option[], const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The components of a vector, separated by commas. `list`: n expressions, `NULL` for components that are free; after an error all are
-   freed. Collective */
+/* Components of a vector, separated by commas. `list`: n expressions, `NULL`: free; after an error all are freed. Collective */
 PetscErrorCode ExpressionListCreate(MPI_Comm comm, const char option[], const char text[], PetscInt n, PetscBool allow_free,
                                     Expression list[])
 {

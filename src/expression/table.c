@@ -26,8 +26,7 @@ static PetscErrorCode AddRow(Table table, PetscReal time, PetscReal value)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads a number and skips what separates it from the next one; returns where that begins, or NULL if there is no number. Numbers have the
-   form of the C locale, which no part of the program changes. */
+/* Reads a number and skips what separates it from the next one (C locale); returns where that begins, or NULL without a number. */
 static char *ReadNumber(char text[], PetscReal *value)
 {
   char *end;

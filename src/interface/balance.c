@@ -1,19 +1,15 @@
-/*
-   Forces that are balanced along the normals of both sides.
+/* Forces that are balanced along the normals of both sides.
 
-   Without friction the pressure on each surface acts along that surface's own normal. Forces lambda_i of the rows act along one line for
-   both sides; along the normals of the first side they would sum up to sum lambda_i n_i, along those of the second to sum -lambda_i m_i. In
-   a contact that the mesh resolves both are the same, since surfaces that touch are parallel. In one of two or three nodes they are not:
-   the centre of pressure lies somewhere between the nodes, where it hangs on the mesh, and spins discs that should not spin.
+   Without friction the pressure on each surface acts along that surface's own normal. Forces lambda_i of rows act along one line for both
+   sides; along the normals of the sides they would sum up to sum lambda_i n_i and sum -lambda_i m_i. Where the mesh resolves the contact
+   both are the same. In one of two or three nodes they are not: the centre of pressure hangs on the mesh, and spins discs that should not.
 
-   With c_i the component of n_i + m_i across the row, both sums are the same if sum lambda_i c_i is zero. What is dual to this condition is
-   a turn theta of the gap: rows have the gap g_i + theta c_i, which shifts the place at which curved surfaces meet by theta. In contact the
-   turn is an unknown beside the forces, so that the condition holds at the end of each step and the turn does no work. Before contact there
-   is none.
+   With c_i the component of n_i + m_i across the row, both sums are the same if sum lambda_i c_i is zero. Dual to this condition is a turn
+   theta of the gap, g_i + theta c_i, which shifts the place at which curved surfaces meet. In contact the turn is an unknown beside the
+   forces, so that the condition holds at the end of each step and the turn does no work. Before contact there is none.
 
    In three dimensions there are two conditions, one for each of two axes e across the mean normal of the contact,
-   c_i = e . (r_i x (n_i + m_i)) with the direction r_i of the row; in two dimensions the one axis is that across the plane.
-*/
+   c_i = e . (r_i x (n_i + m_i)) with the direction r_i of the row; in two dimensions the one axis is that across the plane. */
 #include "interfaceimpl.h"
 
 /* Chord of the angle between the normals of two nodes of a face, 18 degrees, from which on the face is beside an edge */
@@ -25,8 +21,7 @@
 /* and at least by this part of the way in a step */
 #define SLOWEST 0.02
 
-/* How far the normals turn from each node of a surface to its neighbours, edges left out. Nodes of faces on other ranks are neighbours of
-   ghosts there, and count with what this rank sees. */
+/* How far normals turn from each node of a surface to its neighbours, edges left out. Ghosts count with what this rank sees. */
 static void FindBends(const SurfaceData *data, PetscReal bends[])
 {
   for (PetscInt f = 0; f < data->n_faces; f++)
@@ -131,7 +126,6 @@ static PetscErrorCode FindAxes(Transfer transfer, const PetscReal force[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for the turns of gaps */
 PetscErrorCode TransferSetUpTurns(Transfer transfer)
 {
   Balance *balance = &transfer->balance;

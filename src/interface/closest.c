@@ -13,7 +13,6 @@ static void Subtract(const PetscReal a[], const PetscReal b[], PetscReal differe
   for (PetscInt d = 0; d < 3; d++) difference[d] = a[d] - b[d];
 }
 
-/* The nodes of triangle t of a face */
 static void GetTriangle(const Face *face, PetscInt t, const PetscReal *corners[3])
 {
   corners[0] = face->x[0];
@@ -21,7 +20,6 @@ static void GetTriangle(const Face *face, PetscInt t, const PetscReal *corners[3
   corners[2] = face->x[2 + t];
 }
 
-/* The point of a segment that is closest to x */
 static void ClosestOfSegment(const PetscReal a[], const PetscReal b[], const PetscReal x[], PetscReal closest[])
 {
   PetscReal along[3], from[3], square, s;
@@ -67,8 +65,7 @@ static void ClosestOfTriangle(const PetscReal *corners[3], const PetscReal x[], 
   }
 }
 
-/* Takes the closer one of two points. Where they are one point, on an edge or corner of several faces, that face says on which side the
-   looking point is from whose plane it is farthest. */
+/* Takes the closer of two points. On edges and corners of faces the plane farthest from the looking point says on which side this is. */
 void ClosestTake(Closest *closest, const Closest *other)
 {
   const PetscReal round_off = SAME_POINT * closest->square;

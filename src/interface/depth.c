@@ -1,8 +1,6 @@
-/*
-   How deep bodies lie inside each other, anywhere on their boundaries, on any number of ranks. Points are looked at that may be the deepest
+/* How deep bodies lie inside each other, anywhere on their boundaries, on any number of ranks. Points are looked at that may be the deepest
    ones: nodes, and points of edges between two places where these cross the other boundary, so that edges which cross edges are seen too. A
-   point is inside where the closest face says so; its depth is the distance from there.
-*/
+   point is inside where the closest face says so; its depth is the distance from there. */
 #include "probes.h"
 
 /* Pieces of edges shorter than this part of them reach no deeper inside than that */
@@ -95,8 +93,7 @@ static PetscErrorCode AddPoints(const SurfaceData *data, PetscInt pair, PetscBoo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the edges of all faces of a pair's first surface that come near the second one. Of the two faces of an edge that one counts in which
-   it runs from the lower number to the higher one. */
+/* Adds edges of a pair's first surface near the second one. An edge counts in the face where its numbers ascend. */
 static PetscErrorCode AddEdges(ProbeSearch *search, PetscInt pair, Probes *edges)
 {
   const SurfaceData *data  = &search->surfaces[search->pairs[pair].surfaces[0]]->data;
@@ -119,7 +116,6 @@ static PetscErrorCode AddEdges(ProbeSearch *search, PetscInt pair, Probes *edges
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The points that may be the deepest ones */
 static PetscErrorCode FindPoints(ProbeSearch *search, Probes *points)
 {
   Probes   edges = {0};
@@ -221,7 +217,6 @@ static PetscErrorCode Reduce(ProbeSearch *search, const Probes *points)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the closest faces of the second surface for all points */
 static PetscErrorCode MeasurePairs(ProbeSearch *search, Probes *points)
 {
   PetscFunctionBegin;

@@ -22,7 +22,6 @@ static PetscErrorCode GetNewGaps(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of an obstacle: how far it is from the planes, and turned against them */
 static PetscErrorCode GetObstacleDrift(Transfer transfer, PetscReal drift[], PetscReal turn[])
 {
   const SurfaceData *data = &transfer->dirichlet->data;
@@ -44,9 +43,8 @@ static PetscErrorCode GetObstacleDrift(Transfer transfer, PetscReal drift[], Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far rows are off from those that would be built where the surfaces are now: for each row of this rank the difference of the gaps,
-   0 where nothing is opposite [m], and the angle between the normals, of rows against an obstacle [rad]. In two or three dimensions;
-   u_neumann NULL: an obstacle */
+/* How far rows are off from new ones where the surfaces are: for each row of this rank the difference of gaps, 0 where nothing is opposite
+   [m], and the angle between the normals, of rows against an obstacle [rad]. In two or three dimensions; u_neumann NULL: an obstacle */
 PetscErrorCode TransferGetDrift(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal drift[], PetscReal turn[])
 {
   PetscFunctionBegin;

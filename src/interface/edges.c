@@ -1,8 +1,7 @@
 /* Sharp edges of surfaces: which nodes lie on one, and the normal of a partner that such a node sees. */
 #include "interfaceimpl.h"
 
-/* Adds the normals of the faces beside each point that bounds a face, an edge or in two dimensions a vertex, and counts these faces: four
-   numbers for each point of the mesh */
+/* Adds the normals of the faces beside each point that bounds a face (edge; in 2-D vertex), and counts these: four numbers per point */
 static PetscErrorCode SumNormals(Surface surface, PetscSF sf, PetscReal sums[])
 {
   const SurfaceData *data = &surface->data;

@@ -57,8 +57,7 @@ PetscErrorCode CreateVectorForest(MPI_Comm comm, PetscInt n_roots, PetscInt n_le
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A box that holds all that may lie opposite to the faces of this rank: these faces, swept along their normals. Its lower corner comes
-   first, then the upper one. */
+/* A box, lower and upper corner, of all that may lie opposite to this rank's faces: these, swept along their normals. */
 static void SweptBox(const SurfaceData *data, PetscReal ahead, PetscReal behind, PetscReal box[])
 {
   for (PetscInt d = 0; d < 3; d++) {

@@ -191,8 +191,7 @@ static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An upper bound of the depth by which two bodies overlap under displacements u, collective on a communicator that has all of both, and
-   what of it is for round-off [m] */
+/* Upper bound of the overlap of two bodies under displacements u, and its part for round-off [m]; collective on ranks of both */
 PetscErrorCode SurfaceComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap, PetscReal *round_off)
 {
   Directions *directions;

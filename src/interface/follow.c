@@ -1,27 +1,20 @@
-/*
-   Rows that follow the surfaces between two builds.
+/* Rows that follow the surfaces between two builds.
 
-   A force along a row has the same moment on both sides if sum_j P_ij x_j - x_i is along the normal n_i where the force acts: at the end of
-   the controller step. So the weights follow the slip, see RowCorrect(), ahead by what the partner is expected to slip in the step. What is
-   left of the moment is of second order in the step. The slip that is expected is a mean of those of the last steps, since the massless
-   nodes move with the forces, so that weights which answered to every motion of them would make them swing. The normal is that of the
-   surface at the start of the step.
-
-   The gap goes on from where it was. With rows B_0 of the last step and B of this one, and the way dx that is expected, the gap that the
-   step begins with is
+   A force along a row has the same moment on both sides if sum_j P_ij x_j - x_i is along the normal n_i at the end of the controller step.
+   So the weights follow the slip, see RowCorrect(), ahead by the slip expected in the step, to second order. The expected slip is a mean of
+   the last steps: massless nodes move with the forces, and would swing with weights that answer to each motion. The normal is that of the
+   surface at the start of the step. With rows B_0 of the last step, B of this one, and the expected way dx the step begins with the gap
 
      gap - 1/2 (B - B_0) dx,
 
-   so that in the step it changes by 1/2 (B_0 + B) dx, the trapezoidal rule for the path of the gap. Then what forces do along rows that
-   change, 1/2 (f_0 B_0 + f B) dx in a closed gap, adds up to nothing but for terms of second order in the step.
+   and so changes it by 1/2 (B_0 + B) dx, the trapezoidal rule for the path of the gap. Then the work of forces along rows that change,
+   1/2 (f_0 B_0 + f B) dx in a closed gap, is zero but for terms of second order in the step.
 
-   Surfaces may be where they are expected in the middle of the step instead, for forces that are the same throughout it: weights are those
-   of that place then, no slip ahead of it, and the gap changes by B dx in the step. It begins with what it has by the rows of the last
-   step, which is 1/2 (B - B_0) dx more in the middle.
+   For forces that are the same throughout the step surfaces are where they are expected in its middle: weights are those of that place,
+   with no slip ahead, and the gap changes by B dx from that of the last step's rows, which is 1/2 (B - B_0) dx more in the middle.
 
-   When a row is built again, other nodes of the partner come in, and its weights would jump, which loses energy. Its new weights are the
-   goal, to which those that it has go as it slips on, by the slip after which rows are built.
-*/
+   When a row is built again, other nodes of the partner come in, and a jump of its weights would lose energy. The new weights are the goal,
+   to which the present ones go as the row slips on, by the slip after which rows are built. */
 #include "interfaceimpl.h"
 
 /* Part of the last step's slip in the mean. With all of it, bars that meet at a fifth of their wave speed chatter. */
@@ -62,8 +55,7 @@ static void ExpectSlip(Transfer transfer, PetscInt row, const PetscReal across[]
   }
 }
 
-/* Weights that have sum_j P_j x_j - x across the normal where it is wanted, from those given. `ahead`: where the partner is expected, from
-   where it is now [m] */
+/* Weights with sum_j P_j x_j - x across the normal as wanted, from those given. `ahead`: expected motion of the partner [m] */
 static PetscErrorCode Correct(Transfer transfer, PetscInt row, const PetscReal ahead[], PetscReal weights[])
 {
   const SurfaceData *data  = &transfer->dirichlet->data;

@@ -1,4 +1,3 @@
-/* Faces in space, and polygons in the plane of a face. */
 #include "interfaceimpl.h"
 
 /* Newton's method for the inverse of a bilinear map ends when the sum of its steps in both natural coordinates, which are of order 1, is
@@ -206,8 +205,7 @@ PetscReal PolygonMeasure(PetscInt n, const PetscReal p[][2], PetscReal centroid[
   return PetscAbsReal(area);
 }
 
-/* How far a point lies outside the farthest edge line of a convex polygon that runs clockwise, as a face seen from behind does; negative
-   inside. The distance from the polygon is this or more. */
+/* How far a point is outside the farthest edge line of a clockwise convex polygon, negative inside: a lower bound of the distance. */
 PetscReal PolygonDistance(PetscInt n, const PetscReal p[][2], const PetscReal s[])
 {
   PetscReal farthest = -PETSC_MAX_REAL;

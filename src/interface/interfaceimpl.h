@@ -72,14 +72,12 @@ typedef struct {
   PetscReal   slope[3]; /* mean gradient of its shape function over what a node on a sharp edge sees, 0 in other rows [1/m] */
 } Share;
 
-/* Partners of a row that follows the surfaces, at most: on a surface with this many faces to one of the other side it hardly slips by a
- * bound */
+/* Most partners of a row that follows the surfaces: with so many faces to one of the other side it hardly slips by a bound */
 #define FOLLOW_MAX 256
 
 /* What lies opposite to a Dirichlet node: nothing; nothing, but the partner ends on a face beside the node; a face of the partner */
 enum { MARK_NONE, MARK_BEYOND, MARK_COVERED };
 
-/* The rows of a transfer */
 typedef struct {
   PetscBool *opposite, *beyond, *changed;
   PetscReal *gap, *area, *normals; /* normals: dim each */
@@ -126,7 +124,6 @@ typedef struct {
   PetscReal axes[2][3];    /* of the turns, unit vectors */
 } TransferNumbers;
 
-/* What TransferSave() puts aside */
 typedef struct {
   PetscBool       same;   /* rows have neither been built, nor have they followed, since they were put aside */
   PetscInt        builds; /* those counted when the rows were put aside; 0: none have been */

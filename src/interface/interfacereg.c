@@ -1,4 +1,3 @@
-/* The packages of the classes. */
 #include <impakt/private/transfer.h>
 #include <sys/package.h>
 

@@ -1,17 +1,14 @@
-/*
-   Nodes of a surface that lie in a plane of symmetry.
+/* Nodes of a surface that lie in a plane of symmetry.
 
    The normal of a node at the rim of a surface comes from the faces on one side of it. Where the body is cut along a plane of symmetry, at
    a right angle to an axis, its other half has as many on the other side, and the normal lies in the plane. One that is tilted out of it
    makes gaps and friction of what moves along it: of half a ball of 12 elements to a quarter, on a plate with a mesh, friction across the
-   plane took up to all that the law has for the node.
-*/
+   plane took up to all that the law has for the node. */
 #include "interfaceimpl.h"
 
 /* Nodes of faces are on one side of a node that are behind it by less than this part of their extent */
 #define BEHIND 1e-6
-/* Sine of the angle by which normals may be tilted out of a plane of symmetry, 30 degrees. That of a ball of four elements round the
-   quarter is by 11; what is beyond is an edge of the body. */
+/* Sine of 30 degrees, the tilt of normals out of a plane of symmetry: beyond are edges. A ball of 4 elements round the quarter has 11. */
 #define TILTED 0.5
 
 /* How far the nodes of the faces around each node reach along each axis, on all ranks */
@@ -41,10 +38,9 @@ static PetscErrorCode FindExtents(Surface surface, PetscReal lower[], PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the nodes that lie in planes of symmetry, whose normals stay in them from the next SurfaceUpdate() on. `dofs`: the prescribed
-   displacements of this rank, ascending, numbered from its first one, `first`, on. A node lies in a plane if it is held along one axis
-   or two but not along all, all faces around it are on one side of it along that axis, and its normal is out of the plane by 30 degrees
-   at most. */
+/* Finds nodes in planes of symmetry, whose normals stay in them from the next SurfaceUpdate() on. `dofs`: the prescribed displacements of
+   this rank, ascending, numbered from its first one, `first`, on. A node lies in a plane if it is held along one axis or two but not along
+   all, all faces around it are on one side of it along that axis, and its normal is out of the plane by 30 degrees at most. */
 PetscErrorCode SurfaceSetMirrors(Surface surface, PetscInt n, const PetscInt dofs[], PetscInt first)
 {
   const SurfaceData *data = &surface->data;

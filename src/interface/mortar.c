@@ -4,8 +4,7 @@
 
 /* Corners at which the shape function of a node differs by less count as equally near to the node */
 #define SAME_POINT 1e-9
-/* The smallest pivot of a face's mass matrix, scaled to a unit diagonal, with which dual functions are used: their values, and with them
-   the weights of the rows, grow like one over this pivot */
+/* Smallest pivot of a face's mass matrix, scaled to a unit diagonal, for dual functions: weights of rows grow like its inverse */
 #define SINGULAR 1e-3
 
 /* Integrals over the covered part of one Dirichlet face */
@@ -19,8 +18,7 @@ typedef struct {
   PetscReal x, slope;      /* in the middle, and with the first coordinate of its plane [m, 1] */
 } Patch;
 
-/* A node far beyond the end of the partner has no row. Its neighbours on the face take its shape function over, so that the functions of
-   the nodes with rows still sum to one. */
+/* A node far beyond the partner's end has no row. Its neighbours take its shape function over, so that the sum stays one. */
 static void CombineFunctions(PetscInt n, const PetscInt nodes[], const PetscInt marks[], PetscReal combine[4][4])
 {
   PetscInt all = 0;
@@ -173,8 +171,7 @@ static PetscReal GapAt(const SurfaceData *data, const PetscReal normal[], const 
   return gap;
 }
 
-/* The gap where the partner ends before node k of the face [m]: of the corners of the covered part at which the node's shape function is
-   largest, the one with the smallest gap counts */
+/* The gap where the partner ends before node k of the face [m]: the least at the covered part's corners with the largest shape function */
 static PetscReal GapAtEnd(Surface surface, PetscInt k, const PetscInt nodes[], const Patch *patch, const Segments *segments, PetscInt begin,
                           PetscInt end, const Face faces[])
 {

@@ -1,4 +1,3 @@
-/* Rigid obstacles from options. */
 #include <impakt/obstacle.h>
 #include <petsc/private/petscimpl.h>
 #include <sys/units.h>

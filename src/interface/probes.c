@@ -108,7 +108,6 @@ static PetscErrorCode Exchange(ProbeSearch *search, Probes *questions, PetscErro
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Orders crossings by edge, and along the edge */
 static int CompareCrossings(const void *a, const void *b, void *context)
 {
   const Probe *left = (const Probe *)a, *right = (const Probe *)b;

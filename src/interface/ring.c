@@ -17,9 +17,8 @@ PetscErrorCode SurfaceKeepFaces(Surface surface, const PetscBool keep[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes a surface of a plane mesh that of rings about the axis x = 0. Areas, and with them mortar integrals, get the weight 2 pi x, x
-   being the present distance from the axis. Faces on the axis are left out, as there is nothing outside; the normals of nodes on the
-   axis are along it. */
+/* Makes a surface of a plane mesh that of rings about the axis x = 0. Areas, and with them mortar integrals, get the weight 2 pi x, x being
+   the present distance from the axis. Faces on the axis are left out; normals of nodes on the axis are along it. */
 PetscErrorCode SurfaceSetAxisymmetric(Surface surface)
 {
   const SurfaceData *data = &surface->data;

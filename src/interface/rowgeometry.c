@@ -9,11 +9,9 @@
    straighter it is: there a force keeps its moment about the line. */
 #define LINE 0.1
 /* Of a node at a corner, whose normal is not that of its faces, what lies before a face lies the more beside the normal the farther it is
-   away. Where all of the partner's nodes are farther beside than this, in parts of the face, weights that make up for it continue the
-   partner as a line to where it is not. */
+   away. Beyond this, in parts of the face, weights would continue the partner as a line. */
 #define BESIDE 2
-/* Square of the chord of the angle, 50 degrees, by which the normal of a node may differ from the mean of a row if the surface is bent
-   there rather than has an edge */
+/* Squared chord of 50 degrees, the most by which a node's normal may differ from the mean of a row on a bent surface, not an edge */
 #define BENT_CHORD 0.715
 /* Cosines of the angles up to which normals of both sides belong to a bend, 10 degrees, and from which on to an edge, 18 degrees. Discs of
    16 edges, whose faces are 22 degrees from each other, roll on their edges. */
@@ -42,8 +40,7 @@ static PetscReal Remainder(PetscInt a, PetscReal lower[3][3], const PetscReal co
   return rest[a];
 }
 
-/* Whether the partner's nodes lie all but on a line across what the a-th condition is about, and the place of a row beside it, or the place
-   is far beside all of them */
+/* Whether the partner's nodes lie all but on a line across the a-th condition, and the row's place beside it, or far beside all of them */
 static PetscBool IsBeside(PetscInt a, PetscReal lower[3][3], PetscInt n, const PetscReal x[], PetscReal tangents[2][3], PetscReal size,
                           const PetscReal *partners[], const PetscReal weights[])
 {

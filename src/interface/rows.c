@@ -3,8 +3,7 @@
 
 /* The least part of a node's area that is covered if the node has a row: weights are divided by the covered area, which has round-off */
 #define COVERED 1e-6
-/* Weights, normals, gaps [parts of the face] and areas [relative] of a row that differ by less are those of the last build: above the
-   round-off of the integrals, far below any real slip */
+/* Weights, normals, gaps [of the face] and areas [relative] of a row that differ by less are the last build's: round-off, no slip */
 #define SAME  1e-10
 #define PRUNE 1e-12 /* smaller weights are round-off, and would only fill the matrices */
 /* In a rebuild, partners are looked for this far behind at least [parts of the smallest face] */
@@ -33,8 +32,7 @@ PetscErrorCode RowSetDestroy(RowSet *set)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Orders shares by row, then by displacement, then by value, so that sums do not depend on the order in which ranks and faces add to them
- */
+/* Orders shares by row, then by displacement, then by value: sums do not depend on the order of ranks and faces */
 int ShareCompare(const void *a, const void *b, void *context)
 {
   const Share *left = (const Share *)a, *right = (const Share *)b;
@@ -112,8 +110,7 @@ PetscErrorCode RowSetConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corrects the goals of a row that goes on from where it is. Its present gap is to be that of its goals, so that what it is off is known.
- */
+/* Corrects the goals of a row that goes on from where it is, so that its present gap is that of its goals. */
 static PetscErrorCode GoOn(Transfer transfer, PetscInt row, PetscReal end, PetscReal *gap, PetscReal *present, RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
@@ -216,8 +213,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the shares of rows that are to stay as they are in place of their new ones. Those of rows that go on from where they are come to
-   their new ones, which are their goals. */
+/* Puts shares of rows that stay in place of new ones; those of rows that go on from where they are go to new ones as goals. */
 static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt *n_shares, Share *shares[])
 {
   const RowSet *old  = &transfer->rows;
@@ -356,8 +352,7 @@ PetscErrorCode TransferSetUpColumns(Transfer transfer, RowSet *rows, PetscBool c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Builds the rows between two surfaces, whose positions are those under the given displacements; partners at most `near` before a node
-   count [m] */
+/* Builds the rows between two surfaces under the given displacements; partners at most `near` before a node count [m] */
 PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near)
 {
   const SurfaceData *dirichlet = &transfer->dirichlet->data, *neumann = &transfer->neumann->data;

@@ -13,8 +13,7 @@ static PetscReal Middle(PetscInt n, const Face *face, PetscInt d)
   return sum;
 }
 
-/* Orders the faces of a box such that those before the middle one have their middle along axis d at most where that one has it, and those
-   after it at least there (Hoare's selection) */
+/* Orders the faces of a box about the median of their middles along axis d (Hoare's selection) */
 static void SplitAtMedian(PetscInt n, const Face faces[], PetscInt d, PetscInt begin, PetscInt end, PetscInt order[])
 {
   const PetscInt median = (begin + end) / 2;

@@ -8,8 +8,7 @@
 /* A face beside a sharp edge has nothing opposite if less of it is covered: it lies beside what the partner stands on, as the side of a
    base does over whose edge a block slides, which sags by a part of this */
 #define GRAZED 0.01
-/* Of two partners over the same part of a face, the one whose gap is larger by this much is hidden behind the other, if that one covers
-   more than this part of its area */
+/* A partner whose gap is larger by this much than another's is hidden behind it, if that covers more than this part of its area */
 #define HIDDEN_DISTANCE 0.5
 #define HIDDEN_PART     0.1
 /* A partner is steep if the cosine of the angle between its normal and that of the face is above this: it is inclined to the face by more

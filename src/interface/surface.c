@@ -142,7 +142,6 @@ static PetscErrorCode OrientFace(Surface surface, PetscInt f, const PetscInt num
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes and direction of each face, and reference positions */
 static PetscErrorCode SetUpFaces(Surface surface, const PetscInt numbers[])
 {
   SurfaceData       *data = &surface->data;
@@ -192,7 +191,6 @@ PetscErrorCode SurfaceSetUpNodes(Surface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Frees what SurfaceSetUpNodes() has made */
 PetscErrorCode SurfaceClearNodes(Surface surface)
 {
   SurfaceData *data = &surface->data;
@@ -208,8 +206,7 @@ PetscErrorCode SurfaceClearNodes(Surface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Collects faces of a body's boundary. `name`: as MeshGetSurface() takes it, NULL or empty for the whole boundary. The mesh has a
-   section of one block of displacements at each vertex. */
+/* Collects faces of a body's boundary. `name`: see MeshGetSurface(), NULL or empty: all. Needs a section of displacements at vertices. */
 PetscErrorCode SurfaceCreate(DM dm, const char name[], Surface *surface)
 {
   PetscSection section;

@@ -25,8 +25,7 @@ void TransferPresentNormal(Transfer transfer, PetscInt row, PetscReal normal[])
             normal);
 }
 
-/* By how much the normal of each row of this rank differs from that which it would have where the surfaces are [rad], 0 where nothing is
-   opposite */
+/* Angle from the normal of each row of this rank to that where the surfaces are now [rad], 0 where nothing is opposite */
 PetscErrorCode TransferGetTilts(Transfer transfer, PetscReal tilts[])
 {
   const SurfaceData *data = &transfer->dirichlet->data;

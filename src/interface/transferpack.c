@@ -1,13 +1,10 @@
-/*
-   The state of a transfer as tables of its nodes, by which a run is continued on another number of ranks: what belongs to each node of the
-   first side, what to each of the partner's, and the shares of the partner's nodes in the rows.
-*/
+/* The state of a transfer as tables of its nodes, by which a run is continued on another number of ranks: what belongs to each node of the
+   first side, what to each of the partner's, and the shares of the partner's nodes in the rows. */
 #include "interfaceimpl.h"
 #include "transfervisit.h"
 
 #define N_SHARE 11 /* key of its row, position of the partner's node, weight, goal and slope */
 
-/* The three tables of a pair */
 static PetscErrorCode Name(const char pair[], const char what[], char name[], size_t size)
 {
   PetscFunctionBegin;

@@ -77,8 +77,7 @@ static PetscErrorCode RestoreShares(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the rows aside as they are, and what the next update and TransferFollow() start from. Allocates only where rows have been built
-   since the last call. */
+/* Puts the rows aside, and what the next update and TransferFollow() start from. Allocates only after a new build. */
 PetscErrorCode TransferSave(Transfer transfer)
 {
   TransferSaved  *saved = &transfer->saved;
@@ -99,8 +98,7 @@ PetscErrorCode TransferSave(Transfer transfer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Goes back to the last TransferSave(), any number of times, as if rows had neither been built nor followed the surfaces since. The
-   counts of builds go on: they count work. */
+/* Goes back to the last TransferSave(), any number of times, with rows and surfaces as they were. Counts of builds go on. */
 PetscErrorCode TransferRestore(Transfer transfer)
 {
   TransferSaved *saved = &transfer->saved;

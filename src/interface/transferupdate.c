@@ -1,9 +1,7 @@
-/* When the rows of a transfer are built again. */
 #include "interfaceimpl.h"
 #include "obstacleimpl.h"
 
-/* Partners are known up to this distance beyond the closest one [edges of the largest face], so that bodies which come closer do not need
-   new rows in each step */
+/* Partners are known so far beyond the closest one [edges of the largest face]: bodies that come closer need no new rows in each step */
 #define FACES_AHEAD 4
 /* Rows with a smaller gap are near contact: slips and turns beyond the bounds have them built again [edges of the face] */
 #define NEAR_CONTACT 2
@@ -109,7 +107,6 @@ PetscErrorCode TransferGetReach(Transfer transfer, PetscReal near, PetscReal *re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether rows are built whatever the motion */
 static PetscBool IsDue(Transfer transfer, PetscReal near)
 {
   return (PetscBool)(!transfer->built || near > transfer->numbers.near);

@@ -4,8 +4,7 @@
 /* Shares of a row whose entries go into a matrix together */
 #define SHARES_AT_ONCE 32
 
-/* How many entries a row of each node of this rank has, along its normal or another direction, in the matrices of both sides; `second`
-   NULL for obstacles */
+/* Entries of a row of each node of this rank, along its normal or another direction, in both matrices; `second` NULL for obstacles */
 PetscErrorCode TransferCountValues(Transfer transfer, PetscInt first[], PetscInt second[])
 {
   const RowSet *set = &transfer->rows;
@@ -19,8 +18,7 @@ PetscErrorCode TransferCountValues(Transfer transfer, PetscInt first[], PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The entries of one row of node i: n components of a direction, the first of them that along axis `first`. Whole rows at once, since a
-   call for each entry takes most of its time for itself. */
+/* Entries of a row of node i at once, for speed: n components of a direction, the first along axis `first` */
 static PetscErrorCode SetRow(Transfer transfer, PetscInt i, const PetscInt row[2], PetscInt first, PetscInt n, const PetscReal direction[],
                              const Mat rows[2])
 {

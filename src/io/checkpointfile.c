@@ -1,11 +1,9 @@
-/*
-   The file of a checkpoint: HDF5 with the stream of each rank, to continue on as many ranks bit for bit, and, to begin a run on any number
+/* The file of a checkpoint: HDF5 with the stream of each rank, to continue on as many ranks bit for bit, and, to begin a run on any number
    of ranks, the nodes of each body with their state. Behind the HDF5 file stand its length and a sum over all its bytes, so that a file
    which is not whole, or was changed, is found out before HDF5 looks into it.
 
    The first rank makes the file in memory, writes it beside the last one, has it written through to the disk, and renames it. The
-   checkpoint before stays as <path>.prev.h5: at every moment there is one that is whole.
-*/
+   checkpoint before stays as <path>.prev.h5: at every moment there is one that is whole. */
 #define _POSIX_C_SOURCE 200809L
 #include "checkpointfileimpl.h"
 #include "outputfile.h"
@@ -161,7 +159,6 @@ static PetscErrorCode WriteBodies(hid_t file, PetscInt n, const Body bodies[], c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A file that lies in memory alone */
 static PetscErrorCode CreateInMemory(const char path[], const CheckpointInfo *info, hid_t *file)
 {
   const int       format = CHECKPOINT_FORMAT, integer = (int)sizeof(PetscInt);

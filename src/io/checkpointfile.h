@@ -4,7 +4,6 @@
 #include <checkpoint/tables.h>
 #include <impakt/body.h>
 
-/* What a checkpoint says of its run */
 typedef struct {
   PetscInt  step; /* controller steps that have been made */
   PetscReal time; /* at their end [s] */
@@ -12,7 +11,6 @@ typedef struct {
   char     *options; /* of the run, as PetscOptionsGetAll() gives them; from CheckpointFileOpen(), to be freed */
 } CheckpointInfo;
 
-/* What is written */
 typedef struct {
   Checkpoint  shared, state; /* of all ranks alike, that of the first is written; of each rank */
   Tables      tables;

@@ -8,8 +8,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-/* The last checkpoint there is. `found`: that path or, where a run has been killed between two renames, that of the checkpoint before.
-   Collective */
+/* The last checkpoint there is. `found`: that path or, after a kill between two renames, that of the checkpoint before. Collective */
 PetscErrorCode CheckpointFileFind(MPI_Comm comm, const char path[], size_t size, char found[], PetscBool *exists)
 {
   PetscMPIInt rank;
@@ -100,7 +99,6 @@ static PetscErrorCode ReadText(const CheckpointFile *checkpoint, hid_t object, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The file itself, on the first rank */
 static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
 {
   const char *why;
@@ -134,8 +132,7 @@ static PetscErrorCode Open(const char path[], CheckpointFile *checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Opens a checkpoint and makes sure that it is whole. `option`: for messages, has to outlive the file. End with CheckpointFileClose().
-   Collective */
+/* Opens a checkpoint and checks that it is whole. `option`: for messages, outlives the file. End with CheckpointFileClose(). Collective */
 PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char option[], const char path[], CheckpointFile *checkpoint)
 {
   PetscErrorCode error = PETSC_SUCCESS;
@@ -163,8 +160,7 @@ PetscErrorCode CheckpointFileOpen(MPI_Comm comm, const char option[], const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A dataset of rows by columns, or of one column, on the first rank. `values`: the address of a pointer to numbers of `each` bytes, to be
-   freed */
+/* A dataset of rows by columns, or of one column, on the first rank. `values`: a pointer to numbers of `each` bytes, to be freed */
 static PetscErrorCode ReadDataset(const CheckpointFile *file, const char name[], hid_t type, size_t each, hsize_t length[2], void *values)
 {
   hid_t dataset, space;
@@ -260,7 +256,6 @@ PetscErrorCode CheckpointShareArray(MPI_Comm comm, PetscInt size[2], PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A table, on the first rank */
 static PetscErrorCode ReadTable(const CheckpointFile *file, PetscInt i, char name[512], PetscInt size[2], PetscReal **values)
 {
   char  place[32], *text;

@@ -16,8 +16,7 @@
 /* Larger than the number of any signal */
 #define LAST_SIGNAL 64
 
-/* What all ranks have of that which a run goes on from: the simulation, and what its observers have gathered. `same_ranks`: it is loaded on
-   as many ranks as before */
+/* What all ranks have in a checkpoint: the simulation, and what observers have gathered. `same_ranks`: as many ranks as before */
 PetscErrorCode OutputVisitShared(Output output, PetscBool same_ranks, Checkpoint checkpoint)
 {
   PetscFunctionBegin;

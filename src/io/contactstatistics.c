@@ -110,8 +110,7 @@ PetscErrorCode StatisticsAddContact(Statistics s, const ControllerFrame *frame)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean, standard deviation and minimum of a pair's force, and the mean of its resultant, over the middle three fifths of the time from
- * first contact to release */
+/* Mean, standard deviation and minimum of a pair's force, and the mean of its resultant, over the middle 3/5 of contact */
 void StatisticsComputeForces(Statistics s, PetscInt pair)
 {
   ContactStatistics *contact  = &s->results.pairs[pair];

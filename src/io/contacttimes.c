@@ -153,7 +153,6 @@ PetscErrorCode ContactTimesVisit(ContactTimes times, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactTimesDestroy - frees the times */
 PetscErrorCode ContactTimesDestroy(ContactTimes *times)
 {
   PetscFunctionBegin;

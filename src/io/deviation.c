@@ -1,4 +1,3 @@
-/* How far bodies are from displacements that the user gives as formulas. */
 #include "deviation.h"
 #include <petsc/private/petscimpl.h>
 #include <math.h>
@@ -57,7 +56,6 @@ PetscErrorCode DeviationCompute(Deviation deviation, PetscReal errors[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* DeviationDestroy - frees a deviation */
 PetscErrorCode DeviationDestroy(Deviation *deviation)
 {
   PetscFunctionBegin;

@@ -15,8 +15,7 @@
 /* Most frames in a run whose options do not say how often */
 #define DEFAULT_FRAMES 100
 
-/* With each frame the whole XDMF file is written again, unless it is less than this many times as long ago that it was written as the
-   writing took: so writing takes at most 2 % of the run */
+/* The whole XDMF file is written with a frame after this many times as long as writing took: at most 2 % of the run */
 #define XDMF_SHARE 50.0
 
 static PetscInt CountFrames(PetscInt steps, PetscInt interval)
@@ -247,8 +246,7 @@ PetscErrorCode FieldsSync(Fields fields)
 }
 
 /* Takes up the file of the run that is continued, with the frames before its checkpoint, once all of that has been loaded. `fields`: the
-   `Fields`, after FieldsVisit(); `NULL`: there are none. Other frames become such that are not there yet. Does nothing where fields begin
-   with the run. Collective */
+   `Fields`, after FieldsVisit(); `NULL`: there are none. Nothing where fields begin with the run. Collective */
 PetscErrorCode FieldsTakeUp(Fields fields)
 {
   const PetscInt written = fields ? fields->goes_on : 0;

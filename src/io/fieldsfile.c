@@ -1,8 +1,6 @@
-/*
-  An HDF5 file of fields. The first rank makes all of it before the first frame: groups, attributes, and a dataset for each field of each
-  frame, which has its place in the file but no numbers yet (a hole, on most file systems). After that only numbers are written. So a run
-  that is killed, even in the middle of a frame, leaves a file that can be read, and no frame waits for a flush.
-*/
+/* An HDF5 file of fields. The first rank makes all of it before the first frame: groups, attributes, and a dataset for each field of each
+   frame, which has its place in the file but no numbers yet (a hole, on most file systems). After that only numbers are written. So a run
+   that is killed, even in the middle of a frame, leaves a file that can be read, and no frame waits for a flush. */
 #include "fieldsfile.h"
 #include "hdf5file.h"
 #include <math.h>

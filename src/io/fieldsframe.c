@@ -47,14 +47,12 @@ PetscErrorCode FieldsShareError(Fields fields, PetscErrorCode error)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts number i of a field into the buffer */
 static inline void Store(Fields fields, size_t i, PetscReal value)
 {
   if (fields->precision == OUTPUT_DOUBLE) ((double *)fields->buffer)[i] = value;
   else ((float *)fields->buffer)[i] = (float)value;
 }
 
-/* Writes the field that is in the buffer */
 static PetscErrorCode WriteField(Fields fields, FieldsKind kind)
 {
   const FieldsField *field = &fields_of_a_frame[kind];

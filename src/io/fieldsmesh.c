@@ -1,7 +1,5 @@
-/*
-  All bodies as one mesh: nodes and cells of the first body, then of the second, and so on. Every reader of XDMF takes this form. If each
-  body had a grid of its own, some readers would show the first body alone.
-*/
+/* All bodies as one mesh: nodes and cells of the first body, then of the second, and so on. Every reader of XDMF takes this form. If each
+   body had a grid of its own, some readers would show the first body alone. */
 #include "fieldsmesh.h"
 
 /* Shapes of cells in XDMF (www.xdmf.org, XDMF Model and Format, Topology): their names; their numbers in a list of cells of several shapes;
@@ -91,7 +89,6 @@ static PetscErrorCode CountRows(FieldsMesh *mesh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts the rows of the topology */
 static PetscErrorCode CountTopology(FieldsMesh *mesh)
 {
   PetscFunctionBegin;
@@ -127,7 +124,6 @@ PetscErrorCode FieldsMeshCreate(PetscInt n, const Body bodies[], FieldsMesh *mes
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's rows of the topology */
 PetscErrorCode FieldsMeshGetTopology(const FieldsMesh *mesh, int entries[])
 {
   hsize_t first = 0; /* number of the body's first node */
@@ -174,7 +170,6 @@ PetscErrorCode FieldsMeshGetNodes(const FieldsMesh *mesh, PetscReal x[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FieldsMeshDestroy - frees what FieldsMeshCreate() made */
 PetscErrorCode FieldsMeshDestroy(FieldsMesh *mesh)
 {
   PetscFunctionBegin;

@@ -1,7 +1,5 @@
-/*
-  Surfaces of the obstacles, to be shown with the fields: /mesh/obstacles/<name>/{points,cells}, listed by an XDMF file of their own.
-  In that of the bodies they would disturb: meshio takes the first grid alone for the mesh, and VTK returns blocks where there are two.
-*/
+/* Surfaces of the obstacles, to be shown with the fields: /mesh/obstacles/<name>/{points,cells}, listed by an XDMF file of their own. In
+   that of the bodies they would disturb: meshio takes the first grid alone for the mesh, and VTK returns blocks where there are two. */
 #include "fieldsobstacles.h"
 #include "fieldsfile.h"
 #include "hdf5file.h"
@@ -15,7 +13,6 @@
 #define ROUND_CELLS 48   /* all around a sphere or a cylinder */
 #define IN_PLANE    1e-9 /* an axis with a smaller third component lies in the plane of the bodies */
 
-/* y = factor x */
 static void Scale(PetscReal factor, const PetscReal x[], PetscReal y[])
 {
   for (PetscInt d = 0; d < 3; d++) y[d] = factor * x[d];
@@ -59,8 +56,7 @@ static void CutGrid(const PetscReal point[], const PetscReal n[], PetscReal radi
   Scale(0, n, grid->vector[2]);
 }
 
-/* A plane gets a grid about the point that is closest to the centre of the box, a cylinder one along its axis beside the centre, and a
-   sphere one all around */
+/* A plane gets a grid about its point closest to the box's centre, a cylinder one along its axis there, a sphere one all around */
 static PetscErrorCode FindGrid(Obstacle obstacle, PetscInt dim, const PetscReal centre[], PetscReal size, ObstacleGrid *grid)
 {
   PetscReal point[3], n[3], normal[3], distance, along = 0, norm, radius;
@@ -168,9 +164,7 @@ PetscErrorCode FieldsObstaclesCheckPath(Contact contact, const char fields[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces of all obstacles that can be seen in the space of the bodies. `grids`: n of them, to be freed; `contact` must outlive them.
- * Collective
- */
+/* Surfaces of all obstacles within the space of the bodies. `grids`: n of them, to be freed; `contact` must outlive them. Collective */
 PetscErrorCode FieldsObstaclesFind(Contact contact, PetscInt n_bodies, const Body bodies[], PetscInt *n, ObstacleGrid *grids[])
 {
   PetscReal centre[3], diagonal = 0;

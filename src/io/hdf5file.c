@@ -13,9 +13,8 @@ PetscErrorCode HDF5Check(hid_t result, const char what[], const char path[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Creates a file, replacing what is there. In the format of HDF5 1.8 and newer: the older one looks through all attributes of an object
-   for each that is added, and those of the root are the options of the run. A history of 2560 bodies, of 31 000 options, took minutes to
-   create */
+/* Creates a file, replacing what is there. In the format of HDF5 1.8 and newer: the older one looks through all attributes for each that is
+   added, and those of the root are the options. A history of 2560 bodies, of 31 000 options, took minutes to create */
 PetscErrorCode HDF5Create(const char path[], hid_t *file)
 {
   hid_t access;
@@ -30,8 +29,7 @@ PetscErrorCode HDF5Create(const char path[], hid_t *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds an attribute: a string of variable length, which may be empty; or `fixed`, in the object's own header: with ten thousands of
-   datasets the former would be slow */
+/* Adds an attribute: a string of variable length, or `fixed`, in the object's own header: fast with ten thousands of datasets */
 PetscErrorCode HDF5WriteText(hid_t object, const char name[], const char value[], PetscBool fixed, const char path[])
 {
   hid_t  type, space, attribute;
@@ -77,8 +75,7 @@ void HDF5SilenceBegin(HDF5Silence *silence)
   H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-/* HDF5SilenceEnd - lets HDF5 print errors again. Not to be called after an error: HDF5 would complain at exit of the file that it could not
-   finish. */
+/* HDF5SilenceEnd - lets HDF5 print errors again. Not after an error: HDF5 would complain at exit of the unfinished file. */
 void HDF5SilenceEnd(const HDF5Silence *silence)
 {
   H5Eset_auto2(H5E_DEFAULT, silence->print, silence->data);

@@ -145,7 +145,6 @@ static PetscErrorCode FindContactNeeds(Contact contact, int *has)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same of a body, and its dimensions */
 static PetscErrorCode FindBodyNeeds(Body body, PetscInt *dim, int *has)
 {
   PetscReal mass, stiffness;
@@ -315,7 +314,6 @@ static void FillRecord(const ControllerFrame *frame, History history, PetscReal 
   }
 }
 
-/* Records a controller step, and from time to time writes to the file */
 PetscErrorCode HistoryMonitor(Controller controller, const ControllerFrame *frame, void *context)
 {
   History        history = (History)context;
@@ -373,8 +371,7 @@ PetscErrorCode HistoryTakeUp(History history)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The place in the file, to or from a checkpoint; loading, HistoryTakeUp() is to follow. A history whose path is not that of the run that
-   is continued begins with the restart */
+/* The place in the file, to or from a checkpoint; loading, HistoryTakeUp() follows. A history with another path begins anew */
 PetscErrorCode HistoryVisit(History history, Checkpoint checkpoint)
 {
   PetscInt64 written = history ? history->written : 0;

@@ -1,10 +1,8 @@
-/* What is too much for a linear material: bodies that turn far, and elements that are turned inside out. */
 #include "linearlimits.h"
 #include <sys/units.h>
 #include <impakt/private/bodymeasures.h>
 
-/* Controller steps from look to look at the elements. A look at each step would cost an explicit body with strong strains 16 to 19 % of its
-   time. */
+/* Controller steps between looks at the elements: in each step a look takes 16 to 19 % of the time of a strongly strained explicit body. */
 #define LOOK_EVERY 16
 
 /* Tells that a linear body has turned too far */

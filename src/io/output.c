@@ -17,7 +17,6 @@ PetscErrorCode OutputInitializePackage(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Before the first record is written */
 static PetscErrorCode LockFiles(Controller controller, const ControllerFrame *frame, void *context)
 {
   PetscFunctionBegin;
@@ -59,7 +58,6 @@ PetscErrorCode OutputCreate(Controller controller, Output *output)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The exact displacements of bodies */
 static PetscErrorCode ReadExactDisplacements(Output output)
 {
   const Body *bodies;
@@ -109,21 +107,10 @@ static PetscErrorCode LeaveFramesOfRun(Output output, const char path[], PetscBo
 . output - the `Output`
 
   Options Database Keys:
-+ -check (true|false) - the set-up alone, and what to expect of the run: see `OutputCheck()`
-. -output_history path - HDF5 file with every controller step
-. -output_summary path - JSON file with the figures of the run
-. -output_fields path  - HDF5 file with fields of all bodies over time; an XDMF file is written beside it
-. -output_fields_interval n - a frame every n controller steps; default: as often as makes at most 100 frames
-. -output_fields_precision (single|double) - of the numbers in the frames
-. -exact (none|impact|characteristics) - exact solution to compare with
-. -<body>_exact_displacement ux[,uy,uz] - exact displacement of a body to compare with at the end, functions of x, y, z, t [m]
-. -checkpoint path - HDF5 file that the run can be continued from
-. -checkpoint_interval n - a checkpoint every n controller steps
-. -checkpoint_wall_interval t - a checkpoint every t minutes; 15 unless an interval is given
-. -restart path - the checkpoint that the run is continued from, if it is there
-. -restart_allow_changes (true|false) - whether a run may be continued with other options
-. -restart_state path - a checkpoint whose bodies are those that the run begins with
-- -max_wall_time (minutes|h:mm:ss) - after which the run ends with a checkpoint
++ -check (true|false)                 - the set-up alone, and what to expect of the run: see `OutputCheck()`
+. -output_history, _summary, _fields  - the files of the run, see `OutputSetHistory()`, `OutputSetSummary()`, `OutputSetFields()`
+. -checkpoint, -restart, ...          - see `OutputSetCheckpoint()` and `OutputRestart()`
+- -exact, -<body>_exact_displacement  - what to compare with; all of them are in options/README.md, which `impakt -help` prints too
 
   Level: beginner
 

@@ -117,7 +117,6 @@ PetscErrorCode OutputFileRelease(int *held)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Copies a file that is held */
 PetscErrorCode OutputFileCopy(int held, const char part[])
 {
   char *buffer;

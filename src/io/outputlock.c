@@ -33,7 +33,6 @@ static int LockFile(const char path[], int *file)
   }
 }
 
-/* Says in the file who holds the lock */
 static void Sign(int file)
 {
   char text[64], host[32] = "";
@@ -43,7 +42,6 @@ static void Sign(int file)
   if (ftruncate(file, 0) || write(file, text, strlen(text)) < 0) return; /* a courtesy */
 }
 
-/* Who holds the lock, as it says in the file */
 static void ReadHolder(int file, size_t size, char holder[])
 {
   const ssize_t bytes = pread(file, holder, size - 1, 0);
@@ -96,7 +94,6 @@ PetscErrorCode OutputLocksRelease(OutputLocks *locks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps other runs away from the files */
 PetscErrorCode OutputLock(Output output)
 {
   MPI_Comm          comm      = PetscObjectComm((PetscObject)output);

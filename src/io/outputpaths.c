@@ -18,8 +18,7 @@ static size_t FolderLength(const char path[])
   return slash ? (size_t)(slash - path) + 1 : 0;
 }
 
-/* The path of the file itself where a path is a symbolic link: what is written goes through the link. One rank calls it.
- */
+/* The path of the file itself where a path is a symbolic link: what is written goes through the link. One rank calls it. */
 PetscErrorCode OutputPathResolve(const char path[], size_t size, char resolved[])
 {
   char target[PETSC_MAX_PATH_LEN];
@@ -135,15 +134,7 @@ static PetscErrorCode Compare(PetscInt n, const char *const options[], const cha
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  OutputPathDrop - takes "none" for a path that an option has given as its absence: so a command line overrules an options file
-
-  Not Collective
-
-  Input/Output Parameters:
-+ path  - what the option has; empty for none
-- given - whether it has a file
-*/
+/* Takes the path "none" of an option for its absence, so that a command line overrules an options file. */
 PetscErrorCode OutputPathDrop(char path[], PetscBool *given)
 {
   PetscFunctionBegin;

@@ -1,4 +1,3 @@
-/* How the work of a run lies on the ranks: the most that one of them has, and the mean. */
 #include "ranks.h"
 #include <impakt/private/contactsteps.h>
 #include <petscsf.h>

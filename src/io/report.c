@@ -1,4 +1,3 @@
-/* The table that a run prints at its end. */
 #include "report.h"
 #include "ranks.h"
 #include <math.h>
@@ -9,8 +8,7 @@
 
 /* Pairs whose forces are printed; the summary has those of all */
 #define MOST_PAIRS 8
-/* A peak of the force is explained if it is more than PEAK_FACTOR times the mean over MEAN_STEPS steps or more, and comes in one of the
-   first PEAK_STEPS steps of a contact */
+/* A force of more than PEAK_FACTOR times the mean over MEAN_STEPS steps, in the first PEAK_STEPS of a contact, is explained */
 #define PEAK_FACTOR 2
 #define PEAK_STEPS  3
 #define MEAN_STEPS  10
@@ -129,7 +127,6 @@ static PetscErrorCode ViewPairForces(const Report *report, const char name[], co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces of the pairs that touched */
 static PetscErrorCode ViewForces(const Report *report, Contact contact)
 {
   const char *name;
@@ -211,7 +208,6 @@ static PetscErrorCode ViewEnergies(const Report *report, const Body bodies[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What holds the bodies at the end */
 static PetscErrorCode ViewReactions(const Report *report, const Body bodies[])
 {
   const StatisticsResults *results = report->results;

@@ -133,8 +133,7 @@ static PetscErrorCode LoadState(Output output, const CheckpointFile *file, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All of a checkpoint. Where it is of another problem, or bodies are distributed otherwise, the files that the run would go on with are as
-   they were. */
+/* All of a checkpoint. If it is of another problem or distribution, the run's files stay as they were. */
 static PetscErrorCode Load(Output output, const CheckpointFile *file, PetscBool same_ranks)
 {
   PetscFunctionBegin;
@@ -230,7 +229,6 @@ static PetscErrorCode ReadTime(MPI_Comm comm, const char text[], PetscReal *seco
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -checkpoint and its relatives */
 PetscErrorCode OutputReadCheckpoints(Output output)
 {
   MPI_Comm  comm                     = PetscObjectComm((PetscObject)output);

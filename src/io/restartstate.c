@@ -1,7 +1,5 @@
-/*
-   Runs whose bodies begin with the state of a checkpoint: displacements, velocities and the history of materials at a new time, under other
-   loads, with other integrators, on any number of ranks. Nodes are found by their places in the mesh.
-*/
+/* Runs whose bodies begin with the state of a checkpoint: displacements, velocities and the history of materials at a new time, under other
+   loads, with other integrators, on any number of ranks. Nodes are found by their places in the mesh. */
 #include <body/interface/bodyvisit.h>
 #include <contact/interface/contactvisit.h>
 #include "outputimpl.h"

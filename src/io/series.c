@@ -5,9 +5,8 @@
 
 _Static_assert(sizeof(PetscReal) == sizeof(double), "series are stored in double precision");
 
-/* Records in a chunk: few enough for the file of a short run to be small, and enough for the index of a long run to be small. Every series
-   takes a chunk for its first record, so chunks have fewer records where there are many series: all series together take about CHUNK_BYTES
-   then. */
+/* Records in a chunk: few enough for small files of short runs, enough for a small index of long ones. Every series takes a chunk for its
+   first record, so chunks have fewer records where there are many series: all series together take about CHUNK_BYTES then. */
 #define CHUNK_MOST  1024
 #define CHUNK_LEAST 64
 #define CHUNK_BYTES ((size_t)1 << 24)
@@ -52,7 +51,6 @@ static PetscErrorCode CreateDataset(hid_t file, const Series *series, hsize_t re
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Creates a file of empty series */
 PetscErrorCode SeriesFileCreate(const char path[], PetscInt n_series, const Series series[], const char options[])
 {
   const hsize_t records = ChunkRecords(n_series, series);
@@ -66,8 +64,7 @@ PetscErrorCode SeriesFileCreate(const char path[], PetscInt n_series, const Seri
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Writes at most BLOCK records of one series, which are gathered from the records of all series: HDF5 is quick if memory and file have the
-   same shape */
+/* Writes at most BLOCK records of one series, gathered from all series: HDF5 is quick if memory and file have one shape */
 static PetscErrorCode WriteRecords(hid_t dataset, const Series *series, PetscInt64 length, PetscInt n, PetscInt width,
                                    const PetscReal records[], const char path[])
 {
@@ -106,7 +103,6 @@ static PetscErrorCode AppendToDataset(hid_t file, const Series *series, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Appends records to all series of a file */
 PetscErrorCode SeriesFileAppend(const char path[], PetscInt n_series, const Series series[], PetscInt64 length, PetscInt n, PetscInt width,
                                 const PetscReal records[])
 {

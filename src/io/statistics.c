@@ -29,7 +29,6 @@ static PetscErrorCode GetGyration(Body body, PetscReal *radius)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gathers figures about a run */
 PetscErrorCode StatisticsCreate(Controller controller, Statistics *statistics)
 {
   const Body              *bodies;
@@ -78,8 +77,7 @@ static void AddProduct(PetscReal factor, const PetscReal a[3], const PetscReal b
   for (PetscInt d = 0; d < 3; d++) c[d] += factor * (a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3]);
 }
 
-/* Momentum of all bodies, their angular momentum about the centre of mass of all, which does not depend on the origin or its motion, and
-   the velocity of that centre */
+/* Momentum of all bodies, their angular momentum about the centre of mass of all (the origin does not matter), and its velocity */
 static void FindMomenta(Statistics s, const ControllerFrame *frame, PetscReal momentum[3], PetscReal angular[3], PetscReal velocity[3])
 {
   PetscReal centre[3] = {0}, mass = 0;
@@ -208,8 +206,7 @@ static void AddSupports(Statistics s, const ControllerFrame *frame)
   }
 }
 
-/* StatisticsSetFrames - overlaps are looked for every so many controller steps, as often as fields are written, and at the end; Not
-   Collective */
+/* StatisticsSetFrames - overlaps are looked for every so many controller steps, as fields are written, and at the end; Not Collective */
 PetscErrorCode StatisticsSetFrames(Statistics statistics, PetscInt interval)
 {
   PetscFunctionBegin;
@@ -234,7 +231,6 @@ PetscErrorCode StatisticsAddOverlaps(Statistics s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes note of a controller step */
 PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *frame, void *context)
 {
   Statistics s = (Statistics)context;
@@ -347,7 +343,6 @@ PetscErrorCode StatisticsVisit(Statistics s, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* StatisticsDestroy - frees statistics */
 PetscErrorCode StatisticsDestroy(Statistics *statistics)
 {
   PetscFunctionBegin;

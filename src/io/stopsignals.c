@@ -1,5 +1,4 @@
-/*
-   Signals that end a run in good order, or ask it for a checkpoint. Nothing is done when a signal comes but that the process takes note of
+/* Signals that end a run in good order, or ask it for a checkpoint. Nothing is done when a signal comes but that the process takes note of
    it, and that without a variable: which function handles a signal tells whether it has come. SIGINT and SIGTERM are handled by Note()
    until they come. After that SIGINT has its default, so that the second Ctrl-C ends the run at once, and SIGTERM is ignored, since whoever
    starts several ranks may send it more than once. SIGHUP, which comes when the terminal is closed, is handled by Noted() after it has
@@ -8,8 +7,7 @@
 
    Before that, while meshes are read and matrices made, there is no step to be finished and nothing to be saved: these three end the
    process at once, with a line that says so. EndAlone() handles them in a run on one rank; on several ranks EndFirst() does on the first,
-   EndOther() on the others.
-*/
+   EndOther() on the others. */
 #define _POSIX_C_SOURCE 200809L
 #include "stopsignals.h"
 #include <errno.h>
@@ -114,8 +112,7 @@ void StopSignalsBegin(PetscMPIInt rank, PetscMPIInt size)
   Handle(SIGXFSZ, SIG_IGN); /* a file that becomes larger than the shell allows is an error with a message, not the end */
 }
 
-/* From now on signals are taken note of; those that are ignored stay so, and one for a checkpoint that has come already is not lost
- */
+/* From now on signals are taken note of; those that are ignored stay so, and one for a checkpoint that has come already is not lost */
 void StopSignalsCatch(PetscBool launched)
 {
   if (!Handles(SIGINT, SIG_IGN)) Handle(SIGINT, Note);

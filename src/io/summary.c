@@ -38,7 +38,6 @@ static PetscErrorCode SetContactStatistics(json_t *object, const ContactStatisti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The deepest overlap of bodies with each other and with obstacles, in parts of an element */
 static PetscErrorCode AddOverlap(json_t *root, Controller controller, Contact contact, const StatisticsResults *results)
 {
   json_t               *object, *names = json_array();
@@ -142,7 +141,6 @@ static PetscErrorCode AddRun(json_t *root, Controller controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Controller steps that were made again in halves */
 static PetscErrorCode AddStepControl(json_t *root, Controller controller)
 {
   ControllerCuts cuts;
@@ -174,7 +172,6 @@ static PetscErrorCode AddSystem(json_t *root, const StatisticsResults *results)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a user should know before believing the figures */
 static PetscErrorCode AddWarnings(json_t *root, const Verdict *verdict)
 {
   json_t *array = json_array();

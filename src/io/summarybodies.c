@@ -1,4 +1,3 @@
-/* What the summary has of the bodies and obstacles. */
 #include "summaryimpl.h"
 
 /* The mass of a body, and what its massless contact layer has changed */

@@ -1,7 +1,4 @@
-/*
-   What a user should know before believing the figures of a run: a line each at its end, which the summary has too. Each says what is
-   amiss, by how much, and what to do.
-*/
+/* What a user should know before believing a run, a line each at its end and in the summary: what is amiss, how much, what to do. */
 #include "verdict.h"
 #include <controller/plausible.h>
 #include <impakt/private/bodymass.h>
@@ -22,8 +19,7 @@
 #define BEYOND 0.25
 
 /* Normal forces along rows of bodies without inertia may be off along the surfaces by this much of what friction can bear: it is 0.02 for
-   the spheres of cattaneo-spheres.opts, 0.07 for a linear band that stretches by 1 % along a drum, of which the end that is held bears 6 %
-   too much */
+   the spheres of cattaneo-spheres.opts, 0.07 for a linear band that stretches by 1 % along a drum, whose held end bears 6 % too much */
 #define TILT 0.05
 
 /* How far massless contact nodes may move a body's centre of mass unsaid [parts of its least extent]: a plate that is three elements thick
@@ -225,7 +221,6 @@ static PetscErrorCode LookAtBody(Body body, const PetscReal box[6], const BodySt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where a body was inside another, or inside an obstacle */
 static PetscErrorCode LookAtOverlap(Contact contact, Body body, const BodyStatistics *statistics, Verdict *verdict)
 {
   const ContactOverlap *overlap = &statistics->overlap;
@@ -282,7 +277,6 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is amiss with a run. Collective */
 PetscErrorCode VerdictMake(Controller controller, const StatisticsResults *results, Verdict *verdict)
 {
   Contact           contact;
@@ -337,7 +331,6 @@ PetscErrorCode VerdictView(Controller controller, const StatisticsResults *resul
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* On standard error, a line for each */
 PetscErrorCode VerdictPrint(MPI_Comm comm, const Verdict *verdict)
 {
   PetscFunctionBegin;

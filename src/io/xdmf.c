@@ -1,7 +1,5 @@
-/*
-  XDMF tells ParaView and other programs what lies where in an HDF5 file (www.xdmf.org, XDMF Model and Format, version 3). Only what meshio
-  and both of VTK's readers understand is used: a temporal collection of uniform grids, whole datasets, and no references within the XML.
-*/
+/* XDMF describes an HDF5 file to ParaView and others (www.xdmf.org, XDMF Model and Format, version 3). Only what meshio and both of VTK's
+   readers understand is used: a temporal collection of uniform grids, whole datasets, and no references within the XML. */
 #include "xdmf.h"
 #include "outputfile.h"
 #include <errno.h>
@@ -108,7 +106,6 @@ static PetscErrorCode WriteFrame(FILE *out, const FieldsMesh *mesh, FieldsSet se
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What a file lists, see XdmfWrite() */
 typedef struct {
   const char       *file; /* name of the HDF5 file */
   const FieldsMesh *mesh;
@@ -118,7 +115,6 @@ typedef struct {
   const PetscReal  *times;
 } List;
 
-/* Opens the file, with a collection of grids */
 static PetscErrorCode BeginFile(const char part[], const char name[], const char type[], FILE **out)
 {
   PetscFunctionBegin;

@@ -1,5 +1,4 @@
-/*
-   Plasticity of metals at finite strain: F = Fe Fp, elasticity by Hencky's energy of the logarithmic strain E = 1/2 ln(Fe^T Fe),
+/* Plasticity of metals at finite strain: F = Fe Fp, elasticity by Hencky's energy of the logarithmic strain E = 1/2 ln(Fe^T Fe),
    W = lambda/2 (tr E)^2 + mu E : E, von Mises' yield condition for the stress M = lambda tr(E) 1 + 2 mu E that works on it, and the
    exponential map, by which the step is a radial return in logarithmic strains (A. L. Eterovic, K.-J. Bathe, 1990; J. C. Simo, 1992; M.
    Ortiz, L. Stainier, 1999). With the plastic deformation at the start of the step, Fe = F Fp^-1 and C = Fe^T Fe,
@@ -10,8 +9,7 @@
    exp(-D).
 
    E comes from C - 1 = A, which has the digits of small strains, by the series of the logarithm, a polynomial in A that becomes one of
-   degree 2 by Cayley and Hamilton's A^3 = I A^2 - II A + III. Where strains are too large for the series it comes from eigenvalues.
-*/
+   degree 2 by Cayley and Hamilton's A^3 = I A^2 - II A + III. Where strains are too large for the series it comes from eigenvalues. */
 #include "j2trial.h"
 
 /* Largest norm of a plastic increment for the series of the exponential; beyond, that of a half of it, or a quarter, is squared */
@@ -48,9 +46,7 @@ SIMD_INLINE Symmetric ExponentialLess1(Symmetric d, PetscInt halves)
   return sum;
 }
 
-/* Fp^-1 exp(-D), equivalent strain, work and centre at the end of the step; `ratio`: of the increment D to the stress relative to the
- * centre
- */
+/* Fp^-1 exp(-D), equivalent strain, work and centre at the end of the step; `ratio`: of D to the stress relative to the centre */
 SIMD_INLINE void Flow(const Plastic *plastic, PetscInt part, PetscInt halves, Symmetric relative, SimdVector ratio, SimdVector work,
                       const PetscReal start[][8], PetscReal end[][8])
 {

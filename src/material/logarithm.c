@@ -1,9 +1,7 @@
-/*
-   The logarithm of a symmetric tensor 1 + A, and its first two derivatives, from eigenvalues: for one point at a time, where series do not
+/* The logarithm of a symmetric tensor 1 + A, and its first two derivatives, from eigenvalues: for one point at a time, where series do not
    serve. Derivatives are divided differences of the eigenvalues, in a form that holds however close these are (R. Hill, Aspects of
    invariance in solids, 1978; C. Miehe, M. Lambrecht, Algorithms for computation of stresses and elasticity moduli in terms of Seth-Hill's
-   family of generalized strain tensors, 2001).
-*/
+   family of generalized strain tensors, 2001). */
 #include "logarithm.h"
 #include <impakt/private/plastic.h>
 #include <math.h>
@@ -121,7 +119,6 @@ static void FromAxes(const PetscReal Q[3][3], const PetscReal a[3][3], PetscReal
     for (int j = 0; j < 3; j++) b[i][j] = Q[i][0] * half[0][j] + Q[i][1] * half[1][j] + Q[i][2] * half[2][j];
 }
 
-/* SymmetricLogGet - the logarithm itself */
 void SymmetricLogGet(const SymmetricLog *log, PetscReal value[3][3])
 {
   PetscReal d[3][3] = {{0}};

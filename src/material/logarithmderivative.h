@@ -1,11 +1,9 @@
-/*
-   The derivative of the logarithm at C = 1 + A in the symmetric direction M, of half a batch of points at once:
+/* The derivative of the logarithm at C = 1 + A in the symmetric direction M, of half a batch of points at once:
 
      D ln(C)[M] = integral from 0 to 1 of (1 + s A)^-1 M (1 + s A)^-1 ds,
 
    the derivative of ln(1 + A) = integral of A (1 + s A)^-1, by Gauss and Legendre's rule. The integrand has its pole at s = -1 / a of an
-   eigenvalue a of A: with |a| <= 0.2 seven points leave 3e-18 of it, with |a| <= 0.02 four leave 4e-19.
-*/
+   eigenvalue a of A: with |a| <= 0.2 seven points leave 3e-18 of it, with |a| <= 0.02 four leave 4e-19. */
 #pragma once
 #include "symmetric.h"
 

@@ -1,4 +1,3 @@
-/* The class: creation, type, options, view, destruction. */
 #include <impakt/private/materialimpl.h>
 #include <sys/names.h>
 #include <sys/units.h>

@@ -31,7 +31,6 @@ PetscErrorCode MaterialRegister(const char name[], PetscErrorCode (*create)(Mate
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All that Impakt brings */
 static PetscErrorCode RegisterAll(void)
 {
   PetscFunctionBegin;

@@ -21,8 +21,7 @@ PetscErrorCode MaterialIsLinear(Material material, PetscBool *linear)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The modulus M of the fastest wave at zero strain, of speed sqrt(M / density). `modulus`: lambda + 2 mu; in plane stress E / (1 - nu^2)
-   [Pa] */
+/* Modulus M of the fastest wave at zero strain, speed sqrt(M / density). `modulus`: lambda + 2 mu; in plane stress E / (1 - nu^2) [Pa] */
 PetscErrorCode MaterialGetWaveModulus(Material material, PetscReal *modulus)
 {
   PetscFunctionBegin;
@@ -32,8 +31,7 @@ PetscErrorCode MaterialGetWaveModulus(Material material, PetscReal *modulus)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the body is a thin plate in its plane, free of stress across it; else the displacement gradient is taken as given: plane strain
-   where its third row and column vanish */
+/* Whether the body is a thin plate, free of stress across it; else gradients are as given: plane strain with a third row and column of 0 */
 PetscErrorCode MaterialSetPlaneStress(Material material, PetscBool plane_stress)
 {
   PetscFunctionBegin;
@@ -66,8 +64,7 @@ PetscErrorCode MaterialComputeUniaxial(Material material, PetscInt n, const Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Derivative of the nominal stress of bars with free sides by the strain, for a batch of strains. `tangent`: derivatives [Pa], n of them;
-   NaN where the material is not defined */
+/* Derivative of nominal stress by strain of bars with free sides. `tangent`: n of them [Pa]; NaN where not defined */
 PetscErrorCode MaterialComputeUniaxialTangent(Material material, PetscInt n, const PetscReal strain[], PetscReal tangent[])
 {
   PetscFunctionBegin;
@@ -76,8 +73,7 @@ PetscErrorCode MaterialComputeUniaxialTangent(Material material, PetscInt n, con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stored energy of bars with free sides, for a batch of strains. `energy`: energies per reference volume [J/m^3], n of them; NaN where
-   the material is not defined */
+/* Stored energy of bars with free sides for n strains. `energy`: n, per reference volume [J/m^3]; NaN where not defined */
 PetscErrorCode MaterialComputeUniaxialEnergy(Material material, PetscInt n, const PetscReal strain[], PetscReal energy[])
 {
   PetscFunctionBegin;

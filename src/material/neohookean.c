@@ -28,8 +28,7 @@ SIMD_CLONES static void Stress(const void *data, const PetscReal H[9][8], PetscR
 /* Up to this |J - 1| the series below is exact to round-off with its 8 terms: z^2 <= 1/81, the next is z^17 / 19 of the leading one */
 #define SERIES_LIMIT 0.2
 
-/* j - ln(1 + j), of second order, without cancellation: ln(1 + j) = 2 artanh z with z = j / (2 + j) (Abramowitz and Stegun, 4.1.27),
-   and j - 2 z = z j */
+/* j - ln(1 + j) without cancellation: ln(1 + j) = 2 artanh z with z = j / (2 + j) (Abramowitz and Stegun, 4.1.27), and j - 2 z = z j */
 SIMD_INLINE PetscReal LogRemainderSeries(PetscReal j)
 {
   const PetscReal z = j / (2 + j), y = z * z;

@@ -69,8 +69,7 @@ PetscReal MaterialFindSides(const MaterialKernels *solid, PetscReal strain, Pets
   return NAN;
 }
 
-/* Displacement gradients with the third row and column that plane stress asks for. With vectors: stores narrower than the loads of the
-   solid's kernels would hold those up. */
+/* Displacement gradients with plane stress's third row and column. Vectors: narrower stores would hold up the solid kernels' loads. */
 SIMD_CLONES static void Complete(const PlaneStressData *plane, const PetscReal H[9][8], PetscReal full[9][8])
 {
 #pragma omp simd

@@ -1,13 +1,11 @@
-/*
-   How much a point flows in a step: the radial return. With q the equivalent stress at the end of the step if nothing flowed, the
+/* How much a point flows in a step: the radial return. With q the equivalent stress at the end of the step if nothing flowed, the
    equivalent plastic strain grows by the root d of
 
      q - (3 mu + K) d = strength(strain + d),
 
    K the modulus of kinematic hardening (Simo, Hughes, Computational Inelasticity, 1998, section 3.3). Where strength is no linear function
    of the strain, nor one in pieces, the root is found by Halley's method, kept between 0 and q / (3 mu + K), where the two sides change
-   order: the logarithm of the rate is so curved that Newton's method takes half as many iterations more.
-*/
+   order: the logarithm of the rate is so curved that Newton's method takes half as many iterations more. */
 #include <impakt/private/plastic.h>
 #include <impakt/private/simdmath.h>
 #include <math.h>
@@ -105,8 +103,7 @@ SIMD_INLINE SimdVector GetRate(const Plastic *plastic, SimdVector growth, PetscR
   return 1 + plastic->rate * SimdLog(fast);
 }
 
-/* The step from the start by the slope there, which is below the root of a law that becomes flatter; half of what perfect plasticity
-   would do where the slope may be infinite */
+/* First step by the slope at the start, below the root of a flattening law; half of perfect plasticity's where it may be infinite */
 SIMD_INLINE SimdVector FirstGuess(const Plastic *plastic, SimdVector excess, PetscReal stiffness, SimdVector soft, SimdVector strain,
                                   SimdVector strength)
 {
@@ -262,8 +259,7 @@ SIMD_CLONES static void FindLinearFlow(const Plastic *plastic, const PetscReal q
   }
 }
 
-/* PlasticFindFlow - what flows in a step of dt at a batch of points, whose equivalent stress is q if nothing does;
-   a negative dt: nothing is to flow */
+/* PlasticFindFlow - flow in a step dt at a batch of points, with the equivalent stress q without it; dt < 0: none */
 void PlasticFindFlow(const Plastic *plastic, PetscReal dt, const PetscReal q[8], const PetscReal start[][8], PlasticFlow *flow)
 {
   if (dt < 0) FindNoFlow(start, flow);

@@ -1,5 +1,4 @@
-/* Discs and balls from options: an O-grid, graded toward a pole by a conformal map, or a symmetric part of it. PETSc itself can make balls
-   only with a generator of tetrahedra. */
+/* Discs and balls from options: an O-grid, graded toward a pole by a conformal map, or a part of it. PETSc needs a generator for these. */
 #include "ballimpl.h"
 
 static PetscErrorCode ReadPart(MPI_Comm comm, const char prefix[], Ball *ball)
@@ -59,8 +58,7 @@ static PetscErrorCode ReadNumber(MPI_Comm comm, const char prefix[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where elements are composite the grid of nodes is made twice as fine: every second node is a corner, and those between lie in the middle
-   of edges, of those on the surface where the true one is */
+/* For composite elements the grid is twice as fine: every second node is a corner, others are mid-edge, on the true surface */
 PetscErrorCode BallChooseOrder(const char prefix[], Ball *ball)
 {
   PetscBool composite;
@@ -136,7 +134,6 @@ PetscErrorCode BallCreate(MPI_Comm comm, Ball *ball, const char where[], PetscMP
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A disc or a ball from options, and where the nodes in the middle of its edges are, if it has some */
 PetscErrorCode MeshCreateBall(MPI_Comm comm, const char prefix[], const char name[], PetscMPIInt rank, DM *dm, MeshMiddles *middles)
 {
   Ball      ball;

@@ -1,5 +1,4 @@
-/*
-   Elements and surfaces of a disc, a ball or a rod, in the grid of its nodes.
+/* Elements and surfaces of a disc, a ball or a rod, in the grid of its nodes.
 
    Simplices fill a quadrilateral or hexahedron of this grid, one for each way to walk from one of its corners to the opposite one along the
    axes (H. W. Kuhn, 1960). Cells are mirror images of their neighbours: a walk begins where the number of elements to the plane in the
@@ -8,8 +7,7 @@
    along both of its axes to that which is odd along both. So cells that share a face cut it along the same diagonal, within a block and
    where blocks touch, which have the axes of their common face in common; and with an even number of divisions a ball is its own image in
    the planes through its centre, across the axes and halfway between two of them. With all cells cut the same way, a bar that is compressed
-   along an axis gets wider in one direction than in another.
-*/
+   along an axis gets wider in one direction than in another. */
 #include "ballimpl.h"
 
 /* A face of the sphere belongs to its back if no corner is further than this on the pole's side of the centre [radii]: round-off */
@@ -73,8 +71,7 @@ static PetscErrorCode AddCell(MeshFile *file, const Ball *ball, PetscInt dim, co
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The nodes of a cell of a block, or of a face or edge of it that lies along some axes: those at its corners, and those between where the
-   grid has some. A place without a node has -1. */
+/* Nodes of a cell of a block, or of its face or edge along some axes: corners, and those between if any; -1: none */
 static void FindNodes(const BallGrid *grid, const BallBlock *block, PetscInt n_axes, const PetscInt axes[], const PetscInt at[3],
                       PetscInt node[27])
 {
@@ -118,7 +115,6 @@ PetscErrorCode BallAddRange(const BallGrid *grid, const BallBlock *block, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Begins a surface with a number and a name */
 static PetscErrorCode AddSurface(MeshFile *file, const Ball *ball, PetscInt number, const char name[])
 {
   PetscInt group;

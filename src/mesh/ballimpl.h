@@ -19,8 +19,7 @@ typedef struct {
   PetscInt side; /* 0: lower, 1: upper */
 } BallBlock;
 
-/* Numbers of the nodes: those of the central block come first, along its axes; then those of each layer around it, in which there is a node
-   for each node on the rim of the central block */
+/* Numbers of the nodes: the central block along its axes; then each layer around it, with a node for each on the block's rim */
 typedef struct {
   MeshFile   *file;
   const Ball *ball;

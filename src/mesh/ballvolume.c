@@ -118,7 +118,6 @@ PetscInt BallFirstCorner(const Ball *ball, const BallBlock *block, PetscInt n_ax
   return first;
 }
 
-/* The faces of the sphere by their nodes on the rim */
 static PetscErrorCode FindFaces(const BallGrid *grid, Sphere *sphere)
 {
   const PetscInt dim = grid->ball->dim, outer = grid->n_core + (grid->ball->layers - 1) * grid->n_rim;

@@ -1,14 +1,11 @@
-/*
-   Meshes of the first rank, of which a surface may touch another body, divided among ranks by the coordinates of their cells.
+/* Meshes of the first rank, of which a surface may touch another body, divided among ranks by the coordinates of their cells.
 
    A step is over once the rank with most cells has done with them and, after that, the rank with most contact faces with those. A graph
-   whose vertices have both as one weight gives ranks with contact faces fewer cells, so that others wait for the faces, and they for the
-   cells of others. Here each rank has as many cells as another: those of one rank are halved, again and again, across their longest extent
-   (recursive coordinate bisection, as in S. Plimpton, S. Attaway, B. Hendrickson, J. Swegle, C. Vaughan, D. Gardner, "Transient dynamics
-   simulations: parallel algorithms for contact detection and smoothed particle hydrodynamics", 1998). The extent along the normal of the
-   contact surface counts less and less, so that more and more ranks have a part of it, and the cheapest of these divisions is taken. If
-   that is the first, in which all extents count alike, PETSc divides the mesh as a graph, which makes smoother parts.
-*/
+   with one weight for both gives ranks with contact faces fewer cells, and each waits for the other. Here each rank has as many cells as
+   another: those of one rank are halved, again and again, across their longest extent (recursive coordinate bisection, as in S. Plimpton,
+   S. Attaway, B. Hendrickson, J. Swegle, C. Vaughan, D. Gardner, "Transient dynamics simulations: parallel algorithms for contact detection
+   and smoothed particle hydrodynamics", 1998). The extent along the contact normal counts less and less, so that more ranks have a part of
+   the surface, and the cheapest division is taken. If that is the first, PETSc divides the mesh as a graph, which makes smoother parts. */
 #include "meshimpl.h"
 #include <sys/names.h>
 
@@ -57,8 +54,7 @@ static PetscInt FindLongest(PetscInt dim, const PetscReal weights[], const Petsc
 }
 
 /* Gives points to the ranks from `first` on, as much work to each: halves them, again and again, across their longest extent. `weights`: of
-   the extents along the axes; `points`: dim numbers each; `work`: of each, NULL: all alike; `list`: n of them, which it changes; `ranks`:
-   of each of those that are listed */
+   the extents along the axes; `points`: dim numbers each; `work`: of each, NULL: alike; `list`: n, changed; `ranks`: of the listed */
 PetscErrorCode MeshBisect(PetscInt dim, const PetscReal weights[], const PetscReal points[], const PetscReal work[], PetscInt n,
                           PetscInt list[], PetscMPIInt first, PetscMPIInt size, PetscInt ranks[])
 {

@@ -22,7 +22,6 @@ static PetscErrorCode CollectCells(DM dm, DMLabel label, PetscInt value, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether any rank has cells */
 static PetscErrorCode AnyCells(DM dm, PetscInt n, PetscBool *any)
 {
   PetscInt most = n;
@@ -85,8 +84,7 @@ PetscErrorCode MeshHasBlock(DM dm, const char name[], PetscBool *has)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The cells of a block of a mesh. `cells`: points of the `DMPLEX`, ascending; free with `PetscFree()`. An error lists the blocks that
-   there are. Collective */
+/* Cells of a block. `cells`: points of the `DMPLEX`, ascending; free with `PetscFree()`. An error lists the blocks. Collective */
 PetscErrorCode MeshGetBlock(DM dm, const char name[], PetscInt *n, PetscInt *cells[])
 {
   PetscBool found;

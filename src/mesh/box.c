@@ -48,8 +48,7 @@ static PetscErrorCode ReadBox(MPI_Comm comm, const char prefix[], MeshBox *box)
                prefix, prefix, d + 1, (double)box->upper[d], (double)box->lower[d]);
   }
   PetscCall(PetscOptionsHasName(NULL, prefix, "-dm_plex_simplex", &set));
-  /* DMPLEX has no setter for this default: it is put among the options, whoever makes the box, so that a run has the same options on any
-     number of ranks */
+  /* DMPLEX has no setter for this default: it is put among the options, the same on any number of ranks */
   if (!set && box->dim > 1) {
     PetscCall(PetscSNPrintf(option, sizeof(option), "-%sdm_plex_simplex", prefix));
     PetscCall(PetscOptionsSetValue(NULL, option, "0"));
@@ -74,7 +73,6 @@ static PetscErrorCode FindOptionOfGraph(const char prefix[], const char **option
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads the number of bricks along each axis */
 static PetscErrorCode ReadBricks(MPI_Comm comm, const char prefix[], MeshBox *box, PetscBool *set)
 {
   const PetscMPIInt size = box->ranks->n;

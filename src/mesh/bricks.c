@@ -1,25 +1,20 @@
-/*
-   Boxes of bars, quadrilaterals and hexahedra that all ranks make together: a rank makes the brick of cells that is its own.
+/* Boxes of bars, quadrilaterals and hexahedra that all ranks make together: a rank makes the brick of cells that is its own.
 
-   The bricks come from cutting the box in two, again and again, so that no graph is divided and no cell is sent. What ranks exchange is
-   which points of their bricks' sides are the same. A point of the mesh is known to all ranks by its place in a lattice of half cells, in
-   which vertices have even numbers along all axes and the middle of a cell odd ones.
+   The box is cut in two, again and again: no graph is divided and no cell is sent. Ranks exchange which points of their bricks' sides are
+   the same, by places in a lattice of half cells, in which vertices have even numbers along all axes and the middle of a cell odd ones.
 
-   A step is over once the rank with most elements has done with them and, after that, the rank with most contact faces with those: the one
-   cannot make up for the other. Cuts across the longest edge leave all contact faces to the bricks at one end of a bar. So cuts along the
-   normal of the contact surface are made rarer, step by step, up to none at all, and the division that costs least is taken.
-*/
+   A step is over once the rank with most elements has done with them and, after that, the rank with most contact faces with those. Cuts
+   across the longest edge leave all contact faces to the bricks at one end of a bar. So cuts along the normal of the contact surface are
+   made rarer, step by step, up to none at all, and the division that costs least is taken. */
 #include "meshimpl.h"
 #include <petscsf.h>
 #include <sys/petsccompat.h>
 
-/* The largest brick may have so many times the cells of the mean brick. Where that does not do, as with few cells for many ranks, PETSc
-   divides the box as a graph. */
+/* Most cells of a brick over their mean. Beyond, as with few cells for many ranks, PETSc divides the box as a graph. */
 #define MOST_IMBALANCE 1.1
 /* Work for a face that two bricks share, whose nodes are packed, sent and added up, in units of the work for an element */
 #define COST_OF_SHARED 0.2
-/* An edge along the normal of a contact surface counts with 1, 1/2, 1/4, ... of its cells when the longest is looked for, and at last with
-   none: so many divisions are compared */
+/* An edge along a contact normal counts with 1, 1/2, 1/4, ... of its cells, at last with none: so many divisions are compared */
 #define DIVISIONS 8
 
 /* The cells begin[d] to end[d] - 1 along each axis d */
@@ -122,8 +117,7 @@ static PetscReal FindCost(const MeshBox *box, PetscMPIInt size, PetscReal *most)
   return *most + box->contact_cost * most_contact + COST_OF_SHARED * most_shared;
 }
 
-/* Chooses how the box is cut; balance: whether the bricks of all ranks are near enough to each other in size if it is cut across its
-   longest edges */
+/* Chooses how the box is cut; balance: whether bricks are near enough in size when cut across the longest edges */
 PetscErrorCode MeshBricksChoose(MeshBox *box, PetscBool *balance)
 {
   const PetscMPIInt size = box->ranks->n;

@@ -72,8 +72,7 @@ static PetscErrorCode CreatePlex(MPI_Comm comm, const PetscInt sizes[2], const M
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A DMPlex, all of it on the rank of the file that a reader has filled there; and where the nodes in the middle of edges are, where
-   there can be some. Frees the file's arrays. */
+/* A DMPlex, all on the rank of the file that a reader has filled; and the nodes mid-edge, if any. Frees the file's arrays. */
 PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *dm, MeshMiddles *middles)
 {
   PetscInt    sizes[2];

@@ -211,9 +211,8 @@ PetscErrorCode MeshMakeComposite(DM *dm, const char prefix[], const char name[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A mesh of composite elements: each cell of a mesh of triangles or tetrahedra divided into 4 or 8. A `Body` with such a mesh has
-   elements of six or ten nodes, unless another formulation has been set. `MeshCreate()` divides meshes by itself where options or files
-   ask for such elements. Collective */
+/* A mesh of composite elements: each cell of a mesh of triangles or tetrahedra divided into 4 or 8. A `Body` with such a mesh has elements
+   of six or ten nodes, unless another formulation has been set. `MeshCreate()` divides where options or files ask. Collective */
 PetscErrorCode MeshCreateComposite(DM dm, DM *composite)
 {
   PetscFunctionBegin;

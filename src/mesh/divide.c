@@ -1,9 +1,7 @@
 /* Meshes that are divided among ranks: as a graph, or by where surfaces may touch, see bisection.c. */
 #include "meshimpl.h"
 
-/* Divides the graph of a mesh as the partitioner of its options does, into a part for each of these ranks: part[c] of the cells of this
- * rank
- */
+/* Divides the graph of a mesh by the partitioner of its options, a part for each of these ranks: part[c] of the cells of this rank */
 static PetscErrorCode DivideGraph(DM dm, const MeshRanks *ranks, PetscInt part[])
 {
   PetscPartitioner partitioner;

@@ -1,5 +1,4 @@
-/* What a mesh file can hardly have meant: elements that lie over each other, and nodes that are there twice and leave the mesh in pieces.
- */
+/* What a mesh file can hardly have meant: elements over each other, and double nodes that leave the mesh in pieces. */
 #include "meshimpl.h"
 
 /* How far a point must be inside an element to say so, as a part of its extent: faces of hexahedra may be warped */
@@ -122,8 +121,7 @@ static PetscBool IsInside(const MeshFile *file, const PetscInt cell[], const Pet
   return PETSC_TRUE;
 }
 
-/* The vertices, and of each element its centre and `corners` points near its corners (0: none); as many, by elements, behind the vertices
- */
+/* The vertices, then of each element its centre and `corners` points near its corners (0: none) */
 static PetscErrorCode CollectPoints(const MeshFile *file, PetscInt corners, PetscInt *n, PetscReal **points)
 {
   const PetscInt dim = file->dim, of_cell = 1 + corners;
@@ -145,8 +143,7 @@ static PetscErrorCode CollectPoints(const MeshFile *file, PetscInt corners, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Counts the elements that hold a vertex or a point of another element, of which there are `of_cell`, and tells of one such pair, whose
-   second number is negative where it is a vertex */
+/* Counts elements that hold a vertex or one of `of_cell` points of another; gives one such pair, the second negative: a vertex */
 static PetscErrorCode FindOverlap(const MeshFile *file, const Boxes *boxes, PetscInt of_cell, PetscInt *number, PetscInt pair[2])
 {
   const PetscInt dim   = file->dim;

@@ -255,7 +255,6 @@ static PetscErrorCode ReadAll(Exodus *exodus)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads an Exodus II file, on the first rank alone */
 PetscErrorCode MeshReadExodus(MeshFile *file)
 {
   Exodus         exodus = {.file = file};

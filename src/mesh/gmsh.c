@@ -203,7 +203,6 @@ static PetscErrorCode ReadSections(Gmsh *gmsh)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads a Gmsh file, on the first rank alone */
 PetscErrorCode MeshReadGmsh(MeshFile *file)
 {
   Gmsh           gmsh = {.file = file};

@@ -1,4 +1,3 @@
-/* Nodes and elements of Gmsh's files. */
 #include "gmshimpl.h"
 
 static PetscErrorCode AllocateNodes(Gmsh *gmsh, PetscInt n)
@@ -130,8 +129,7 @@ static PetscErrorCode AddElement(Gmsh *gmsh, PetscInt64 number, PetscInt n, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads elements: one after the other in ASCII files; in blocks of the same type and number of tags in binary files. The first tag is the
-   physical group, 0 if there is none. */
+/* Reads elements: one by one in ASCII files, in blocks of type and number of tags in binary ones. First tag: the physical group or 0. */
 PetscErrorCode GmshReadElements22(Gmsh *gmsh)
 {
   PetscInt n, done = 0;

@@ -51,7 +51,6 @@ PetscErrorCode GmshReadBytes(Gmsh *gmsh, size_t size, PetscInt n, void *values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads numbers that the format calls int */
 PetscErrorCode GmshReadInts(Gmsh *gmsh, PetscInt n, PetscInt64 values[])
 {
   PetscFunctionBegin;
@@ -116,7 +115,6 @@ PetscErrorCode GmshReadCount(Gmsh *gmsh, const char what[], PetscInt64 bytes, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Checks the number of a node, an element or a group */
 PetscErrorCode GmshCheckNumber(Gmsh *gmsh, PetscInt64 value, PetscInt *number)
 {
   PetscFunctionBegin;

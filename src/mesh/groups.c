@@ -4,8 +4,7 @@
 #include <petscsf.h>
 #include <sys/names.h>
 
-/* A face is on a side of the bounding box if none of its vertices is further from it, in parts of the box's edge across that side:
-   round-off */
+/* A face is on a side of the bounding box if no vertex is further from it, in parts of the box's edge across it: round-off */
 #define ON_SIDE 1e-8
 
 static const char *const sides[] = {"xmin", "xmax", "ymin", "ymax", "zmin", "zmax"};
@@ -268,8 +267,7 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same of a mesh that is on this rank alone, which the others know nothing of; no faces where there is no such surface, and those on a
-   side of the bounding box only if `by_side` */
+/* The same of a mesh on this rank alone; no faces without such a surface, a side of the bounding box only if `by_side` */
 PetscErrorCode MeshFindSurface(DM dm, const char name[], PetscBool by_side, PetscInt *n_faces, PetscInt *faces[])
 {
   Selection selection = {.side = -1};
@@ -351,8 +349,7 @@ static PetscErrorCode MarkVerticesOfFaces(DM dm, PetscInt n, const PetscInt face
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Vertices of a mesh by the name of a node set, or of a surface. `vertices`: points of the mesh, ascending, owned ones and ghosts; free
-   with `PetscFree()`. Collective */
+/* Vertices of a node set or surface by its name. `vertices`: points, ascending, ghosts too; free with `PetscFree()`. Collective */
 PetscErrorCode MeshGetNodeSet(DM dm, const char name[], PetscInt *n_vertices, PetscInt *vertices[])
 {
   Selection selection = {.side = -1};

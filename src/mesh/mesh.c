@@ -1,4 +1,3 @@
-/* The mesh of a body from its options. */
 #include "meshimpl.h"
 #include <petsc/private/petscimpl.h>
 #include <sys/names.h>
@@ -73,8 +72,7 @@ PetscErrorCode MeshCreateFromFile(MPI_Comm comm, const char prefix[], const char
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The prefix of the body for the mesh and for its partitioner. An option of PETSc's partitioner without any prefix goes on being that of
-   all bodies that have none of their own. */
+/* The prefix of the body for the mesh and for its partitioner. PETSc's partitioner options without prefix are for all other bodies. */
 static PetscErrorCode SetPrefix(DM dm, const char prefix[])
 {
   PetscBool of_body, of_all;
@@ -90,8 +88,7 @@ static PetscErrorCode SetPrefix(DM dm, const char prefix[])
 /* The mesh of a body from options, distributed over the ranks: a DMPLEX with faces and edges, on each rank its own part. Groups of a file
    become labels: their numbers in "Cell Sets", "Face Sets" and "Vertex Sets", their names as labels with the value 1; the sides of a box
    have labels xmin, xmax, ... which a rotation takes along. The dimension of space is that of the elements: coordinates beyond it must be
-   zero in the file. Nodes that belong to no element of the body are left out. After an error the mesh is NULL, or to be destroyed.
-   Collective */
+   zero in the file. Nodes of no element are left out. After an error the mesh is NULL, or to be destroyed. Collective */
 PetscErrorCode MeshCreate(MPI_Comm comm, const char prefix[], const char name[], DM *dm)
 {
   PetscFunctionBegin;

@@ -61,8 +61,7 @@ typedef struct {
   PetscInt      *cells, *cell_numbers; /* vertices of each cell; its number in the file */
   PetscInt      *vertex_of_node;       /* < 0: not the body's */
   PetscReal     *vertices;
-  /* of a body of six-node triangles or ten-node tetrahedra: the ends of all edges of all cells and the node in the middle, 3 numbers; none:
-   * 0 */
+  /* of a body of six-node triangles or ten-node tetrahedra: ends and middle node of all edges of all cells, 3 numbers; none: 0 */
   PetscInt  n_edges;
   PetscInt *edges;
   PetscInt *edge_of_node; /* point of the DMPlex; -1: the node is in the middle of none. NULL without such cells */

@@ -143,7 +143,6 @@ PetscErrorCode MeshDivideWithMiddles(DM *dm, MeshMiddles *middles)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same as options say */
 PetscErrorCode MeshDistributeWithMiddles(DM *dm, const char prefix[], MeshMiddles *middles)
 {
   PetscPartitioner partitioner;

@@ -181,7 +181,6 @@ PetscErrorCode MeshGetPlaceOption(const char prefix[], const char *option[], con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether -dm_plex_shape is this one */
 PetscErrorCode MeshHasShape(const char prefix[], const char shape[], PetscBool *has)
 {
   char given[64] = "";

@@ -1,9 +1,7 @@
-/*
-   Meshes that some of the ranks have among them, and others nothing of.
+/* Meshes that some of the ranks have among them, and others nothing of.
 
    Such a mesh is made whole on the first rank, boxes of bricks apart, divided there into as many parts as there are ranks to have one, and
-   sent to these.
-*/
+   sent to these. */
 #include "meshimpl.h"
 #include <petscpartitioner.h>
 

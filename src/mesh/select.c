@@ -2,8 +2,7 @@
 #include "meshimpl.h"
 #include <sys/names.h>
 
-/* A body in one or two dimensions may be off its axis or plane by this, in parts of its largest coordinate: files carry the round-off of
-   the program that drew it */
+/* A body in one or two dimensions may be off its axis or plane by this part of its largest coordinate: round-off in files */
 #define OFF_PLANE 1e-12
 
 /* Finds the dimension of the body, which is that of its elements, and decides what groups are whose kind the file does not tell: a group of
@@ -157,8 +156,7 @@ static PetscReal SimplexJacobian(PetscInt dim, const PetscReal *x[])
   return Determinant(dim, J);
 }
 
-/* Smallest Jacobian of a quadrilateral or hexahedron at the points of the 2-point Gauss rule, at which it is integrated; their sum is its
-   volume */
+/* Smallest Jacobian of a quadrilateral or hexahedron at the points of its 2-point Gauss rule; their sum is its volume */
 static PetscReal TensorJacobian(PetscInt dim, const PetscReal *x[], PetscReal *sum)
 {
   static const int signs[8][3] = {{-1, -1, -1}, {1, -1, -1}, {1, 1, -1}, {-1, 1, -1}, {-1, -1, 1}, {1, -1, 1}, {1, 1, 1}, {-1, 1, 1}};
@@ -243,7 +241,6 @@ static PetscErrorCode CheckCells(const MeshFile *file)
           (double)volume_of_first);
 }
 
-/* Chooses and checks the body's cells and vertices among what a reader has put into a file */
 PetscErrorCode MeshFileSelect(MeshFile *file)
 {
   PetscFunctionBegin;

@@ -42,9 +42,8 @@ static PetscErrorCode EstimateBox(const char prefix[], PetscInt dim, PetscInt *c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many cells a mesh will have, and where it will be, as its options tell before it is made. `centre`: about where its middle is,
-   three numbers [m]. To choose the rank on which a mesh is to lie whole: rotations and parts of balls do not count, and nothing is an
-   error */
+/* How many cells a mesh will have, and where it will be, by its options, before it is made. `centre`: about where its middle is, three
+   numbers [m]. To choose the rank on which a mesh is to lie whole: rotations and parts of balls do not count, and nothing is an error */
 PetscErrorCode MeshEstimate(const char prefix[], PetscInt *cells, PetscReal centre[3])
 {
   PetscReal shift[3] = {0, 0, 0}, scale = 1;

@@ -98,7 +98,6 @@ void ComplianceGetRows(Compliance c, PetscInt *n, const PetscInt *rows[], const 
   if (place) *place = c->place;
 }
 
-/* Whether a row's column is known */
 PetscBool ComplianceKnows(Compliance c, PetscInt row)
 {
   return (PetscBool)(c->place[row] >= 0);

@@ -1,7 +1,5 @@
-/*
-   The compliance of displacements: a matrix of the displacement of one under a unit force on another one. It is symmetric (Maxwell, Betti),
-   the same on every rank, and known row by row: a row gets a place among the known ones.
-*/
+/* The compliance of displacements: a matrix of the displacement of one under a unit force on another one. It is symmetric (Maxwell, Betti),
+   the same on every rank, and known row by row: a row gets a place among the known ones. */
 #pragma once
 #include <petscsys.h>
 #include <checkpoint/checkpoint.h>

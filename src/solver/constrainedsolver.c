@@ -1,5 +1,4 @@
-/*
-   A x = b subject to B_m x = t for the constrained rows m, with the factors of the unconstrained A: the constraint forces s
+/* A x = b subject to B_m x = t for the constrained rows m, with the factors of the unconstrained A: the constraint forces s
    follow from the compliance W = B A^{-1} B^T,
 
      z = A^{-1} b,   W_mm s = B_m z - t,   x = z - A^{-1} B_m^T s.
@@ -7,8 +6,7 @@
    A row on a spring, rather than prescribed, gives (A + B_m^T k B_m) x = b: the same with t = 0 and the flexibility 1 / k added to its
    entry on the diagonal of W (Woodbury's formula). So a change of the constrained rows never makes A be factored again. The columns C =
    A^{-1} B^T are made once each, when their row is constrained for the first time, and W_mm comes from them. With many constrained rows the
-   constraint forces are found by conjugate gradients, which need W only as a product.
-*/
+   constraint forces are found by conjugate gradients, which need W only as a product. */
 #include "constrainedsolverimpl.h"
 #include <math.h>
 
@@ -67,8 +65,7 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many right-hand sides are solved for together: those of MUMPS; PETSc's own factors solve for one after the other, whatever they are
-   asked for */
+/* How many right-hand sides are solved for together by MUMPS; PETSc's own factors solve for one after the other */
 static PetscErrorCode ChooseBlock(ConstrainedSolver s)
 {
   PetscInt      size;
@@ -86,7 +83,6 @@ static PetscErrorCode ChooseBlock(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What depends on the price of a solution */
 static PetscErrorCode ChooseForRows(ConstrainedSolver s)
 {
   PetscFunctionBegin;
@@ -123,8 +119,7 @@ PetscErrorCode ConstrainedSolverReplaceRows(ConstrainedSolver s, Mat B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A is the matrix of a body in `dim` dimensions; `constant`: it never changes, so that a solution that fails is an error. There are no
-   factors yet. */
+/* A is the matrix of a body in `dim` dimensions; `constant`: it never changes, so that a failed solution is an error. */
 PetscErrorCode ConstrainedSolverBegin(Mat A, Mat B, PetscInt dim, const char prefix[], PetscBool constant, ConstrainedSolver *solver)
 {
   ConstrainedSolver s;
@@ -153,8 +148,7 @@ PetscErrorCode ConstrainedSolverBegin(Mat A, Mat B, PetscInt dim, const char pre
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes the factors where one rank has all of A, there. Not collective: where that is done for the solvers of many bodies, ranks factor at
-   the same time. */
+/* Makes the factors where one rank has all of A, there. Not collective: ranks factor at the same time. */
 PetscErrorCode ConstrainedSolverFactor(ConstrainedSolver s)
 {
   PetscInt mine;
@@ -209,7 +203,6 @@ PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver solver, KSP *ksp)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A and B, owned by the solver */
 PetscErrorCode ConstrainedSolverGetMatrices(ConstrainedSolver s, Mat *A, Mat *B)
 {
   PetscFunctionBegin;

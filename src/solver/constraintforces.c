@@ -104,8 +104,7 @@ static PetscErrorCode FillMatrix(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LU factors of W_mm. Of rows that depend on each other some pivot is zero but for round-off. By LAPACK, since MatLUFactor() ends the run
-   there, and its error leaves memory behind. */
+/* LU factors of W_mm. Dependent rows have a pivot of round-off, where MatLUFactor() ends the run and leaves memory behind: so by LAPACK. */
 static PetscErrorCode FactorMatrix(ConstrainedSolver s, PetscBool *singular)
 {
   PetscScalar *largest = s->force; /* entry of each column, without sign */
@@ -124,7 +123,6 @@ static PetscErrorCode FactorMatrix(ConstrainedSolver s, PetscBool *singular)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The constraint forces' matrix, for the rows that are constrained now */
 static PetscErrorCode FactorConstraints(ConstrainedSolver s)
 {
   PetscBool singular;
@@ -296,9 +294,8 @@ static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the columns of all rows whose force changes are there. Those that are not are made at once where the interface has few rows, else
-   when they have been missed in as many corrections, each by a solution, as making them takes; unless one rank may be doing this without
-   the others. */
+/* Whether the columns of all rows whose force changes are there. Others are made at once where there are few rows, else when as many
+   corrections, by a solution each, have missed them as they take; unless one rank may be doing this without the others. */
 static PetscErrorCode FindColumns(ConstrainedSolver s, PetscBool *columns)
 {
   PetscInt missing = 0;

@@ -29,7 +29,6 @@ static const PetscInt max_sequential_size[] = {50000, 50000, 12000, 1500};
    iterations of conjugate gradients with a matrix of 81 entries in a row take */
 #define FLOPS_OF_UNKNOWN 4000
 
-/* Whether one of several ranks has all rows of a matrix */
 static PetscErrorCode IsOnOneRank(Mat A, PetscMPIInt size, PetscBool *one)
 {
   const PetscInt *ranges;
@@ -56,7 +55,6 @@ PetscErrorCode ConstrainedSolverChooseMUMPS(PC pc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Factors of one rank alone */
 static PetscErrorCode ChooseSequential(PC pc, PetscInt n, PetscInt dim)
 {
   PetscFunctionBegin;
@@ -86,7 +84,6 @@ static PetscErrorCode ChooseOneRank(PC pc, Mat A, PetscInt n, PetscInt dim)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How A is factored, unless options say otherwise */
 PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
 {
   PetscMPIInt size;
@@ -199,8 +196,7 @@ PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver s, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether solutions are the same to the last bit in another run: factors of PETSc's own, or of one rank, are. Iterations and factors that
-   several ranks have together are not always. */
+/* Whether solutions are the same to the last bit in another run: by factors of PETSc's own, or of one rank, not always by others. */
 PetscErrorCode ConstrainedSolverRepeats(ConstrainedSolver s, PetscBool *repeats)
 {
   PetscFunctionBegin;

@@ -1,4 +1,3 @@
-/* How errors reach the user of the program, and the exit code that goes with them. */
 #include <impakt.h>
 #include <string.h>
 #include <unistd.h>

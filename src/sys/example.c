@@ -1,5 +1,4 @@
-/* -example: options files to start from, with what each option means. They lie in the program, since who has it need not have the sources.
- */
+/* -example: options files to start from, with what each option means. They lie in the program, which may be there without sources. */
 #include <impakt.h>
 #include <ctype.h>
 #include <errno.h>
@@ -54,7 +53,6 @@ static PetscErrorCode GetSentence(const Example *example, char text[], size_t si
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The examples, each with its first sentence */
 static PetscErrorCode PrintList(void)
 {
   size_t longest = 0;

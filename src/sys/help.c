@@ -1,7 +1,5 @@
-/* The screens of -help, -help TOPIC, -help WORD and -version.
-
-   PETSc prints its own screens for these two options while it starts, and then lets the program run. So the program looks for them first,
-   and starts PETSc without them. */
+/* The screens of -help, -help TOPIC, -help WORD and -version.  PETSc prints its own for these options at its start and then lets the
+   program run, so they are looked for first and kept from PETSc. */
 #include <impakt.h>
 #include <petscts.h>
 #include <hdf5.h>

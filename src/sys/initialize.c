@@ -90,8 +90,7 @@ PetscErrorCode ImpaktInitialize(int *argc, char ***argv)
   if (!running) {
     PetscCall(PetscPushErrorHandler(ImpaktReportError, NULL)); /* first, for what is wrong with the options file */
     (void)H5dont_atexit(); /* at exit HDF5 would try to finish a file that a full disk has left unfinished, and crash */
-    /* with threads SCOTCH divides a mesh otherwise where cores are busy, and a run could not be continued bit for bit; ranks are what cores
-     * are for */
+    /* with threads SCOTCH divides a mesh by how busy cores are, and a run could not be continued bit for bit */
     (void)setenv("SCOTCH_PTHREAD_NUMBER", "1", 0);
     PetscCall(PetscInitialize(argc, argv, NULL, help));
     began = PETSC_TRUE;

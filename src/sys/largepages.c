@@ -1,8 +1,5 @@
-/*
-   Many small bodies are many small objects, all over the heap: where pages have 4 kB the processor looks for their addresses as long as for
-   their numbers. Where they have 2 MB its table of addresses covers most of what a step goes through. Linux gives such pages to those alone
-   who ask for them.
-*/
+/* Many small bodies are many small objects, all over the heap: where pages have 4 kB looking up addresses takes as long as the numbers.
+   With pages of 2 MB the processor's table of addresses covers most of a step. Linux gives these on request. */
 #define _DEFAULT_SOURCE /* madvise() */
 #include "largepages.h"
 #if defined(__linux__)

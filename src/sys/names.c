@@ -1,5 +1,4 @@
-/* Lists of names: in the options, of any length (PETSc's own call fills an array of the caller's, and leaves away what does not fit), and
-   in registries. */
+/* Lists of names: in the options, of any length (PETSc's own call leaves away what does not fit), and in registries. */
 #include "names.h"
 
 PetscErrorCode NamesDestroy(PetscInt n, char ***names)
@@ -29,8 +28,7 @@ PetscErrorCode NamesRead(const char prefix[], const char option[], PetscInt *n, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a name to a list in a message; where there is no room left, " ..." once. PETSc's own call writes a byte beyond a text that is full
- */
+/* Adds a name to a list in a message; without room " ..." once. PETSc's own call writes a byte beyond a full text */
 PetscErrorCode NamesAppend(char list[], size_t size, const char separator[], const char name[])
 {
   static const char more[] = " ...";

@@ -39,8 +39,7 @@ static const char *const late_options[] = {"schwarz_snes_view",
                                            "on_error_abort",
                                            "on_error_mpiabort"};
 
-/* Options that are gone, with what happens instead: they are accepted, so that older options files run. A name that ends in an underscore
-   is that of a solver, before all of its options. */
+/* Options that are gone, accepted for older options files, with what happens instead. Names that end in _ begin those of a solver. */
 static const struct {
   const char *name, *now;
 } gone_options[] = {
@@ -93,15 +92,13 @@ static PetscErrorCode FindReason(const char name[], PetscInt n, const char *cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Options that nobody has read, as "-a 1, -b 2 (why), -c (why)": a text with one reason at least has room in an error of PETSc's, which has
-   2048 bytes */
+/* Options that nobody has read, as "-a 1, -b 2 (why), -c (why)": one reason at least fits in PETSc's errors of 2048 bytes */
 typedef struct {
   PetscInt n;
   char     text[1850];
   char     given[800], reason[900]; /* the options with the reason of the last one */
 } Unread;
 
-/* Ends the options of one reason */
 static PetscErrorCode Close(Unread *unread)
 {
   char group[sizeof(unread->given) + sizeof(unread->reason) + 4];

@@ -15,7 +15,6 @@
 /* What some editors put before the text of a file in UTF-8 */
 #define BYTE_ORDER_MARK "\xef\xbb\xbf"
 
-/* An option and the line of a file that gives it */
 typedef struct {
   char    *name;
   PetscInt line;
@@ -46,8 +45,7 @@ typedef struct {
 
 static PetscErrorCode VisitFile(Walk *, const char[], Place);
 
-/* Whether a text has a `${` without its `}`, with which PetscStrreplace() crashes. PETSc calls that for the paths of all files and viewers.
- */
+/* Whether a text has a `${` without its `}`: PetscStrreplace(), called for paths of all files and viewers, crashes then */
 PetscBool OptionsIsUnclosed(const char text[])
 {
   const char *open = strstr(text, "${");
@@ -56,8 +54,7 @@ PetscBool OptionsIsUnclosed(const char text[])
   return open ? PETSC_TRUE : PETSC_FALSE;
 }
 
-/* What is wrong with the variables ${NAME} in a path, if anything. PETSc's own mean something where the environment has none of that name.
- */
+/* What is wrong with the variables ${NAME} in a path, if anything. PETSc's own mean something without the environment. */
 static PetscErrorCode CheckVariables(const char text[], char problem[], size_t size)
 {
   const char *const own[] = {"PETSC_ARCH",       "PETSC_DIR", "PETSC_LIB_DIR", "DISPLAY",   "HOMEDIRECTORY",
@@ -79,7 +76,6 @@ static PetscErrorCode CheckVariables(const char text[], char problem[], size_t s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The path as PETSc opens it */
 static PetscErrorCode Expand(const char text[], char path[PETSC_MAX_PATH_LEN])
 {
   char replaced[PETSC_MAX_PATH_LEN];
@@ -348,7 +344,6 @@ static PetscErrorCode VisitCommandLine(Walk *walk)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a file is one of the options files of the run */
 PetscErrorCode OptionsFilesInclude(const struct stat *status, PetscBool *include)
 {
   char error[1024] = "";

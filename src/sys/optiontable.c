@@ -1,5 +1,4 @@
-/* All options that Impakt has beside those of PETSc. To add one: a line here, in the order in which it is to be printed; then `make docs`.
- */
+/* All options that Impakt has beside PETSc's. To add one: a line here, in the order of the printed table; then `make docs`. */
 #include "optiontable.h"
 
 static const OptionTopic topics[] = {

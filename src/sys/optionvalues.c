@@ -180,7 +180,6 @@ static const Complaint complaints[] = {
     {"Unsupported viewer ", "", "a viewer, as in ascii:file.txt"},
 };
 
-/* The value that a message complains about */
 static const Complaint *FindComplaint(const char message[], char value[], size_t size)
 {
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(complaints); i++) {
@@ -232,8 +231,7 @@ static PetscBool HasNumber(const char value[], PetscReal printed)
   return PETSC_FALSE;
 }
 
-/* The options with such a value (NULL: with the number `printed`, or with one that is not finite) that somebody has read, each with its
-   origin and what it takes */
+/* Options read with such a value (NULL: with the number `printed`, or one that is not finite), each with its origin and what it takes */
 static PetscErrorCode Describe(const char value[], const PetscReal *printed, char text[], size_t size)
 {
   char       *all, name[2 * PETSC_MAX_PATH_LEN], one[3 * PETSC_MAX_PATH_LEN];

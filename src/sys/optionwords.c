@@ -107,7 +107,6 @@ static PetscBool HasWord(const char list[], const char word[])
   return PETSC_FALSE;
 }
 
-/* Whether a word means an option, whatever the option is called */
 static PetscBool Means(const char word[], const char option[])
 {
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(meanings); i++)
@@ -161,7 +160,6 @@ static PetscInt EditDistance(const char a[], const char b[])
   return row[m];
 }
 
-/* An unknown option, and what is found for it */
 typedef struct {
   const char *name;
   OptionOwner owner;        /* whose the name of that owner is which the option begins with; of the run: it begins with none */

@@ -38,8 +38,7 @@ PetscBool OptionsIsShared(const char option[])
   return (PetscBool)(After(option, all) || After(option, materials));
 }
 
-/* Stops with an error if options cannot begin with a name, as PETSc reads them, or are those of all bodies or of a material; `option` is
-   the one that gave it */
+/* An error if PETSc's options cannot begin with a name, or those of all bodies or a material do; `option` is the one that gave it */
 PetscErrorCode OptionsCheckName(MPI_Comm comm, const char option[], const char name[])
 {
   char      begin[PETSC_MAX_OPTION_NAME];
@@ -134,8 +133,7 @@ static PetscErrorCode CollectNames(char text[], PetscInt *n, const char **names[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The material of an option -material_steel_density, which ends as an option of bodies does; nothing, if it is of no material. The name of
-   the material may have underscores. */
+/* The material of an option as -material_steel_density, which ends as a body's does; nothing if of none. Its name may have underscores. */
 PetscErrorCode OptionsFindMaterial(const char option[], char material[], size_t size)
 {
   const char        *behind = After(option, materials);
@@ -199,8 +197,7 @@ static PetscErrorCode Expand(const Sharers *sharers, PetscInt b, const char opti
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives bodies the options of all bodies, and of their materials. `bodies`: their names, before anything has read their options.
-   Collective */
+/* Gives bodies the options of all bodies, and of their materials. `bodies`: names, before their options are read. Collective */
 PetscErrorCode OptionsExpandShared(MPI_Comm comm, PetscInt n, char *const bodies[])
 {
   Sharers      sharers;
@@ -222,7 +219,6 @@ PetscErrorCode OptionsExpandShared(MPI_Comm comm, PetscInt n, char *const bodies
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a body names a material */
 PetscErrorCode OptionsMaterialIsNamed(const char material[], PetscInt n, const char *const bodies[], PetscBool *named)
 {
   Sharers sharers;
@@ -246,8 +242,7 @@ static PetscErrorCode HasSameValue(const char option[], const char value[], Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The shared option by which a body has an option. `value`: its value, or `NULL`; `shared`: without its dash; empty: the option is no
-   body's, or stands in a file or on the command line itself */
+/* The shared option that gives a body's option. `value`: its value, or `NULL`; `shared`: without dash; empty: it is given itself */
 PetscErrorCode OptionsFindShared(const char option[], const char value[], char shared[], size_t size)
 {
   Sharers  sharers;

@@ -1,4 +1,3 @@
-/* Stages of a run for -log_view. */
 #include "stages.h"
 
 static const char *const names[N_STAGES] = {"Set-up", "Search", "Rows", "Sweeps", "Interface", "Output"};
@@ -28,8 +27,7 @@ PetscErrorCode StagesInitialize(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Begins a stage where anything is logged: steps of small bodies take microseconds, of which stages would be 5 %. `logged` is for
-   StageEnd(), since logging may begin or end in between. */
+/* Begins a stage if anything is logged: stages take 5 % of steps of small bodies. `logged` is for StageEnd(): it may change. */
 PetscErrorCode StageBegin(Stage stage, PetscBool *logged)
 {
   PetscFunctionBegin;

@@ -1,9 +1,7 @@
-/*
-   How far a run is: a line on the terminal that is drawn over and over, or, in a log, a line of text now and then.
+/* How far a run is: a line on the terminal that is drawn over and over, or, in a log, a line of text now and then.
 
    A thread draws it, since a run may be busy for minutes with one mesh, one factorisation or one step. The thread calls neither MPI nor
-   PETSc. What is printed by PETSc's functions meanwhile gets lines of its own: the status line is erased before, and drawn again below.
-*/
+   PETSc. What is printed by PETSc's functions meanwhile gets lines of its own: the status line is erased before, and drawn again below. */
 #define _DEFAULT_SOURCE
 #include "statusline.h"
 #include <fcntl.h>
@@ -155,7 +153,6 @@ static double Quiet(void)
   return status.terminal == STDERR_FILENO ? BAR_QUIET : BAR_EVERY;
 }
 
-/* The thread: draws when it is time to */
 static void *Draw(void *ctx)
 {
   (void)ctx;
@@ -215,8 +212,7 @@ static PetscErrorCode StartThread(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Begins to tell how far the run is, on standard error. `bar`: a line drawn over and over, for terminals; else lines of a log after 1, 2,
-   4, ... minutes. One rank calls it. */
+/* Shows progress on standard error. `bar`: a line drawn over and over; else lines of a log after 1, 2, 4, ... minutes. One rank calls. */
 PetscErrorCode StatusLineBegin(PetscBool bar)
 {
   PetscFunctionBegin;
@@ -264,8 +260,7 @@ void StatusLineSetSteps(PetscInt step, PetscInt steps)
   pthread_mutex_unlock(&status.mutex);
 }
 
-/* StatusLineBreak - what is written next to the terminal begins a line; for handlers of signals, which can neither wait for the thread nor
-   have its mutex */
+/* StatusLineBreak - what is written next begins a line; for signal handlers, which cannot wait for the thread or its mutex */
 void StatusLineBreak(void)
 {
   if (status.running && status.shown && write(status.terminal, "\n", 1) < 0) return; /* without a terminal there is no line to end */

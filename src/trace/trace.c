@@ -30,8 +30,7 @@ PetscErrorCode TraceDestroy(Trace *trace)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How many numbers a level holds, and how many intervals the controller step has. `size`: numbers in a level, or `NULL`; `levels`: number
-   of intervals, or `NULL` */
+/* `size`: numbers in a level, or `NULL`; `levels`: number of intervals of the controller step, or `NULL` */
 PetscErrorCode TraceGetSizes(Trace trace, PetscInt *size, PetscInt *levels)
 {
   PetscFunctionBegin;

@@ -1,8 +1,6 @@
-/*
-   Central differences for M a = f(t, u): the explicit Newmark scheme, beta = 0, gamma = 1/2, in its velocity form
+/* Central differences for M a = f(t, u): the explicit Newmark scheme, beta = 0, gamma = 1/2, in its velocity form
 
-     v_{n+1/2} = v_n + dt/2 a_n,   u_{n+1} = u_n + dt v_{n+1/2},   a_{n+1} = a(t_{n+1}, u_{n+1}),   v_{n+1} = v_{n+1/2} + dt/2 a_{n+1}
-*/
+     v_{n+1/2} = v_n + dt/2 a_n,   u_{n+1} = u_n + dt v_{n+1/2},   a_{n+1} = a(t_{n+1}, u_{n+1}),   v_{n+1} = v_{n+1/2} + dt/2 a_{n+1} */
 #include <impakt/private/tssecondorder.h>
 #include "constructors.h"
 #include <petsc/private/tsimpl.h>

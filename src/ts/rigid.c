@@ -42,8 +42,7 @@ static PetscErrorCode TSDestroy_Rigid(TS ts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sets the function that makes a step. `advance`: function (ts, t, dt, U, V, ctx): takes displacement U [m] and velocity V [m/s] at time
-   t to those at t + dt */
+/* Sets the function of a step: `advance`(ts, t, dt, U, V, ctx) takes displacement U [m] and velocity V [m/s] at time t to t + dt */
 PetscErrorCode TSRigidSetAdvance(TS ts, TSRigidFn *advance, void *ctx)
 {
   TS_Rigid *rigid = (TS_Rigid *)ts->data;

@@ -46,11 +46,10 @@ PetscErrorCode TSSecondOrderSetState(TS ts, PetscReal time, PetscReal time_step,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Has a function make the steps of a `TSALPHA2`, in place of its nonlinear solver. For linear equations, which need one solution and no
-   Newton's method: its `SNES`, and the nine vectors that it works with, are not made. What the function is to know comes with
-   `TSGetI2Function()` and `TSAlpha2GetParams()`. `TSRollBack()` is refused, and other vectors may be set with `TS2SetSolution()` before
-   the first step alone. `ts`: not yet set up; `step`: takes the vectors of TS2SetSolution() to the end of the step, and the time by
-   TSSetTime() */
+/* Has a function make the steps of a `TSALPHA2`, in place of its nonlinear solver. For linear equations, which need one solution: its
+   `SNES` and its nine vectors are not made. What the function is to know comes with `TSGetI2Function()` and `TSAlpha2GetParams()`.
+   `TSRollBack()` is refused, and other vectors may be set with `TS2SetSolution()` before the first step alone. `ts`: not yet set up;
+   `step`: takes the vectors of TS2SetSolution() to the end of the step, and the time by TSSetTime() */
 PetscErrorCode TSAlpha2SetStep(TS ts, TSAlpha2StepFn *step)
 {
   PetscFunctionBegin;

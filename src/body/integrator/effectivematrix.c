@@ -1,9 +1,7 @@
-/* The effective matrix K + shift M + shift_velocity C of a body on TSALPHA2, and the solver with its factors: one for each level of cut
-   controller steps. */
+/* The effective matrix K + shift M + shift_velocity C of a body on TSALPHA2, and its solver: one for each level of cut steps. */
 #include "implicitimpl.h"
 
-/* The effective matrix K + shift M + shift_velocity C, with the artificial springs of a body that contact alone holds; its held dofs
- * eliminated */
+/* The effective matrix with the artificial springs of a body that contact alone holds; its held dofs eliminated */
 static PetscErrorCode AssembleMatrix(Body body, Vec u)
 {
   BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
@@ -102,8 +100,7 @@ PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Matrix and solver for controller steps that are cut in halves another number of times. That of a linear body without inertia is the same
-   for all steps. */
+/* Matrix and solver for controller steps at another level of cuts. That of a linear body without inertia is the same for all steps. */
 PetscErrorCode BodyImplicitSetLevel(Body body)
 {
   BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
@@ -135,8 +132,7 @@ PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* State for a checkpoint: where the matrix of a nonlinear body was linearised last, at a level of cut steps. Its factors answer until the
-   next iteration of Newton's method. */
+/* For a checkpoint: where a nonlinear body's matrix, in use until Newton's next iteration, was linearised, at a level of cut steps */
 PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoint)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;

@@ -48,8 +48,7 @@ static PetscReal GetPosition(Body body)
   return (PetscReal)(body->time.substep + 1) / body->time.substeps;
 }
 
-/* Held and contact conditions on U, with the massless layer in balance. Where there are forces from outside, and a
-   layer, `force` becomes them. */
+/* Held and contact conditions on U, with the massless layer in balance. With a layer `force` becomes those from outside. */
 static PetscErrorCode PlaceRows(Body body, PetscReal t, Vec U, Vec force)
 {
   const LayerBalance layer    = GetLayerBalance(body);
@@ -101,8 +100,7 @@ static PetscBool KnowsForce(Body body)
   return (PetscBool)(GetLayerBalance(body) && !body->rows.n_robin);
 }
 
-/* Whether rows get where they do whatever the elements and the end of the step bring: by the balance of the layer alone, or, on nodes with
-   mass, by the forces that have acted from the start on */
+/* Whether rows move without the elements and the end of the step: by the layer's balance alone, or, with mass, by forces at the start */
 static PetscBool IsEarly(Body body)
 {
   if (((BodyExplicit *)body->integrator->data)->layer_alone) return PETSC_TRUE;
@@ -110,8 +108,7 @@ static PetscBool IsEarly(Body body)
                      !body->rows.n_robin && !body->unloaded);
 }
 
-/* The displacement is all that the rows depend on: the acceleration, which is zero on massless nodes, is left to Complete(), and counts as
-   changed on all ranks */
+/* The displacement is all that the rows depend on: the acceleration, which is zero on massless nodes, is left to Complete() on all ranks */
 static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
@@ -183,8 +180,7 @@ static PetscErrorCode RepeatForces(Body body, const PetscScalar force[], const P
 }
 
 /* A linear body: the displacement of nodes with mass is known before the end of the substep, and so is the velocity at mid-step, which
-   dashpots feel; the massless layer and prescribed rows are put in place anew, and the acceleration that follows replaces the one before in
-   the velocity */
+   dashpots feel; layer and prescribed rows are put in place anew, and the new acceleration replaces the old one in the velocity */
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   const PetscReal half = 0.5 * body->time.step;

@@ -43,9 +43,8 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* First iterate of a nonlinear body: the displacement at the last velocity, with held dofs and prescribed rows in place; a body that turns
-   fast would need many iterations from where it was. Also brings the acceleration, which TSALPHA2 would take from its last step, even if
-   that step has been undone since. */
+/* First iterate of a nonlinear body: the displacement at the last velocity, for bodies that turn fast, with held dofs and prescribed rows
+   in place. Also brings the acceleration, which TSALPHA2 would take from its last step, even if that step has been undone since. */
 static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 {
   Body body = (Body)ctx;
@@ -136,8 +135,7 @@ static PetscErrorCode ComputeAcceleration(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the TS leaves undone: acceleration; velocity and acceleration of prescribed and massless nodes; the internal force at the end, where
-   the last residual was not evaluated there */
+/* What the TS leaves undone: acceleration; rates of prescribed and massless nodes; the internal force at the end, if not evaluated */
 static PetscErrorCode FinishSubstep(Body body)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
@@ -159,8 +157,7 @@ static PetscErrorCode FinishSubstep(Body body)
 }
 
 /* dv = gamma / (beta dt) du, da = du / (beta dt^2); of massless nodes dv = du / dt. Forces throughout the step change the acceleration at
-   its start too, by da0 = M^{-1} B^T df: A du = (1 + c0) B^T df and da -= c0 da0, c0 = (1 - 2 beta) / (2 beta). BringChanges() has brought
-   the forces. */
+   its start too, by da0 = M^{-1} B^T df: A du = (1 + c0) B^T df and da -= c0 da0, c0 = (1 - 2 beta) / (2 beta). */
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
@@ -183,8 +180,7 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newmark's formulas; massless nodes, which have no dynamics, have (u1 - u0) / dt and zero instead. Nobody asks where some rows have mass
-   and others none. */
+/* Newmark's formulas; massless nodes, which have no dynamics, have (u1 - u0) / dt and zero instead. */
 static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;

@@ -18,8 +18,7 @@ static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where a local body was linearised last its rank alone knows, and has factors that no column of others is of; before all ranks have rows
-   to hold, they all do */
+/* Its rank alone knows where a local body was linearised last, and has these factors; before all ranks hold rows, all do */
 static PetscErrorCode Agree(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
@@ -39,7 +38,6 @@ static PetscErrorCode BringChanges(Body body, const PetscScalar force[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What all integrators on TSALPHA2 have in common */
 PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
 {
   BodyImplicit *implicit;
@@ -61,8 +59,7 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A controller step that is made again begins with the same displacement, and has to begin with the same Jacobian too: lagging it, or its
-   factors, from one substep to the next is refused */
+/* A controller step made again has to begin with the same Jacobian: lagging it, or its factors, between substeps is refused */
 static PetscErrorCode RefuseLagBetweenSubsteps(Body body)
 {
   static const char *const options[] = {"-snes_lag_jacobian_persists", "-snes_lag_preconditioner_persists"};

@@ -26,8 +26,7 @@ static PetscErrorCode ListKnown(char text[], size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The integrator for a TS of that type, as body->integrator, in place of another one that is there; that one stays where the type is
-   unknown */
+/* The integrator for a TS of that type, as body->integrator, in place of the present one, which stays where the type is unknown */
 PetscErrorCode BodyIntegratorCreate(Body body, const char type[])
 {
   char text[256];

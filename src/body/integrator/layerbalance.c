@@ -1,5 +1,4 @@
-/*
-   The massless contact layer of an explicit body: where it is follows from static balance with the rest of the body as it is,
+/* The massless contact layer of an explicit body: where it is follows from static balance with the rest of the body as it is,
 
      K_LL du = (forces - internal force)_L,
 
@@ -8,8 +7,7 @@
    become worse as the body turns, and fail after 23 degrees. When a balance has become slow, new ones are made at the start of the next
    controller step or, when it has become much slower still, within a controller step, before the next balance. In the second case they are
    not those that the step began with, so that a restore has to make these again, for the step to end with the same bits when it is
-   repeated; and they are made where the outer iteration is, which may be far from where it ends.
-*/
+   repeated; and they are made where the outer iteration is, which may be far from where it ends. */
 #include "explicitimpl.h"
 
 /* Rounds that the balance of a nonlinear layer may take */
@@ -20,8 +18,7 @@
 #define SLOW_ROUNDS_SPACE 20
 /* and so many are too slow to wait for the next step */
 #define SLOW_ROUNDS_WITHIN_STEP 20
-/* Of a material that flows, stiffness changes within a step by orders of magnitude: after so many rounds with the same factors there are
-   new ones, where the layer is then */
+/* Where a material flows stiffness changes within a step by orders of magnitude: after so many rounds there are new factors */
 #define ROUNDS_OF_FACTORS 8
 /* A round of such a material has gone too far where the force along its way has turned round and is more than this part of what it was:
    factors of points that flow are too soft for points that do not, and rounds between the two would go on for ever. So often it is sought
@@ -37,7 +34,6 @@
    is left: a change that falls no more is round-off too when it is below so many times the above */
 #define AMPLIFIED 100
 
-/* Factors of a nonlinear layer */
 typedef struct {
   Vec        point;   /* the displacement that they are made at [m] */
   char      *memory;  /* of the history */
@@ -293,8 +289,7 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The displacement at which all that was put aside has factors is that of the present ones, which are made if they are others than before
- */
+/* The displacement of the factors that all levels put aside is that of the present ones, which are made if they differ */
 static PetscErrorCode TakeFactors(LayerBalance layer, Body body, PetscBool others)
 {
   PetscFunctionBegin;

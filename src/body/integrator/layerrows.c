@@ -1,7 +1,5 @@
-/*
-   The rows of the interface as the massless layer of an explicit body sees them: on the dofs of the layer. Where one of several ranks has
-   all of the body, each knows which dofs these are, and needs no other to have its rows get entries in other places.
-*/
+/* The rows of the interface as the massless layer of an explicit body sees them: on the dofs of the layer. Where one of several ranks has
+   all of the body, each knows which dofs these are, and needs no other to have its rows get entries in other places. */
 #include "explicitimpl.h"
 
 struct _n_LayerRows {

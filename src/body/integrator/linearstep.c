@@ -1,8 +1,5 @@
-/*
-   A substep of a linear body on TSALPHA2: the residual at a first iterate, one solution with the factors of the constant effective matrix,
-   and what Newmark's formulas make of it. It is what Newton's method would do in one iteration, in two passes over the vectors: where a
-   body has few nodes, calls take more time than numbers.
-*/
+/* A substep of a linear body on TSALPHA2: the residual at a first iterate, one solution with the factors of the constant effective matrix,
+   and Newmark's formulas: an iteration of Newton's method, in two passes over the vectors. */
 #include "implicitimpl.h"
 #include <impakt/private/simd.h>
 
@@ -25,8 +22,7 @@ SIMD_CLONES static void GetStageAccelerations(PetscInt n, Newmark m, PetscReal a
   for (PetscInt i = 0; i < n; i++) a[i] = (1 - alpha_m) * a0[i] + alpha_m * (m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i]);
 }
 
-/* What the residual is of: motion at the stage where U, with held dofs and prescribed rows in place, is that at the end. The stage of a
-   displacement is U itself where it is at the end. */
+/* Motion at the stage, of which the residual is, from U at the end with held dofs and prescribed rows in place. */
 static PetscErrorCode ComputeStage(Body body, Vec U)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
@@ -151,7 +147,6 @@ PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar displacement[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step of the TS */
 static PetscErrorCode MakeStep(TS ts)
 {
   BodyResidualFn     *compute_residual;
@@ -179,8 +174,7 @@ static PetscErrorCode MakeStep(TS ts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Steps of a linear body are made here, and not by Newton's method. Its residual reads no acceleration where there is no inertia, and no
-   velocity where it is not damped. */
+/* Steps of a linear body, without Newton's method. Its residual reads acceleration with inertia alone, velocity with damping alone. */
 PetscErrorCode BodyImplicitSetUpLinear(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;

@@ -1,7 +1,5 @@
-/*
-   The equations of one substep of a body on TSALPHA2, with inertia or without, and how those of a nonlinear one are solved: by Newton's
-   method with the factors of the effective matrix. A linear body needs but one solution, see linearstep.c.
-*/
+/* The equations of one substep of a body on TSALPHA2, with inertia or without, and how those of a nonlinear one are solved: by Newton's
+   method with the factors of the effective matrix. A linear body needs but one solution, see linearstep.c. */
 #include "implicitimpl.h"
 #include <sys/petsccompat.h>
 
@@ -51,8 +49,7 @@ static PetscErrorCode ProductNorm(Body body, Vec a, Vec b, Vec work, PetscReal *
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sizes of a nonlinear residual: of the forces that it is the balance of, and of the round-off of the largest numbers in it; `inertia` is
-   M A, or NULL */
+/* Sizes of a nonlinear residual: of its forces, and of the round-off of its largest numbers; `inertia` is M A, or NULL */
 static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
@@ -66,8 +63,7 @@ static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
   PetscCall(ProductNorm(body, product, U, product, &stiffness));
   if (inertia) {
     PetscCall(GetNorm(body, inertia, &mass));
-    /* the acceleration is a difference of displacements, and of what the velocity makes of them, over dt^2: either displacement may be zero
-     */
+    /* the acceleration is a difference of displacements and of dt times the velocity, over dt^2: either may be zero */
     PetscCall(ProductNorm(body, body->mass.row_sum, U, product, &position));
     PetscCall(ProductNorm(body, body->mass.row_sum, body->substep_start.u, product, &start));
     PetscCall(ProductNorm(body, body->mass.row_sum, body->substep_start.v, product, &motion));
@@ -108,8 +104,7 @@ static PetscErrorCode GetShortestEdges(Body body, Vec edges)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces that displacements of the size of an element would make: strains are differences from the unit tensor, so that stresses of a
-   nonlinear material have the round-off of strains of size 1, however small they are [N] */
+/* Forces of displacements of the size of an element [N]: stresses of a nonlinear material have the round-off of strains of size 1 */
 PetscErrorCode BodyImplicitComputeUnitStrainForce(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
@@ -126,8 +121,7 @@ PetscErrorCode BodyImplicitComputeUnitStrainForce(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The residual from the inertia M A, or zero, in F: internal force at U less forces from outside at time t and of contact, with held dofs
-   and prescribed rows projected out */
+/* The residual from the inertia M A, or zero, in F: internal less outside and contact forces, without held dofs and prescribed rows */
 PetscErrorCode BodyImplicitAddForces(Body body, PetscReal t, Vec U, Vec F)
 {
   const BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;

@@ -9,8 +9,7 @@ PetscBool BodyHasOutsideForce(Body body, PetscBool contact)
   return (PetscBool)(body->loads || (contact && (pushed || BodyHandsOver(body))));
 }
 
-/* The force from outside at a time and, where it is counted, that of contact at a position (0 to 1) in the controller step [N]; u: the
-   displacement, on which springs of Robin rows depend */
+/* Force from outside at a time and, if counted, of contact at a position (0 to 1) in the controller step [N]; u: for Robin springs */
 PetscErrorCode BodyComputeOutsideForce(Body body, PetscReal time, PetscReal position, PetscBool contact, Vec u, Vec force)
 {
   PetscFunctionBegin;

@@ -1,14 +1,11 @@
-/*
-   Substeps of a nonlinear body that one of several ranks makes without the others.
+/* Substeps of a nonlinear body that one of several ranks makes without the others.
 
-   Newton's method asks for norms in each iteration, and on the communicator of the body all ranks would have to answer: bodies on different
-   ranks would be integrated one after the other. So the rank that has the body has a TSALPHA2 of its own beside that of the body, with the
-   same equations and the same options. Its vectors lend their arrays to vectors that are laid out as the body's while these are computed
-   with. Numbers, and their order, are those that the TS of the body would see.
+   Norms in Newton's method take all ranks of the body's communicator: bodies on different ranks would be integrated one after the other. So
+   the rank that has the body has a TSALPHA2 of its own, with the same equations and options. Its vectors lend their arrays to vectors laid
+   out as the body's. Numbers, and their order, are those of the TS of the body.
 
    The TS of the body makes the first substep, in which PETSc makes what takes all ranks, and those in which rows are prescribed, or in
-   which other ranks have rows and forces have not been brought before the step (body/rows/exchange.c).
-*/
+   which other ranks have rows and forces have not been brought before the step (body/rows/exchange.c). */
 #include "implicitimpl.h"
 
 #define LENT 4 /* at most so many vectors at a time */

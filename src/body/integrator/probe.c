@@ -1,5 +1,4 @@
-/* A body is put to rest, without loads, to see what unit forces on its nodes bring about in the course of a controller step; afterwards it
-   is as it was. */
+/* What unit forces on nodes of a body bring about in a controller step from rest, without loads; afterwards it is as it was. */
 #include <body/layout/bodyimpl.h>
 
 /* A force of 1 N along one displacement, at the end of the controller step or throughout it, so that the step starts from it too */
@@ -38,8 +37,7 @@ static PetscErrorCode ProbeColumn(Body body, PetscInt dof, Compliance matrices)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyProbeNodes - columns of displacements, by their numbers on all ranks, at the end of a controller step: by making its substeps, of a
-   body at rest with all rows free */
+/* BodyProbeNodes - columns of displacements, by their global numbers, at the end of a controller step from rest with all rows free */
 PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], Compliance matrices)
 {
   const PetscInt counts[3] = {body->rows.n_prescribed, body->rows.n_forced, body->rows.n_robin};

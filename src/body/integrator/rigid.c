@@ -1,5 +1,4 @@
-/*
-   A body under TSRIGID: a rigid one, of which forces on its nodes change linear and angular momentum alone.
+/* A body under TSRIGID: a rigid one, of which forces on its nodes change linear and angular momentum alone.
 
    The centre of mass moves by the trapezoidal rule, Newmark's of deformable bodies. The body turns by the rule of J. C. Simo and K. K.
    Wong, Unconditionally stable algorithms for rigid body dynamics that exactly preserve energy and momentum, International Journal for
@@ -12,8 +11,7 @@
    the way of the nodes, sum (f_0 + f_1)/2 . (u_1 - u_0): the same that the partner of a contact takes or gives. W_1 is found by Newton's
    method.
 
-   The state is that of all bodies: displacement, velocity and acceleration of the nodes. Where the body is follows from them.
-*/
+   The state is that of all bodies: displacement, velocity and acceleration of the nodes. Where the body is follows from them. */
 #include "rigidimpl.h"
 
 /* Newton's method for the angular velocity: it takes 3 or 4 steps to round-off; the change by which its matrix is found, and when it is

@@ -45,9 +45,8 @@ PetscBool RigidInvert(const PetscReal A[9], PetscReal B[9])
   return (PetscBool)(PetscAbsReal(determinant) > 0 && !PetscIsInfOrNanReal(1 / determinant));
 }
 
-/* The rotation next to A, in its place: the orthogonal factor of its polar decomposition by Newton's method, A <- (A + A^{-T}) / 2 (N. J.
-   Higham, Computing the polar decomposition, SIAM Journal on Scientific and Statistical Computing 7, 1986). False where A is far from any.
- */
+/* The rotation next to A, in its place: its polar decomposition by Newton's method, A <- (A + A^{-T}) / 2 (N. J. Higham, Computing the
+   polar decomposition, SIAM Journal on Scientific and Statistical Computing 7, 1986). False where A is far from any. */
 PetscBool RigidFindRotation(PetscReal A[9])
 {
   PetscReal inverse[9], off;

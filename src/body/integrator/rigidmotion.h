@@ -1,5 +1,4 @@
-/* Rotations and rigid motions, as a few numbers. Matrices are 3 x 3, by rows; plane bodies turn about the third axis. Private to
-   src/body. */
+/* Rotations and rigid motions. Matrices are 3 x 3, by rows; plane bodies turn about the third axis. Private to src/body. */
 #pragma once
 #include <impakt/body.h>
 

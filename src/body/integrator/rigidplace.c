@@ -2,7 +2,6 @@
 #include "rigidimpl.h"
 #include <sys/units.h>
 
-/* What the integrator knows of the body */
 BodyRigid *BodyGetRigid(Body body)
 {
   return (BodyRigid *)body->integrator->data;
@@ -191,8 +190,7 @@ void BodyRigidFindAcceleration(Body body, const PetscReal force[3], const PetscR
   MultiplyTurned(motion->rotation, rigid->inverse, rest, motion->angular_acceleration);
 }
 
-/* Second moments of the mass: of the mass matrix, which have the inertia in them, and of the masses of the nodes, by which a place is found
- */
+/* Second moments of the mass matrix, which have the inertia in them, and of the masses of nodes, by which a place is found */
 PetscErrorCode BodyRigidFindInertia(Body body)
 {
   BodyRigid         *rigid    = BodyGetRigid(body);

@@ -1,5 +1,4 @@
-/* A body under TSSTATIC: static balance at the end of each substep. It has a velocity, by the change of its displacement, for contact to
-   see, but neither mass nor acceleration. */
+/* A body under TSSTATIC: static balance at the end of each substep. Its velocity, by differences, is for contact; no acceleration. */
 #include "implicitimpl.h"
 
 /* F = internal force - forces from outside and of contact, with held dofs and prescribed rows projected out */

@@ -1,4 +1,3 @@
-/* The substeps of a controller step. */
 #include <body/layout/bodyimpl.h>
 
 /* Notes body, time and step where a substep failed or its solution has NaN or infinity in it. Both get into the velocity from
@@ -21,8 +20,7 @@ PetscErrorCode BodyCheckSubstep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Massless nodes have the mean velocity of the substep, and no acceleration. Vectors count as changed on all ranks: PETSc would take the
-   norms that it remembers on those without such nodes, and add up over the others. */
+/* Massless nodes have the mean velocity of the substep, and no acceleration. On all ranks, or PETSc would remember norms on some. */
 PetscErrorCode BodyFinishLayer(Body body)
 {
   const PetscScalar *u0, *u1;

@@ -1,4 +1,3 @@
-/* Integration over one controller step. */
 #include <body/layout/bodyimpl.h>
 #include <impakt/private/simd.h>
 
@@ -28,10 +27,9 @@ static void CountSubsteps(Body body)
   body->statistics.substeps += body->time.substeps;
 }
 
-/* Makes the displacements of the step, without an error where it fails: what a sweep needs, of which the last alone counts. Output
-   traces hold all but the acceleration. An explicit body whose rows are on massless nodes leaves forces of elements, acceleration and
-   velocity to BodyCompleteStep(), since no sweep changes them otherwise. `reason` (or NULL) is the same on every rank but of a local
-   body, see BodyGetStepProperties(). Collective. */
+/* Makes the displacements of the step, without an error where it fails: for sweeps. Output traces hold all but the acceleration. An
+   explicit body whose rows are on massless nodes leaves forces of elements, acceleration and velocity to BodyCompleteStep(), since no sweep
+   changes them otherwise. `reason` (or NULL) is the same on every rank but of a local body, see BodyGetStepProperties(). Collective. */
 PetscErrorCode BodyTryIntegrateRows(Body body, StepConvergedReason *reason)
 {
   PetscBool      done = PETSC_FALSE;

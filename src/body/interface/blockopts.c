@@ -34,8 +34,7 @@ static PetscErrorCode CollectOptions(const char prefix[], char text[], PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Options of materials that a block may have: not those of elements and sections, which are the body's, and not the body's named material
- */
+/* Options of materials that a block may have; those of elements and sections are the body's, and so is the named material */
 static PetscBool IsOfMaterial(const KnownOption *option)
 {
   const char *const others[] = {"material", "cross_section", "thickness", "plane_stress", "axisymmetric", "element_formulation"};
@@ -106,8 +105,7 @@ static PetscErrorCode CheckBlock(Body body, const BodyOption *option, const char
           body->hdr.name, block, list[0] ? list : "none");
 }
 
-/* What the material of a block read counts as read among the options of the run: its own options, and those of the body that it took
-   their place for. What it did not read is left, for the check of unread options. */
+/* Options that the material of a block has read, its own or the body's in their place, count as read in the run; others stay unread. */
 static PetscErrorCode NoteUsed(PetscOptions options, const char prefix[], const char of_block[], PetscInt n,
                                const BodyOption body_options[])
 {
@@ -167,8 +165,7 @@ static int CompareNames(const void *a, const void *b)
   return strcmp(*(char *const *)a, *(char *const *)b);
 }
 
-/* BodyReadBlocks - the materials of blocks of the mesh that have options, in the order of their names; with the mesh, before its elements
- */
+/* BodyReadBlocks - materials of the mesh's blocks that have options, by their names; before its elements */
 PetscErrorCode BodyReadBlocks(Body body)
 {
   BodyOption *options;

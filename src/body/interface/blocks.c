@@ -138,8 +138,7 @@ static PetscErrorCode NameMaterials(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the block of each cell; calls after the first complete one cost nothing. `own`: whether cells have the material of the body;
-   NULL: complete the blocks by those. Collective. */
+/* Finds the block of each cell once. `own`: whether cells have the material of the body; NULL: complete the blocks by those. Collective. */
 PetscErrorCode BodySetUpBlocks(Body body, PetscBool *own)
 {
   BodyBlocks *blocks = &body->model.blocks;

@@ -164,8 +164,7 @@ static PetscErrorCode SetUpSubstepStart(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The part of BodySetUp() before matrices are factored. Where callers call this for all bodies, then BodyFactor() and BodySetUp(), ranks
-   that have a body each factor at the same time. Collective. */
+/* The part of BodySetUp() before matrices are factored. Called for all bodies before BodyFactor() lets ranks factor at once. Collective. */
 PetscErrorCode BodyBeginSetUp(Body body)
 {
   PetscFunctionBegin;

@@ -27,7 +27,6 @@ static PetscErrorCode CreateMesh(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The material of the body; nothing where the program has set it */
 static PetscErrorCode ReadMaterial(Body body)
 {
   PetscBool rigid;
@@ -189,26 +188,10 @@ PetscErrorCode BodySetTimeFromOptions(Body body)
 . body - the `Body`
 
   Options Database Keys:
-+ -<body>_dm_plex_...                                - the mesh: `DMPLEX`'s own options
-. -<body>_ranks list                                 - ranks among which it is divided, see `BodySetRanks()`
-. -<body>_material_type, -<body>_density, ...        - the material, see `MaterialSetFromOptions()`
-. -<body>_<block>_material_type, ...                 - that of a block of the mesh, see `BodySetBlockMaterial()`
-. -<body>_cross_section A                            - cross-sectional area of bars [m^2], default 1
-. -<body>_axisymmetric (true|false)                  - plane elements are rings about x = 0, default false; nodes on the axis are held in x
-. -<body>_element_formulation (full|mean_dilatation|enhanced|reduced|composite) - what elements do against locking, see
-src/element/README.md . -<body>_mass_type (lumped|consistent|averaged)     - mass matrix, default averaged; lumped for explicit bodies in
-two and three dimensions . -<body>_mass_redistribute (true|false|near|auto)   - massless contact nodes: all, none, those that face a partner
-at the start, or as is best (default), see `BodySetMassRedistribute()` . -<body>_mass_moments (total|centre|inertia)        - what that
-keeps, default inertia . -<body>_ts_type (alpha2|centraldifference|static|rigid) - implicit, explicit, without inertia, or rigid, default
-alpha2 . -<body>_rigid (true|false)                         - it does not deform, see `BodySetRigid()` . -<body>_ts_time_step (auto|dt) -
-substep [s], default the controller step, or auto where that is unstable . -<body>_damping_mass alpha                         - Rayleigh
-damping by the mass [1/s], default 0 . -<body>_damping_stiffness beta                     - Rayleigh damping by the stiffness [s], default 0
-. -<body>_artificial_stiffness part                  - springs of a static body that contact or ties alone hold, in parts of the
-                                                       stiffness of the softest static body, default 5e-2, nonlinear 1: they do not
-                                                       pull where a step ends
-. -<body>_probe x,y,z;x,y,z                          - points whose motion and stress are observed, see `BodyAddProbe()`
-. -<body>_ts_alpha_...                               - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
-- -<body>_boundary_..., -<body>_gravity, -<body>_body_force, -<body>_initial_... - see `BodyLoadsSetFromOptions()`
++ -<body>_dm_plex_...        - the mesh: `DMPLEX`'s own options
+. -<body>_<block>_...        - the material of a block of the mesh, see `BodySetBlockMaterial()`
+. -<body>_ts_alpha_...       - parameters of `TSALPHA2`, default Newmark's trapezoidal rule
+- -<body>_<setter without Set> - all others, with defaults in options/README.md, which `impakt -help` prints too
 
   Level: beginner
 

@@ -1,6 +1,5 @@
-/* The state of a body as tables, by which a run is continued on another number of ranks. What the solvers of a body know is
-   found anew, to round-off. Factors of a nonlinear body, which depend on displacements of earlier steps, are made again where they were
-   made. */
+/* The state of a body as tables, by which a run is continued on another number of ranks. What solvers know is found anew, to round-off.
+   Factors of a nonlinear body, which depend on displacements of earlier steps, are made again where they were made. */
 #include <body/rows/complianceimpl.h>
 #include "bodyvisit.h"
 
@@ -130,8 +129,7 @@ PetscErrorCode BodyPack(Body body, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first state of a body from the tables of a run with any number of ranks, after BodyVisitShared() has loaded what all ranks have.
-   Collective. */
+/* The first state of a body from the tables of another run, after BodyVisitShared() has loaded what all ranks have. Collective. */
 PetscErrorCode BodyUnpack(Body body, Tables tables)
 {
   const PetscInt   dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + N_VECS * dim;

@@ -185,7 +185,6 @@ static PetscErrorCode ReadList(Body body, const char text[], PetscBool marks[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Reads -<body>_ranks, before there is a mesh from options */
 PetscErrorCode BodyReadRanks(Body body)
 {
   const char *const prefix = ((PetscObject)body)->prefix;
@@ -208,7 +207,6 @@ PetscErrorCode BodyReadRanks(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prints the ranks that were chosen, ranges as ranges */
 PetscErrorCode BodyViewRanks(Body body, PetscViewer viewer)
 {
   const PetscMPIInt *ranks = body->mesh.ranks, n = body->mesh.n_ranks;

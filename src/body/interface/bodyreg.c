@@ -1,4 +1,3 @@
-/* The package of the class. */
 #include <body/layout/bodyimpl.h>
 #include <sys/package.h>
 

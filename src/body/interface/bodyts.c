@@ -5,8 +5,7 @@
 #include <sys/sharedoptions.h>
 #include <strings.h>
 
-/* Stable step of a body over the time that a plane wave takes through its mean element, about: 0.77 of cubes and squares with Poisson's
-   ratio 0.25 */
+/* Stable step of a body over the time of a plane wave through its mean element: 0.77 of cubes and squares with Poisson's ratio 0.25 */
 #define STABLE_PART 0.77
 
 /*@
@@ -141,8 +140,7 @@ PetscErrorCode BodyGetTimeStep(Body body, PetscReal *step)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* About how many substeps an explicit body will make in a controller step, before its stable step is known; 1 for others. `transit`: of
-   a plane wave through its mean element [s]. */
+/* Expected substeps of an explicit body in a controller step; 1 for others. `transit`: of a plane wave through its mean element [s]. */
 PetscErrorCode BodyEstimateSubsteps(Body body, PetscReal transit, PetscReal step, PetscInt *substeps)
 {
   PetscBool is_explicit;
@@ -185,8 +183,7 @@ static PetscErrorCode IsForOthers(PetscInt n, const Body bodies[], const char na
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An error if the option is one of Newton's method of a body that makes none. Most options are of no Newton's method: bodies are looked at
-   for the few others alone. */
+/* An error if the option is one of Newton's method of a body that makes none. Bodies are looked at for such options alone. */
 static PetscErrorCode CheckNewtonOption(PetscInt n, const Body bodies[], const char name[], const char value[])
 {
   char lower[PETSC_MAX_OPTION_NAME], *found;

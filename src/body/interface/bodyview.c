@@ -1,9 +1,7 @@
-/* What a body tells about itself. */
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
 #include <sys/units.h>
 
-/* Where the body is */
 static PetscErrorCode ViewBox(Body body, PetscViewer viewer)
 {
   PetscReal box[6];

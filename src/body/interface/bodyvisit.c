@@ -1,8 +1,6 @@
-/*
-   The state of a body, for checkpoints: what the next controller step begins with, bit for bit. Beside displacement, velocity and
+/* The state of a body, for checkpoints: what the next controller step begins with, bit for bit. Beside displacement, velocity and
    acceleration these are the waveforms at its rows, what its solvers hold, where their matrices were linearised, and the compliance that is
-   known, level by level of cut steps. The rows themselves are loaded before, by those who own their matrices.
-*/
+   known, level by level of cut steps. The rows themselves are loaded before, by those who own their matrices. */
 #include <petscsf.h>
 #include <body/rows/complianceimpl.h>
 #include "bodyvisit.h"
@@ -162,8 +160,7 @@ PetscErrorCode BodyVisitMesh(Body body, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The state of a body after an accepted controller step, to or from a checkpoint; loading: in its first state, with the rows of the
-   checkpoint. Collective. */
+/* The state of a body after an accepted controller step, to or from a checkpoint; loading: in its first state, with rows. Collective. */
 PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
 {
   const PetscInt sizes[] = {body->mesh.owned_nodes, body->mesh.dim, body->rows.local, body->rows.global, body->time.substeps};

@@ -3,8 +3,7 @@
 #include <body/loads/loadsimpl.h>
 #include "bodysetup.h"
 
-/* Mass matrices that are not diagonal have to be factored, which a body that divides by the mass in each substep does not pay for in two
-   and three dimensions */
+/* Mass matrices that are not diagonal have to be factored: too dear in two and three dimensions for division in each substep */
 PetscErrorCode BodySetUpMassType(Body body)
 {
   PetscFunctionBegin;

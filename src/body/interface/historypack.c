@@ -21,8 +21,7 @@ static void GetElementKey(Body body, PetscInt e, PetscReal key[TABLES_KEY])
   }
 }
 
-/* The point of the element as it was packed that has become point g. Elements with several points have one for each corner, in the
-   same order; `places`: of the nodes as they were packed. */
+/* The point of the packed element that has become point g: elements with several have one for each corner, in order; `places`: of nodes */
 static PetscInt FindPoint(Body body, PetscInt e, PetscInt g, const PetscReal places[])
 {
   const PetscInt   n = body->model.element->nodes, dim = body->mesh.dim, points = body->model.element->history.points;
@@ -145,8 +144,7 @@ static PetscErrorCode FindHistory(Body body, Tables tables, const char *material
 }
 
 /* The history of a body's material from the tables of another run with the same mesh, before BodySetInitialState(). Where the body had
-   none, as an elastic one, its material stays virgin. BodyNotePlasticBefore() has to follow when the displacements are there.
-   Collective. */
+   none, its material stays virgin. BodyNotePlasticBefore() has to follow when the displacements are there. Collective. */
 PetscErrorCode BodyTakeHistory(Body body, Tables tables)
 {
   const char *before, *now = BodyGetMaterialName(body);
@@ -164,8 +162,7 @@ PetscErrorCode BodyTakeHistory(Body body, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyNotePlasticBefore - plastic work that has been done until now is none of this run; after BodyTakeHistory() and BodySetInitialState()
- */
+/* BodyNotePlasticBefore - earlier plastic work is none of this run; after BodyTakeHistory() and BodySetInitialState() */
 PetscErrorCode BodyNotePlasticBefore(Body body)
 {
   BodyMeasures measures;

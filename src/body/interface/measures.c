@@ -5,8 +5,7 @@
 /* Of the kinetic energy this part counts even where all bodies move alike: less is round-off of it */
 #define ROUND_OFF 1e-9
 
-/* Sums over nodes and elements that measures are made of; beyond them are the works of loads and of dashpots, in all accepted steps and in
-   the one that has not been accepted yet */
+/* Sums over nodes and elements that measures are made of; then works of loads and dashpots, in accepted steps and in the present one */
 #define N_SUMS (BODY_MEASURE_SUMS - 4)
 
 /* Stored energy of this rank's elements [J], where that is more than half the work of the internal force */
@@ -49,8 +48,7 @@ PetscErrorCode BodyHasHourglasses(Body body, PetscBool *hourglasses)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the sums of the last measures are those of the present state, and from now on they are; one that is divided among ranks, or
-   remembers, is measured each time */
+/* Whether the last sums are those of the present state, which they are from now on; divided bodies and those with memory sum each time */
 static PetscErrorCode IsMeasured(Body body, PetscBool *measured)
 {
   const Vec of[4] = {body->state.u, body->state.v, body->state.a, body->state.internal_force};
@@ -144,7 +142,6 @@ static PetscErrorCode GetSums(Body body, PetscReal sums[BODY_MEASURE_SUMS])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The sums of all ranks */
 static PetscErrorCode AddRanks(PetscInt n, const Body bodies[], PetscReal sums[])
 {
   PetscMPIInt count;
@@ -183,8 +180,7 @@ static PetscErrorCode Finish(Body body, const PetscReal sums[], BodyMeasures *me
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyGetMeasures() of bodies on one communicator, with one sum over the ranks for all. `sums`: work space, BODY_MEASURE_SUMS for each
-   body. Collective. */
+/* BodyGetMeasures() of bodies on one communicator by one reduction. `sums`: work space, BODY_MEASURE_SUMS for each body. Collective. */
 PetscErrorCode BodyGetAllMeasures(PetscInt n, const Body bodies[], PetscReal sums[], BodyMeasures measures[])
 {
   PetscFunctionBegin;

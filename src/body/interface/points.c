@@ -7,7 +7,6 @@
 #define INSIDE 1e-9
 /* How many more points there is room for, when there is no room left */
 #define GROWTH 8
-/* Displacement, velocity, stress */
 #define N_SUMS 12
 
 /* Where points lie in the elements of this rank: one of these for each point and element that has it, several where elements meet */
@@ -112,7 +111,6 @@ static PetscErrorCode ReadPoint(Body body, const char option[], const char text[
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* -<body>_probe */
 PetscErrorCode BodyReadPoints(Body body)
 {
   MPI_Comm       comm = PetscObjectComm((PetscObject)body);

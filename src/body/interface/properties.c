@@ -138,8 +138,7 @@ PetscErrorCode BodyGetMassRedistribution(Body body, PetscReal *least, PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Edge of the elements with a contact node, or of all, from their mean volume, see BodyScale. A rank without cells does not know their
-   shape. */
+/* Edge of the elements with a contact node, or of all, from their mean volume, see BodyScale. Ranks may have no cells. */
 static PetscErrorCode MeasureEdge(Body body, PetscBool contact, PetscReal *edge)
 {
   const PetscInt nodes   = body->mesh.cell_nodes;
@@ -174,8 +173,7 @@ static PetscErrorCode MeasureEdge(Body body, PetscBool contact, PetscReal *edge)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A length, stiffness or impedance by which contact scales what it does to a body with mesh and material; collective for sizes of elements
-   and what they are part of */
+/* A length, stiffness or impedance by which contact scales what it does to a body; collective where sizes of elements are in it */
 PetscErrorCode BodyGetScale(Body body, BodyScale scale, PetscReal *value)
 {
   const PetscReal cross_section = body->model.element->cross_section;

@@ -111,7 +111,6 @@ PetscErrorCode BodyAsksForRigid(Body body, PetscBool *rigid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for loads of a rigid body */
 static PetscErrorCode Prepare(Body body)
 {
   PetscBool rigid;

@@ -1,12 +1,9 @@
-/*
-   Controller steps that are cut in halves. At level k the controller step is that of the set-up over 2^k, and so is each substep, whose
-   number stays. What depends on the step, the effective matrix with its factors and the compliance of nodes, a body keeps for each level
-   apart, from the first step at that level on.
+/* Controller steps that are cut in halves. At level k the controller step is that of the set-up over 2^k, and so is each substep, whose
+   number stays. A body keeps what depends on the step, effective matrix with factors and compliance of nodes, for each level apart.
 
-   A step that has failed must leave no trace in later ones: a run that is cut is to end with the bits of one that makes the same steps and
-   none that fail. The factors that a nonlinear body remembers of earlier steps at a level go on if the last accepted step was of the same
-   level, and are made anew at the saved state if not: a level at which a step has failed comes up again after steps of another level only.
-*/
+   A failed step must leave no trace: a cut run ends with the bits of one that makes the same steps and none that fail. Factors that a
+   nonlinear body has of earlier steps at a level go on if the last accepted step was of that level, else they are made anew at the saved
+   state: a level at which a step has failed comes up again after steps of another level only. */
 #include <body/rows/complianceimpl.h>
 
 /* All rows free, so that no solver has rows to hold: conditions come with the next step */
@@ -66,8 +63,7 @@ PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By how much more energy the saved state has for steps over 2^level than for the last one [J]: what central differences conserve
-   depends on the step; 0 for others. Collective. */
+/* Energy of the saved state for steps over 2^level less that for the last step [J]: not 0 for central differences alone. Collective. */
 PetscErrorCode BodyGetLevelEnergy(Body body, PetscInt level, PetscReal *energy)
 {
   const PetscReal    whole = body->time.whole_step / body->time.substeps;
@@ -89,8 +85,7 @@ PetscErrorCode BodyGetLevelEnergy(Body body, PetscInt level, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Goes back to the saved state after a step that is not accepted, as if it had not been tried; BodyRestore() goes back for another
-   integration in the same step. Collective. */
+/* Goes back to the saved state after a step that is not accepted; BodyRestore() is for another integration in the same step. Collective. */
 PetscErrorCode BodyStepBack(Body body)
 {
   PetscFunctionBegin;

@@ -1,29 +1,24 @@
-/* Substeps, and the TS of a body. */
 #include <body/layout/bodyimpl.h>
 
-/* What -<body>_ts_time_step auto takes of the stable step: the stable step is that of the undeformed body, and a nonlinear one may stiffen
- */
+/* What -<body>_ts_time_step auto takes of the stable step, that of the undeformed body: a nonlinear one may stiffen */
 #define SAFETY 0.9
 /* Quotients and steps that agree to this part, relative, differ by round-off */
 #define ROUND_OFF 1e-12
-/* A substep given with a few digits, as 3.333333e-7 for a third of 1e-6, divides the controller step if it misses it by this part at most
- */
+/* A substep given as 3.333333e-7 for a third of 1e-6 divides the controller step if it misses by this part at most */
 #define DIVIDES 1e-6
 /* More substeps to a controller step are a mistake, and overflow integers */
 #define MAX_SUBSTEPS 1e9
 /* For TSSetMaxTime() [s]: no end, since the controller has one; PETSc takes PETSC_MAX_REAL for a time that was not set */
 #define NO_END (0.5 * PETSC_MAX_REAL)
 
-/* Whether the body chooses its substep: where it is told to, and where nothing is said of the substep of an explicit body that would be
-   unstable in one step. A controller step between 0.9 times the stable step and the stable step stays one. Ties whose nodes keep their
-   mass have been made for one step. */
+/* Whether the body chooses its substep: where told to or, explicit and told nothing, where one step is unstable. A controller step
+   between 0.9 times the stable step and the stable step stays one. Ties whose nodes keep their mass have been made for one step. */
 static PetscBool ChoosesSubstep(Body body)
 {
   if (body->time.requested_step != 0 || body->rows.tied_mass) return (PetscBool)(body->time.requested_step < 0);
   return (PetscBool)(body->integrator->needs_stable_step && body->time.controller_step > body->time.stable_step * (1 + ROUND_OFF));
 }
 
-/* A whole number of substeps to the controller step */
 PetscErrorCode BodySetUpSubsteps(Body body)
 {
   MPI_Comm    comm   = PetscObjectComm((PetscObject)body);

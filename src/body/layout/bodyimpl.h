@@ -57,7 +57,6 @@ typedef struct {
   char      *material_name; /* of all together: what a history belongs to */
 } BodyBlocks;
 
-/* What internal forces come from */
 typedef struct {
   Element  element;
   Material material;
@@ -173,7 +172,6 @@ typedef struct {
   Vec      values;      /* work space: a number for each */
 } RowList;
 
-/* The rows of the interface */
 typedef struct {
   Mat              matrix;       /* B: rows of all ranks x displacements */
   Mat              free_matrix;  /* without held dofs; the same matrix where none is held */
@@ -220,7 +218,6 @@ typedef struct {
   ConstrainedSolver       solver;     /* where it depends on the step, else that of all levels */
 } BodyLevel;
 
-/* Dofs whose displacement the user prescribes */
 typedef struct {
   PetscInt        n;
   PetscBool       any;  /* there are some on any rank */
@@ -302,8 +299,7 @@ struct _p_Body {
     Vec       u;
     PetscBool known; /* it is of this controller step */
   } iterate;
-  /* work space of one function at a time: nothing is in it when the function that has filled it returns, and what that calls may overwrite
-   * it */
+  /* work space of one function at a time; what that function calls may overwrite it */
   struct {
     Vec nodes[3]; /* laid out as displacements */
     Vec rows[3];  /* one number for each row */
@@ -329,14 +325,12 @@ static inline PetscBool BodyIsElsewhere(Body body)
   return (PetscBool)(BodyStepsAlone(body) && body->rows.at_home && !body->mesh.is_owner && body->time.stepped);
 }
 
-/* Whether a failure ends a step at once. That of a local body others do not know yet: the step is made to its end, good for nothing, so
-   that all ranks do the same. */
+/* Whether a failure ends a step at once. With a local body the step is made to its end, in vain, so that all ranks do the same. */
 static inline PetscBool BodyHasStopped(Body body)
 {
   return (PetscBool)(body->failure.reason < 0 && !body->local);
 }
 
-/* For setters */
 #define BodyCheckNotSetUp(body)                                                                                                            \
   PetscCheck(!(body)->setup, PetscObjectComm((PetscObject)(body)), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call %s() before BodySetUp()",    \
              (body)->hdr.name, PETSC_FUNCTION_NAME)

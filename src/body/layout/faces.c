@@ -2,10 +2,8 @@
 #include "faces.h"
 #include <impakt/private/mesh.h>
 
-/* Gauss's rule with two points in each direction */
 static const PetscReal gauss = 0.57735026918962576451;
-/* Exact for quadratic functions on triangles (Strang, Fix 1973, table 4.1): the barycentric coordinate of one corner is 2/3, of the
-   others 1/6, weights are equal */
+/* Exact for quadratic functions on triangles (Strang, Fix 1973, table 4.1): barycentric coordinates 2/3, 1/6, 1/6, equal weights */
 static const PetscReal triangle_far = 2. / 3, triangle_near = 1. / 6;
 
 static PetscErrorCode AddFace(Body body, PetscInt face, PetscInt cstart, PetscInt vend, BodyFaces *faces)
@@ -40,8 +38,7 @@ static PetscErrorCode AddFace(Body body, PetscInt face, PetscInt cstart, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's faces of a surface. Two points on lines, 2 x 2 on quadrilaterals, three on triangles: exact for densities and shape
-   functions that are both linear. */
+/* This rank's faces of a surface. 2 points on lines, 2 x 2 on quadrilaterals, 3 on triangles: exact for linear densities. */
 PetscErrorCode BodyFacesCreate(Body body, const char surface[], BodyFaces *faces)
 {
   PetscInt n, *points, cstart, vend;
@@ -141,8 +138,7 @@ PetscErrorCode BodyFacesDestroy(BodyFaces *faces)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the nodes at some vertices of this rank, and what other ranks have of them: a rank may hold a node of a surface without holding a
-   face of it */
+/* Marks the nodes at some vertices of this rank on all ranks that have them: one may hold a node of a surface without a face of it */
 PetscErrorCode BodyMarkNodes(Body body, PetscInt n, const PetscInt vertices[], PetscBool marked[])
 {
   const PetscBool    ghosted = body->mesh.ghosted;

@@ -1,8 +1,5 @@
-/*
-   How a body goes through one substep: the operations that an integrator brings, and the properties by which the rest of src/body knows it.
-   Nobody asks which integrator a body has. One for each body, found by the type of the body's TS; src/body/integrator/README.md says how to
-   add one.
-*/
+/* How a body goes through one substep: operations of an integrator, and properties by which the rest of src/body knows it. Nobody asks
+   which integrator a body has. Found by the type of the body's TS; src/body/integrator/README.md says how to add one. */
 #pragma once
 #include <impakt/body.h>
 #include <solver/compliance.h>
@@ -21,31 +18,25 @@ typedef struct {
   PetscErrorCode (*step)(Body);     /* (NULL) makes a substep in place of TSStep(); may be set in setup() */
   PetscErrorCode (*checksubstep)(
       Body); /* (NULL) after TSStep(): notes in the body's failure where, and why, the equations of the substep were not solved */
-  /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and whatever else of the state the TS leaves undone
-   */
+  /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and what else the TS leaves undone */
   PetscErrorCode (*finishsubstep)(Body);
   /* (NULL) after the one substep of a controller step: moves its end state to the present inputs, given by how much more force acts on
      forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
   PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
   /* (NULL) before repeat(), which needs changes and not forces: brings what it needs of these from the ranks that have rows */
   PetscErrorCode (*bringchanges)(Body, const PetscScalar[]);
-  /* (NULL) finds what TSStep() and repeat() have left out of the state, since rows do not depend on it, where they have marked it as
-     incomplete; may be set in setup() */
+  /* (NULL) finds what TSStep() and repeat() have left out of a state that they mark as incomplete; may be set in setup() */
   PetscErrorCode (*complete)(Body);
   PetscErrorCode (*save)(Body);    /* (NULL) the state has been put aside: so is to be what the integrator remembers beside it */
   PetscErrorCode (*restore)(Body); /* (NULL) the state has been brought back: what the integrator remembers must be as it was
                                                 then, so that the same integration gives the same bits */
-  /* (NULL) what the integrator remembers from step to step, to or from a checkpoint, for a level of cut steps; loading, that level is
-   * present
-   */
+  /* (NULL) memory from step to step, to or from a checkpoint, for a level of cut steps, which is present in loading */
   PetscErrorCode (*visit)(Body, PetscInt, Checkpoint);
   PetscErrorCode (*agree)(Body); /* (NULL) of a local body whose rows are to be prescribed, or whose state is to be saved: all ranks get to
                                     know what one of them remembers of the steps that it has made alone */
-  /* (NULL) of a nonlinear body: where its factors for whole controller steps have been made, and two numbers of them, to a vector of the
-     body; or (true) back, with factors that are made there */
+  /* (NULL) of a nonlinear body: where its factors for whole steps were made, and two numbers, to a vector; (true) back, with factors */
   PetscErrorCode (*copypoint)(Body, PetscBool, Vec, PetscReal[2]);
-  /* (NULL) the columns of some displacements of any rank, into a compliance, for the controller step that begins in the saved state, where
-     no step need be made for them; other states have others */
+  /* (NULL) columns of some displacements of any rank, into a compliance, for the step from the saved state, without making it */
   PetscErrorCode (*nodalcolumns)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
   PetscErrorCode (*solvemass)(Body, Vec, Vec);     /* (NULL) the acceleration [m/s^2] that forces on the nodes bring [N] */
   PetscErrorCode (*start)(Body);                   /* (NULL) checks, and corrects, displacement and velocity of the first state */

@@ -310,8 +310,7 @@ PetscReal BodyShareOf(Body body, PetscReal value)
   return body->mesh.is_owner ? value : 0;
 }
 
-/* A vector with the layout of the DM's global vector and, where several ranks have a part of the mesh, room for the ghosts behind the owned
-   values, so that element loops read and write it in place */
+/* A vector with the layout of the DM's global vector, with room for ghosts behind owned values for element loops in place */
 PetscErrorCode BodyCreateVec(Body body, Vec *vec)
 {
   MPI_Comm       comm   = PetscObjectComm((PetscObject)body);

@@ -96,8 +96,7 @@ static PetscErrorCode AddOnHeld(Body body, PetscScalar part, Vec force, Vec appl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By how much the acceleration at the start of the last substep was more than the one before had ended with, held dofs apart: the mean of
-   it and of that at the end is what the velocities tell */
+/* Jump of the acceleration into the last substep, held dofs apart, from the velocities: these have the mean of start and end */
 static PetscErrorCode ComputeAccelerationChange(Body body, Vec change)
 {
   PetscFunctionBegin;
@@ -110,8 +109,7 @@ static PetscErrorCode ComputeAccelerationChange(Body body, Vec change)
 }
 
 /* Reactions at the start of a step are those that the last one ended with. Where contact forces are constant in it, they are others from
-   its start on, and so is what holds dofs, or leads the body, against them. By a mass that is not diagonal held dofs bear inertia of
-   others, which are accelerated by these forces. */
+   its start on, and so are reactions. Through a mass that is not diagonal held dofs bear inertia of others. */
 static PetscErrorCode CountForceChange(Body body, Vec work, Vec applied)
 {
   PetscBool any;
@@ -161,8 +159,7 @@ PetscErrorCode BodyAddWork(Body body, Vec start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What this rank adds to the sums that the energy of the present state is made of, beside those of the measures: the work of loads and of
-   dashpots in a step that has not been accepted yet */
+/* This rank's part of the energy of the present state beside the measures: work of loads and dashpots in a step not yet accepted */
 PetscErrorCode BodyAddPendingWork(Body body, PetscReal sums[2])
 {
   PetscReal pending = 0, damped = 0;

@@ -85,7 +85,6 @@ static PetscErrorCode Evaluate(Body body, Expression formula, PetscReal t, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rotation and angular velocity at a time */
 static PetscErrorCode EvaluateRotation(Body body, PetscReal t, PetscReal rotation[9], PetscReal spin[3])
 {
   PetscReal vector[3], rate[3];
@@ -103,8 +102,7 @@ static PetscErrorCode EvaluateRotation(Body body, PetscReal t, PetscReal rotatio
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts what leads the body at a time into a motion, whose other components stay. The angular acceleration is a difference of second order,
-   centred, or at the start of the run one-sided. */
+/* Puts what leads the body at a time into a motion. Angular acceleration: a centred difference of second order, one-sided at the start. */
 PetscErrorCode BodyLead(Body body, PetscReal t, RigidMotion *motion)
 {
   const PetscReal h     = SPACING * body->time.step;

@@ -91,45 +91,10 @@ static PetscErrorCode ReadGravity(Body body, const char text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyLoadsSetFromOptions - prescribed displacements, tractions, forces in the volume and the initial state from options
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, with mesh and elements
-
-  Options Database Keys:
-+ -<body>_boundary_displacement a,b                  - surfaces, or node sets, with prescribed displacements
-. -<body>_boundary_displacement_<surface> ux,uy,uz   - these displacements: for each component an expression in x, y, z, t [m], or the
-                                                       word `free`
-. -<body>_boundary_traction a,b                      - surfaces with tractions
-. -<body>_boundary_traction_<surface> tx,ty,tz       - these tractions: expressions in x, y, z, t, nx, ny, nz [Pa] per area of the
-                                                       reference configuration
-. -<body>_gravity gx,gy,gz                           - constant acceleration of all mass [m/s^2]
-. -<body>_body_force fx,fy,fz                        - expressions in x, y, z, t [N/m^3] per volume of the reference configuration
-. -<body>_initial_displacement ux,uy,uz              - expressions in x, y, z [m], default 0
-. -<body>_initial_velocity vx,vy,vz                  - expressions in x, y, z [m/s], default 0
-. -<body>_rigid_displacement ux,uy,uz                - leads a rigid body: see `BodySetRigidDisplacement()`
-- -<body>_rigid_rotation r                           - leads a rigid body: see `BodySetRigidRotation()`
-
-  Level: intermediate
-
-  Notes:
-  Expressions are those of `ExpressionCreate()`: formulas or `table:file`; positions are those of the reference configuration, and the
-  normal is its outward unit normal, so that a pressure p is -p*nx,-p*ny,-p*nz. A traction of plane bodies acts on the edge times
-  the thickness, of rings on the circle around, of bars on the cross-section.
-
-  Nodes of rings on the axis are held in x whatever is prescribed. Gravity of rings is along y.
-
-  Where several surfaces prescribe the same component of a node, that named last holds. `free` says nothing of a component: what
-  another surface prescribes there, holds.
-
-  Where velocity and acceleration of prescribed displacements are wanted, they are differences in time
-  (`ExpressionEvaluateRates()`); the initial velocity of held dofs is theirs too.
-
-.seealso: `Body`, `BodySetFromOptions()`, `ExpressionCreate()`, `MeshGetSurface()`
-@*/
+/* Prescribed displacements, tractions, gravity and body forces, the initial state, and what leads a rigid body, from the options of a body
+   with mesh and elements, see options/README.md. Where several surfaces prescribe a component of a node, that named last holds; `free` says
+   nothing of it. Nodes of rings on the axis are held in x. Velocity and acceleration of prescribed displacements, the initial velocity too,
+   are differences in time, ExpressionEvaluateRates(). Collective. */
 PetscErrorCode BodyLoadsSetFromOptions(Body body)
 {
   PetscInt       n_displacements = 0, n_tractions = 0;

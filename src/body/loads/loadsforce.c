@@ -55,7 +55,6 @@ static PetscErrorCode Integrate(Body body, const Load *load, const Expression de
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sorts the components of a load by kind */
 static PetscErrorCode SortComponents(Load *load)
 {
   PetscFunctionBegin;

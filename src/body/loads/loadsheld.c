@@ -1,4 +1,3 @@
-/* Displacements prescribed on surfaces. */
 #include "loadsimpl.h"
 #include <impakt/private/mesh.h>
 
@@ -33,8 +32,7 @@ static PetscErrorCode MarkAxis(Body body, Vec local)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For each owned dof 1 + the number of the last prescription that holds it, else 0. A rank may own a node of a surface without
-   having a face of it. */
+/* For each owned dof 1 + the number of the last prescription that holds it, else 0. */
 static PetscErrorCode MarkAllHeld(Body body, Vec marks)
 {
   const PetscBool          ghosted = body->mesh.ghosted;
@@ -224,8 +222,7 @@ PetscErrorCode BodyLoadsPrescribe(Body body, PetscReal t, Vec u, Vec v, Vec a)
   PetscScalar       *arrays[3] = {NULL};
 
   PetscFunctionBegin;
-  /* ranks without held dofs must open the vectors too: PETSc keeps norms with them, and would take the reduction for done on some ranks
-     alone */
+  /* ranks without held dofs must open the vectors too, or PETSc would keep norms with them on some ranks alone */
   if (!loads || !body->held.any) PetscFunctionReturn(PETSC_SUCCESS);
   for (int k = 0; k < 3; k++)
     if (vecs[k]) PetscCall(VecGetArray(vecs[k], &arrays[k]));

@@ -1,4 +1,3 @@
-/* Displacement and velocity at the start, from options. */
 #include "loadsimpl.h"
 #include <sys/units.h>
 
@@ -120,8 +119,7 @@ static PetscErrorCode CheckAxis(Body body, int which, Vec values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacement [m] and velocity [m/s] of owned nodes at the start: those of the options, else zero, and those of held dofs as they
-   are prescribed */
+/* Displacement [m] and velocity [m/s] of owned nodes at the start: the options', else zero; of held dofs as prescribed */
 PetscErrorCode BodyLoadsInitialState(Body body, Vec u, Vec v)
 {
   const Vec vecs[] = {u, v};

@@ -73,7 +73,6 @@ PetscErrorCode BodyLoadsCheckGravity(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Acceleration of all mass [m/s^2] */
 PetscErrorCode BodyLoadsSetGravity(Body body, const PetscReal gravity[])
 {
   PetscFunctionBegin;

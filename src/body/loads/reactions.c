@@ -1,7 +1,6 @@
 /* The forces that hold the surfaces whose displacement is prescribed. */
 #include "loadsimpl.h"
 
-/* Force and moment of each surface */
 #define N_SUMS 6
 
 /* Room for the sums, when the surfaces are known */
@@ -72,8 +71,7 @@ PetscErrorCode BodyGetReactionSurface(Body body, PetscInt i, const char *name[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds what holds some dofs, or all where there is no list, to the sums of their surface; `applied`: forces from outside and reactions on
-   all dofs, `outside`: forces from outside alone [N] */
+/* Adds what holds some dofs (no list: all) to their surface's sums; `applied`: outside forces and reactions, `outside`: the former [N] */
 static void AddDofs(PetscInt n, const PetscInt dofs[], PetscInt dim, const PetscScalar x[], const PetscScalar u[],
                     const PetscScalar applied[], const PetscScalar outside[], PetscReal sums[])
 {

@@ -26,8 +26,7 @@ PetscErrorCode BodyCreateCompliance(Body body)
 }
 
 /* The parts of the compliance B K^{-1} B^T of rows that answer by a massless layer alone: its stiffness K, held by the rest of the body
-   [N/m], and B on its dofs without held ones. Both are owned by the body and change with layer and rows; NULL where rows answer
-   otherwise. */
+   [N/m], and B on its dofs without held ones. Owned by the body, they change with layer and rows; NULL where rows answer otherwise. */
 PetscErrorCode BodyGetLayerMatrices(Body body, Mat *stiffness, Mat *rows)
 {
   PetscFunctionBegin;

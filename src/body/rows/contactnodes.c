@@ -1,7 +1,5 @@
-/*
-   Forces on the rows of a body with lumped mass and without massless nodes. A contact node is accelerated by the forces on it and by no
-   others, so that all is done at the contact nodes: all nodes of a body may be fifty times as many.
-*/
+/* Forces on the rows of a body with lumped mass and without massless nodes. A contact node is accelerated by the forces on it and by no
+   others, so that all is done at the contact nodes: all nodes of a body may be fifty times as many. */
 #include <body/layout/bodyimpl.h>
 
 PetscErrorCode BodyDestroyContactNodes(Body body)
@@ -32,8 +30,7 @@ PetscErrorCode BodyMarkColumns(Mat rows, Vec marks)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyListContactDofs - the displacements of contact nodes that near rows act on, all where all rows are near; and a vector of zeros for
-   the forces on them */
+/* BodyListContactDofs - displacements of contact nodes that near rows act on, and a vector of zeros for the forces on them */
 PetscErrorCode BodyListContactDofs(Body body)
 {
   const PetscInt     dim  = body->mesh.dim;

@@ -12,11 +12,10 @@ static PetscErrorCode SolveLumpedMassOfRows(Body body, const PetscScalar impulse
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Changes displacement, velocity and acceleration at one end of the controller step by `parts` of M^{-1} B^T impulse, by the lumped mass
-   on request, which keeps the momentum and needs no solution. Massless nodes stay. A changed start is saved, and the body goes back to
-   it; a changed end needs a later BodySave(). Traces at the end follow, those at the start do not, see BodyWriteStartTraces(). Forward-
-   increment Lagrange multipliers (Carpenter, Taylor, Katona 1991) act on the start: they are found after the step that they begin.
-   Collective. */
+/* Changes displacement, velocity and acceleration at one end of the controller step by `parts` of M^{-1} B^T impulse, or by the lumped
+   mass, which keeps the momentum too. Massless nodes stay. A changed start is saved, and the body goes back to it; a changed end needs a
+   later BodySave(). Traces at the end follow, those at the start do not, see BodyWriteStartTraces(). Forward-increment Lagrange
+   multipliers (Carpenter, Taylor, Katona 1991) act on the start: they are found after the step that they begin. Collective. */
 PetscErrorCode BodyAddImpulses(Body body, BodyStepSide side, PetscBool lumped, const PetscReal parts[3], const PetscScalar impulse[])
 {
   const Vec   change = body->work.nodes[2], vecs[] = {body->state.u, body->state.v, body->state.a};
@@ -37,8 +36,7 @@ PetscErrorCode BodyAddImpulses(Body body, BodyStepSide side, PetscBool lumped, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* a -= B^T (B B^T)^{-1} B a at the end of the controller step, on the rows that would be prescribed under these conditions. Before
-   BodySave(). Collective. */
+/* a -= B^T (B B^T)^{-1} B a at the end of the controller step, on rows prescribed under these conditions. Before BodySave(). Collective. */
 PetscErrorCode BodyClearAcceleration(Body body, BodyCondition conditions[])
 {
   BodyRows            *rows         = &body->rows;

@@ -1,15 +1,10 @@
-/*
-   Ranks that have rows of a body, and the rank that has the body, tell each other what they need of each other before and after its step,
-   in place of within it.
-
-   A body that steps alone (BodyStepsAlone()) on one of several ranks feels forces on rows that others may have, and has displacements that
-   these ask for. Within the step, these would wait until it is done, and bodies on different ranks would be integrated one after the other.
-   So the forces of all bodies are brought first, B^T f; then each rank makes the steps of its bodies; and then their traces are written.
-*/
+/* Messages of a body's rows before and after its step, in place of within it. A body that steps alone (BodyStepsAlone()) on one of several
+   ranks takes forces on rows of other ranks, which take its displacements. Within the step these would wait until it is done, and bodies on
+   different ranks would be integrated one after the other. So the forces of all bodies are brought first, B^T f; then each rank makes the
+   steps of its bodies; and then their traces are written. */
 #include <body/layout/bodyimpl.h>
 
-/* Whether a step needs only the forces at its end, which are known before it. Inside of a step with substeps it needs both. What goes over
-   from other rows has gone by the end (handover.c). */
+/* Whether a step needs only the forces at its end: one substep does. What other rows hand over has gone by then (handover.c). */
 static PetscBool Exchanges(Body body)
 {
   return (PetscBool)(BodyStepsAlone(body) && !body->rows.at_home && body->rows.global && body->time.substeps == 1 &&
@@ -33,9 +28,8 @@ static PetscErrorCode BringForces(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Brings the forces on the rows to the rank that has the body, before BodyTryIntegrateRows(), or BodyCompleteStep() if `completes`.
-   Until BodyEndExchange() input traces and conditions must stay, and output traces mean nothing. For bodies without exchange both do
-   nothing. Collective. */
+/* Brings the forces on the rows to the rank that has the body, before BodyTryIntegrateRows(), or BodyCompleteStep() if `completes`. Until
+   BodyEndExchange() input traces and conditions stay, and output traces mean nothing. Collective. */
 PetscErrorCode BodyBeginExchange(Body body, PetscBool completes)
 {
   PetscFunctionBegin;

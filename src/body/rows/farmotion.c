@@ -1,5 +1,4 @@
-/*
-   What a body may do beyond the layers of elements that a slab at its surface has whole: displacements that are linear between the nodes of
+/* What a body may do beyond the layers of elements that a slab at its surface has whole: displacements that are linear between the nodes of
    a coarse grid on the box of the body. With the columns of P, one for each dof of the slab and one for each coarse node and component, the
    body answers to forces on its surface with
 
@@ -7,8 +6,7 @@
 
    in place of B A^{-1} B^T. Rigid motions and strains that are the same everywhere are among them, and so is, about, all that changes
    little from one coarse node to the next: what reaches far from the surface does. A slab whose far side is held lacks all that, and at
-   steps in which waves cross the body that is most of what long waves on the surface answer with.
-*/
+   steps in which waves cross the body that is most of what long waves on the surface answer with. */
 #include "complianceimpl.h"
 
 /* Edge of a coarse cell, in edges of elements as they are on average */
@@ -82,8 +80,7 @@ static PetscInt FindWeights(const Coarse *coarse, const PetscScalar x[], PetscIn
   return n;
 }
 
-/* Which of this rank's dofs the coarse grid moves: none of the slab, and none that is held, which has no other entry in its row of A than
-   that on the diagonal */
+/* Which of this rank's dofs the coarse grid moves: none of the slab, and none that is held, whose row of A has its diagonal entry alone */
 static PetscErrorCode FindMoved(Mat A, IS near, PetscBool moved[])
 {
   const PetscInt *dofs;
@@ -161,7 +158,6 @@ static PetscErrorCode FillFunctions(const Coarse *coarse, Vec positions, IS near
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks dofs of any rank */
 static PetscErrorCode Mark(IS dofs, Vec mark)
 {
   const PetscInt *dof;
@@ -177,7 +173,6 @@ static PetscErrorCode Mark(IS dofs, Vec mark)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The marked dofs of this rank */
 static PetscErrorCode ListMarked(Vec mark, IS *is)
 {
   PetscInt           count = 0, *dofs, begin, n;

@@ -1,13 +1,10 @@
-/*
-   Displacements of nodes under unit forces on them, at the end of a controller step of many substeps of an explicit body, by these substeps
+/* Displacements of nodes under unit forces on them, at the end of a controller step of many substeps of an explicit body, by these substeps
    where they count alone. In each substep a force is felt one element farther, and what is far from the nodes asked for when the step ends
-   does not come back to them in time. Ahead of the wave displacements fall below round-off: nodes join as their neighbours have moved.
-*/
+   does not come back to them in time. Ahead of the wave displacements fall below round-off: nodes join as their neighbours have moved. */
 #include "complianceimpl.h"
 #include <impakt/private/simd.h>
 
-/* Neighbours of a node that has moved no more than this part of the largest displacement do not move at all. Columns of nonlinear bodies
-   are those of the undeformed one, and wrong by more. */
+/* Neighbours of a node below this part of the largest displacement do not move. Columns of nonlinear bodies, undeformed, err more. */
 #define STILL           1e-12
 #define STILL_NONLINEAR 1e-5
 #define TOGETHER        SIMD_WIDTH /* columns that are made at once: of nodes near each other, as neighbours in the numbering mostly are */
@@ -29,7 +26,6 @@ static void Join(Front *front, PetscInt node)
   front->moved[front->n_moved++] = node;
 }
 
-/* The largest displacement of a node in any column */
 static PetscReal Largest(const Front *front, PetscInt node)
 {
   const PetscInt n       = front->dim * TOGETHER;
@@ -152,8 +148,7 @@ static void FindDistances(Front *front, PetscInt n, const PetscInt dofs[], Petsc
   }
 }
 
-/* FrontCreateMatrix - the stiffness of the undeformed body, of nodes that forces on contact nodes can reach, and act back from on contact
-   nodes, before a controller step ends */
+/* FrontCreateMatrix - stiffness of the undeformed body at nodes from which waves from contact nodes come back within a controller step */
 PetscErrorCode FrontCreateMatrix(Body body, Mat *stiffness)
 {
   const PetscInt n = body->model.element->nodes, count = body->model.element->count, *nodes = body->mesh.connectivity;

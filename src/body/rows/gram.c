@@ -1,5 +1,4 @@
-/*
-   Prescribed rows that are not orthonormal. A node that touches two partners has a row for each, along normals that need not be square to
+/* Prescribed rows that are not orthonormal. A node that touches two partners has a row for each, along normals that need not be square to
    each other, and a row along displacements that the user prescribes has less than length one on the others. With such rows B and their
    Gram matrix G = B B^T, where B is without held dofs,
 
@@ -10,8 +9,7 @@
    Rows of a node that depend on each other are prescribed as well as can be, by least squares with a weight w for each row, and share the
    force according to their weights: with A = diag(w) the inverse becomes A^{1/2} (A^{1/2} G A^{1/2})^+ A^{1/2}, which is G^{-1} where there
    is one. Two with one direction are prescribed their weighted mean, and each takes its part of the force; so the work of the force is that
-   of its parts, and with the areas that two partners cover for weights this is the mortar condition of both together.
-*/
+   of its parts, and with the areas that two partners cover for weights this is the mortar condition of both together. */
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
 
@@ -20,7 +18,6 @@
 /* Rows with a length so near to one are taken for unit vectors */
 #define UNIT 1e-12
 
-/* The blocks of the rows of this rank that are prescribed */
 struct _n_BodyGram {
   PetscInt     n_blocks, *offsets, *rows;
   PetscInt    *starts; /* of each block in: */
@@ -87,8 +84,7 @@ static PetscErrorCode Grow(PetscInt n, PetscInt *room, PetscScalar *values[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The inverse of a symmetric matrix by sweeping its pivots (Goodnight, The American Statistician 33 (1979) 149-158); false if there is
-   none, with the rows that depend on those before them */
+/* Inverse of a symmetric matrix by sweeping pivots (Goodnight, The American Statistician 33, 1979); false if none, with dependent rows */
 static PetscBool Invert(PetscInt n, PetscScalar A[], PetscScalar diagonal[], PetscBool dependent[])
 {
   PetscBool any = PETSC_FALSE;

@@ -1,5 +1,4 @@
-/*
-   Contact forces that begin along other rows than they end.
+/* Contact forces that begin along other rows than they end.
 
    The acceleration at the start of a controller step has in it what forces f_0 did along the rows as they were, B_0^T f_0, at the end of
    the step before. Rows that are built again act along other directions and on other nodes. In the first interval of the force's waveform,
@@ -10,8 +9,7 @@
 
    The input trace brings (1 - n s) B^T f_0 + n s B^T f_1 along the rows as they are, so that what is missing is (1 - n s) (B_0 - B)^T f_0.
    Bodies whose forces are counted at the ends of the intervals alone do not see it. Without it, bodies that make other substeps would get
-   another impulse, and momentum would be lost.
-*/
+   another impulse, and momentum would be lost. */
 #include <body/layout/bodyimpl.h>
 
 PetscErrorCode BodyHandoverCreate(PetscInt n, BodyHandover *handover)

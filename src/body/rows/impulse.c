@@ -62,7 +62,6 @@ static PetscErrorCode ProbeRows(Body body, Mat matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The inverse of the lumped mass, zero on massless nodes */
 static PetscErrorCode CreateInverseRowSum(Body body, Vec *inverse)
 {
   PetscFunctionBegin;
@@ -73,8 +72,7 @@ static PetscErrorCode CreateInverseRowSum(Body body, Vec *inverse)
 }
 
 /* B M^{-1} B^T of all rows [1/kg], without prescribed rows; zero for massless nodes and static bodies. The caller destroys the matrix.
-   Sparse with a lumped mass, where rows couple that share a node; other masses couple all rows, of which there may be 2000 then.
-   Collective. */
+   Sparse with a lumped mass, where rows couple that share a node; else at most 2000 rows, all coupled. Collective. */
 PetscErrorCode BodyComputeInverseMass(Body body, PetscBool lumped, Mat *matrix)
 {
   const BodyRows *rows    = &body->rows;
@@ -118,8 +116,7 @@ PetscErrorCode BodyMultiplyInverseMass(Body body, const PetscScalar impulse[], P
 static PetscReal LeastMass(const struct _p_Body *body)
 {
   const PetscBool simplex = (PetscBool)(body->mesh.cell_nodes == body->mesh.dim + 1);
-  /* the node in the middle of composite tetrahedra is a mean: its mass on the others, at most half of theirs where parts have equal
-     volumes, counts for nothing where these cancel in it */
+  /* the middle node of composite tetrahedra is a mean: its mass, at most half of the others', counts for nothing where these cancel */
   const PetscReal middle = body->model.element->composite && body->mesh.dim == 3 ? 0.5 : 1;
   const PetscReal least  = simplex ? middle / (body->mesh.dim + 2) : PetscPowRealInt(3, -body->mesh.dim);
 
@@ -127,8 +124,7 @@ static PetscReal LeastMass(const struct _p_Body *body)
 }
 
 /* Bound of each row's velocity after a unit impulse on it, in an explicit body without massless nodes [1/kg]: the diagonal of
-   BodyComputeInverseMass(), or a bound from the eigenvalues of the elements' masses where many rows meet a mass that is not lumped.
-   Collective. */
+   BodyComputeInverseMass(), or one from eigenvalues of elements' masses where many rows meet a mass that is not lumped. Collective. */
 PetscErrorCode BodyBoundInverseMass(Body body, PetscReal bound[])
 {
   const PetscBool    lumped = (PetscBool)(!body->mass.inverse && body->rows.global > MAX_PROBED_ROWS);

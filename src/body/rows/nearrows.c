@@ -1,7 +1,5 @@
-/*
-   Rows near contact. Callers who know which rows may have a force say so, and a step costs what these cost, not what all contact nodes do:
-   of a sheet that falls these are all of its nodes, though a corner touches. Output traces of other rows are old.
-*/
+/* Rows near contact. Callers who know which rows may have a force say so, and a step costs what these cost, not what all contact nodes do:
+   of a sheet that falls these are all of its nodes, though a corner touches. Output traces of other rows are old. */
 #include "complianceimpl.h"
 
 /* values = B vec, of near rows */

@@ -1,5 +1,4 @@
-/*
-   Displacements of nodes under unit forces on them, at the end of a controller step of one substep, by solutions with a matrix in place of
+/* Displacements of nodes under unit forces on them, at the end of a controller step of one substep, by solutions with a matrix in place of
    controller steps. Which matrix that is:
 
    - the stiffness of the massless layer, of an explicit body whose forces grow from none: exact for linear bodies. Nodes with mass do not
@@ -10,8 +9,7 @@
    - the stiffness of an explicit body with many substeps, for these where forces are felt: exact for linear bodies.
 
    Under a force f that grows from none an implicit body goes by A^{-1} f. One that is constant acts at the start as well, and the body goes
-   twice as far: but massless nodes, which have no start, by the static answer of their layer less.
-*/
+   twice as far: but massless nodes, which have no start, by the static answer of their layer less. */
 #include "complianceimpl.h"
 #include <solver/constrainedsolver.h>
 
@@ -183,9 +181,8 @@ static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt do
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodalMatrixRenew - the matrix that tells how some displacements answer, of n in all, in place of one that does not any more; NULL:
-   controller steps have to. `kind`: of the columns that are known, NODAL_BY_STEPS if by controller steps; `renewed`: they are of another
-   one. */
+/* NodalMatrixRenew - the matrix that tells how some displacements answer, of n in all, in place of an old one; NULL: controller steps have
+   to. `kind`: of the columns that are known, NODAL_BY_STEPS if by controller steps; `renewed`: they are of another one. */
 PetscErrorCode NodalMatrixRenew(Body body, BodyForceShape shape, PetscInt n, PetscInt n_dofs, const PetscInt dofs[], PetscInt *kind,
                                 NodalMatrix *nodal, PetscBool *renewed)
 {

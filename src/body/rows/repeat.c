@@ -1,7 +1,5 @@
-/*
-   Sweeps of one controller step integrate a body again and again from one state, with other inputs at its rows. Where it makes one substep,
-   its integrator may find what a change of the inputs changes at the end of the step without another whole step.
-*/
+/* Sweeps of one controller step integrate a body again and again from one state, with other inputs at its rows. Where it makes one substep,
+   its integrator may find what a change of the inputs changes at the end of the step without another whole step. */
 #include <body/layout/bodyimpl.h>
 
 struct _BodyRepeat {
@@ -25,7 +23,6 @@ PetscErrorCode BodyClearRepeat(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After the integrator and the rows */
 PetscErrorCode BodySetUpRepeat(Body body)
 {
   PetscFunctionBegin;
@@ -43,8 +40,7 @@ static PetscBool Counts(Body body, PetscInt input, PetscInt row)
   return (PetscBool)(input ? condition == BODY_PRESCRIBED : condition == BODY_FORCED || condition == BODY_ROBIN);
 }
 
-/* By how much what comes in at the end of the controller step is more than what the present state has, in `changes`, on the rows that it
-   counts for; `any`: whether it is, on this rank */
+/* Changes of the inputs at the end of the controller step from the present state's, on rows they count for; `any`: on this rank */
 static PetscErrorCode CompareInputs(Body body, PetscBool *any)
 {
   const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
@@ -94,7 +90,6 @@ PetscErrorCode BodyBringChanges(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A whole integration has just been done */
 PetscErrorCode BodyNoteInputs(Body body)
 {
   PetscFunctionBegin;

@@ -217,9 +217,8 @@ static PetscErrorCode CreateMatrix(Body body, RowList *list)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Limits the rows that may have a force, and that a step reads, until rows get new entries: ascending numbers on this rank; n < 0 on all
-   ranks: all rows. Output traces of other rows stay as they are until BodyWriteStartTraces(). No row is prescribed or a Robin row.
-   Collective. */
+/* Limits the rows that may have a force and are read, until they get new entries: ascending numbers on this rank; n < 0 on all ranks: all
+   rows. Output traces of other rows stay as they are until BodyWriteStartTraces(). No row is prescribed or a Robin row. Collective. */
 PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[])
 {
   BodyRows       *rows = &body->rows;

@@ -1,8 +1,7 @@
 /* What a body has to set against a push on its rows: the stiffness of the elements beside them, and how its steps answer. */
 #include <body/layout/bodyimpl.h>
 
-/* Diagonal of B K B^T for the rows of this rank [N/m]: the force along a row for a unit displacement of its nodes alone; 0 on rows of
-   other bodies. Collective. */
+/* Diagonal of B K B^T for the rows of this rank [N/m]: the force along a row by a unit displacement of its nodes; else 0. Collective. */
 PetscErrorCode BodyComputeRowStiffness(Body body, PetscReal stiffness[])
 {
   const BodyRows    *rows = &body->rows;

@@ -106,8 +106,7 @@ PetscErrorCode BodySetTractionType(Body body, BodyTractionType type)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Weights, positive on prescribed rows of this rank, by which dependent rows of one node share its displacement (a weighted mean) and
-   force; equal without this call. Not copied. */
+/* Weights, positive on prescribed rows of this rank, by which dependent rows of a node share displacement and force; else equal. */
 PetscErrorCode BodySetRowWeights(Body body, const PetscReal weights[])
 {
   PetscFunctionBegin;
@@ -115,8 +114,7 @@ PetscErrorCode BodySetRowWeights(Body body, const PetscReal weights[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Stiffness of the springs of Robin rows, one for each row of this rank [N/m], before BodySetConditions(): the force along such a row is
-   r - stiffness B u, with r from the input trace */
+/* Stiffness of Robin rows' springs, per row of this rank [N/m], before BodySetConditions(): the force is r - stiffness B u, r the input */
 PetscErrorCode BodySetRobin(Body body, const PetscReal stiffness[])
 {
   PetscFunctionBegin;
@@ -148,7 +146,6 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells the solvers which rows they hold */
 PetscErrorCode BodySetConstraints(Body body)
 {
   PetscFunctionBegin;
@@ -171,9 +168,8 @@ PetscErrorCode BodySetConstraints(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* vec += B^T G^{-1} (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step; held dofs must
-   be in place before, and stay there. Without a trace `vec` is a force, and its part along the rows, what holds dofs left aside, becomes
-   zero. */
+/* vec += B^T G^{-1} (x - B vec) on prescribed rows, with x from the trace at that position (0 to 1) of the controller step; held dofs are
+   in place, and stay there. Without a trace `vec` is a force, and its part along the rows, what holds dofs left aside, becomes zero. */
 PetscErrorCode BodyPrescribe(Body body, Trace trace, PetscReal position, Vec vec)
 {
   PetscScalar *row, *target;

@@ -1,12 +1,10 @@
-/*
-   The massless layer at the start of the simulation. Displacements of the user, strains and loads need not leave the layer in balance; the
+/* The massless layer at the start of the simulation. Displacements of the user, strains and loads need not leave the layer in balance; the
    first step would bring it there, at the cost of energy that belongs to no motion. So the layer is moved into the balance
 
      internal force(u)_L = (forces from outside + B^T force)_L
 
    before that, with the rest of the body where it is. The forces on the rows are sought by those who know what the rows have to do: here
-   are the answers of one body, with the tangent of its layer at the present displacement.
-*/
+   are the answers of one body, with the tangent of its layer at the present displacement. */
 #include <body/layout/bodyimpl.h>
 
 /* Changes of the layer below this part of positions and displacements of the nodes are round-off */
@@ -25,8 +23,7 @@ static PetscErrorCode ComputeImbalance(Body body, PetscBool pushed, const PetscS
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* M a = forces, those on the rows too if it is pushed there: the acceleration of the first state, whose internal force must
-   have been computed */
+/* M a = forces, those on the rows too if it is pushed there: the acceleration of the first state; needs its internal force */
 PetscErrorCode BodyComputeStartAcceleration(Body body, PetscBool pushed, const PetscScalar force[])
 {
   Vec       f = body->work.nodes[0];
@@ -50,8 +47,7 @@ static PetscBool HasLayer(Body body)
   return (PetscBool)(body->layer.exists && body->integrator->has_inertia);
 }
 
-/* Whether forces from outside and internal forces of the massless layer differ before the first step; not without massless nodes or
-   inertia. Collective. */
+/* Whether outside and internal forces of the massless layer differ before the first step; false without layer or inertia. Collective. */
 PetscErrorCode BodyIsOutOfBalance(Body body, PetscBool *out)
 {
   Vec                f = body->work.nodes[0];
@@ -86,8 +82,7 @@ static PetscErrorCode FindEntries(Body body, Vec marks, PetscBool found[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the rows of this rank whose forces move the massless layer, and those whose forces act on nodes with mass or on a body without
-   inertia. Collective. */
+/* Marks this rank's rows that move the massless layer, and those on nodes with mass or on bodies without inertia. Collective. */
 PetscErrorCode BodyMarkRows(Body body, PetscBool massless[], PetscBool mass[])
 {
   Vec          marks = body->work.nodes[0];
@@ -117,9 +112,8 @@ static PetscErrorCode MeasureChange(Body body, Vec du, PetscReal *change)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far rows would move from their present places [m] if the massless layer went into balance without contact forces, by its tangent
-   at the present displacement, which the next two functions use too; `change`: largest displacement of the layer, 0 where that is round-
-   off [m]. Before the first step. Collective. */
+/* How far rows would move from their present places [m] if the massless layer went into balance without contact forces (tangent at the
+   present displacement); `change`: largest displacement of the layer, 0 where that is round-off [m]. Before the first step. Collective. */
 PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *change)
 {
   Vec f = body->work.nodes[0], du = body->work.nodes[1];
@@ -193,8 +187,7 @@ static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes the present displacement and velocity as the first state, in which forces act on the rows [N]; acceleration, traces and work
-   follow. Collective. */
+/* Makes displacement and velocity the first state, with forces on the rows [N]; acceleration, traces and work follow. Collective. */
 PetscErrorCode BodyStartUnderForces(Body body, const PetscScalar force[])
 {
   PetscScalar *reaction;

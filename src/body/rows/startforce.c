@@ -1,9 +1,7 @@
-/*
-   Contact forces at the start of a controller step that differ from those that the last step ended with. A force on rows of a massless
+/* Contact forces at the start of a controller step that differ from those that the last step ended with. A force on rows of a massless
    layer moves the layer, and the layer pulls at the nodes inside: those feel B~^T x with B~^T = -K_IL K_LL^{-1} B^T. So a start under
    forces that are larger by x is one with the acceleration M^{-1} B~^T x on top, displacement and velocity being as they are. The mean
-   contact force of the step is then that of the start as given here and of the end, on both bodies, so that momentum is kept.
-*/
+   contact force of the step is then that of the start as given here and of the end, on both bodies, so that momentum is kept. */
 #include <body/layout/bodyimpl.h>
 
 /* BodyAnswerAtStart - the acceleration that forces on nodes, in work.nodes[0], bring to the nodes that have mass */
@@ -127,11 +125,10 @@ static PetscBool ActsByMean(Body body)
   return (PetscBool)(!body->unloaded || (body->rows.nodal_force && body->rows.nodal_shape == BODY_FORCE_LINEAR));
 }
 
-/* At the start of a substep, whose acceleration belongs to the forces at the end of the one before: to the forces that have the mean of the
-   controller step in this one, see BodySetMeanForces(). Central differences take half of the change here and half at the end of the
-   substep: their staggered energy changes by -dt^2/8 (a + b)'M (b - a) where the acceleration goes from a to b, and these then cancel over
-   a controller step, at the start of which the force goes one way and within which it goes back. With all of it here the change is a loss
-   in each step. */
+/* Takes a substep's start from the forces at the end of the one before to those that have the mean of the controller step in this one, see
+   BodySetMeanForces(). Central differences take half of the change here and half at the end of the substep: their staggered energy changes
+   by -dt^2/8 (a + b)'M (b - a) where the acceleration goes from a to b, and these then cancel over a controller step, at the start of which
+   the force goes one way and within which it goes back. With all of it here the change is a loss in each step. */
 PetscErrorCode BodyTurnToMeanForce(Body body)
 {
   const PetscInt  m    = body->time.substeps;
@@ -157,8 +154,7 @@ PetscErrorCode BodyTurnToMeanForce(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the end of a substep: the half of the change that central differences have left, which the last half of the substep's impulse has not
-   had. The acceleration is that of the forces at the end. */
+/* At the end of a substep: the half of the change that central differences have left. The acceleration is that of the end. */
 PetscErrorCode BodyEndMeanForce(Body body)
 {
   PetscFunctionBegin;

@@ -1,8 +1,5 @@
-/*
-   Forces on the rows that are the same throughout a controller step, and what they bring about at its end. Integrators take the force at
-   both ends of a substep; what a step begins with is in the acceleration there, which has that of the last step: so the acceleration is
-   changed.
-*/
+/* Forces on rows that are the same throughout a controller step, and their effect at its end. Integrators take the force at both ends of a
+   substep; what a step begins with is in the acceleration there, which has that of the last step: so the acceleration is changed. */
 #include "complianceimpl.h"
 
 /* Lets forces [N] act along the forced rows throughout the controller step, until the next call, BodySave() or BodyDropStartForce().

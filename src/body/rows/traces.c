@@ -39,8 +39,7 @@ PetscErrorCode BodyWriteTrace(Body body, Mat rows, Vec vec, Trace trace, PetscIn
 }
 
 /* Forces at the end of a substep such that those at its stage lie on the line from its start: partners take them as varying linearly, and
-   get at the stage what has held the rows there. Were it the balance at the end instead, momentum would change by what the internal force
-   is nonlinear in the substep. */
+   get at the stage what has held the rows there. By the balance at the end momentum would change by what is nonlinear in the substep. */
 static PetscErrorCode ExtendFromStage(Body body, PetscInt level, PetscScalar reaction[])
 {
   const PetscReal stage = body->rows.stage;
@@ -63,8 +62,7 @@ static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All but the displacement of BodyWriteTraces(). Nobody looks at accelerations where forces are constant in a controller step, but at those
-   of tied nodes with mass. */
+/* All but the displacement of BodyWriteTraces(). With forces constant in a controller step only tied nodes with mass need accelerations. */
 static PetscErrorCode WriteRates(Body body, PetscInt level)
 {
   const PetscBool at_stage = (PetscBool)(level && body->rows.stage_balance);
@@ -144,8 +142,7 @@ PetscErrorCode BodyGetTraces(Body body, BodyTraces *traces)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Contact force along each near row of this rank at the end of substep 1 to their number [N]: that on forced rows, the reaction of
-   prescribed and Robin rows, zero on free ones */
+/* Contact force along each near row of this rank at the end of substep 1 to their number [N], reactions on prescribed and Robin rows */
 PetscErrorCode BodyGetRowForces(Body body, PetscInt substep, PetscReal force[])
 {
   PetscScalar *reaction, *force_in;

@@ -1,8 +1,6 @@
-/*
-   Matrices of rows of a body that one of several ranks has all of. All entries of a rank's rows are in one block of such a matrix: that of
+/* Matrices of rows of a body that one of several ranks has all of. All entries of a rank's rows are in one block of such a matrix: that of
    the columns which it has, of the owner, or that of the columns which others have. So rows can get entries in other places without a word
-   of other ranks, once each rank knows all columns that these will ever be in.
-*/
+   of other ranks, once each rank knows all columns that these will ever be in. */
 #include <body/layout/bodyimpl.h>
 
 /* Has ranks with rows but nothing of the body itself (`owner`) know the columns in which a new matrix will ever have entries, n columns,
@@ -22,8 +20,7 @@ PetscErrorCode BodyWholeRowsTellColumns(Mat matrix, PetscBool owner, PetscInt n,
 }
 
 /* New room for at most `counts` entries of each of this rank's rows. A new matrix, as after a checkpoint, multiplies by groups of rows
-   alike in the block of its own columns; one that goes on has to look for them anew too: without this gaps after a checkpoint differed
-   in the last bit. */
+   alike in the block of its own columns; one that goes on looks for them anew, or the last bit differs after a checkpoint. */
 PetscErrorCode BodyWholeRowsRenew(Mat matrix, PetscBool owner, const PetscInt counts[])
 {
   PetscInt n;

@@ -1,5 +1,4 @@
-/*
-   Rayleigh damping: dashpots with the forces C v = alpha M v + beta K v against the velocity v.
+/* Rayleigh damping: dashpots with the forces C v = alpha M v + beta K v against the velocity v.
 
    M is the body's own mass matrix: massless nodes have no drag. K v is what the elements of the undeformed body would put on the nodes for
    displacements v, of elements that touch no massless node: with dashpots on a massless node the contact layer would have dynamics of its
@@ -7,8 +6,7 @@
    pass.
 
    In a nonlinear body K v is the force of the stress S = C0 : dE/dt, with the elastic constants C0 at zero strain and the rate of Green
-   and Lagrange's strain E. It is K v at small displacements, takes no energy from a body that turns, and never brings any.
-*/
+   and Lagrange's strain E. It is K v at small displacements, takes no energy from a body that turns, and never brings any. */
 #include <body/layout/bodyimpl.h>
 #include <sys/units.h>
 
@@ -97,13 +95,11 @@ PetscErrorCode BodyGetDamping(Body body, PetscReal *mass, PetscReal *stiffness)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether it has dashpots at all */
 PetscBool BodyIsDamped(Body body)
 {
   return (PetscBool)(body->damping && body->integrator->has_inertia && (body->damping->mass > 0 || body->damping->stiffness > 0));
 }
 
-/* For BodyView() */
 PetscErrorCode BodyViewDamping(Body body, PetscViewer viewer)
 {
   const struct _BodyDamping *damping = body->damping;

@@ -1,9 +1,7 @@
-/*
-   The stable step of a nonlinear explicit body as it is deformed: elements that are flattened have a shorter one. How thin the thinnest
+/* The stable step of a nonlinear explicit body as it is deformed: elements that are flattened have a shorter one. How thin the thinnest
    element is, is looked at every few steps. The step is found anew, as that of the undeformed body is, only where it may have fallen below
    the substep that the body makes; in between it is taken to go with the thickness. A body whose substep is no longer stable lets the
-   controller step fail, which is then cut in halves: so the body makes more substeps by itself, and fewer again where elements recover.
-*/
+   controller step fail, which is then cut in halves: so the body makes more substeps by itself, and fewer again where elements recover. */
 #include "corners.h"
 
 /* Controller steps from one look to the next */

@@ -16,10 +16,9 @@ static PetscBool IsStill(Body body, PetscInt node, PetscInt component)
   return (PetscBool)(IsMassless(body, node) || (component == 0 && body->mesh.on_axis && body->mesh.on_axis[node]));
 }
 
-/* Largest eigenvalue of one element with its massless nodes held, which is a bound whether they are free or prescribed; u: displacement of
-   this rank's nodes. Where the body extrapolates, massless nodes have their own mass in the element and no stiffness: for inner
-   displacements x with energy x^T K x, x^T E^T M E x is no less than the least of [x, y]^T M [x, y] over all displacements y of massless
-   nodes. */
+/* Largest eigenvalue of one element with its massless nodes held, a bound whether free or prescribed; u: displacement of this rank's nodes.
+   Where the body extrapolates, massless nodes have their own mass in the element and no stiffness: for inner displacements x with energy
+   x^T K x, x^T E^T M E x is no less than the least of [x, y]^T M [x, y] over all displacements y of massless nodes. */
 PetscErrorCode BodyGetElementEigenvalue(Body body, PetscInt e, const PetscScalar u[], PetscReal *largest)
 {
   const PetscInt *nodes   = body->mesh.connectivity + e * body->model.element->nodes;

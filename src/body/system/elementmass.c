@@ -52,8 +52,7 @@ static PetscReal MeanFactor(Body body, const PetscInt nodes[])
   return inner ? sum / inner : 0;
 }
 
-/* The mass matrix of one element as the body uses it, nodes x nodes, the same for each component; its full mass where the body
-   extrapolates. */
+/* The mass matrix of an element in the body, nodes x nodes, the same for each component; its full mass where the body extrapolates. */
 PetscErrorCode BodyGetElementMass(Body body, PetscInt e, PetscScalar M[])
 {
   const PetscInt  n     = body->model.element->nodes;

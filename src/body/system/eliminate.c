@@ -1,7 +1,6 @@
 /* Degrees of freedom whose displacement the user prescribes (held dofs), taken out of vectors and matrices. */
 #include <body/layout/bodyimpl.h>
 
-/* Held dofs of a vector become zero */
 PetscErrorCode BodyZeroHeld(Body body, Vec vec)
 {
   PetscScalar *array;
@@ -14,7 +13,6 @@ PetscErrorCode BodyZeroHeld(Body body, Vec vec)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Held dofs of a vector become those of another */
 PetscErrorCode BodyCopyHeld(Body body, Vec from, Vec to)
 {
   const PetscScalar *source;

@@ -1,13 +1,11 @@
-/*
-   Velocities of massless contact nodes that follow those of the nodes with mass (inner nodes): v = E v_inner, the affine extrapolation of
+/* Velocities of massless contact nodes that follow those of the nodes with mass (inner nodes): v = E v_inner, the affine extrapolation of
    the nearest of them. With the full mass M the mass of the body is E^T M E. It has the kinetic energy of each field of velocities that is
    affine around every contact node, rigid motions among them: total mass, centre and moments of inertia are exact. It is positive definite
    on inner nodes whatever the weights are, since M is.
 
    The weights of a contact node are those of least sum w^2 / omega that satisfy sum w = 1, sum w (x - x_node) = 0, with omega = 1 /
    distance^4. Where the neighbouring inner nodes lie in a plane, or nearly so, there are no such weights, or only large ones: there the
-   inner nodes do not span the body, as in sheets of one or two elements.
-*/
+   inner nodes do not span the body, as in sheets of one or two elements. */
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
 
@@ -22,7 +20,6 @@
 #define EXACT      1e-10
 #define MAX_FIELDS 4
 
-/* The surroundings of this rank's contact nodes */
 typedef struct {
   PetscInt  dim, n_wanted; /* inner nodes for one contact node at first: those of a regular mesh within one element, and one more */
   PetscReal largest_sum;   /* of the absolute weights of one node */
@@ -330,8 +327,7 @@ static PetscErrorCode NotePlace(Body body, const PetscBool keeps[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* E, if inner nodes span the body around all contact nodes; and around how many they do not: they lie in a plane there, or too near to
-   one */
+/* E, if inner nodes span the body around all contact nodes; and around how many they do not, nearly in a plane */
 PetscErrorCode BodyFindExtrapolation(Body body)
 {
   const PetscInt n    = body->mesh.owned_nodes;

@@ -1,5 +1,4 @@
-/* Whether the displacements that are held, or the nodes with mass, keep a body from moving as if it were rigid, and what it is free to do.
- */
+/* Whether the displacements that are held, or the nodes with mass, keep a body from rigid motions, and which it is free to make. */
 #include "held.h"
 #include <petscblaslapack.h>
 
@@ -125,7 +124,6 @@ PetscErrorCode BodyDescribeMotions(PetscInt dim, const PetscReal parts[], size_t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A static body that nothing holds at all */
 static PetscErrorCode RefuseLoose(Body body, PetscInt n_free, const PetscReal free[])
 {
   PetscReal  parts[BODY_MAX_RIGID] = {0};
@@ -145,9 +143,8 @@ static PetscErrorCode RefuseLoose(Body body, PetscInt n_free, const PetscReal fr
           body->hdr.name, text, ((PetscObject)body)->prefix);
 }
 
-/* A body that can move as if it were rigid has a matrix that is singular for that, and factors of it need not show that it is. A static
-   body with too few held displacements has `n_free` motions for artificial springs if it has contact rows, else that is an error, and so is
-   a massless layer that too few nodes with mass hold. */
+/* The matrix of a body with rigid motions is singular, which factors need not show. A static body with too few held displacements has
+   `n_free` motions for artificial springs with contact rows, else an error, as is a massless layer that too few nodes with mass hold. */
 PetscErrorCode BodyCheckHeld(Body body, PetscInt *n_free, PetscReal free[])
 {
   PetscReal rows, of_layer[BODY_MAX_RIGID * BODY_MAX_RIGID];

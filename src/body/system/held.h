@@ -2,8 +2,7 @@
 #pragma once
 #include <body/layout/bodyimpl.h>
 
-/* From where a body's rigid motions are seen: for rotations, positions count in parts of its size, so that all motions have the unit of a
-   displacement */
+/* Origin of a body's rigid motions; rotations have positions in parts of its size, so that all motions are displacements */
 typedef struct {
   PetscReal centre[3]; /* of the undeformed body's box [m] */
   PetscReal size;      /* its longest edge [m] */

@@ -1,10 +1,8 @@
-/*
-   The history of a body's material, number by number at each point of integration. It is part of the state, and goes with it: there is one
+/* The history of a body's material, number by number at each point of integration. It is part of the state, and goes with it: there is one
    of the saved state, one of the start of the substep, and one of its end, which every internal force writes that is computed in the
    substep. Nothing is copied from step to step: buffers change their places.
 
-   What looks at a state, energies or stresses, does so with its history held, so that nothing flows while it looks.
-*/
+   What looks at a state, energies or stresses, does so with its history held, so that nothing flows while it looks. */
 #include <body/layout/bodyimpl.h>
 
 enum { N_BUFFERS = 3 };
@@ -118,8 +116,7 @@ PetscErrorCode BodyHistoryNote(Body body, Vec u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyHistoryTakeEnd - the displacement at the end of the substep is there: so is the history then, if the last internal force was at that
-   displacement, which `taken` tells */
+/* BodyHistoryTakeEnd - takes the history at the end of the substep if the last internal force was there (`taken`) */
 PetscErrorCode BodyHistoryTakeEnd(Body body, PetscBool *taken)
 {
   struct _n_BodyHistory *history = body->history;

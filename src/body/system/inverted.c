@@ -1,5 +1,4 @@
-/*
-   Elements of a linear body that are inside out: its material knows no limit, and would go on with them.
+/* Elements of a linear body that are inside out: its material knows no limit, and would go on with them.
 
    They are looked for where they can be at all. At a point where det(I + H) <= 0, for the displacement gradient H, the strain has an
    eigenvalue of -1 or less, since x.(I + H) x > 0 otherwise; an element with such a corner stores at least 1/2 E V c. E is Young's modulus,
@@ -10,8 +9,7 @@
    Of an element the displacements of its nodes are compared first. Edges M that meet at a corner become M + E, which is singular only where
    the norm of E is at least the smallest singular value of M. Each of the dim edges in E is at most the diagonal of the box around the
    displacements, and that singular value is at least |det M| over the largest product of the others, (|M|^2 / 2) in space and |M| in the
-   plane.
-*/
+   plane. */
 #include "corners.h"
 
 /* The Jacobian at a corner of a cell whose nodes are at these places */
@@ -84,9 +82,8 @@ SIMD_INLINE PetscInt CountInverted(PetscInt dim, const BodyMesh *mesh, const Cor
   return number;
 }
 
-/* The energy that the body must store before an element can be inside out; infinity where nobody can tell [J]. Volumes are those of the
-   corners' Jacobians, scaled so that their sum is the volume of the body, with thickness and cross section. And by how much the
-   displacements of an element must differ [m]. */
+/* The energy that the body must store before an element can be inside out; infinity where nobody can tell [J]. Volumes: the corners'
+   Jacobians, scaled to the volume of the body. And by how much the displacements of an element must differ [m]. */
 static PetscErrorCode ComputeLeast(Body body, const Corners *shape, PetscReal *energy, PetscReal *stretch)
 {
   const BodyMesh *mesh = &body->mesh;
@@ -111,8 +108,7 @@ static PetscErrorCode ComputeLeast(Body body, const Corners *shape, PetscReal *e
   *stretch = least[1];
   PetscCall(MaterialGetUniaxialModulus(body->model.material, &modulus));
   PetscCall(MaterialGetDensity(body->model.material, &density));
-  /* nothing is known of other formulations and of several materials, and volumes of rings grow with their radius: their elements are looked
-   * at as soon as they store something */
+  /* other formulations, several materials and rings have no such bound: their elements are looked at once they store something */
   PetscCall(ElementGetFormulation(body->model.element, &formulation));
   PetscCall(PetscStrcmp(formulation, ELEMENT_FULL, &full)); /* NULL where blocks differ in it */
   *energy = !full || body->model.element->blocks || body->model.element->axisymmetric
@@ -121,9 +117,8 @@ static PetscErrorCode ComputeLeast(Body body, const Corners *shape, PetscReal *e
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Number of elements of a linear body that have a corner with a negative volume, and the undeformed centre of one of them, unchanged
-   where there is none [m]; steps of nonlinear bodies fail by that. Elements are looked at only where `potential` [J] can turn one inside
-   out. Collective. */
+/* Number of elements of a linear body that have a corner with a negative volume, and the undeformed centre of one of them [m]; steps of
+   nonlinear bodies fail by that. Elements are looked at only where `potential` [J] can turn one inside out. Collective. */
 PetscErrorCode BodyGetInverted(Body body, PetscReal potential, PetscInt *number, PetscReal centre[3])
 {
   const Corners     *shape = BodyFindCorners(body);

@@ -137,8 +137,7 @@ PetscErrorCode BodyLayerCreateHistory(Body body, PetscInt *size, char **memory, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The elements answer for a substep from its start, also where the body as a whole is at rest in its state: what is asked of the layer is
-   where it gets in a step */
+/* Elements answer for a substep from its start, even if the body is at rest in its state: the layer's end of a step is sought */
 static void PrepareHistory(Body body)
 {
   LayerElements layer = body->layer.elements;
@@ -343,8 +342,7 @@ PetscInt BodyCountLayerTangents(Body body)
   return body->layer.elements->element->count * PetscSqr(body->model.element->nodes * body->mesh.dim);
 }
 
-/* f = tangent stiffness of the elements that touch the layer, as BodyAssembleLayer() has given it, times du; both laid out as displacements
-   of the body, du being zero but on the layer [N] */
+/* f = tangent stiffness of the elements that touch the layer (BodyAssembleLayer()) times du; on all dofs, du zero but on the layer [N] */
 PetscErrorCode BodyMultiplyLayerTangent(Body body, const PetscScalar tangents[], Vec du, Vec f)
 {
   LayerElements      layer = body->layer.elements;

@@ -1,11 +1,9 @@
-/*
-   The massless layer of a body under a small force on it, whatever the integrator: with the rest of the body held,
+/* The massless layer of a body under a small force on it, whatever the integrator: with the rest of the body held,
 
      K_LL du = f_L,   K_LL at the displacement at which it was factored last.
 
    and what it pulls with at the nodes inside, -K_IL du. Linear explicit bodies have these factors in any case
-   (body/integrator/layerbalance.c), others get them when they are asked for the first time.
-*/
+   (body/integrator/layerbalance.c), others get them when they are asked for the first time. */
 #include <body/layout/bodyimpl.h>
 
 struct _n_LayerSolver {
@@ -51,8 +49,7 @@ static PetscErrorCode CreateLayerSolver(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes the tangent of the layer at displacement u for the solutions that follow; of a linear body it is always the same. Collective; for a
-   body with massless nodes on some rank. */
+/* Takes the layer's tangent at displacement u for solutions that follow; a linear body's is constant. Collective; needs massless nodes. */
 PetscErrorCode BodyPrepareLayer(Body body, Vec u)
 {
   LayerSolver      layer = body->layer.solver;
@@ -75,8 +72,7 @@ PetscErrorCode BodyPrepareLayer(Body body, Vec u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* du = K_LL^{-1} f_L on the layer, zero elsewhere, with the tangent of the last BodyPrepareLayer(). Both are laid out as displacements; f
-   is left alone, and may be du. */
+/* du = K_LL^{-1} f_L on the layer, zero elsewhere, with the tangent of the last BodyPrepareLayer(). Both on all dofs; f may be du. */
 PetscErrorCode BodyApplyLayerCompliance(Body body, Vec f, Vec du)
 {
   const BodyLayer *layer = &body->layer;

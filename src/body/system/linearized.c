@@ -2,8 +2,7 @@
 #include <body/layout/bodyimpl.h>
 
 /* Makes the elements of the linear body that a nonlinear one is at small displacements: the same mesh, with the linear elastic material of
-   `MaterialLinearize()`. Internal forces and tangents come from there while `body->model.linearized` is set. A linear body is its own; the
-   second call and later ones cost nothing. */
+   `MaterialLinearize()`. Internal forces and tangents come from there while `body->model.linearized` is set. A linear body is its own. */
 PetscErrorCode BodyPrepareLinearized(Body body)
 {
   PetscFunctionBegin;

@@ -29,8 +29,7 @@ PetscErrorCode BodyFindFirstElement(Body body, PetscInt e, PetscMPIInt *first, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of an element that is known to all ranks that there is one to tell of, or to one of them that notes it alone: its number, rank after rank
-   from 0, and where it lies; -1 where no rank has one */
+/* Of an element that all ranks have to tell of, or one notes alone: number, rank after rank from 0, and place; -1: none */
 static PetscErrorCode Locate(Body body, PetscBool alone, PetscInt e, PetscInt *number, PetscReal centre[3])
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)body);
@@ -87,8 +86,7 @@ static PetscInt FindElementOfNode(Body body, PetscInt node)
 }
 
 /* BodyLocateLargest - an element at the largest entry of a vector of forces: its number, rank after rank from 0, where it lies in the
-   undeformed mesh [m], and that entry without its sign [N]; the number is -1 where no element has it. Collective; but `alone`: where the
-   rank that has the body looks without the others. */
+   undeformed mesh [m], and that entry without its sign [N]; the number is -1 where no element has it. Collective unless `alone`. */
 PetscErrorCode BodyLocateLargest(Body body, PetscBool alone, Vec forces, PetscInt *number, PetscReal centre[3], PetscReal *largest)
 {
   MPI_Comm           comm = PetscObjectComm((PetscObject)body);

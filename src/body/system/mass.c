@@ -57,7 +57,6 @@ static PetscErrorCode SetUpProduct(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y = M x */
 PetscErrorCode BodyMultiplyMass(Body body, Vec x, Vec y)
 {
   PetscFunctionBegin;
@@ -123,8 +122,7 @@ PetscErrorCode BodySetUpMass(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The factors of a mass matrix that is not diagonal, with ones in place of the massless nodes. Explicit bodies have them from
-   the start; an implicit one needs them at most once, for its first acceleration. */
+/* Factors of a mass matrix that is not diagonal, ones on massless nodes: from the start, or for an implicit body's first acceleration. */
 PetscErrorCode BodySetUpMassSolver(Body body)
 {
   Mat      solvable;
@@ -197,8 +195,7 @@ PetscErrorCode BodyAddMassMatrix(Body body, PetscReal scale, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* a = M^{-1} f, zero on massless nodes. Where the mass matrix is not diagonal, held dofs of f are to be their accelerations, see
-   BodySubtractHeldInertia(). */
+/* a = M^{-1} f, zero on massless nodes. Unless the mass is diagonal, held dofs of f are accelerations, see BodySubtractHeldInertia(). */
 PetscErrorCode BodySolveMass(Body body, Vec f, Vec a)
 {
   PetscScalar *array;

@@ -18,7 +18,6 @@
 #define FEW_IMPLICIT 300
 #define NEARLY_ALL   (2. / 3.)
 
-/* The part of the mass that contact nodes have */
 static PetscErrorCode GetLayerPart(Body body, PetscReal *part)
 {
   const PetscInt n       = body->model.element->nodes;
@@ -50,7 +49,6 @@ PetscErrorCode BodyGetContactPart(Body body, PetscReal *part)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forgets a factor and what it changes */
 static PetscErrorCode DropFactor(BodyMass *mass)
 {
   PetscFunctionBegin;
@@ -62,8 +60,7 @@ static PetscErrorCode DropFactor(BodyMass *mass)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves mass, if a factor on the masses that are left keeps centre and moments of inertia, or where -<body>_mass_moments says that less is
-   enough. `good`: the factor is near one, too */
+/* Moves mass, if a factor on the rest keeps centre and inertia, or what -<body>_mass_moments wants. `good`: the factor is near one, too */
 static PetscErrorCode TryFactor(Body body, PetscBool *good)
 {
   BodyMass       *mass = &body->mass;
@@ -82,8 +79,7 @@ static PetscErrorCode TryFactor(Body body, PetscBool *good)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the body is thin, whatever surfaces of it are in contact: around more than `part` of the nodes of its boundary that nothing holds
-   inner nodes do not span it */
+/* Whether the body is thin: around more than `part` of the nodes of its boundary that nothing holds inner nodes do not span it */
 static PetscErrorCode FindThin(Body body, PetscInt n, const PetscInt boundary[], PetscReal part)
 {
   PetscBool *contains = body->layer.contains;
@@ -101,11 +97,10 @@ static PetscErrorCode FindThin(Body body, PetscInt n, const PetscInt boundary[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Chooses what becomes of the mass of contact nodes under `-<body>_mass_redistribute auto`; calls beyond the first cost nothing. Where
-   the nodes have little mass and a factor on the remaining masses keeps centre and inertia to 1e-3, the mass moves to inner neighbours:
-   a lumped mass stays diagonal. Else velocities are extrapolated, see extrapolation.c, if inner nodes span the body around each node.
-   Else the body is `thin`, and BodyKeepMass() is to follow. `boundary`: vertices of its boundary, n = 0 where they do not matter.
-   Collective. */
+/* Chooses what becomes of the mass of contact nodes under `-<body>_mass_redistribute auto`; calls beyond the first cost nothing. Where the
+   nodes have little mass and a factor on the remaining masses keeps centre and inertia to 1e-3, the mass moves to inner neighbours: a
+   lumped mass stays diagonal. Else velocities are extrapolated, see extrapolation.c, if inner nodes span the body around each node. Else
+   the body is `thin`, and BodyKeepMass() is to follow. `boundary`: its vertices there, or none. Collective. */
 PetscErrorCode BodyChooseMass(Body body, PetscInt n, const PetscInt boundary[], PetscBool *thin)
 {
   BodyMass *mass  = &body->mass;

@@ -1,5 +1,4 @@
-/*
-   A body whose contact layer is massless keeps its total mass, its centre of mass and, where positive masses allow, its moments of inertia.
+/* A body whose contact layer is massless keeps its total mass, its centre of mass and, where positive masses allow, its moments of inertia.
 
    The mass of the layer has gone to the nodes next to the layer, which moves the centre of mass inwards, and elements all of whose nodes
    are in the layer, as tetrahedra in corners are, have lost theirs. A smooth factor f(x) = s (1 + p(x)) on the mass that is left puts both
@@ -11,21 +10,18 @@
    depend on M through these alone. The moments are sums over the nodes of f times a weight of the node. Each condition says that a moment
    is what it is with the full mass. The polynomial p is a combination of the products phi_a phi_b: for a lumped M, it has the least sum of
    m p^2 of all functions that satisfy the conditions, and its coefficients are the multipliers of the conditions. The conditions are linear
-   but for the bounds; Newton's method solves them for the coefficients.
-*/
+   but for the bounds; Newton's method solves them for the coefficients. */
 #include "massmoments.h"
 #include <sys/units.h>
 #include <petscblaslapack.h>
 
-/* Where moments of inertia cannot be kept anyhow, 1 + p stays below this: on the coarse ball of options/hertz-impact.opts a factor of
-   up to 66 would bring them no nearer than 34.5 % instead of 34.9 % */
+/* Bound of 1 + p where moments cannot be kept: on the ball of options/hertz-impact.opts a factor of 66 leaves 34.5 %, not 34.9 % */
 #define MOST_FACTOR (1 / LEAST_FACTOR)
 /* Conditions that no such factor satisfies become springs: the sum of the squares of what is missing, over twice the softness, is minimised
    together with half the sum of m p^2. The centre of mass is given up after the moments of inertia. */
 #define SOFT_INERTIA 0.03
 #define SOFT_CENTRE  1e-6
-/* A centre of mass counts as kept if it is off by less than this part of the radii of gyration, a moment of inertia if it differs by less
-   than this part of it */
+/* A centre of mass counts as kept within this part of the radii of gyration, a moment of inertia within this part of it */
 #define KEPT 1e-11
 
 /* phi' M phi of an element for each moment, field values by node; of a consistent mass, nodes x nodes */
@@ -71,8 +67,7 @@ static PetscErrorCode ComputeFullMoments(const MomentsProblem *problem, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the mass at each node adds to the moments: lumped mass and its share of the consistent part of its elements, scaled to the whole
-   mass. Without inner nodes there is none to scale. */
+/* What the mass at each node adds to the moments: lumped mass and its share of its elements' consistent part, scaled to the mass. */
 static PetscErrorCode ComputeWeights(MomentsProblem *problem)
 {
   Body           body = problem->body;
@@ -207,9 +202,8 @@ static void SetConditions(MomentsProblem *problem, Order order, PetscReal centre
   }
 }
 
-/* Largest change of a moment of inertia about some axes through the centre, relative to it: those spanned by n orthonormal vectors, three
-   numbers each along the principal axes. With the inertia tensors I = tr(J) 1 - J in these vectors, the changes are the eigenvalues of
-   I_full^-1 (I - I_full). */
+/* Largest relative change of a moment of inertia about axes through the centre: those spanned by n orthonormal vectors, three numbers each
+   along the principal axes. With I = tr(J) 1 - J in these vectors they are the eigenvalues of I_full^-1 (I - I_full). */
 static PetscErrorCode CompareInertia(const MomentsProblem *problem, const PetscReal moments[], PetscInt n, const PetscReal axes[],
                                      PetscReal *error)
 {
@@ -367,8 +361,7 @@ PetscErrorCode BodyFindMassFactor(Body body, PetscReal *less)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Largest relative change of a moment of inertia about an axis through the centre of mass by the massless layer. Axes about which held
-   displacements keep the body from turning do not count. */
+/* Largest relative change of a moment of inertia by the massless layer, about axes through the centre on which the body can turn */
 PetscErrorCode BodyGetInertiaChange(Body body, PetscReal *change)
 {
   PetscFunctionBegin;

@@ -7,7 +7,6 @@
 /* As many as a quadratic polynomial in three dimensions has coefficients; two dimensions need 7 conditions at most */
 #define MAX_MOMENTS 10
 
-/* The conditions, and what they are made of */
 typedef struct {
   Body       body;
   PetscBool  alone;                               /* this rank has all of the mass, and what is computed is its own */

@@ -2,9 +2,8 @@
 #include "massmoments.h"
 #include <petscblaslapack.h>
 
-/* Newton's method has converged where all moments are right within this, in units of the total mass and of the radii of gyration; sums over
-   10^5 nodes lose some 1e-15. Newton's method ends where no step makes what is missing smaller by 1 %, or after so many iterations and
-   halvings of a step. */
+/* Newton's method has converged with moments right to this, in units of the total mass and of the radii of gyration; sums over 10^5 nodes
+   lose some 1e-15. It ends where no step makes what is missing smaller by 1 %, or after so many iterations and halvings of a step. */
 #define TOLERANCE  1e-13
 #define ITERATIONS 60
 #define HALVINGS   6
@@ -51,8 +50,7 @@ PetscReal MomentsGetPolynomial(const MomentsProblem *problem, const PetscReal co
   return value;
 }
 
-/* Moments of the mass under the factor, over the total mass; and, unless `slopes` is NULL, what the coefficients change in the conditions,
-   column by column */
+/* Moments of the mass under the factor, over the mass; `slopes` (or NULL): derivatives of the conditions, a column per coefficient */
 PetscErrorCode MomentsCompute(const MomentsProblem *problem, const PetscReal coefficients[], PetscReal moments[], PetscReal slopes[])
 {
   const PetscInt n = problem->n, n_moments = problem->n_moments;

@@ -1,16 +1,12 @@
-/*
-   Sums over the nodes of a body that its kinetic energy, momenta, mean rotation and, where it is linear, potential energy are made of. What
-   they take is the time in which the vectors come from memory, so that all are made in one pass.
-*/
+/* Sums over the nodes of a body that its kinetic energy, momenta, mean rotation and, where it is linear, potential energy are made of. What
+   they take is the time in which the vectors come from memory, so that all are made in one pass. */
 #include <body/layout/bodyimpl.h>
 #include <impakt/private/simd.h>
 
 /* What is summed up: m v.v, m a.a and u.f, then vectors: m v, (X + u) x m v, m (X - C) x u, m (X + u) */
 enum { KINETIC = 0, STAGGERED = 1, POTENTIAL = 2, MOMENTUM = 3, ANGULAR = 6, TURNED = 9, PLACE = 12, QUANTITIES = 15 };
-/* In one dimension sums have four parts, since each addition to a single one would wait for the one before it; elsewhere there are enough
- */
+/* In one dimension sums have four parts: each addition to a single one would wait for the one before */
 #define PARTS 4
-/* Nodes in a block */
 #define BLOCK 64
 
 typedef struct {

@@ -1,10 +1,8 @@
-/*
-   How far a linear body has turned since its undeformed state. Its strains are those of small rotations: a body that turns by an angle a
+/* How far a linear body has turned since its undeformed state. Its strains are those of small rotations: a body that turns by an angle a
    loses angular momentum and energy by terms of a^2.
 
    The angle is I^-1 sum m (X - C) x u with the inertia tensor I about the centre of mass C: u = R X - X of a rotation R by a small angle,
-   in the least squares. Vibrations of a free body, which are orthogonal to its rigid motions, do not count.
-*/
+   in the least squares. Vibrations of a free body, which are orthogonal to its rigid motions, do not count. */
 #include <body/integrator/rigidmotion.h>
 #include <body/layout/bodyimpl.h>
 

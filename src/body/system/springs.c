@@ -1,5 +1,4 @@
-/*
-   A static body that contact or ties alone hold has a singular matrix: it can move, or turn, as if it were rigid. As many artificial
+/* A static body that contact or ties alone hold has a singular matrix: it can move, or turn, as if it were rigid. As many artificial
    springs as it has free motions make the matrix regular. Each pulls at one displacement, towards a place; they stand where a body without
    other supports would be held without redundancy. So the springs' forces are in balance with what loads and contact leave of force and
    moment: they vanish if, and only if, contact and loads are in balance without them, and the displacements are those without springs then.
@@ -7,13 +6,11 @@
    Contact brings that about (src/contact/interface/floating.c): it solves the step again and again, each time with the springs at rest
    where the body has come to the last time. That is the proximal point method (Rockafellar 1976) for the least energy under the conditions
    of contact. It converges wherever the body can be held, by k / (k + s) in each turn, k being the stiffness of a spring, s what contact
-   and the body set against the motion; motions that nothing resists and nothing drives stay as they are.
-*/
+   and the body set against the motion; motions that nothing resists and nothing drives stay as they are. */
 #include "held.h"
 
 /* Of the springs, in parts of the stiffness of the softest static body, by default: soft beside what holds a body, and stiff enough that
-   round-off in forces does not show in displacements, which is 1e-14 of them over the part with linear bodies, and what Newton's method
-   leaves with others */
+   round-off in forces does not show in displacements: 1e-14 over the part with linear bodies, Newton's tolerance with others */
 #define LINEAR_PART    5e-2
 #define NONLINEAR_PART 1
 /* The strain of the displacements by which a body's stiffness is measured: small, since the material may be nonlinear */
@@ -25,8 +22,7 @@
    body as a whole widens, and would take it along in a direction in which nothing holds it */
 #define SPREAD 1.8
 
-/* Force by displacement that the body sets against being stretched along an axis (`across` is the same), or bent: its axis to a parabola
-   in the plane of both [N/m] */
+/* Stiffness of the body against being stretched along an axis (`across` is the same), or bent to a parabola in the plane of both [N/m] */
 static PetscErrorCode MeasureStiffness(Body body, const RigidFrame *frame, PetscInt axis, PetscInt across, PetscReal *stiffness)
 {
   const PetscInt dim = body->mesh.dim;
@@ -51,8 +47,7 @@ static PetscErrorCode MeasureStiffness(Body body, const RigidFrame *frame, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The least stiffness of the undeformed body against being stretched along its longest edge and bent [N/m], after BodySetUpSteps().
-   Collective. */
+/* Least stiffness of the undeformed body against being stretched along its longest edge and bent [N/m]. Collective. */
 PetscErrorCode BodyGetLeastStiffness(Body body, PetscReal *least)
 {
   PetscReal  box[6]  = {0};
@@ -199,7 +194,6 @@ PetscErrorCode BodyAddSpringForce(Body body, Vec U, Vec F)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Their stiffness onto the diagonal of a matrix */
 PetscErrorCode BodyAddSpringStiffness(Body body, Mat A)
 {
   const BodySprings *springs = &body->springs;

@@ -1,11 +1,9 @@
-/*
-   The largest step for which central differences are stable: 2 / omega_max, from below. No eigenvalue of a body is larger than the
+/* The largest step for which central differences are stable: 2 / omega_max, from below. No eigenvalue of a body is larger than the
    largest of its elements (Irons and Treharne 1971), K x = lambda M x, and that is found from the elements alone: the time in which
    waves cross them, whatever their shape.
 
    Of a lumped mass, power iteration with the tangent of each element tells about how large its eigenvalue is, from below. The elements
-   that come out on top are then solved exactly, which costs several times as much. Other masses: each element exactly.
-*/
+   that come out on top are then solved exactly, which costs several times as much. Other masses: each element exactly. */
 #include <body/layout/bodyimpl.h>
 
 /* Elements with an estimate above this part of the largest one are solved exactly, from the top down, up to a number of them */
@@ -74,7 +72,6 @@ PetscErrorCode BodyComputeStableStepAt(Body body, const PetscScalar u[], PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of the undeformed body */
 PetscErrorCode BodyComputeStableStep(Body body)
 {
   PetscFunctionBegin;

@@ -4,8 +4,7 @@
 /* Eigenvalues of elements alike differ by less than this part of them: then the first element comes first */
 #define EQUAL 1e-9
 
-/* 2 / omega, less with dashpots that feel the velocity at mid-step: (2 / omega) (sqrt(1 + zeta^2) - zeta), twice zeta omega being
-   alpha + beta omega^2 */
+/* 2 / omega, less with dashpots at mid-step: (2 / omega) (sqrt(1 + zeta^2) - zeta), twice zeta omega being alpha + beta omega^2 */
 PetscErrorCode BodyGetStepOfEigenvalue(Body body, PetscReal eigenvalue, PetscReal *step)
 {
   PetscReal alpha, beta, rate;
@@ -17,8 +16,7 @@ PetscErrorCode BodyGetStepOfEigenvalue(Body body, PetscReal eigenvalue, PetscRea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The eigenvalues of all ranks' elements that are positive, ascending, and the numbers of these elements, rank after rank from 0; `offset`:
-   of this rank's first one. The caller frees both. */
+/* Positive eigenvalues of all elements, ascending, and the elements' numbers over ranks; `offset`: this rank's first. Caller frees both. */
 static PetscErrorCode SortAll(Body body, const PetscReal eigenvalues[], PetscInt *offset, PetscInt *n, PetscReal **all, PetscInt **numbers)
 {
   MPI_Comm       comm = PetscObjectComm((PetscObject)body);
@@ -49,8 +47,7 @@ static PetscErrorCode SortAll(Body body, const PetscReal eigenvalues[], PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Notes which elements bound the step, from the eigenvalues of all, some of which may be estimates, where history is forgotten. u:
-   displacement of this rank's nodes. Collective. */
+/* Notes which elements bound the step, from all eigenvalues, some estimated. u: displacement of this rank's nodes. Collective. */
 PetscErrorCode BodyNoteStepBounds(Body body, const PetscScalar u[], const PetscReal eigenvalues[])
 {
   BodyStepBounds *bounds                     = &body->time.bounds;

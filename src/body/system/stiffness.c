@@ -1,4 +1,3 @@
-/* Internal force, tangent and stiffness matrix. */
 #include <body/layout/bodyimpl.h>
 
 /* The elements that forces and tangents come from */
@@ -87,8 +86,7 @@ static PetscErrorCode AddMassToGraph(Body body, Mat graph)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which nodes share an element, of those that are marked (NULL: all), or have a mass in common, as a matrix of nodes by nodes: far smaller
-   than one of displacements, and quick to make */
+/* Which nodes share an element or mass, of those marked (NULL: all), as a matrix of nodes: far smaller than one of displacements */
 PetscErrorCode BodyCreateNodeGraph(Body body, const PetscBool marked[], Mat *graph)
 {
   const PetscInt n = body->model.element->nodes;
@@ -178,8 +176,7 @@ PetscErrorCode BodyCreateMatrix(Body body, const PetscBool marked[], Mat *A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The matrix to put values in, in place of one that has had some: itself, or, of a body that one of several ranks has, the block of this
-   rank, whose assembly sends nothing and waits for nobody */
+/* The matrix to put values in: itself or, of a body on one of several ranks, its block, which is assembled without messages */
 PetscErrorCode BodyBeginAssembly(Body body, Mat all, Mat *here)
 {
   PetscBool assembled = PETSC_FALSE;

@@ -2,7 +2,6 @@
 #include <contact/parts.h>
 #include <math.h>
 
-/* What its rows mean to a body */
 static void GetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
 {
   const ContactBodyRows *of = &contact->body_rows[b];
@@ -77,8 +76,7 @@ PetscErrorCode ContactComputeGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gap rates of the first or second order in time of this rank's rows, at the start of the controller step or at its end, from the bodies'
-   traces [m/s, m/s^2] */
+/* First or second gap rates of this rank's rows at the start or the end of the controller step, from the bodies' traces [m/s, m/s^2] */
 PetscErrorCode ContactComputeRates(Contact contact, PetscInt order, PetscBool at_end, PetscScalar rates[])
 {
   PetscFunctionBegin;
@@ -113,8 +111,7 @@ static PetscErrorCode TakeFailure(Contact contact, PetscInt b, StepConvergedReas
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After bodies have been integrated: all ranks know that the step has failed, and why, where bodies of one rank alone tell it that. The
-   first of these counts. */
+/* After bodies have been integrated: all ranks get the failure that bodies of one rank report, the first if several. */
 PetscErrorCode ContactAgree(Contact contact)
 {
   PetscInt           failed = contact->attempt.failed;
@@ -149,8 +146,7 @@ PetscErrorCode ContactIntegrateBody(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ranks that have rows of bodies, and those that have the bodies, tell each other what steps need, and end with, of all bodies at once; not
-   of those that are left out (`NULL`: none) */
+/* Ranks with rows of bodies and those with the bodies exchange inputs and results of steps, of all but those left out (`NULL`: none) */
 static PetscErrorCode BeginExchange(Contact contact, const PetscBool left_out[], PetscBool completes)
 {
   PetscFunctionBegin;
@@ -167,8 +163,7 @@ static PetscErrorCode EndExchange(Contact contact, const PetscBool left_out[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bodies that do not wait for each other, as far as their rows depend on it, but those that are left out (`NULL`: none). ContactAgree()
-   follows. */
+/* Integrates bodies that do not wait for each other, but those that are left out (`NULL`: none). ContactAgree() follows. */
 PetscErrorCode ContactIntegrateSome(Contact contact, const PetscBool left_out[])
 {
   PetscFunctionBegin;
@@ -222,8 +217,7 @@ PetscErrorCode ContactRejectResidual(Vec F)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All bodies through the controller step without contact; the gaps at its end; whether any row penetrates. The active set is
-   empty afterwards. */
+/* The controller step without contact: gaps at its end; whether any row penetrates. The active set is empty afterwards. */
 PetscErrorCode ContactIntegrateFree(Contact contact, PetscBool *penetrating)
 {
   PetscFunctionBegin;

@@ -1,8 +1,7 @@
 /* All bodies under given contact forces: the step of methods that know the forces, or guess them until they fit. */
 #include <contact/parts.h>
 
-/* The force on the rows of a body at each of its substeps, linear from that of the last accepted step to `end`; it pushes Neumann sides
-   along the rows and Dirichlet sides against them */
+/* Forces on a body's rows at its substeps, linear from the last accepted step to `end`; along rows on Neumann sides, else against them */
 PetscErrorCode ContactLoadRows(Contact contact, PetscInt b, const PetscReal end[])
 {
   const ContactBodyRows *of    = &contact->body_rows[b];

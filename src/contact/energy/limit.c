@@ -1,24 +1,20 @@
-/*
-   Steps that would gain energy at contact are made again with other contact forces at their start.
+/* Steps that would gain energy at contact are made again with other contact forces at their start.
 
    The trapezoidal rule lets the force on a row do the work 1/2 (l0 + l1) dg: nothing while the row stays closed, -1/2 l1 g0 where it
-   closes, and 1/2 l0 g1 where it opens, which is energy out of nothing. With the force x in place of l0 at the start of the step, on both
-   bodies,
+   closes, and 1/2 l0 g1 where it opens, which is energy out of nothing. With the force x in place of l0 at the start, on both bodies,
 
      dE = 1/2 (x + l1) dg - 1/2 (x - l0) C (l1 - l0),
 
-   C being the compliance of the massless layers: exact for linear bodies under Newmark's rule. Where a group of bodies would gain more than
-   it has room for (room.c),
+   C the compliance of the massless layers: exact for linear bodies under Newmark's rule. Where a group would gain more than its room (room.c),
 
    1. rows that leave start with x = s l0, the largest s in [0, 1] that keeps the energy within the room;
-   2. where s = 0 does not, x of all rows goes to l1, which gives dE = l1 dg - 1/2 (l1 - l0) C (l1 - l0) <= 0 at any step. As l1 answers to
-      x, it is approached by halves: the answer is minus a part of x between 0 and 1, so that what is missing at least halves each time;
-   3. the last half may take far more energy than has been too much. So x goes back towards the half before until the step takes nothing,
-      and leaves the room to later steps: with all of it used up at once more of them were limited, and for some there was no start.
+   2. where s = 0 does not, x of all rows goes to l1, where dE = l1 dg - 1/2 (l1 - l0) C (l1 - l0) <= 0. As l1 answers to x, by minus a part
+      of it between 0 and 1, x goes by halves: what is missing at least halves each time;
+   3. the last half may take too much. So x goes back towards the half before until the step takes nothing, and leaves the room to later
+      steps: with all of it used up at once more of them were limited, and for some there was no start.
 
-   Any x is a step in which the gaps hold at the end, and momentum. So the first attempt that is within the room is as good as the limit. In
-   the energies themselves, which attempts are compared by, the errors of the bodies' own integrators cancel.
-*/
+   Gaps at the end, and momentum, hold for any x, so the first attempt within the room is as good as the limit. Attempts are compared by
+   energies themselves, in which the errors of the bodies' own integrators cancel. */
 #include "energyimpl.h"
 
 /* Attempts that look for s, beside s = 0, and for x */
@@ -47,8 +43,7 @@ static PetscBool GainsTooMuch(Contact contact, PetscInt g)
   return (PetscBool)(energy->group_work[g] > ContactGroupRoom(contact, g) + ROUND_OFF * energy->scale);
 }
 
-/* Rows of a group that have left since the start of the step, and have not been marked; on all ranks. Those that end without force but not
-   open have nothing to gain. */
+/* Unmarked rows of a group that have left in the step, on all ranks. Those that end without force, not open, gain nothing. */
 static PetscErrorCode MarkLeaving(Contact contact, PetscInt g, PetscBool *any)
 {
   ContactEnergy *energy = &contact->energy;
@@ -99,7 +94,7 @@ static void StartOnWayBack(Contact contact, PetscInt g, PetscReal part)
 }
 
 /* All rows of a group start half way from what they have started with to what they have ended with, but for a pull on rows that only push,
- * and with half of what goes over from the rows as they were */
+   and with half of what goes over from the rows as they were */
 static void StartHalfWay(Contact contact, PetscInt g)
 {
   ContactEnergy *energy = &contact->energy;
@@ -127,8 +122,7 @@ static PetscReal NextPart(const ContactSearch *search, PetscReal aim)
   return PetscMin(PetscMax(part, search->low + 0.05 * width), search->high - 0.05 * width);
 }
 
-/* After rows that leave have started with no force, which is not enough: those that have left in the meantime do so too, or else all rows
-   start half way */
+/* Where no force at the start of rows that leave is not enough: those that have left since do so too, or all start half way */
 static PetscErrorCode TakeMoreAway(Contact contact, PetscInt g)
 {
   ContactSearch *search = &contact->energy.search[g];
@@ -146,8 +140,7 @@ static PetscErrorCode TakeMoreAway(Contact contact, PetscInt g)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Looks between a start with which contact gains at most `aim` and one with which it gains more, in the last attempt with `part`, for the
-   one that comes nearest to it from below */
+/* Bisects between a start with a gain of at most `aim` and one with more, the last attempt's with `part` */
 static void LookBetween(Contact contact, PetscInt g, PetscReal aim, void (*start)(Contact, PetscInt, PetscReal))
 {
   ContactSearch  *search   = &contact->energy.search[g];
@@ -201,7 +194,6 @@ static PetscErrorCode SearchOn(Contact contact, PetscInt g)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether any group has gained more than it has room for */
 static PetscBool AnyGainsTooMuch(Contact contact)
 {
   const ContactEnergy *energy = &contact->energy;
@@ -215,8 +207,7 @@ static PetscBool AnyGainsTooMuch(Contact contact)
   return PETSC_FALSE;
 }
 
-/* Whether friction brings energy on a row by the forces at both ends of the step. What a node that sticks slips is what the step has left
-   of its residual, and no other start makes it less. */
+/* Whether friction brings energy on a row by the forces at both ends. Slip of a sticking node is left residual, which no start lessens. */
 static PetscBool Rubs(Contact contact, PetscInt i)
 {
   const PetscReal start = contact->energy.changed ? contact->energy.start_force[i] : contact->energy.last_force[i];
@@ -250,7 +241,6 @@ static PetscErrorCode LimitFriction(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Attempts until no group gains more than it has room for */
 static PetscErrorCode Attempt(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
@@ -277,8 +267,7 @@ static PetscErrorCode Attempt(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Attempts, with which friction may bring energy again on rows whose start they have changed: in turn, until neither does. What a group
-   gains comes before that. */
+/* Attempts, by which friction may gain on rows with a changed start: in turn until neither does, gains of groups first. */
 static PetscErrorCode AttemptWithFriction(Contact contact)
 {
   PetscBool in_vain = PETSC_FALSE;

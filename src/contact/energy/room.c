@@ -1,15 +1,12 @@
-/*
-   Accounts of what contact has lost, body by body: the room within which later steps may gain energy again.
+/* Accounts of what contact has lost, body by body: the room within which later steps may gain energy again.
 
-   A body begins with an equal share of the excess that is allowed in all. What a pair loses is credited to its two bodies in halves, or to
-   the body alone where its partner is an obstacle. Bodies that touch each other, directly or by others, form a group for as long as
-   they do so; a group may gain what its bodies have room for, and takes it from them in proportion to what each has. So no room becomes
-   negative, and bodies that part have room for what they have lost, whoever they meet next.
+   A body begins with an equal share of the excess that is allowed in all. What a pair loses is credited to its bodies in halves, or wholly
+   to the body before an obstacle. Bodies that touch, directly or by others, are a group as long as they do; a group may gain what its
+   bodies have room for, and takes it from them in proportion. So no room becomes negative, and bodies that part keep what they have lost.
 
-   What central differences conserve depends on the step. A body that makes them has more energy from the start of a step that is shorter
-   than the last one, and less from that of a longer one: by 1/8 (dt_0^2 - dt^2) a'Ma. Steps that are cut where the body shakes, and whole
-   where it does not, would gain by that; so it is booked too, and a step is not cut for the sake of energy where there is no room for it.
-*/
+   What central differences conserve depends on the step: a body has more energy from the start of a step that is shorter than the last one,
+   by 1/8 (dt_0^2 - dt^2) a'Ma. Steps that are cut where the body shakes, and whole where it does not, would gain by that; so it is booked
+   too, and a step is not cut for the sake of energy where there is no room for it. */
 #include "energyimpl.h"
 #include <impakt/private/bodymeasures.h>
 
@@ -50,7 +47,6 @@ static PetscReal Resolution(Contact contact)
   return contact->options.tolerance + CONTACT_POSITION_TOLERANCE * contact->scale.length;
 }
 
-/* Sum of the contact forces of all rows in the step [N] */
 static PetscReal SumForces(Contact contact)
 {
   PetscReal sum = 0;
@@ -60,9 +56,8 @@ static PetscReal SumForces(Contact contact)
 }
 
 /* What contact forces do over the distances to which gaps are known, the tolerance of penetration and that of the outer iteration [J], in
-   the step in which their sum was largest so far; the same on every rank. Where bodies start at rest without strain, and loads grow slowly,
-   there is less energy than that in the first steps. Where rows in contact hold the change of their gaps, not these, it is that of all
-   steps so far. */
+   the step in which their sum was largest so far; the same on every rank. Bodies that start at rest under slow loads have less energy than
+   that at first. Where rows in contact hold the change of their gaps, not these, it is that of all steps so far. */
 PetscErrorCode ContactGetUnresolvedEnergy(Contact contact, PetscReal *energy)
 {
   PetscFunctionBegin;
@@ -123,8 +118,7 @@ PetscErrorCode ContactCanAffordHalves(Contact contact, PetscBool *can)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes what the bodies' energies have changed by at the start of the step from their room. Where a body has not enough the others of its
-   group give it in proportion to what they have. */
+/* Takes changes of energies at the start of the step from the bodies' room; others of a group fill up in proportion to theirs. */
 static PetscErrorCode BookLevel(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
@@ -159,8 +153,7 @@ static PetscErrorCode GetOwnEnergy(Contact contact, PetscReal *energy)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The excess is a part of the energy at the start or, where all starts at rest without strain, of the largest that there has been at the
-   end of an accepted step. Collective. */
+/* The excess is a part of the energy at the start or, from rest without strain, of the largest of accepted steps. Collective. */
 static PetscErrorCode GrowRoom(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
@@ -232,7 +225,6 @@ static PetscErrorCode DestroyRowEnergy(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for what is kept of each pair and row */
 PetscErrorCode ContactSetUpRowEnergy(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
@@ -248,7 +240,6 @@ PetscErrorCode ContactSetUpRowEnergy(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for what is kept of each body, pair and row */
 PetscErrorCode ContactSetUpEnergy(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;

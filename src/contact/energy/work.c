@@ -1,7 +1,5 @@
-/*
-   What contact forces do to the energy of the bodies in a controller step: the work of the force on each row along its displacement, by the
-   trapezoidal rule of the integrators over the substeps of each body, and what springs of penalty forces have taken of it.
-*/
+/* What contact forces do to the energy of the bodies in a controller step: the work of the force on each row along its displacement, by the
+   trapezoidal rule of the integrators over the substeps of each body, and what springs of penalty forces have taken of it. */
 #include "energyimpl.h"
 #include <impakt/private/bodymeasures.h>
 
@@ -27,7 +25,6 @@ PetscErrorCode ContactSumStored(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether forces act on any row of body b in the step */
 static PetscBool IsLoaded(Contact contact, PetscInt b)
 {
   const ContactBodyRows *of    = &contact->body_rows[b];
@@ -42,7 +39,6 @@ static PetscBool IsLoaded(Contact contact, PetscInt b)
   return any;
 }
 
-/* Adds the work on body b to that of the pairs */
 static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
 {
   const ContactBodyRows *of     = &contact->body_rows[b];
@@ -81,8 +77,7 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the energy that the springs of each pair have gained in the step, with what damage takes of it, which is no room for gains.
-   `across`: those across the normals too */
+/* Adds the energy that each pair's springs have gained in the step, damage included. `across`: those across normals too */
 static void AddSprings(Contact contact, PetscBool across, PetscReal sums[])
 {
   if (contact->ops->stored == ContactStoresNothing) return;
@@ -104,8 +99,7 @@ static PetscErrorCode AddUp(Contact contact, PetscReal sums[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Work of contact on the bodies in the step as it has been made without changes at its start, and the forces of pairs that touch: for each
-   pair, on all ranks. Collective. */
+/* Work of contact on the bodies in the step made without changes at its start, and forces of touching pairs, on all ranks. Collective. */
 PetscErrorCode ContactComputeWork(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
@@ -119,8 +113,7 @@ PetscErrorCode ContactComputeWork(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Energy of each body, and of the springs of each pair with what friction takes there in the step, as they are now, and which pairs touch;
-   collective */
+/* Energy of each body now, of each pair's springs with what friction takes in the step, and which pairs touch; collective */
 PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], PetscReal springs[])
 {
   ContactEnergy *energy = &contact->energy;
@@ -135,8 +128,7 @@ PetscErrorCode ContactComputeEnergies(Contact contact, PetscReal bodies[], Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After rows have got new entries, at the start of the step: what is done along the old rows and along the new ones is not the same, so
-   that energies tell what the rows do not. Collective. */
+/* After rows have got new entries at the start of the step: work along old and new ones differs, so energies are compared. Collective. */
 PetscErrorCode ContactNoteRebuild(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;

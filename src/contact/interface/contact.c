@@ -1,16 +1,13 @@
-/* The class: creation, type, step, destruction. */
 #include <contact/parts.h>
 #include <sys/names.h>
 #include <sys/stages.h>
 #include <impakt/private/bodystep.h>
 
-/* Parts of the energy of the system: contact may gain so much in a run, see tests/README.md, energy at any step; and take or bring so much
-   in a step before it is made again in halves */
+/* Parts of the system's energy that contact may gain in a run (tests/README.md), and take or bring in a step before it is halved */
 #define ENERGY_EXCESS    1e-3
 #define ENERGY_TOLERANCE 1e-3
-/* Slip [parts of the face] and turn [rad] after which rows are built again by default. Smaller bounds follow curved surfaces better, larger
-   ones lose less energy: a half disc that is led round another one has ripples of 1.5 % in its normal force with these, and 0.2 % with
-   0.05. */
+/* Default slip [parts of the face] and turn [rad] after which rows are built again. Smaller bounds follow curved surfaces better, larger
+   ones lose less energy: a half disc led round another has ripples of 1.5 % in its normal force with these, and 0.2 % with 0.05. */
 #define SLIP_BOUND  0.2
 #define ANGLE_BOUND 0.1
 /* Gap or overlap up to which nodes are tied by default [parts of a face]: above what meshes of one curved surface differ by where a face

@@ -28,7 +28,6 @@ struct _n_ContactFields {
   PetscInt  layouts;  /* how often pairs had come or gone when room was made for the rows */
 };
 
-/* Room for the rows that there are now */
 static PetscErrorCode MakeRoom(ContactFields f)
 {
   Contact   contact = f->contact;

@@ -1,4 +1,3 @@
-/* What contact tells of itself. */
 #include <contact/laws/pairlaws.h>
 
 /*@
@@ -201,9 +200,7 @@ static PetscErrorCode SumBodyTrace(Contact contact, PetscInt body, PetscReal sum
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean position [m] and velocity [m/s] of the contact nodes of each body, in the first pair it takes part in: 3 numbers for each.
- * Collective.
- */
+/* Mean position [m] and velocity [m/s] of the contact nodes of each body in its first pair: 3 numbers each. Collective. */
 PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], PetscReal velocities[])
 {
   const PetscInt n    = contact->n_bodies;

@@ -1,4 +1,3 @@
-/* Obstacles of a contact problem. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 #include <impakt/private/mesh.h>
@@ -167,7 +166,6 @@ PetscErrorCode ContactRefuseTurned(Contact contact, const ContactPair *pair)
           "-contact_pairs %s: no face of the body's surface faces the obstacle; %s", pair->name, advice);
 }
 
-/* Warns of obstacles that no body can touch */
 PetscErrorCode ContactWarnOfObstacles(Contact contact)
 {
   PetscFunctionBegin;

@@ -1,4 +1,3 @@
-/* Contact from the options. */
 #include <contact/parts.h>
 #include <sys/names.h>
 #include <sys/optionvalues.h>
@@ -17,7 +16,6 @@ static PetscErrorCode ReadBalance(Contact contact, const char value[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the methods share */
 static PetscErrorCode ReadSettings(Contact contact)
 {
   ContactOptions *options = &contact->options;
@@ -78,7 +76,6 @@ static PetscErrorCode ReadSettings(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rigid obstacles, beside those that the program has added */
 static PetscErrorCode ReadObstacles(Contact contact)
 {
   PetscErrorCode error = PETSC_SUCCESS;
@@ -191,32 +188,11 @@ static PetscErrorCode TakeAlternation(Contact contact, size_t size, char type[])
 . contact - the `Contact`, with its bodies
 
   Options Database Keys:
-+ -contact_pairs a:b,b~c                                       - pairs of bodies, Dirichlet side first, or, with a tilde, in the order
-                                                                 that is better; a.top:b.bottom for certain surfaces; default: the two
-                                                                 bodies, where there are two
-. -contact_rows (first|second)                                  - which body of a pair has the rows; or a value for each pair
-. -contact_type (schwarz|alternation|penalty|lagrange|augmented_lagrangian) - the contact method
-. -contact_constraint (gap|gap_rate|both)                       - what contact forces keep from becoming negative
-. -contact_stabilization (none|naive|contact_stabilized)        - what is done against chatter where contact nodes have mass
-. -contact_law (frictionless|tied|bonded|coulomb|...)           - what the surfaces do to each other
-. -contact_law_<pair> (frictionless|tied|bonded|coulomb|...)    - the same of one pair
-. -contact_<law>_<parameter> x, -contact_<law>_<parameter>_<pair> x - parameters of a law of glue, as -contact_spring_stiffness [N/m^3]
-. -contact_friction mu, -contact_friction_<pair> mu             - coefficient of friction of all pairs; of one
-. -contact_friction_kinetic mu, -contact_friction_decay d       - what it falls to with the speed v of sliding, as exp(-d v)
-. -contact_separation (true|false)                              - whether surfaces that have met may come apart again
-. -contact_tie_distance d                                      - gap or overlap up to which nodes are tied [parts of a face], default 0.01
-. -contact_facing (true|false)                                  - pairs of whole bodies keep only the faces that see each other at the
-                                                                 start (default); false where bodies move round each other, as balls do
-. -contact_slip_bound s, -contact_angle_bound a                 - slip [parts of a face] and turn [rad] after which rows are built again
-. -contact_tolerance g                                          - depth that does not yet count as penetration [m]
-. -contact_allow_unstable (true|false)                          - whether choices that are known to gain energy run all the same
-. -contact_shared_times (true|false)                            - whether contact holds at all times that all bodies have in common, or
-                                                                 at the ends of controller steps alone
-. -contact_balanced_start (true|false)                          - whether massless nodes are brought into balance in the first state
-. -contact_balance (true|false|auto)                            - whether forces have the same sum along the normals of both sides
-. -contact_energy_cap (true|false)                              - whether steps that would gain energy at contact are made again
-. -contact_energy_excess e                                      - part of the energy that contact may gain in the whole run
-- -contact_energy_tolerance t                                   - energy that contact may take or bring in a step, 1e-3
++ -contact_pairs a:b,b~c - pairs of bodies, Dirichlet side first, or, with a tilde, in the order that is better; a.top:b.bottom for
+                           certain surfaces; default: the two bodies, where there are two
+. -contact_type (schwarz|alternation|penalty|lagrange|augmented_lagrangian) - the contact method, whose page lists its own options
+. -contact_law (frictionless|tied|bonded|coulomb|...), -contact_law_<pair>  - what the surfaces do to each other, of all pairs; of one
+- -contact_...           - all others, with units and defaults in options/README.md, which `impakt -help` prints too
 
   Level: beginner
 

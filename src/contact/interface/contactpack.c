@@ -1,7 +1,5 @@
-/*
-   The state of contact and of its bodies as tables of nodes, by which a run is continued on another number of ranks: to round-off. Rows
-   have other numbers there, and are found by their nodes.
-*/
+/* The state of contact and of its bodies as tables of nodes, by which a run is continued on another number of ranks: to round-off. Rows
+   have other numbers there, and are found by their nodes. */
 #include <contact/parts.h>
 #include <body/interface/bodyvisit.h>
 #include <interface/transfervisit.h>
@@ -54,15 +52,7 @@ static PetscErrorCode CopyPair(Contact contact, const ContactPair *pair, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ContactPack - adds the tables of contact and of its bodies
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, after an accepted step
-- tables  - the tables
-*/
+/* Adds the tables of contact and of its bodies, after an accepted step. Collective. */
 PetscErrorCode ContactPack(Contact contact, Tables tables)
 {
   PetscFunctionBegin;
@@ -95,15 +85,7 @@ static PetscErrorCode UnpackRows(Contact contact, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ContactUnpack - the state of contact and of its bodies from the tables of a run with any number of ranks
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, in its first state, whose numbers for all ranks have been loaded by ContactVisitShared()
-- tables  - the tables
-*/
+/* The state of contact and of its bodies, in its first state, from the tables of another run, after ContactVisitShared(). Collective. */
 PetscErrorCode ContactUnpack(Contact contact, Tables tables)
 {
   PetscFunctionBegin;

@@ -10,7 +10,6 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the contact nodes of a body have mass */
 PetscErrorCode ContactBodyHasMass(Body body, PetscBool *has)
 {
   PetscBool massless, without_inertia, rigid;
@@ -41,8 +40,7 @@ PetscErrorCode ContactNeedsImpulse(Contact contact, PetscInt b, PetscBool *needs
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on their contact nodes. Those of a rigid
-   body are no nodes that could move by themselves. */
+/* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on contact nodes that can move alone */
 PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *has)
 {
   PetscInt all = 0;
@@ -87,8 +85,7 @@ PetscErrorCode ContactRefuseSlopes(Contact contact, const char prefix[], SNESLin
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where in a substep the inertia and the forces of a body are in balance: alpha_m and alpha_f of the generalised-alpha method, 1 and 1 for
-   others */
+/* Where in a substep inertia and forces are in balance: alpha_m and alpha_f of the generalised-alpha method, 1 and 1 for others */
 PetscErrorCode ContactGetStage(Body body, PetscReal stage[2])
 {
   PetscBool newmark;
@@ -103,8 +100,7 @@ PetscErrorCode ContactGetStage(Body body, PetscReal stage[2])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Says for which pairs forces act at different times of a step on both bodies, or, of ties whose displacements the method prescribes on
-   nodes with mass, at times inside a step */
+/* Says for which pairs forces act at different times on both bodies, or inside a step on ties prescribed on nodes with mass */
 PetscErrorCode ContactWarnOfStages(Contact contact, PetscBool of_ties)
 {
   PetscFunctionBegin;

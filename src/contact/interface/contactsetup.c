@@ -100,8 +100,7 @@ static PetscErrorCode ChooseMass(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The alternation takes the place of the contact step where that has no answer: constraints on rates, stabilizations, and generalized
-   alpha, whose forces do not act at the ends of steps */
+/* The alternation replaces the contact step for constraints on rates, stabilizations, and generalized alpha (forces inside steps) */
 static PetscErrorCode ChooseMethod(Contact contact)
 {
   const char *why = NULL;
@@ -126,8 +125,7 @@ static PetscErrorCode ChooseMethod(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the contact surfaces and rows, the first part of ContactSetUp(): what the controller has to know of contact before it can choose
-   its step. Calls beyond the first cost nothing. Collective. */
+/* Finds the contact surfaces and rows, the first part of ContactSetUp(), before the controller chooses its step; once. Collective. */
 PetscErrorCode ContactSetUpSurfaces(Contact contact)
 {
   PetscReal extent;

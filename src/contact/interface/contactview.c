@@ -1,8 +1,6 @@
-/* What a contact problem prints of itself. */
 #include <contact/parts.h>
 #include <sys/units.h>
 
-/* Pairs whose names are printed */
 #define MOST_NAMED 50
 /* Up to so many pairs are printed with their distances; of more, those that the user has named, and the nearest one */
 #define MOST_DISTANCES 10
@@ -17,8 +15,7 @@ static PetscErrorCode CountNodes(Contact contact, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the surfaces of each pair are from each other: a mesh in other units, or in the wrong place, shows here first. Of many pairs that
-   the program has chosen that is said of the nearest alone. */
+/* How far apart surfaces of pairs are: a mesh in other units or places shows here. Of many automatic pairs the nearest alone. */
 static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
 {
   const PetscInt    n       = PetscMin(contact->n_pairs, MOST_NAMED);

@@ -1,7 +1,5 @@
-/*
-   The state of contact and of its bodies, for checkpoints: pairs and rows first, with the matrices that the bodies have of them, then what
-   the method remembers, then the bodies, since a method that is set up for a level of cut steps asks them for their compliance.
-*/
+/* The state of contact and of its bodies, for checkpoints: pairs and rows first, with the matrices that the bodies have of them, then what
+   the method remembers, then the bodies, since a method that is set up for a level of cut steps asks them for their compliance. */
 #include <contact/parts.h>
 #include <body/interface/bodyvisit.h>
 #include <interface/transfervisit.h>
@@ -43,7 +41,6 @@ static PetscErrorCode VisitHeld(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows as the bodies have them */
 static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
@@ -66,7 +63,6 @@ static PetscErrorCode VisitRows(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Accounts of the energy that contact takes and brings */
 static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
 {
   ContactEnergy *energy  = &contact->energy;
@@ -192,15 +188,7 @@ PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*
-  ContactVisit - what a rank has of the state of contact and of its bodies, to or from a checkpoint
-
-  Collective
-
-  Input Parameters:
-+ contact    - the `Contact`, set up; loading: in its first state, after ContactVisitShared()
-- checkpoint - the `Checkpoint`
-*/
+/* A rank's state of contact, set up, and of its bodies, to or from a checkpoint; loading, after ContactVisitShared(). Collective. */
 PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
 {
   const PetscInt sizes[] = {contact->rows.n, contact->rows.begin};

@@ -1,9 +1,7 @@
-/*
-   Controller steps of static bodies that contact or ties alone hold. Such a body has artificial springs (src/body/system/springs.c), with
+/* Controller steps of static bodies that contact or ties alone hold. Such a body has artificial springs (src/body/system/springs.c), with
    which the method makes its step as with any other body. The step is made again with the springs at rest where the body has come to, until
    they do not pull: that is the step without springs. Whatever the method, and whatever it does in a step, is the same each time.
-   src/contact/interface/springmoves.c has by how much the springs are moved.
-*/
+   src/contact/interface/springmoves.c has by how much the springs are moved. */
 #include "floating.h"
 #include <impakt/private/bodyfloating.h>
 
@@ -11,15 +9,13 @@
 #define MAX_TIMES 200
 /* Springs do not pull where their stretch is below this part of the displacements that they pull at */
 #define STRETCH_RTOL 1e-12
-/* Nor do they where all that is left is the round-off of contact forces: their forces are below REST_FORCE of the contact forces on a body,
-   and their stretch has not fallen for MAX_STALLS times and is below STRETCH_ATOL times the tolerance on positions, or has not fallen for
-   LONG_STALLS times */
+/* Nor do they where round-off of contact forces is left: their forces are below REST_FORCE of those on a body, and their stretch has not
+   fallen for MAX_STALLS times and is below STRETCH_ATOL times the tolerance on positions, or has not fallen for LONG_STALLS times */
 #define STRETCH_ATOL 10
 #define REST_FORCE   3e-9
 #define MAX_STALLS   3
 #define LONG_STALLS  10
-/* A stretch above this part of the last one does not fall; where it may be round-off, above this part of the least that it has been there,
-   as round-off has no order */
+/* A stretch above this part of the last one does not fall; where it may be round-off, above this part of its least value there */
 #define FALLS 0.5
 /* One that changes by less than this part of it is steady */
 #define STEADY 1e-3
@@ -49,7 +45,6 @@ PetscErrorCode ContactSetUpSprings(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* After the bodies and the rows */
 PetscErrorCode ContactSetUpFloating(Contact contact)
 {
   ContactFloating *f = &contact->floating;

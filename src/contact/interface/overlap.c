@@ -1,4 +1,3 @@
-/* Bodies that are inside each other, or inside obstacles. */
 #include <contact/parts.h>
 #include <impakt/private/mesh.h>
 #include <sys/units.h>
@@ -10,7 +9,6 @@
    touch all round overlap by 0.2. A run warns of smaller overlaps at its end. */
 #define NO_START 0.25
 
-/* Size of the smallest contact element of both bodies [m] */
 PetscErrorCode ContactGetLeastElement(Contact contact, const ContactPair *pair, PetscReal *least)
 {
   PetscFunctionBegin;
@@ -25,9 +23,8 @@ PetscErrorCode ContactGetLeastElement(Contact contact, const ContactPair *pair, 
 }
 
 /* Rows that start no deeper than the bow of their partner's faces makes of surfaces which only touch, as two rounds whose poles meet, start
-   closed: the depth is added to their gap until they have been open, so that it is no blow in the first step. Bodies that begin with the
-   state of another run (`of_state`) have been in contact there by other rows perhaps, of the other side: what these leave of depth is
-   allowed too. */
+   closed: the depth is added to their gap until they have been open, so that it is no blow in the first step. Bodies with the state of
+   another run (`of_state`) may have touched by other rows there: their depth is allowed too. */
 PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
 {
   PetscFunctionBegin;
@@ -142,7 +139,6 @@ static PetscErrorCode RefuseOverlap(Contact contact, const SurfaceDepth *overlap
           moves[1], nodes[0], nodes[1]);
 }
 
-/* The deepest of the overlaps of a pair; NULL: none */
 static const SurfaceDepth *FindDeepest(const ContactPair *pair, PetscInt n, const SurfaceDepth depths[])
 {
   const PetscInt      first = PetscMin(pair->body[0], pair->body[1]), second = PetscMax(pair->body[0], pair->body[1]);
@@ -187,8 +183,7 @@ static PetscErrorCode RefuseOverlaps(Contact contact, PetscBool of_state, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Refuses bodies that overlap at the start, and notes overlaps that are there on purpose: later, those of tied bodies count by what they
-   have grown, and those of bodies that are no pair never count */
+/* Refuses bodies that overlap at the start. Overlaps of tied bodies count later by their growth, those of bodies that are no pair never */
 PetscErrorCode ContactStartOverlaps(Contact contact, PetscBool of_state)
 {
   ContactOverlaps *overlaps = &contact->overlaps;

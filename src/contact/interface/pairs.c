@@ -41,7 +41,6 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a pair without bodies yet */
 static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair **pair)
 {
   PetscFunctionBegin;
@@ -143,7 +142,6 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Frees what a pair has */
 PetscErrorCode ContactDestroyPair(ContactPair *pair)
 {
   PetscFunctionBegin;
@@ -156,7 +154,6 @@ PetscErrorCode ContactDestroyPair(ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Frees pairs and obstacles */
 PetscErrorCode ContactDestroyPairs(Contact contact)
 {
   PetscFunctionBegin;

@@ -22,8 +22,7 @@ PetscErrorCode ContactGetTransit(Body body, PetscReal size, PetscReal *transit, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* About how many substeps explicit bodies will make. A controller step that is still to be chosen lies between the times in which waves
-   cross the elements of both sides, see ContactGetResolvedStep(). */
+/* Expected substeps of explicit bodies. A step still to be chosen lies between wave times of both sides, see ContactGetResolvedStep(). */
 static PetscErrorCode EstimateSubsteps(Contact contact, const PetscReal size[], ContactPreference preferences[])
 {
   PetscReal *transit, step, least = PETSC_MAX_REAL, most = 0, impedance;
@@ -94,8 +93,7 @@ PetscBool ContactChooseSides(const ContactPreference *a, const ContactPreference
   return (PetscBool)(b->size < a->size);
 }
 
-/* As many bodies as can be in an order in which every Dirichlet side comes before its Neumann side. Methods that prescribe nothing have the
-   user's order, those whose pairs have no sides any. */
+/* As many bodies as can be with each Dirichlet side before its Neumann side. Methods that prescribe nothing have the user's order. */
 static PetscErrorCode FindOrder(Contact contact, PetscInt *done)
 {
   PetscBool moved = PETSC_TRUE, *placed;

@@ -1,9 +1,7 @@
-/*
-   The largest controller step that resolves contact. In a step in which rows join or leave the trapezoidal rule takes or brings energy by
+/* The largest controller step that resolves contact. In a step in which rows join or leave the trapezoidal rule takes or brings energy by
    the force at one of its ends times the gap at the other. Both are small where the step is one in which the force changes little: that of
    an oscillator of two masses, the contact elements of both sides, with a spring between them, the layers of both sides one behind the
-   other. For equal sides this is the time that a wave takes through a contact element.
-*/
+   other. For equal sides this is the time that a wave takes through a contact element. */
 #include <contact/parts.h>
 #include <sys/units.h>
 #include <impakt/private/bodymesh.h>
@@ -11,7 +9,6 @@
 /* Part of a contact element by which the bodies may close in a step */
 #define CLOSING 0.25
 
-/* One side of a pair */
 typedef struct {
   PetscReal size;      /* of its contact elements [m] */
   PetscReal transit;   /* of a plane wave through one [s] */
@@ -30,7 +27,6 @@ static PetscErrorCode GetSide(Body body, Side *side)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step of one pair, and why */
 static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, PetscReal *step, size_t size, char reason[])
 {
   Side      sides[2];
@@ -67,8 +63,7 @@ static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step of all pairs that may come and go, or less: that of two unequal sides lies between those of two equal ones, and no two bodies
-   close faster than the two fastest */
+/* The step of all pairs that may come and go, or less: by equal sides, and the two fastest bodies */
 static PetscErrorCode GetNeighboursStep(Contact contact, PetscReal *step, size_t size, char reason[])
 {
   PetscReal   first = 0, second = 0, smallest = PETSC_MAX_REAL;

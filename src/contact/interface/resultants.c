@@ -2,7 +2,6 @@
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 
-/* What is summed over the rows of a pair */
 enum {
   SUM_FORCE          = 0,
   SUM_ACTIVE         = 1,
@@ -51,7 +50,6 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Frees the room for the resultants */
 PetscErrorCode ContactDestroyResultants(Contact contact)
 {
   PetscFunctionBegin;

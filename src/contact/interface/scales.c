@@ -1,7 +1,5 @@
-/*
-   The size of the problem. Tolerances on lengths and forces have defaults in parts of it, so that a problem given in other units, or made
-   smaller as a whole, is solved in the same sweeps and steps and has the same figures but for their scale.
-*/
+/* The size of the problem. Tolerances on lengths and forces have defaults in parts of it, so that a problem given in other units, or made
+   smaller as a whole, is solved in the same sweeps and steps and has the same figures but for their scale. */
 #include <contact/parts.h>
 #include <sys/units.h>
 #include <impakt/private/bodymesh.h>
@@ -54,8 +52,7 @@ static PetscErrorCode GetElementForce(Body body, PetscReal *force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A tolerance of gaps that is a larger part of a body decides itself when bodies touch: it is 3e-12 of the largest, so that one would be
-   3e7 times the other */
+/* A larger part of a body as tolerance of gaps would decide contact itself: it is 3e-12 of the largest body, up to 3e7 times this one */
 #define LARGEST_TOLERANCE 1e-4
 
 /* The length that default tolerances on gaps and positions are parts of is the size of the smallest body [m]. The force that those on

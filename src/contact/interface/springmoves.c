@@ -1,13 +1,10 @@
-/*
-   How the springs of floating bodies are moved after a step has been made with them: by their stretch, to where the bodies have come, at
-   least. Where contact resists little, that is slow. So the changes of the stretch that earlier moves have brought are used: what is a sum
-   of them in the stretch is undone by the same sum of the moves, and the rest is moved by its stretch (Anderson 1965). That solves a linear
-   problem in as many times as there are springs. Where the stretch grows, as it may where the active set changes, it starts anew, after
-   some times without: moves by the stretch alone never make it grow.
+/* How the springs of floating bodies are moved after a step: by their stretch, to where the bodies have come, at least. Where contact
+   resists little, that is slow. So a stretch that is a sum of changes which earlier moves have brought is undone by the same sum of moves,
+   and the rest is moved by its stretch (Anderson 1965): a linear problem takes as many times as there are springs. Where the stretch grows,
+   as it may where the active set changes, this starts anew after some moves by the stretch alone, which never make it grow.
 
-   A stretch that does not change at all is that of a body which nothing resists: it falls until it comes to what it lands on. Then the
-   springs leap by its size, and farther the next time.
-*/
+   A stretch that does not change is that of a body which nothing resists: it falls until it lands. Then the springs leap by its size, and
+   farther the next time. */
 #include "floating.h"
 #include <impakt/private/bodyfloating.h>
 
@@ -15,9 +12,8 @@
 #define NOTHING_NEW 1e-4
 /* Times without earlier moves after the stretch has grown: two at first, then twice as many each time it grows, up to so many */
 #define MOST_PATIENCE 8
-/* Times in a row that the stretch of a body has been steady, before its springs leap; how much longer each leap is than the last one. The
-   first is such that the springs would strain the body by FIRST_STRAIN if something held it where it is, and none of a nonlinear body is
-   longer than for LARGE_STRAIN. */
+/* Times in a row that the stretch of a body has been steady, before its springs leap; growth from leap to leap. The first would strain a
+   held body by FIRST_STRAIN, and none of a nonlinear body is longer than for LARGE_STRAIN. */
 #define STEADY_TIMES 3
 #define LONGER       8
 #define FIRST_STRAIN 1e-2
@@ -157,8 +153,7 @@ static PetscErrorCode FindHeld(Contact contact, PetscReal held[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For each floating body the smallest gap of the rows ahead of it as it falls, 0 where one is in contact, or tied, or sticks;
-   PETSC_MAX_REAL: nothing lies there [m] */
+/* For each floating body the smallest gap of the rows ahead of it as it falls [m], 0 in contact; PETSC_MAX_REAL: none */
 static PetscErrorCode FindGaps(Contact contact, PetscReal gaps[])
 {
   ContactFloating *f = &contact->floating;

@@ -1,7 +1,5 @@
-/*
-   What is told of pairs that come and go. Which of them there are changes from time to time, so that outputs could not name them: they are
-   told what each body does to all others together, as a pair BODY:others, and what it does to each obstacle, as a pair BODY:OBSTACLE.
-*/
+/* What is told of pairs that come and go. Which of them there are changes from time to time, so that outputs could not name them: they are
+   told what each body does to all others together, as a pair BODY:others, and what it does to each obstacle, as a pair BODY:OBSTACLE. */
 #include <contact/parts.h>
 
 #define OTHERS "others"
@@ -86,8 +84,7 @@ PetscErrorCode ContactTakeLeave(Contact contact, const ContactPair *pair, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the state of a pair to that of what is told. What has no direction counts with the body that has the rows alone, so that sums over
-   all that is told are those over all pairs. */
+/* Adds the state of a pair to that of what is told. What has no direction counts with the rows' body alone, so that sums are right. */
 static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairState *state)
 {
   sum->gap     = PetscMin(sum->gap, state->gap);

@@ -114,8 +114,7 @@ PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs that were in contact when the step failed, three of them at most, as text; of bodies that failed by themselves nothing, since
-   the message names them */
+/* The pairs that were in contact when the step failed, three at most, as text; none where bodies failed by themselves */
 static PetscErrorCode NamePairs(Contact contact, size_t size, char text[])
 {
   const StepConvergedReason reason = contact->attempt.failure.reason;
@@ -137,8 +136,7 @@ static PetscErrorCode NamePairs(Contact contact, size_t size, char text[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error that says why the last step has failed; number of the controller step, and how often it had been cut, for the message.
-   Collective. */
+/* Ends with an error that says why the last step has failed, which step, and how often it was cut. Collective. */
 PetscErrorCode ContactRaiseFailure(Contact contact, PetscInt step, PetscInt cuts)
 {
   MPI_Comm comm       = PetscObjectComm((PetscObject)contact);
@@ -195,8 +193,7 @@ PetscErrorCode ContactSetStepLevel(Contact contact, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether controller steps can be made again in halves: not where the method moves the start of its steps, as forward increments and the
-   contact-stabilised method do */
+/* Whether steps can be made again in halves: not where the method moves their start (forward increments, contact-stabilised) */
 PetscErrorCode ContactCanCut(Contact contact, PetscBool *can)
 {
   PetscFunctionBegin;

@@ -1,5 +1,4 @@
-/*
-   Glue that breaks: a bilinear law with damage d, one number for each node, for mode I and mixed modes.
+/* Glue that breaks: a bilinear law with damage d, one number for each node, for mode I and mixed modes.
 
    The traction is (1 - d) k g. It rises with the opening to the strength s, at s / k, and falls linearly to zero at 2 G / s, so that
    breaking takes the toughness G per unit of area. d follows from the largest opening of all steps. Unloading goes straight to the origin.
@@ -11,8 +10,7 @@
 
    Sources: P. P. Camanho, C. G. Davila, Mixed-mode decohesion finite elements for the simulation of delamination in composite materials,
    NASA/TM-2002-211737 (2002), for the law and one damage of all modes; M. Ortiz, A. Pandolfi, Finite-deformation irreversible cohesive
-   elements for three-dimensional crack-propagation analysis, IJNME 44 (1999), for the effective opening.
-*/
+   elements for three-dimensional crack-propagation analysis, IJNME 44 (1999), for the effective opening. */
 #include "rowlaw.h"
 #include <petscmath.h>
 

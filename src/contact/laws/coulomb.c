@@ -1,5 +1,4 @@
-/* Coulomb's law: the force across the normal is at most a coefficient times the normal force. The coefficient may fall with the speed of
-   sliding. */
+/* Coulomb's law: the force across the normal is at most the normal force times a coefficient, which may fall with the sliding speed. */
 #include "rowlaw.h"
 #include <petscmath.h>
 

@@ -1,11 +1,9 @@
-/*
-   Rows across the normals of contact nodes: what they are when rows are built again, by how much they slip in a step, and what friction
+/* Rows across the normals of contact nodes: what they are when rows are built again, by how much they slip in a step, and what friction
    takes of the energy there.
 
    A row across the normal has no gap: the numbers that others have for it say that it is far open, and what concerns it is its slip, the
    change of B u over the controller step with the rows as the step has them. Where both bodies move as one rigid body, a closed row has the
-   same material points on both sides, and no slip.
-*/
+   same material points on both sides, and no slip. */
 #include "pairlaws.h"
 #include <sys/units.h>
 #include <impakt/private/bodystep.h>
@@ -13,8 +11,7 @@
 /* Round-off of normals that a velocity may have a part along */
 #define ACROSS 1e-6
 
-/* The bound of the force across the normal of the node that has row i, from the speed at which it has slid in the last step: a force [N],
-   and a part of the normal force more */
+/* Bound of the force across the normal at row i's node, by its last step's sliding speed: a force [N], and a part of the normal force */
 void ContactGetFrictionLimit(Contact contact, PetscInt i, PetscReal speed, PetscReal limit[2])
 {
   const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
@@ -145,8 +142,7 @@ static PetscErrorCode GetDrive(Contact contact, const ContactPair *pair, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the start of a step: how far the surfaces of obstacles go along themselves in it, at the nodes. Where a node is moves by less in a
-   step than a velocity changes over. */
+/* At the start of a step: how far the surfaces of obstacles go along themselves in it, at the nodes' last places. */
 PetscErrorCode ContactDriveFriction(Contact contact)
 {
   PetscFunctionBegin;
@@ -251,8 +247,7 @@ static PetscErrorCode AddLossOn(Contact contact, PetscInt b, const PetscReal sta
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What friction takes in the step as it has been made, with these forces of all rows at its start: of each row across a normal, and of each
-   pair on all ranks. Collective. */
+/* What friction takes in the step with these forces at its start: of rows across normals, and of each pair on all ranks. Collective. */
 PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start_force[])
 {
   ContactFriction *friction = &contact->friction;

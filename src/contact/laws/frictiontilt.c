@@ -1,12 +1,9 @@
-/*
-   How far rows in contact are turned from the surfaces, beside what friction can bear.
+/* How far rows in contact are turned from the surfaces, beside what friction can bear.
 
-   A normal force along a row that is turned by an angle has a part along the surface of that angle times the force. Beside mu times it,
-   which is all that friction has, that is no longer small where the angle is not small beside mu: what sticks, what slides and what
-   friction takes are then those of other surfaces. Rows of bodies with inertia follow the surfaces in each step. Those of bodies without
-   are as they were built, until the surfaces have turned by -contact_angle_bound. A linear body bears forces as if it had not turned: those
-   along rows that are right where the body is now are off by the angle by which it has turned.
-*/
+   A normal force along a row that is turned by an angle has a part along the surface of that angle times the force. Where the angle is not
+   small beside mu, what sticks, what slides and what friction takes are those of other surfaces. Rows of bodies with inertia follow the
+   surfaces in each step; others stay until the surfaces have turned by -contact_angle_bound. Forces on a linear body, which bears them as
+   if it had not turned, are off by the angle by which it has. */
 #include <contact/parts.h>
 
 /* The most by which a linear body of a pair has turned [rad] */
@@ -24,8 +21,7 @@ static PetscErrorCode GetLinearTurn(Contact contact, const ContactPair *pair, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The sums of the tilt times the normal force, and of what friction can bear, of the rows of a pair on this rank [N]; `turn`: by which all
-   are tilted in any case [rad] */
+/* Sums over a pair's rows on this rank of tilt times normal force, and of what friction can bear [N]; `turn`: tilt of all rows [rad] */
 static void AddTilts(Contact contact, const ContactPair *pair, PetscReal turn, const PetscReal tilts[], PetscReal sums[2])
 {
   for (PetscInt first = pair->begin, k = 0; first < pair->end; first += pair->components, k++) {

@@ -257,8 +257,7 @@ PetscErrorCode ContactReadLaw(Contact contact, PetscInt pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Parameters of all laws from the options, of all pairs and of each that has the law, once these are known: an option that stays unread is
-   an error */
+/* Parameters of all laws from the options, of all pairs and of each that has the law; an option left unread is an error */
 PetscErrorCode ContactReadLawParameters(Contact contact)
 {
   PetscFunctionBegin;
@@ -314,7 +313,6 @@ static PetscErrorCode CheckParameters(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Prints the parameters of the laws of all pairs */
 PetscErrorCode ContactViewLawParameters(Contact contact, PetscViewer viewer)
 {
   PetscFunctionBegin;

@@ -1,10 +1,8 @@
-/* The registry of the laws of the contact step. */
 #include "rowlaw.h"
 #include <sys/names.h>
 
 static PetscFunctionList RowLawList = NULL;
 
-/* Adds a law; `create` fills in its members */
 PetscErrorCode RowLawRegister(const char name[], PetscErrorCode (*create)(RowLaw *))
 {
   PetscFunctionBegin;
@@ -28,7 +26,6 @@ PetscErrorCode RowLawDestroyList(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The law of a name */
 PetscErrorCode RowLawCreate(const char name[], RowLaw *law)
 {
   PetscErrorCode (*create)(RowLaw *);

@@ -1,11 +1,9 @@
-/*
-   Laws of the one contact step: the relation between the forces on the rows of a node and what these rows read. A law is a projection,
+/* Laws of the one contact step: the relation between the forces on the rows of a node and what these rows read. A law is a projection,
    lambda = P(lambda - r y), with its derivative; y is what it reads. Nobody asks for the name of a law.
 
    Laws of glue and of friction have parameters that users give. Users name them in -contact_law, and their parameters in
    -contact_<law>_<parameter>, of friction in -contact_<parameter>. Glue has a stiffness, and may have numbers that it keeps of each node,
-   as damage. Friction has a bound.
-*/
+   as damage. Friction has a bound. */
 #pragma once
 #include <petscsys.h>
 #include <sys/units.h>
@@ -52,8 +50,7 @@ typedef struct {
   const char *(*check)(const PetscReal parameters[]); /* (NULL) what is wrong with them together; NULL: nothing */
   /* (NULL: it is no friction) `limit` of a node that has slid at this speed [m/s] in the last step */
   void (*bound)(const PetscReal parameters[], PetscReal speed, PetscReal limit[2]);
-  /* The rest is of glue. Its force is stiffness times gap, beside contact; so it stores half of that times the gap, and damage, by which
-     the stiffness falls, takes what is missing then. */
+  /* Of glue: its force is stiffness times gap, beside contact; it stores half of that times the gap, and damage takes the rest. */
   PetscReal (*stiffness)(const PetscReal parameters[], const PetscReal history[]); /* per unit of area [N/m^3]; NULL: it is no glue */
   PetscReal (*softening)(const PetscReal parameters[]); /* (NULL) by how much force falls as the gap grows, at most [N/m^3] */
   PetscInt n_history;                                   /* numbers that it keeps of each node, zeros at the start */

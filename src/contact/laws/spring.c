@@ -1,7 +1,4 @@
-/*
-   Glue: springs between both sides of each row, lambda = -k g, with the gap g on which the force of the step does its work. So the springs
-   take what the bodies give.
-*/
+/* Glue: springs between both sides of each row, lambda = -k g, with the gap g along which the step's force works: no energy is lost. */
 #include "rowlaw.h"
 
 static PetscReal Stiffness(const PetscReal parameters[], const PetscReal history[])

@@ -1,5 +1,4 @@
-/* Ties: what holds the rows of a node where they are; and surfaces that have met and do not come apart, whose rows stay as closed as they
-   are, pushed or pulled. */
+/* Ties hold the rows of a node where they are; surfaces that have met and do not come apart stay as closed as they are. */
 #include "rowlaw.h"
 
 static void Project(PetscInt n, const PetscReal limit[2], const RowLawGlue *glue, const PetscReal p[], PetscReal force[],

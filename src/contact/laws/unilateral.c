@@ -1,7 +1,5 @@
-/*
-   Contact and Coulomb friction: a node pushes along its normal, and across it with a force within a bound. The natural map of Alart and
-   Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, CMAME 92 (1991).
-*/
+/* Contact and Coulomb friction: a node pushes along its normal, and across it with a force within a bound. The natural map of Alart and
+   Curnier, A mixed formulation for frictional contact problems prone to Newton like solution methods, CMAME 92 (1991). */
 #include "rowlaw.h"
 #include <petscmath.h>
 

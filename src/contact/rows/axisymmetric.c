@@ -4,8 +4,7 @@
 /* Components of directions, and distances from the axis in parts of the mesh, that are smaller count as none */
 #define NONE 1e-9
 
-/* An obstacle must be the same all around the axis x = 0: a plane across it, a sphere on it, a cylinder about it. In three dimensions z
-   goes across the plane of the mesh. */
+/* An obstacle must be the same all around the axis x = 0: a plane across it, a sphere on it, a cylinder about it. z is across the mesh. */
 static PetscErrorCode CheckObstacle(Contact contact, const ContactPair *pair)
 {
   ObstacleType type;

@@ -1,23 +1,14 @@
-/*
-   Whether forces have the same sum along the normals of both sides, -contact_balance.
+/* Whether forces have the same sum along the normals of both sides, -contact_balance, as they should without friction. Where few nodes are
+   in contact the centre of pressure hangs on where these lie, which spins bodies that hit each other off-centre: discs of 64 edges by up to
+   0.05 of the ratio of speed and radius, balls by 0.1; with this option by at most 4e-4 and 2e-3, at a fifth more time. Where two nodes
+   bear all it helps less, as normals of rows are half way between those of both sides up to 10 degrees alone: balls of 40 edges spin by
+   0.003 at 2 m/s, 0.023 at 0.04 m/s.
 
-   Without friction they should. Where few nodes are in contact the centre of pressure hangs on where the nodes lie, which spins bodies that
-   hit each other off-centre: discs of 64 edges by up to 0.05 of the ratio of speed and radius, balls by 0.1, and by 4e-4 and 2e-3 at most
-   with this option. It costs no energy to speak of: discs lose 1e-5 of it, as without. The run takes a fifth longer.
-
-   Where two nodes bear all it helps less, since normals of rows are half way between those of both sides up to 10 degrees alone: balls of
-   40 edges spin by 0.003 at 2 m/s, but by 0.008 at 0.4 m/s and 0.023 at 0.04 m/s.
-
-   In two dimensions there is one condition for each pair, in three there are two. In three dimensions the bends of both surfaces count and
-   nodes have the normals of round surfaces, see SurfaceSetRound().
-
-   It means something for rows that follow the surfaces: frictionless pairs of bodies with inertia that are not both linear. It goes with
-   CONTACT_SCHWARZ and massless contact nodes. For others it is an error. A pair should touch in one place, and faces bend by 11.5 degrees at
-   most. One of its bodies should be free: where both are led moments are no measure of anything, and what turns of gaps bring or take is
-   not limited.
-
-   With auto, the default, forces are balanced where all that holds, and all pairs are of bodies whose surfaces are round without edges.
-*/
+   There is one condition for each pair in two dimensions, two in three, where the bends of both surfaces count and nodes have the normals
+   of round surfaces, see SurfaceSetRound(). It is for rows that follow the surfaces, frictionless pairs of bodies with inertia that are not
+   both linear, with CONTACT_SCHWARZ and massless contact nodes; else an error. A pair should touch in one place, faces bend by 11.5 degrees
+   at most, and one body be free: what turns of gaps between led bodies bring or take is not limited. With auto, the default, forces are
+   balanced where all that holds, and all pairs are of bodies whose surfaces are round without edges. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 
@@ -52,7 +43,6 @@ static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether displacements of a body are prescribed, in part or wholly */
 static PetscErrorCode IsHeld(Contact contact, PetscInt b, int *held)
 {
   const PetscInt *dofs;
@@ -68,8 +58,7 @@ static PetscErrorCode IsHeld(Contact contact, PetscInt b, int *held)
 }
 
 /* Why gaps of a pair cannot be turned, or are not to be `unasked`; empty: they can. Unasked they are not where faces are flat or beside
-   edges, nor where both bodies are held: what holds them takes the moment, there is no spin to keep away, and turns that nothing answers
-   have brought energy. */
+   edges, nor where both bodies are held: they cannot spin, and turns that nothing answers have brought energy. */
 static PetscErrorCode Judge(Contact contact, const ContactPair *pair, PetscBool unasked, char why[], size_t size)
 {
   PetscBool linear = PETSC_TRUE, both_held = PETSC_TRUE, may = PETSC_FALSE, axisymmetric;

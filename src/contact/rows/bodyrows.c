@@ -1,7 +1,5 @@
-/*
-   The rows of each body. A body has rows for its own pairs alone, with numbers of its own, so that what it stores and does goes with these,
-   not with the rows of all bodies. On every rank they are in the order of the rows of contact; so both numbers ascend together.
-*/
+/* The rows of each body. A body has rows for its own pairs alone, with numbers of its own, so that what it stores and does goes with these,
+   not with the rows of all bodies. On every rank they are in the order of the rows of contact; so both numbers ascend together. */
 #include <contact/parts.h>
 
 /* How many rows each body has on all ranks, and which */
@@ -29,7 +27,6 @@ static PetscErrorCode ListRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which pairs each body is in */
 static PetscErrorCode ListPairs(Contact contact)
 {
   ContactBodyRows *of = contact->body_rows;
@@ -97,7 +94,6 @@ PetscErrorCode ContactDestroyBodyRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of all bodies count as changed */
 void ContactAffectAll(Contact contact)
 {
   for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].affected = contact->body_rows[b].rewritten = PETSC_TRUE;
@@ -127,8 +123,7 @@ PetscErrorCode ContactCopyAreas(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the bodies whose rows are affected these as the matrices have them now; `changed`: which rows of this rank are others than before
- */
+/* Gives the bodies whose rows are affected these as the matrices have them now; `changed`: this rank's rows that differ */
 PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
 {
   ContactRanks *ranks = &contact->ranks;
@@ -147,7 +142,6 @@ PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A number for each row */
 PetscErrorCode ContactCreateRowVec(Contact contact, Vec *vec)
 {
   PetscFunctionBegin;

@@ -1,9 +1,7 @@
-/*
-   Bodies that stick to each other once they have met. Each node has a row along its normal, which opens and closes like that of
+/* Bodies that stick to each other once they have met. Each node has a row along its normal, which opens and closes like that of
    frictionless contact, and rows across it, which mean nothing at first. At the start of the controller step after the one in which the
    normal row closed with a compressive force, all rows of the node become ties, with the positions that they have there: nothing jumps, so
-   that no energy is lost by it. A pair with such a node does not slide any more, and its rows are not built again.
-*/
+   that no energy is lost by it. A pair with such a node does not slide any more, and its rows are not built again. */
 #include <contact/parts.h>
 
 /* The direction of row k of a node: its normal, then unit vectors across it */

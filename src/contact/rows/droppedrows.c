@@ -1,9 +1,7 @@
-/*
-   Which rows of held nodes are dropped where bodies answer to forces. Such a row is a condition on the partner. Beside rows that are not
+/* Which rows of held nodes are dropped where bodies answer to forces. Such a row is a condition on the partner. Beside rows that are not
    held, as at the rim of an interface, it may follow from these, since the partner has no more displacements there than they have forces:
    then its force is not determined. So there it is dropped, see heldrows.c. Farther inside of what is held it stays, unless the partner is
-   held too, so that no force on it moves anything.
-*/
+   held too, so that no force on it moves anything. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 
@@ -17,8 +15,7 @@ static void LeaveOut(Contact contact, PetscInt i)
   contact->rows.initial_gap[i]                      = CONTACT_NO_GAP;
 }
 
-/* Whether row i is held: the user prescribes all displacements of its Dirichlet node that it asks for. Rows of a node that rubs are held
-   together. */
+/* Whether row i is held: all displacements that it asks for are prescribed. Rows of a node that rubs are held together. */
 PetscErrorCode ContactRowIsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
 {
   const PetscInt *dofs;
@@ -134,8 +131,7 @@ PetscErrorCode ContactKeepHeldRows(Contact contact, Vec known)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes all of whose rows have been dropped are left out. Of others a dropped row is a tie without entries, which is closed and has no
-   force. */
+/* Nodes with all rows dropped are left out. Of others a dropped row is a tie without entries, closed and without force. */
 void ContactLeaveOutDropped(Contact contact)
 {
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

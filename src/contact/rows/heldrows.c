@@ -1,5 +1,4 @@
-/*
-   A held row, whose Dirichlet node the user holds in place, is no condition on that node and has no force of its own. But to leave the row
+/* A held row, whose Dirichlet node the user holds in place, is no condition on that node and has no force of its own. But to leave the row
    out would leave out the pressure between the rim of the interface and the nodes beside it. So a held row is dropped, and its share goes
    to the rows of neighbouring nodes, its heirs, as with multipliers at crosspoints (Wohlmuth 2000; Puso, Laursen 2003). With weights w_kh
    of the heirs k, which sum to one for each held node h, the multiplier functions psi_k + sum_h w_kh psi_h sum to one over the whole
@@ -13,8 +12,7 @@
    surfaces are merged.
 
    Methods that prescribe displacements have no use for a held row, and leave out those without heirs. Where bodies answer to forces, rows of
-   held nodes are dropped at rims alone: see droppedrows.c.
-*/
+   held nodes are dropped at rims alone: see droppedrows.c. */
 #include <contact/parts.h>
 
 /* Edges between a held row and its heirs, where held rows that have none are of use: two at the corner of a rim */
@@ -75,8 +73,7 @@ static PetscErrorCode CreateNeighbours(Contact contact, Mat *neighbours)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds dropped rows without heirs whose neighbours have heirs or are heirs: those that `known` marks. `now` becomes one on them, and
-   `part` one over the number of these neighbours. */
+/* Dropped rows without heirs beside heirs or rows with some (`known`): `now` becomes one there, `part` one over the number of these. */
 static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec now, Vec part, int *any)
 {
   const PetscScalar *has;
@@ -102,9 +99,8 @@ static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A matrix with the weights w_kh in row h. The share of a held node goes in equal parts to the neighbours that are not held; if there are
-   none, as at a corner, to the heirs of its neighbours. The other rows of the matrix are those of the identity, and zeros for dropped rows
-   without heirs. */
+/* A matrix with the weights w_kh in row h. The share of a held node goes in equal parts to neighbours that are not; if there are none, as
+   at a corner, to the heirs of its neighbours. Other rows are the identity's, and zero if dropped without heirs. */
 static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
 {
   const PetscInt most = contact->sideless ? RIM : PETSC_INT_MAX;
@@ -182,8 +178,7 @@ static PetscErrorCode CreateMerger(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sets gaps and normals of the heirs, which are means. What an earlier merger added to a gap is in merged_gap, and is taken out first; it
-   is zero if the row has been described since. */
+/* Sets gaps and normals of the heirs, which are means. An earlier merger's part, merged_gap (0 in new rows), is taken out first. */
 static PetscErrorCode MergeNumbers(Contact contact)
 {
   const PetscScalar *own, *means;
@@ -228,8 +223,7 @@ static PetscErrorCode MarkHeirs(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Drops the held rows and gives their shares to their heirs: areas, gaps and normals at once, and matrices by contact->held.merger, which
-   is NULL if no row has been dropped */
+/* Drops the held rows and gives their shares to heirs: areas, gaps and normals now, matrices by contact->held.merger (NULL: none) */
 PetscErrorCode ContactMergeDroppedRows(Contact contact)
 {
   int any = contact->held.merger ? 1 : 0;
@@ -299,7 +293,6 @@ PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Frees the matrix of the merger and its work space */
 PetscErrorCode ContactDestroyMerger(Contact contact)
 {
   PetscFunctionBegin;

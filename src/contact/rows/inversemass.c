@@ -4,8 +4,7 @@
 
 /* Of the rates, relative: near round-off, since what is left drifts */
 #define TOLERANCE 1e-15
-/* Rows that depend on each other, as where four blocks meet at one node, leave round-off: what may be left then, and iterations to get
-   there at most */
+/* Dependent rows, as where four blocks meet at a node, leave round-off: what may be left then, and iterations at most */
 #define WORST          1e-10
 #define MAX_ITERATIONS 2000
 
@@ -56,7 +55,6 @@ static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* C entry by entry */
 static PetscErrorCode Assemble(Contact contact, PetscBool lumped, Mat *C)
 {
   PetscFunctionBegin;

@@ -1,15 +1,13 @@
 #pragma once
 #include <contact/parts.h>
 
-/* The mass matrix that is inverted */
 typedef enum {
   INVERSE_MASS_ONCE,      /* that of the bodies, for a few solutions: each multiplication solves with it */
   INVERSE_MASS_ASSEMBLED, /* that of the bodies, for many solutions */
   INVERSE_MASS_LUMPED     /* its row sums */
 } InverseMassType;
 
-/* What forces on ties do to the accelerations of their rows: C = sum_bodies B M^{-1} B^T [1/kg], on the rows of pairs whose nodes keep
-   their mass */
+/* Accelerations of ties' rows by forces on them: C = sum_bodies B M^{-1} B^T [1/kg], on the rows of pairs whose nodes keep their mass */
 typedef struct _InverseMass {
   Contact      contact;
   KSP          ksp; /* with C, on all rows: the identity on others */

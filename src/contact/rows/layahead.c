@@ -1,9 +1,6 @@
-/*
-   Rows that are laid where the step ends. A row is a plane that touches the partner where the node was when the row was laid; as the node
-   slides on, the plane leaves a partner that is curved. So a step whose nodes in contact end off the partner is made again, with rows laid
-   at the places where the nodes ended, until they end on it. This holds for curved obstacles, and between bodies without inertia that have
-   large displacements.
-*/
+/* Rows that are laid where the step ends. A row is a plane that touches the partner where the node was; as the node slides on, it leaves a
+   curved partner. So a step whose nodes in contact end off the partner is made again, with rows laid at the places where the nodes ended,
+   until they end on it. This holds for curved obstacles, and between bodies without inertia that have large displacements. */
 #include <contact/parts.h>
 
 #define OFF         1e-3 /* planes of nodes in contact end a step at most this far off the partner [edges of the smallest face] */
@@ -11,8 +8,7 @@
 #define MOST_PASSES 10   /* each takes the square of what is left, in parts of the radius */
 #define LESS        0.5  /* a pass that leaves more than this part of what was too much is the last one */
 
-/* Whether the rows of a pair can be laid where the step ends. Linear bodies have small displacements: with rows of their undeformed state
-   pressures refer to its area, as those of linear theory do. */
+/* Whether the rows of a pair can be laid where the step ends. Linear bodies keep rows, and areas of pressure, of their undeformed state. */
 static PetscErrorCode LaysAhead(Contact contact, const ContactPair *pair, PetscBool *ahead)
 {
   ObstacleType type;
@@ -34,8 +30,7 @@ static PetscErrorCode LaysAhead(Contact contact, const ContactPair *pair, PetscB
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the planes of nodes of this rank in contact are off the partner of a pair where these end the step, and tilted, in parts of what
-   is allowed */
+/* How far the planes of this rank's nodes in contact are off a pair's partner at the step's end, and tilted, in parts of what is allowed */
 static PetscErrorCode MeasureOff(Contact contact, const ContactPair *pair, PetscReal *off)
 {
   PetscReal   *drift = contact->work.drift, *turn = contact->work.tilts;

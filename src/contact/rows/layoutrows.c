@@ -1,8 +1,5 @@
-/*
-   Rows that are laid out anew in the course of a run, as pairs come and go. Between two controller steps the rows of pairs that stay keep
-   all that is known of them, under other numbers; those of new pairs begin open. Bodies whose pairs stay as they are notice nothing. What
-   the method has made of the rows begins anew.
-*/
+/* Rows that are laid out anew in the course of a run, as pairs come and go. Between two controller steps the rows of pairs that stay keep
+   all that is known of them, under other numbers; those of new pairs begin open. What the method has made of the rows begins anew. */
 #include <contact/parts.h>
 
 /* What is kept of rows and pairs, while they are laid out */
@@ -51,8 +48,7 @@ static PetscErrorCode KeepRows(Contact contact, Kept *kept)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The pairs that there are from now on; `was`: the number that each had, or less than 0. Bodies that have other pairs than before are
- * marked. */
+/* The pairs that there are from now on; `was`: the number that each had, or less than 0. Marks bodies that have other pairs now. */
 static PetscErrorCode TakePairs(Contact contact, PetscInt n, const PetscInt list[], Kept *kept, PetscInt was[], PetscBool affected[])
 {
   PetscReal extent = 0;

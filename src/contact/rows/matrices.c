@@ -2,8 +2,7 @@
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 
-/* Entries of each row of a body, as its transfer tells. Ties have other rows, and where ranks share a body nobody knows which columns are
-   those of other ranks. */
+/* Entries of each row of a body, by its transfer; unknown for ties, and columns of other ranks where they share the body. */
 static PetscErrorCode CountEntries(Contact contact, PetscInt b, PetscInt entries[])
 {
   PetscInt *counts[2] = {contact->work.entry_counts, contact->work.entry_counts + contact->rows.n};

@@ -1,5 +1,4 @@
-/* Bodies of which those contact nodes alone are massless that face a partner at the start (-<body>_mass_redistribute near): which nodes
-   these are, and that contact comes to no others. */
+/* -<body>_mass_redistribute near: only contact nodes that face a partner at the start are massless; contact comes to no others. */
 #include <contact/parts.h>
 #include <impakt/private/bodymass.h>
 #include <impakt/private/bodymesh.h>
@@ -7,8 +6,7 @@
 /* Forces on nodes with mass that are smaller, in parts of the largest nodal force, are round-off of the weights */
 #define FORCE_ROUND_OFF 1e-9
 
-/* A surface of a pair, and that of its partner, with the faces alone that face the partner at the start; the partner's is NULL for an
- * obstacle */
+/* The surfaces of a pair with those faces that see the partner at the start; the partner's is NULL for an obstacle */
 PetscErrorCode ContactCreateFacing(Contact contact, const ContactPair *pair, Surface surfaces[2])
 {
   PetscFunctionBegin;
@@ -34,8 +32,7 @@ PetscErrorCode ContactMarkNearNodes(Contact contact, const ContactPair *pair, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error if contact forces act on nodes that keep their mass since they faced nothing at the start: the methods count on
-   massless nodes, and such nodes would chatter without a word */
+/* Ends with an error if contact forces act on nodes that keep their mass, facing nothing at the start: they would chatter */
 PetscErrorCode ContactCheckNear(Contact contact)
 {
   PetscFunctionBegin;

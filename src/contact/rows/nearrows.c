@@ -1,11 +1,9 @@
-/*
-   Rows near contact: those that may touch before rows are built again, which they are once surfaces have moved by a quarter of the smallest
-   face. A step of a method that asks for them looks at no others, so that it costs what touches, not what all contact nodes do. Others are
-   open and have no force; what is known of them, gaps and output traces of the bodies, is old until somebody asks.
+/* Rows near contact: those that may touch before rows are built again, which they are once surfaces have moved by a quarter of the smallest
+   face. A step of a method that asks for them looks at no others, and costs what touches. Others are open and have no force; their gaps and
+   the bodies' output traces are old until somebody asks.
 
-   Of near rows those act in a step whose node touches in it, or had a force in it or in the last one. Whatever comes of forces, on bodies
-   too, is zero on all others, since it was made zero in the step after their last force; so nobody looks at them for it.
-*/
+   Of near rows those act in a step whose node touches, or had a force in it or in the last one. On all others forces and their effects have
+   been zero since the step after their last force. */
 #include <contact/parts.h>
 
 /* Gap of a row up to which it is near [edges of the face]: rows within two edges count as near contact in builds, and surfaces may have
@@ -29,7 +27,6 @@ static void ListActingOfBodies(Contact contact)
   }
 }
 
-/* All near rows count as acting; those of the bodies are listed, too */
 static PetscErrorCode ListBodyRows(Contact contact)
 {
   PetscFunctionBegin;
@@ -49,8 +46,7 @@ static PetscErrorCode ListBodyRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* In a step, once it is known which rows touch: lists those that act. Where an attempt has failed all near rows do, as others had forces in
-   that. */
+/* In a step, once it is known which rows touch: lists those that act. After a failed attempt, with forces on others, all near rows do. */
 void ContactListActingRows(Contact contact, const PetscBool touches[])
 {
   ContactRows *rows = &contact->rows;
@@ -146,7 +142,6 @@ static PetscErrorCode TellSurfaces(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All rows count as near */
 PetscErrorCode ContactListAllRows(Contact contact)
 {
   const PetscBool before = contact->rows.listed;
@@ -193,8 +188,7 @@ static PetscErrorCode ListPair(Contact contact, ContactPair *pair, PetscReal *sm
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the start of a step in which rows stay as they are: lists those that are near, if the method looks at no others. `reach`: surfaces
-   that far apart may touch in the step [m] */
+/* Lists near rows at the start of a step in which rows stay, if the method wants that. `reach`: how far surfaces may be that touch [m] */
 PetscErrorCode ContactListNearRows(Contact contact, PetscReal reach)
 {
   PetscReal smallest = PETSC_MAX_REAL;

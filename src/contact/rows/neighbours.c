@@ -1,9 +1,7 @@
-/*
-   Which bodies are near each other, and near which obstacles. Of many pairs that the program has chosen those alone have rows whose bodies
+/* Which bodies are near each other, and near which obstacles. Of many pairs that the program has chosen those alone have rows whose bodies
    are near: pairs come and go. Boxes about all bodies are sorted along the longest axis and compared with those that they overlap there, so
    that nobody looks at all pairs. That is done again when the bodies may have used up the distance up to which pairs were taken, by the way
-   that the two fastest of them can make towards each other.
-*/
+   that the two fastest of them can make towards each other. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 #include <impakt/private/bodystep.h>
@@ -81,7 +79,6 @@ PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Distance of two boxes [m] */
 static PetscReal BoxDistance(const PetscReal a[], const PetscReal b[])
 {
   PetscReal square = 0;
@@ -105,7 +102,6 @@ static PetscErrorCode ObstacleDistance(const PetscReal box[], Obstacle obstacle,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The axis along which the boxes lie farthest apart */
 static PetscInt LongestAxis(Contact contact)
 {
   const PetscReal *boxes   = contact->neighbours.boxes;
@@ -162,7 +158,6 @@ static PetscBool ComesFirst(const ContactNeighbours *neighbours, PetscInt a, Pet
   return (PetscBool)(neighbours->place[a] < neighbours->place[b]);
 }
 
-/* The pairs of bodies whose boxes are near */
 static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
 {
   ContactNeighbours *neighbours = &contact->neighbours;
@@ -191,7 +186,6 @@ static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The obstacles that bodies are near */
 static PetscErrorCode FindObstacles(Contact contact, PetscReal near, PetscInt *n)
 {
   ContactNeighbours *neighbours = &contact->neighbours;
@@ -216,8 +210,7 @@ static PetscReal LeastTaken(Contact contact)
   return (TAKEN - NEAR) * least;
 }
 
-/* The numbers of the near pairs, in order, into neighbours->found; `near`: bodies that far apart may touch in the next controller step [m]
- */
+/* The numbers of the near pairs, in order, into neighbours->found; `near`: how far apart bodies may be that touch next [m] */
 PetscErrorCode ContactFindNeighbours(Contact contact, PetscReal near, PetscInt *n)
 {
   ContactNeighbours *neighbours = &contact->neighbours;

@@ -2,8 +2,7 @@
 #include <contact/parts.h>
 #include <sys/stages.h>
 
-/* Rows stay as they are while the partner slips [parts of a face] and the normal turns [rad] by less. Bars that meet head on far above the
-   load at which they buckle would do so from round-off. */
+/* Rows stay while the partner slips [parts of a face] and the normal turns [rad] by less, or bars would buckle from round-off. */
 #define STILL 1e-6
 /* The same between two linear bodies, whose displacements are small: with rows of the undeformed state pressures agree with closed forms to
    1e-8, and energy is kept to 1e-6. Linear bodies that turn do not keep angular momentum themselves. */
@@ -44,8 +43,7 @@ static PetscErrorCode GetDisplacements(Contact contact, const ContactPair *pair,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How the surfaces of all pairs have moved since their rows were built, which pairs touch or have had a force, and of which others rows may
-   close in this step; the same on all ranks */
+/* Motion of all pairs' surfaces since rows were built, which touch or had a force, and which may close now; the same on all ranks */
 static PetscErrorCode MeasureMotion(Contact contact)
 {
   PetscFunctionBegin;
@@ -105,8 +103,7 @@ static PetscErrorCode RenewPair(Contact contact, PetscInt p, int *updated)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Builds the rows of those pairs again whose surfaces have slid or turned far enough, and lets those near contact follow: what has become
-   of them, for each pair, the same on all ranks */
+/* Builds rows of pairs that have slid or turned far enough again, lets those near contact follow: what became of each, on all ranks */
 PetscErrorCode ContactUpdatePairs(Contact contact)
 {
   int      *updated = contact->work.updated;

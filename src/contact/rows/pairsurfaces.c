@@ -22,9 +22,8 @@ static PetscErrorCode NoteNodes(Contact contact, PetscInt body, Surface surface)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells both bodies of a pair which of their nodes may touch, and are to be massless: all nodes of both surfaces, since any of them may
-   come to lie opposite to the partner as bodies slide. None of a pair whose nodes are tied and keep their mass, unless the whole body does,
-   as where it answers to forces */
+/* Tells both bodies of a pair which of their nodes may touch, and are to be massless: all nodes of both surfaces, since any may come
+   opposite to the partner by sliding. None of a pair tied with its mass, unless the whole body keeps it */
 PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
@@ -63,8 +62,7 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error if the surfaces of a pair that the user has named have no faces that see each other. They may see each other and yet
-   not lie opposite at the start. */
+/* Ends with an error if the surfaces of a pair that the user has named have no faces that see each other (opposite or not). */
 static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 {
   Surface surfaces[2];
@@ -184,8 +182,7 @@ static PetscErrorCode MirrorSurface(Contact contact, PetscInt body, Surface surf
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces of a pair. `extent` becomes the largest coordinate of their meshes, without sign, if it was smaller [m]. Where pairs come and go
-   it is that of all bodies already. */
+/* Surfaces of a pair. `extent` grows to the largest coordinate of their meshes, without sign [m]; of all bodies if pairs come and go. */
 PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscReal *extent)
 {
   PetscInt  dims[2]  = {contact->dim, contact->dim};
@@ -273,7 +270,6 @@ static PetscErrorCode GetNormalShare(Contact contact, const ContactPair *pair, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The transfer of a pair, whose surfaces are known */
 PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
 {
   TransferOptions options = {.slip_bound  = contact->options.slip_bound,

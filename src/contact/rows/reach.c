@@ -1,8 +1,5 @@
-/*
-   How far apart surfaces may be that touch in the next controller step. What counts is the motion of one body relative to the other, not
-   that of the frame in which both are described: velocities are told by their mean over the contact nodes of a body, and by the most by
-   which that of a node differs from this mean.
-*/
+/* How far apart surfaces may be that touch in the next controller step. Relative motion counts, in any frame: velocities are told by their
+   mean over the contact nodes of a body, and by the most by which that of a node differs from this mean. */
 #include <contact/parts.h>
 
 /* Surfaces are looked for within this many times the way that bodies can make relative to each other in the step at their speeds */
@@ -15,8 +12,7 @@ static PetscReal Norm(const PetscReal v[3])
   return PetscSqrtReal(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
 }
 
-/* Adds the vectors of the nodes of a surface that this rank owns, and their number, to `sum`; else (NULL) finds the most by which one of
-   them differs from `mean` */
+/* Adds vectors of a surface's nodes on this rank, and their number, to `sum`; NULL: the most by which one of them differs from `mean` */
 static PetscErrorCode LookAtNodes(const SurfaceData *data, Vec vec, PetscReal sum[4], const PetscReal mean[3], PetscReal *most)
 {
   const PetscScalar *values;

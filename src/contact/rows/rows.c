@@ -76,8 +76,7 @@ PetscErrorCode ContactLayOutRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Describes the rows of a pair as its transfer has them now; which nodes are tied ContactMeasureTies() has found. A held row neither opens
-   nor closes. */
+/* Describes the rows of a pair as its transfer has them now; ContactMeasureTies() has found ties. A held row neither opens nor closes. */
 PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 {
   const PetscInt dim = contact->dim;
@@ -149,8 +148,7 @@ static PetscErrorCode CheckHeld(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ends with an error if a body has two plane obstacles with one normal: nothing comes to the one behind, and both would have each row twice
- */
+/* Ends with an error if a body has two plane obstacles with one normal: rows would be there twice */
 static PetscErrorCode CheckPlanes(Contact contact)
 {
   PetscFunctionBegin;
@@ -176,8 +174,7 @@ static PetscErrorCode CheckPlanes(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Surfaces of all pairs, whose nodes their bodies are told of. `extent` becomes the largest coordinate of their meshes, without sign [m].
- */
+/* Sets surfaces of all pairs in their bodies. `extent` becomes the largest coordinate of their meshes, without sign [m]. */
 PetscErrorCode ContactTakeSurfaces(Contact contact, PetscReal *extent)
 {
   PetscFunctionBegin;
@@ -243,7 +240,6 @@ PetscErrorCode ContactSetUpObstacleTraces(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Frees the rows, and the traces of obstacles */
 PetscErrorCode ContactDestroyRows(Contact contact)
 {
   PetscFunctionBegin;

@@ -2,9 +2,8 @@
 #include <contact/parts.h>
 #include <sys/stages.h>
 
-/* Shifts of gaps may keep surfaces apart for good by this much [edges of the face]. To take all of a shift back loses energy at each
-   rebuild, as polygons roll on each other: ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost
-   little. */
+/* Shifts of gaps may keep surfaces apart for good by this much [edges of the face]. Taking all of a shift back loses energy at each rebuild
+   as polygons roll: ten discs lose 3.5 % of it with 0.05, and 1.0 % with 0.1, at a step at which impacts cost little. */
 #define APART 0.1
 /* What is beyond that is taken back in proportion to the slip: all of it within a slip of one over this [edges of the face] */
 #define TAKEN_BACK 3
@@ -34,8 +33,7 @@ static PetscReal RemainingShift(PetscReal shift, PetscReal size, PetscReal slip)
   return shift - PetscMin(shift + APART * size, 0) * PetscMin(1, TAKEN_BACK * slip);
 }
 
-/* Whether gaps of a pair are those of the surfaces wherever its rows are built: on obstacles, which have no facets, and without inertia, be
-   the partner static or rigid */
+/* Whether gaps of a pair are right wherever rows are built: on obstacles, without facets, and without inertia (static, rigid partner) */
 PetscErrorCode ContactPairStartsAnew(Contact contact, const ContactPair *pair, PetscBool *anew)
 {
   PetscFunctionBegin;
@@ -104,8 +102,7 @@ static void DropShifts(Contact contact)
   }
 }
 
-/* Intervals of the controller step between which the force of a pair is linear: at their ends its Dirichlet side tells its reaction.
-   Methods that do not prescribe displacements know the force at the end alone. */
+/* Intervals of the controller step in which a pair's force is linear: the Dirichlet side's substeps; one where none is prescribed. */
 static PetscErrorCode CountIntervals(Contact contact, ContactPair *pair)
 {
   PetscFunctionBegin;
@@ -132,8 +129,7 @@ static PetscErrorCode FindHandingOver(Contact contact, const PetscReal before[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells the bodies what force they begin the step with, along the rows as they were. `before` are the forces at its start, of which those
-   of rows that have been let go are gone. */
+/* Sets the bodies' forces at the start of the step along the old rows. `before`: these, without those of rows let go. */
 static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
 {
   PetscReal *old = contact->work.handover, *now = contact->work.handover + contact->rows.n;
@@ -271,8 +267,7 @@ static PetscErrorCode RebuildTies(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Ties what lies on each other in the present states, as it lies there, and ends with an error where that is not clear or nothing is tied.
-   Call with the bodies set up. */
+/* Ties what lies on each other in the present states; an error where that is not clear or nothing is tied. After bodies are set up. */
 PetscErrorCode ContactTie(Contact contact)
 {
   PetscBool any = PETSC_FALSE;

@@ -1,12 +1,8 @@
-/*
-   Rows as they are at the start of a controller step, before they are built again or follow the surfaces: where the step is made again in
-   halves, they do so anew, by what they expect of the shorter step. Gaps, shifts, merged rows and forces of rows that have been let go come
-   back with them.
+/* Rows as they are at the start of a controller step, before they are built again or follow the surfaces: where the step is made again in
+   halves, they do so anew, by what they expect of the shorter step. Gaps, shifts, merged rows and forces of dropped rows come back.
 
-   The matrices of the bodies are not brought back: the halves have theirs filled anew. Bodies have forgotten the compliance of rows that
-   have changed, and find it again. That is the same to the last bit where the rows that change in the halves are those that did in the
-   whole step; where the whole step changes more of them, to the round-off of their compliance.
-*/
+   The matrices of the bodies are filled anew. Bodies find the compliance of changed rows again: the same to the last bit where the halves
+   change the rows that the whole step did, to round-off of the compliance where the whole step changes more. */
 #include <contact/parts.h>
 
 /* Arrays of the list that change while rows stay as they are: of near rows, and of those that act */
@@ -50,8 +46,7 @@ void ContactListRowState(Contact contact, StateList *list)
                                  {rubs, .bools = friction->slides}}};
 }
 
-/* Of near rows what changes while rows stay as they are, of those that have acted in the last step forces, too; all else has
-   been put aside since rows changed last */
+/* What changes of near rows while these stay, and forces of those that have acted; all else has been put aside before */
 static void SaveNear(Contact contact, const StateList *list)
 {
   const ContactRows *rows = &contact->rows;

@@ -1,5 +1,4 @@
-/*
-   The first state of massless nodes is the one in which they are in balance, under loads, with strains of the initial displacement, and
+/* The first state of massless nodes is the one in which they are in balance, under loads, with strains of the initial displacement, and
    with the forces of ties and of closed rows. With the layer of each body held by the rest of it, which stays where the user has put it,
    gaps g answer to forces l on the rows by
 
@@ -7,8 +6,7 @@
 
    The laws of rows hold for g and l as they do in a step (contact/solve), with the springs of the penalty method on the diagonal of S. Rows
    across normals read how far they have slipped from where the user has put the bodies, so that a state of rest under friction stays one.
-   Nonlinear bodies repeat it with the tangents at the displacements found. The forces are those of the first record of the history.
-*/
+   Nonlinear bodies repeat it with the tangents at the displacements found. The forces are those of the first record of the history. */
 #include <contact/parts.h>
 #include <contact/rows/inversemass.h>
 #include <contact/solve/lawproblem.h>
@@ -95,7 +93,6 @@ static PetscErrorCode Multiply(Mat S, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* S of the present tangents */
 static PetscErrorCode TakeS(StartBalance *start)
 {
   const PetscInt n = start->problem.n;
@@ -211,7 +208,6 @@ static PetscBool IsFinite(const LawProblem *problem)
   return finite;
 }
 
-/* Forces of all rows */
 static PetscErrorCode SolveRows(StartBalance *start)
 {
   LawProblem *problem = &start->problem;
@@ -274,7 +270,6 @@ static PetscErrorCode Relax(StartBalance *start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The layers of all bodies under the forces found */
 static PetscErrorCode Move(StartBalance *start)
 {
   const Contact contact = start->contact;
@@ -292,8 +287,7 @@ static PetscErrorCode Move(StartBalance *start)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows whose forces move a massless node take part, but ties that keep their mass, where nodes with mass are: ContactStartTies() finds
-   their forces */
+/* Rows whose forces move a massless node take part, but not ties that keep their mass: ContactStartTies() finds their forces */
 static PetscErrorCode FindRows(StartBalance *start)
 {
   const Contact contact = start->contact;
@@ -403,8 +397,7 @@ static PetscErrorCode RefuseStart(Contact contact)
           MAX_ROUNDS, sudden[0] ? ". " : "", sudden);
 }
 
-/* Moves the massless nodes of all bodies into balance in their first states, with the rows as they are. Call with the bodies set up, when
-   ties and rows are known. */
+/* Moves the massless nodes of all bodies into balance in their first states. Call with the bodies set up, when ties and rows are known. */
 PetscErrorCode ContactBalanceStart(Contact contact)
 {
   PetscReal    first = 0;

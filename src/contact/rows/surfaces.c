@@ -24,7 +24,6 @@ PetscErrorCode ContactGetRowPlace(Contact contact, PetscInt b, Vec *u)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* All surfaces to where their bodies are */
 PetscErrorCode ContactMoveSurfaces(Contact contact)
 {
   PetscFunctionBegin;

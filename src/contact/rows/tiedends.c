@@ -1,17 +1,14 @@
-/*
-   Ties that keep their mass: what keeps both sides together over many steps. Newmark's formulas make velocities and accelerations from
-   differences of displacements over dt and dt^2. What round-off leaves between the two sides of a tie comes back with the other sign in
-   each step, and adds up: after 700 steps contact forces had 1e-9 of themselves in it. So both sides are brought to one velocity and one
-   acceleration at the end of each step, by impulses and forces that act on both alike.
+/* Ties that keep their mass: what keeps both sides together over many steps. Newmark's formulas make velocities and accelerations from
+   differences of displacements over dt and dt^2. Round-off between the sides comes back with the other sign in each step, and adds up, to
+   1e-9 of contact forces in 700 steps. So both sides get one velocity and one acceleration at the end of each step, by impulses and forces
+   on both alike.
 
-   Where a force has been the same throughout the step that takes more than round-off: central differences go on with the force that the
-   uncut body has at the end of the step, and velocities have the mean of both in them. With it both sides move as the uncut body does.
-*/
+   After a force that is the same throughout the step this is more than round-off: central differences go on with the force that the uncut
+   body has at the end of the step, and velocities have the mean of both. With it both sides move as the uncut body does. */
 #include <contact/rows/inversemass.h>
 #include <impakt/private/bodyforces.h>
 
-/* At the end of a controller step, before the next one starts from it. `change`: per row, impulses [N s], then forces [N]; zero on rows
-   that take no part */
+/* At the end of a controller step. `change`: per row, impulses [N s], then forces [N]; zero on rows that take no part */
 PetscErrorCode ContactAlignTies(Contact contact, PetscScalar *const change[2])
 {
   const ContactTies *ties = &contact->ties;

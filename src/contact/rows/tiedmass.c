@@ -1,12 +1,10 @@
-/*
-   Ties between bodies that move by the same rule keep the mass of their nodes: with lambda as the force of a tie, the equations
+/* Ties between bodies that move by the same rule keep the mass of their nodes: with lambda as the force of a tie, the equations
 
      M a + internal force = forces + B^T lambda,   B_N u_N - B_D u_D = what it was at the start
 
    are those of the uncut body, and one rule in time takes both sides through the same displacements. So velocities and accelerations agree
    in all steps if they do in the first state: what bodies start with is projected there, by impulses and forces of the ties. Between bodies
-   with other integrators or steps tied nodes are massless.
-*/
+   with other integrators or steps tied nodes are massless. */
 #include <contact/rows/inversemass.h>
 #include <impakt/private/bodyforces.h>
 #include <impakt/private/bodymass.h>
@@ -39,8 +37,7 @@ static void GetPairsOfBody(Contact contact, PetscInt b, PetscBool *all, PetscBoo
   }
 }
 
-/* A body whose contact nodes have mass by choice takes velocities and accelerations from partners with another rule, in all its rows: then
-   none of its pairs keeps its mass in the sense of this file */
+/* A body with mass by choice takes velocities and accelerations from partners with another rule: none of its pairs keeps mass then */
 static PetscErrorCode LeaveOutMixed(Contact contact)
 {
   PetscBool changed = PETSC_TRUE;
@@ -62,8 +59,7 @@ static PetscErrorCode LeaveOutMixed(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The forces of explicit bodies act in the step that follows: their ties are solved for all at once by methods that find forces, or have
-   massless nodes */
+/* The forces of explicit bodies act in the step that follows: methods that find forces solve their ties at once, or nodes are massless */
 static PetscErrorCode LeaveOutExplicit(Contact contact)
 {
   PetscBool suits = contact->sideless, is_explicit;
@@ -141,8 +137,7 @@ PetscErrorCode ContactSetMeanForces(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One velocity and one acceleration of both sides of the ties that keep their mass, in the state at the start, and the forces that this
-   takes */
+/* One velocity and acceleration of both sides of ties that keep their mass, in the first state, and the forces that this takes */
 PetscErrorCode ContactStartTies(Contact contact)
 {
   const PetscReal velocity[] = {0, 1, 0}, acceleration[] = {0, 0, 1};

@@ -1,21 +1,16 @@
-/*
-   What is tied follows from where the bodies are at the start: mesh, placement and initial displacement. A node at most
-   -contact_tie_distance from the partner is tied to it as it lies there, with the gap that it has. One that is farther away, but nearer
-   than it would be to the next node, is neither clearly tied nor clearly apart: it is an error, as are surfaces that overlap and pairs
-   that tie nothing.
-*/
+/* What is tied follows from where the bodies are at the start: mesh, placement and initial displacement. A node at most
+   -contact_tie_distance from the partner is tied to it as it lies there, with the gap that it has. One farther away, but nearer than the
+   next node, is not clearly tied or apart: an error, as are surfaces that overlap and pairs that tie nothing. */
 #include <contact/parts.h>
 #include <sys/units.h>
 #include <impakt/private/bodymesh.h>
 
-/* Nodes farther from the partner than this belong to another part of the surface and are left alone [edges of the face]. A node that is
-   nearer and yet not within the tie distance is an error. */
+/* Nodes farther from the partner than this are left alone [edges of the face]; nearer ones beyond the tie distance are errors. */
 #define APART 0.5
 
 /* What keeps a node that lies opposite to the partner from being tied */
 typedef enum { TIE_HOLDS, TIE_OVERLAPS, TIE_TOO_FAR, TIE_APART } TieState;
 
-/* Of one pair, on all ranks */
 typedef struct {
   PetscInt n[4]; /* nodes in each state */
   struct {
@@ -143,8 +138,7 @@ static PetscReal Distance(const TieSummary *summary)
   return summary->n[TIE_APART] ? summary->worst.gap : PETSC_MAX_REAL;
 }
 
-/* Pairs that tie nothing: one that the user has named is an error, as is one of all possible pairs with a body that no pair ties. The pair
-   with the smallest gap is told. */
+/* Pairs that tie nothing are an error if named, or of a body that no pair ties. The pair with the smallest gap is told. */
 static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], const TieSummary summaries[])
 {
   PetscInt nearest = -1;

@@ -1,11 +1,10 @@
-/*
-   The rule `impulse`, for contact nodes with mass. The force of a row is the same throughout the step. A row whose node carried a force in
+/* The rule `impulse`, for contact nodes with mass. The force of a row is the same throughout the step. A row whose node carried a force in
    the step before is closed where its gap does not change; one that joins, whose gap would be closed in the middle of the step, where its
    gap changes by half of the way that its closing rate would make. So what closed rows do to the bodies, force times change of the gap, is
    never positive, whatever the bodies do inside the step. Rows are laid where bodies will be in the middle of the step.
 
-   Velocity-level contact: V. Acary, ZAMM 96 (2016) 585-603; here on increments of gaps, so that substeps of any integrator may lie between.
-*/
+   Velocity-level contact: V. Acary, ZAMM 96 (2016) 585-603; here on increments of gaps, so that substeps of any integrator may lie
+   between. */
 #include <contact/step/stepimpl.h>
 #include <impakt/private/bodyforces.h>
 
@@ -36,8 +35,7 @@ static void Bond(Contact contact, PetscInt i, PetscReal way)
   contact->start.gap[i] = -way;
 }
 
-/* Whether an open row would be closed in the middle of the step. Rows whose gap is round-off touch: of bodies that lie on each other and
-   are pressed, else none has a force in the first step. */
+/* Whether an open row would be closed in the middle of the step. Gaps of round-off touch, or bodies at rest would lack a first force. */
 static PetscBool Closes(Contact contact, const ContactStepper *stepper, PetscInt first)
 {
   return (PetscBool)(contact->rows.opposite[first] &&

@@ -1,12 +1,9 @@
-/*
-   The rule `linear`, for contact nodes without mass. The force of a row goes linearly from that which the last step has ended with to that
-   at the end of this one, where a closed row has no gap. Rows are laid as bodies are at the start of the step.
-*/
+/* The rule `linear`, for contact nodes without mass. The force of a row goes linearly from that which the last step has ended with to that
+   at the end of this one, where a closed row has no gap. Rows are laid as bodies are at the start of the step. */
 #include <contact/step/stepimpl.h>
 #include <impakt/private/bodyforces.h>
 
-/* Rows that were in contact, or would be at the end if bodies went on as they do: others join as they are found to be inside. Rows that
-   keep a part of their gap join then alone: that part is one of a penetration. */
+/* Rows that were in contact, or would be at the end as bodies move; others, and those that keep a part of their gap, join when inside. */
 static PetscErrorCode Begin(Contact contact, ContactStepper *stepper, const ContactPair *pair)
 {
   const PetscReal keeps = ContactStepperKeeps(contact, stepper, (PetscInt)(pair - contact->pairs));
@@ -34,7 +31,6 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows that end inside their partner join */
 static PetscErrorCode More(Contact contact, ContactStepper *stepper, const ContactPair *pair, PetscBool *more)
 {
   PetscFunctionBegin;

@@ -1,7 +1,6 @@
 /* What is told of a step with friction: by how much nodes miss the law, and whether forces may have been others. */
 #include "lawproblem.h"
 
-/* Whether the rows of a node slide, or may */
 static PetscBool HasFriction(const LawProblem *problem, PetscInt node)
 {
   return (PetscBool)(problem->begin[node + 1] > problem->begin[node] + 1 && !problem->law[node]->pulls &&

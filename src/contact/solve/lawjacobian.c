@@ -46,8 +46,7 @@ PetscErrorCode LawProblemRestoreS(const LawProblem *problem, LawPattern *pattern
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds rows of I - D (I - r (S + eps diag S)) for the rows of one node, D the derivative of P for it. These have their entries in the same
-   columns of the Jacobian. */
+/* Adds rows of I - D (I - r (S + eps diag S)) for the rows of one node, D the derivative of P for it. They share their columns. */
 static void AddNode(const LawProblem *problem, PetscInt node, LawPattern of_S, const PetscScalar S[], LawPattern of_J, PetscScalar J[])
 {
   const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
@@ -118,8 +117,7 @@ static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar for
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether factors of an earlier Jacobian do not precondition well any more, or there are none. Incomplete ones, where S is products, cost
-   less than an iteration. */
+/* Whether to factor anew: factors are absent or precondition badly. Incomplete ones (S as products) cost less than an iteration. */
 static PetscErrorCode AreStale(LawProblem *problem, PetscBool *stale)
 {
   PetscInt iterations;

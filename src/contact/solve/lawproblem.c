@@ -1,5 +1,4 @@
-/*
-   The equations of the laws of all rows that may touch: lambda = P(lambda - r y), y = y_0 + S (lambda - lambda_0), r = 1 / S_ii. P is not
+/* The equations of the laws of all rows that may touch: lambda = P(lambda - r y), y = y_0 + S (lambda - lambda_0), r = 1 / S_ii. P is not
    smooth but piecewise so: Newton's method with one of its derivatives (Qi, Sun 1993) finds the solution in a few iterations, or goes round
    in a circle; then Gauss and Seidel's, node by node, which does not. Both are SNES of PETSc (prefixes law_ and law_nodes_). Each rank
    solves the equations of all, which are the same to the last bit.
@@ -10,8 +9,7 @@
 
    Sources: L. Qi, J. Sun, A nonsmooth version of Newton's method, Mathematical Programming 58 (1993); S. C. Eisenstat, H. F. Walker, Choosing
    the forcing terms in an inexact Newton method, SIAM Journal on Scientific Computing 17 (1996); R. T. Rockafellar, Monotone operators and
-   the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976).
-*/
+   the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976). */
 #include "lawproblem.h"
 #include <petsc/private/petscimpl.h>
 #include <sys/petsccompat.h>
@@ -107,8 +105,7 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* LawProblemHolds - whether the law holds under `force` already, as it does in the last pass of a step. Solvers would find that out too,
-   but PETSc's look their options up each time. */
+/* LawProblemHolds - whether the law holds under `force` already, as in the last pass of a step: cheaper than PETSc's solvers find out. */
 PetscErrorCode LawProblemHolds(LawProblem *problem, PetscBool *holds)
 {
   PetscScalar *f = problem->work + problem->n;
@@ -230,9 +227,8 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
-  /* a sparse S is nearly diagonal: a few iterations, to round-off, take a fraction of the time of factors, incomplete ones too; where a
-     dense one is large, those of an earlier Jacobian precondition; where it is products, incomplete ones of that of a
-     matrix near it, whose entries fall off fast */
+  /* a sparse S is nearly diagonal: a few iterations, to round-off, are faster than factors; where a dense one is large, those of an earlier
+     Jacobian precondition; where it is products, incomplete ones of that of a matrix near it, whose entries fall off fast */
   PetscCall(KSPSetType(ksp, LawProblemHasProducts(problem) ? KSPFGMRES : iterative ? KSPGMRES : KSPPREONLY));
   PetscCall(PCSetType(pc, LawProblemHasProducts(problem) ? PCILU : problem->sparse ? PCSOR : PCLU));
   if (LawProblemIsLagged(problem)) {
@@ -258,7 +254,6 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for the equations of n rows */
 PetscErrorCode LawProblemResize(LawProblem *problem, PetscInt n)
 {
   PetscFunctionBegin;
@@ -289,8 +284,7 @@ PetscErrorCode LawProblemSetUp(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether rows of different nodes do not move each other, and S is regular by its large diagonal: then a sweep or two node by node are the
-   solution, as with lumped masses on an obstacle */
+/* Whether nodes do not move each other, and S is regular by its diagonal: a sweep or two solve then, as for lumped masses on an obstacle */
 static PetscErrorCode FindAlone(LawProblem *problem)
 {
   const PetscScalar *S;

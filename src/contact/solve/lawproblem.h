@@ -71,7 +71,6 @@ static inline PetscBool LawProblemSlides(const LawProblem *problem, PetscInt nod
   return (PetscBool)(end > first + 1 && !problem->law[node]->pulls && PetscSqrtReal(across) >= bound * (1 - PETSC_SQRT_MACHINE_EPSILON));
 }
 
-/* For the files of this folder */
 #define LAW_TOLERANCE      1e-13 /* of the largest force, and of the largest force that would close what is read */
 #define LAW_LAG_AFTER_NEXT (-2)  /* for PETSc: the preconditioner is made anew once, and then stays */
 PETSC_INTERN PetscErrorCode LawProblemRead(LawProblem *, const PetscScalar[], PetscScalar[]);

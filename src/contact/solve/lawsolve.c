@@ -96,8 +96,7 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the proximal term is nothing beside a part of what rows read, or is as little as nobody knows of that: where no forces close the
-   rows it never is, and forces grow for ever */
+/* Whether the proximal term is negligible beside readings, or their round-off: never where no forces close the rows */
 static PetscBool ProximalVanishes(const LawProblem *problem, PetscReal part)
 {
   PetscReal off = 0, scale = 0;

@@ -1,13 +1,10 @@
-/*
-   The size of a matrix near S, where S is products alone: that of S, in the mean.
+/* The size of a matrix near S, where S is products alone: that of S, in the mean.
 
    Source: M. F. Hutchinson, A stochastic estimator of the trace of the influence matrix for Laplacian smoothing splines, Communications in
-   Statistics - Simulation and Computation 19 (1990).
-*/
+   Statistics - Simulation and Computation 19 (1990). */
 #include "lawproblem.h"
 
-/* Gives a matrix near S the trace of S, which laws take their weights from, by that of x x^T S with signs x that are taken at random
-   (Hutchinson 1990). The same on every rank. */
+/* Gives a matrix near S the trace of S, for weights of laws: by x x^T S with random signs x (Hutchinson 1990), the same on all ranks. */
 PetscErrorCode LawProblemMatchTrace(Mat S, Mat near)
 {
   PetscScalar *signs, ours, its;

@@ -1,10 +1,7 @@
-/*
-   S, what touching rows read by forces on them, from how bodies answer: S = sum of B_b W_b B_b^T, on every rank. Where no node of a body
+/* S, what touching rows read by forces on them, from how bodies answer: S = sum of B_b W_b B_b^T, on every rank. Where no node of a body
    answers to forces on others W_b is diagonal. The part of such bodies is the product R R^T of sparse matrices, R being the columns of all
-   B_b times the roots of the diagonals, side by side. R and its product stay the same matrices as long as rows have entries where they had
-   them. Each other body has a block, between all of its rows. Where these are a small part of a matrix of all rows by all rows, as those of
-   many bodies are, S is sparse.
-*/
+   B_b times the roots of the diagonals, side by side. R and its product are kept while entries stay in place. Each other body has a block,
+   between all of its rows. Where these are a small part of a matrix of all rows by all rows, as those of many bodies are, S is sparse. */
 #include "stepimpl.h"
 #include <impakt/private/bodyforces.h>
 
@@ -247,7 +244,6 @@ static PetscErrorCode NumberColumns(StepperAssembly *assembly, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* R, and R R^T */
 static PetscErrorCode MultiplyRows(const ContactStepper *stepper, StepperAssembly *assembly)
 {
   PetscBool same;
@@ -287,7 +283,6 @@ static PetscErrorCode MultiplyRows(const ContactStepper *stepper, StepperAssembl
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds R R^T to a dense S */
 static PetscErrorCode AddProduct(const StepperAssembly *assembly, PetscScalar S[])
 {
   PetscFunctionBegin;

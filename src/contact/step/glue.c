@@ -1,16 +1,13 @@
-/*
-   What the step does for laws of glue: it tells them of the node, keeps what they keep, and books what damage takes of the energy.
+/* What the step does for laws of glue: it tells them of the node, keeps what they keep, and books what damage takes of the energy.
 
    Glue has the stiffness k, times area, and the force k g with the gap g on which the force of the step does its work: the mean gap of a
    constant force, so that this does 1/2 k (g_1^2 - g_0^2) with the gaps at the ends of the step, or the gap at its end, with the force
    between both linear in time. The glue stores 1/2 k_1 g_1^2 then, where 1/2 k_0 g_0^2 was; the fall of k has taken 1/2 (k_0 - k_1) g_0^2
-   in the first case and 1/2 (k_0 - k_1) g_0 g_1 in the second, to round-off.
-*/
+   in the first case and 1/2 (k_0 - k_1) g_0 g_1 in the second, to round-off. */
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <impakt/private/bodyforces.h>
 
-/* Whether a law of glue holds a row */
 static PetscBool IsGlued(Contact contact, const ContactStepper *stepper, PetscInt i)
 {
   return (PetscBool)(ContactStepperLaw(contact, stepper, i)->stiffness != NULL);
@@ -169,7 +166,6 @@ PetscErrorCode ContactStepperEndGlue(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Collective */
 PetscErrorCode ContactStepperAcceptGlue(Contact contact, ContactStepper *stepper)
 {
   PetscReal sum = 0;

@@ -1,8 +1,6 @@
-/*
-   Sets, groups, and which bodies rest. A set are bodies that pairs connect, directly or by others: one rule holds in it. A group are those
+/* Sets, groups, and which bodies rest. A set are bodies that pairs connect, directly or by others: one rule holds in it. A group are those
    of a set that touch in a step. Groups have nothing to do with each other but share the passes of a step: one that is within the tolerance
-   keeps its forces to the last bit, and a body rests, where the forces on its rows are those that it was advanced under.
-*/
+   keeps its forces to the last bit, and a body rests, where the forces on its rows are those that it was advanced under. */
 #include "stepimpl.h"
 #include <impakt/private/bodyforces.h>
 

@@ -1,10 +1,8 @@
-/*
-   The forces with which the first pass of a step begins: of rows that touch those at the end of the last step. Under a force that is
+/* The forces with which the first pass of a step begins: of rows that touch those at the end of the last step. Under a force that is
    constant in the step, the first step in contact is a blow, which tells nothing of the steps after it: then none.
 
    Another guess is another body of this function: the law of rows is solved whatever it is, and passes tell how good it was
-   (-contact_monitor). It takes what the step begins with, contact->start, and writes contact->end.
-*/
+   (-contact_monitor). It takes what the step begins with, contact->start, and writes contact->end. */
 #include "stepimpl.h"
 
 PetscErrorCode ContactStepperGuess(Contact contact, ContactStepper *stepper)

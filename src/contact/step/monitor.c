@@ -72,7 +72,6 @@ PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the end of a step */
 PetscErrorCode ContactMonitorStep(Contact contact, const ContactStepper *stepper, SNESConvergedReason reason)
 {
   PetscViewer viewer = stepper->monitor.viewer;

@@ -1,7 +1,5 @@
-/*
-   The passes of a step: all bodies are advanced under forces of the touching rows, and the law has other forces for what rows read then.
-   That is one evaluation of the outer SNES, F = lambda - law(lambda).
-*/
+/* The passes of a step: all bodies are advanced under forces of the touching rows, and the law has other forces for what rows read then.
+   That is one evaluation of the outer SNES, F = lambda - law(lambda). */
 #include "stepimpl.h"
 #include <sys/petsccompat.h>
 #include <sys/units.h>
@@ -75,8 +73,7 @@ static PetscErrorCode MeasureGroups(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces by the law for what rows have read, and turns of gaps. Where Newton's method fails with products, S gets its entries, for sweeps
-   node by node. */
+/* Forces by the law for what rows have read, and turns of gaps. Where Newton's method fails with products S gets entries, for sweeps. */
 static PetscErrorCode SolveLaw(Contact contact, ContactStepper *stepper)
 {
   LawProblem *problem = &stepper->problem;
@@ -268,7 +265,6 @@ static PetscErrorCode CheckSprings(Contact contact, const ContactStepper *steppe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The outer iteration over the touching rows */
 PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
 {
   SNESConvergedReason reason;

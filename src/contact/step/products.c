@@ -1,13 +1,11 @@
-/*
-   S as products, where it would have many entries: linear bodies that answer by their massless layers alone take one solution with the
+/* S as products, where it would have many entries: linear bodies that answer by their massless layers alone take one solution with the
    factors of these for each product, and columns of S are not found one by one. Newton's method for the law of rows goes with products, and
    is preconditioned by a sparse matrix near S. How a layer answers to a force falls to a tenth within one element, since the rest of the
    body holds it. So a polynomial of degree one in the stiffness K of the layer is near its inverse, and takes no solutions: with D the
    diagonal of K, it is the one whose product with D^{-1} K is nearest to one on an interval of eigenvalues, which is Chebyshev's.
 
    Sources: O. G. Johnson, C. A. Micchelli, G. Paul, Polynomial preconditioners for conjugate gradient calculations, SIAM Journal on
-   Numerical Analysis 20 (1983) 362-376.
-*/
+   Numerical Analysis 20 (1983) 362-376. */
 #include "stepimpl.h"
 #include <impakt/private/bodyforces.h>
 

@@ -1,4 +1,3 @@
-/* The contact type `schwarz`: the contact step, its rule and law. */
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
@@ -109,8 +108,7 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows that a rule lays ahead follow curved obstacles from step to step, as rows between bodies follow these: their planes are not looked
-   at again after the step, see ContactLayAhead() */
+/* Rows that a rule lays ahead follow curved obstacles from step to step: ContactLayAhead() is not for them */
 static PetscErrorCode LayRows(Contact contact)
 {
   const ContactStepper *stepper = Stepper(contact);
@@ -124,7 +122,6 @@ static PetscErrorCode LayRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepperRowsChanged - rows have other entries */
 PetscErrorCode ContactStepperRowsChanged(Contact contact)
 {
   PetscScalar **aligns = Stepper(contact)->aligns;
@@ -136,7 +133,6 @@ PetscErrorCode ContactStepperRowsChanged(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The bodies answer otherwise */
 static PetscErrorCode SetStepLevel(Contact contact)
 {
   PetscFunctionBegin;
@@ -144,7 +140,6 @@ static PetscErrorCode SetStepLevel(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepperAccept - the step is made */
 PetscErrorCode ContactStepperAccept(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);
@@ -159,7 +154,6 @@ PetscErrorCode ContactStepperAccept(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* ContactStepperVisit - state for a checkpoint */
 PetscErrorCode ContactStepperVisit(Contact contact, Checkpoint checkpoint)
 {
   ContactStepper *stepper = Stepper(contact);

@@ -1,18 +1,14 @@
-/*
-   What passes show of S. The displacements of a body depend on the forces on its own rows alone, so that each has secants of its own, for
-   its block of S. Those of a linear body hold all at once by symmetric corrections of rank one, since its compliance is the same in all
-   passes, and more than its block, which lacks motions: so what is wrong falls from step to step, until two passes are enough. Others
-   correct it by the formula of Broyden, Fletcher, Goldfarb and Shanno, after which the last one holds. The block of an implicit nonlinear
-   body has its tangent after the first pass of each step, and again after a pass that it has told wrong: a body that flows answers ten
-   times as far as one that does not, of which secants tell little.
+/* What passes show of S. The displacements of a body depend on the forces on its own rows alone, so that each has secants of its own, for
+   its block of S. Those of a linear body hold all at once, by symmetric corrections of rank one: what its block lacks falls from step to
+   step, until two passes are enough. Others correct it by the formula of Broyden, Fletcher, Goldfarb and Shanno, after which the last one
+   holds. The block of an implicit nonlinear body is its tangent after the first pass of each step, and after a pass that it has told wrong:
+   a body that flows answers ten times as far as one that does not.
 
-   They are kept from step to step, as long as the body has the same touching rows: a body that is deformed answers in the next step nearly
-   as in this one. A step begins with those of accepted steps of its own size, or with none; its own join them when it is accepted. So a
-   step that has failed leaves no trace in those that are made in its place.
+   They are kept as long as the body has the same touching rows. A step begins with those of accepted steps of its own size, or with none;
+   its own join them when it is accepted, so that a failed step leaves no trace.
 
    C. G. Broyden, IMA Journal of Applied Mathematics 6 (1970) 76-90 and 222-231, and Fletcher, Goldfarb, Shanno in the same year;
-   C. G. Broyden, Mathematics of Computation 21 (1967) 368-381, for that of rank one.
-*/
+   C. G. Broyden, Mathematics of Computation 21 (1967) 368-381, for that of rank one. */
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
 
@@ -62,7 +58,6 @@ static PetscErrorCode Copy(const StepperSecants *from, PetscInt first, StepperSe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The secants that a step begins with */
 PetscErrorCode ContactStepperBeginSecants(Contact contact, ContactStepper *stepper)
 {
   const PetscBool same_size = (PetscBool)(contact->attempt.level == contact->attempt.accepted_level);
@@ -79,7 +74,6 @@ PetscErrorCode ContactStepperBeginSecants(Contact contact, ContactStepper *stepp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step is accepted */
 PetscErrorCode ContactStepperAcceptSecants(ContactStepper *stepper)
 {
   PetscFunctionBegin;
@@ -141,8 +135,7 @@ PetscBool StepperSecantHolds(PetscInt n, const PetscScalar force[], const PetscS
   return (PetscBool)(more > SURE_WORK * resolution * PetscSqrtReal(square));
 }
 
-/* Corrects the block by a secant, and S with it unless that is NULL; `product`: how the block has it. The change is a product of one vector
-   with itself, or of two, each by its work. */
+/* Corrects the block by a secant, and S unless NULL; `product`: how the block has it; by one or two vectors, over their work. */
 PetscErrorCode StepperSecantCorrect(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool one,
                                     LawProblem *problem)
 {

@@ -1,5 +1,4 @@
-/*
-   Springs and dampers between both sides of each row: the penalty method, and the augmented Lagrangian. For the law of rows they are one
+/* Springs and dampers between both sides of each row: the penalty method, and the augmented Lagrangian. For the law of rows they are one
    more body between the surfaces, which is soft: a row with a force has
 
      g_1 - theta g_0 + (lambda - m) / K = 0,   K = (tau + c / dt) A,   theta = (c / dt) / (tau + c / dt)
@@ -12,8 +11,7 @@
    tolerance. Each such round makes what they give smaller by 1 / (1 + K W), with the compliance W of the bodies. Where W is small for some
    mode of the rows, the changes d_k of the forces come to be parallel, each rho times the last. Then the sum of all that would follow,
    rho / (1 - rho) d_k, is added at once, as in Aitken's process for vectors (A. J. Macleod, Communications in Applied Numerical Methods 2
-   (1986) 385-392). Forces still push alone, and the rounds that follow decide: nothing hangs on a poor guess but their number.
-*/
+   (1986) 385-392). Forces still push alone, and the rounds that follow decide: nothing hangs on a poor guess but their number. */
 #include "stepimpl.h"
 
 #define PARALLEL 0.1    /* changes are parallel where what is left of one beside the other is this part of it */
@@ -26,8 +24,7 @@ static PetscReal OfDampers(Contact contact, const ContactStepper *stepper)
   return contact->options.constraint == CONTACT_CONSTRAINT_GAP ? 0 : stepper->penalty.damping / contact->step;
 }
 
-/* ContactStepperKeeps - theta of a pair: which part of the gap at the start of the step a closed row keeps. Without springs and dampers 1,
-   where the rate of gaps is closed, or 0. */
+/* ContactStepperKeeps - theta of a pair: part of the first gap that a closed row keeps. Without springs and dampers 1 (gap rates), or 0. */
 PetscReal ContactStepperKeeps(Contact contact, const ContactStepper *stepper, PetscInt p)
 {
   const PetscReal damper = OfDampers(contact, stepper);
@@ -57,8 +54,7 @@ void ContactStepperGetSpring(Contact contact, const ContactStepper *stepper, Pet
   *damper = GetArea(contact, i) * OfDampers(contact, stepper) * contact->step;
 }
 
-/* Energy of the spring of a row [J]. One across a normal has no gap, and its force tells; a gap below 0 of it is how far it is stretched.
- */
+/* Energy of the spring of a row [J]. One across a normal has no gap: its force counts; a gap below 0 is how far it is stretched. */
 static PetscReal StoredEnergy(Contact contact, PetscInt i, PetscReal gap)
 {
   const ContactStepper *stepper = (const ContactStepper *)contact->data;

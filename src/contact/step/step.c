@@ -1,9 +1,7 @@
-/*
-   One controller step of bodies that touch. (1) All bodies are advanced under a guess of the forces of rows; (2) the law of each node's
+/* One controller step of bodies that touch. (1) All bodies are advanced under a guess of the forces of rows; (2) the law of each node's
    rows is solved on what these would read under other forces, y + S dlambda; (3) all are advanced under the solution; (4) what rows read is
    compared with what S told of it. Where they agree the step is made; else S is corrected by the secant, and (2) comes again. (1), (3), (4)
-   are one evaluation of the outer SNES, F = lambda - (2)(lambda), and (2) is the SNES of solve/.
-*/
+   are one evaluation of the outer SNES, F = lambda - (2)(lambda), and (2) is the SNES of solve/. */
 #include "stepimpl.h"
 
 /* Bounds that the law of friction has for touching nodes, on all ranks */
@@ -72,7 +70,6 @@ static PetscErrorCode MarkSliding(Contact contact, const ContactStepper *stepper
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What is told of a step with friction */
 static PetscErrorCode CheckFriction(Contact contact, const ContactStepper *stepper)
 {
   PetscBool ambiguous;
@@ -122,7 +119,6 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* One controller step of all bodies */
 PetscErrorCode ContactStepperStep(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);

@@ -225,13 +225,11 @@ PETSC_INTERN PetscErrorCode ContactStepperIterate(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateOuter(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperEndTies(Contact, ContactStepper *);
 
-/* What the step keeps */
 static inline ContactStepper *Stepper(Contact contact)
 {
   return (ContactStepper *)contact->data;
 }
 
-/* The rule of a pair's set */
 static inline const ContactRule *ContactStepperRule(const ContactStepper *stepper, const ContactPair *pair)
 {
   return stepper->rules[pair->body[0]];
@@ -245,7 +243,6 @@ static inline PetscReal ContactStepperTimes(Contact contact, const ContactSteppe
   return ContactStepperRule(stepper, &contact->pairs[contact->rows.pair[i]])->shape == BODY_FORCE_CONSTANT ? 2 : 1;
 }
 
-/* The law of a row of this rank */
 static inline const RowLaw *ContactStepperLaw(Contact contact, const ContactStepper *stepper, PetscInt i)
 {
   return &stepper->laws[2 * contact->rows.pair[i] + contact->rows.tied[ContactFirstRow(contact, i)]];

@@ -1,6 +1,5 @@
-/* What the contact step remembers from step to step, as tables by which a run is continued on another number of ranks: which nodes have
-   touched first in the last step, as their guess is another one, what laws keep of glued nodes, what secants have shown, and what contact
-   and damage have taken. */
+/* Memory of the contact step, as tables to continue a run on another number of ranks: which nodes have touched first in the last step, as
+   their guess is another one, what laws keep of glued nodes, what secants have shown, and what contact and damage have taken. */
 #include "stepimpl.h"
 #include <checkpoint/statelist.h>
 

@@ -1,9 +1,7 @@
-/*
-   The end of a step for ties that keep their mass. Their force is the same throughout the step, by the rule `impulse`, where the uncut body
+/* The end of a step for ties that keep their mass. Their force is the same throughout the step, by the rule `impulse`, where the uncut body
    has one that runs from l_0 to l_1. Newmark's trapezoidal rule sees the mean of both alone, so that l_1 = 2 l - l_0. Central differences
    see l_0 alone, which therefore is what the last step has ended with, and l_1 follows from one acceleration of both sides. So both sides
-   go on as the uncut body does, and pairs are told its forces.
-*/
+   go on as the uncut body does, and pairs are told its forces. */
 #include "stepimpl.h"
 #include <contact/rows/inversemass.h>
 #include <impakt/private/bodyforces.h>
@@ -39,7 +37,6 @@ static PetscErrorCode TellForces(Contact contact, const PetscScalar start[], con
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Before the step is accepted */
 PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
 {
   const PetscReal    parts[] = {0, 0, 1};

@@ -1,5 +1,4 @@
-/*
-   Turns of gaps in the contact step, with which forces have the same sum along the normals of both sides of a pair
+/* Turns of gaps in the contact step, with which forces have the same sum along the normals of both sides of a pair
    (src/interface/balance.c): a turn t opens gaps by L t, and forces fulfil C^T lambda = 0. L is a mean of C and of what it was in the step
    before.
 
@@ -10,14 +9,12 @@
 
    A set of rows whose c have all one sign cannot have a force: the turn grows until another row joins. Where that would take it beyond the
    edge of an element, since forces press nodes deep into the partner that would spring back without them, the step is made without turns
-   of the pair, and again with the row that a turn would close first. Where there is no such row, it stays without turns.
-*/
+   of the pair, and again with the row that a turn would close first. Where there is no such row, it stays without turns. */
 #include "stepimpl.h"
 
 /* The stiffness of a turn, in parts of that of the pair's bodies against it: each solution of the law leaves this part of C^T lambda */
 #define SOFT 1e-2
-/* C^T lambda is zero where one more turn would change gaps by less than this part of what forces change them by. Forces are right to 1e-13
-   of the largest, which SOFT makes 1e-11 of that. */
+/* C^T lambda is zero where a turn changes gaps by less than this part of what forces do: these are right to 1e-13, by SOFT to 1e-11. */
 #define BALANCED 1e-10
 #define ROUNDS   30    /* solutions of the law beyond one in each pass, in all passes together: then t_0 stays, so that passes end */
 #define PUSHES   1e-10 /* W is that of rows with at least this part of the largest force, */
@@ -245,8 +242,7 @@ static void StartFrom(Contact contact, ContactStepper *stepper, PetscInt p, cons
   TurnRead(contact, stepper, p, to);
 }
 
-/* After the law has been solved, or not: whether it is to be solved again. Pairs whose gaps it turns too far, or all where there is no
-   solution, are not turned in this step; then S is another. */
+/* Whether the law is to be solved again: without turns of pairs turned too far, of all if there was no solution; S changes then. */
 PetscErrorCode ContactStepperImproveTurns(Contact contact, ContactStepper *stepper, PetscBool *again)
 {
   StepperTurns   *turns      = &stepper->turns;
@@ -280,8 +276,7 @@ PetscErrorCode ContactStepperImproveTurns(Contact contact, ContactStepper *stepp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lets the open row of this rank's touch that a turn of a pair would close first, in the direction in which its forces drive it; `joined`:
-   there is one, on any rank */
+/* Lets this rank's open row touch that a turn of a pair would close first, as its forces drive it; `joined`: there is one on any rank */
 static PetscErrorCode JoinNext(Contact contact, ContactStepper *stepper, PetscInt p, PetscBool *joined)
 {
   const ContactPair *pair = &contact->pairs[p];

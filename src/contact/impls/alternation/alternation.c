@@ -55,7 +55,6 @@ static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Unknowns: one for each row and level */
 static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
 {
   Alternation *alternation = (Alternation *)contact->data;

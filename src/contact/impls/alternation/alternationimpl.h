@@ -21,9 +21,8 @@ typedef enum { SCHWARZ_WAVEFORM_LINEAR, SCHWARZ_WAVEFORM_CONSTANT } SchwarzWavef
 /* Relaxation of the plain alternation, by a given factor, or by Aitken's from the last two residuals */
 typedef enum { SCHWARZ_RELAXATION_FIXED, SCHWARZ_RELAXATION_AITKEN } SchwarzRelaxation;
 
-/* What change of position is compared with the tolerances of the outer iteration: position, for the plain alternation with fixed
-   relaxation, or mismatch; that of all nodes of every body from one sweep to the next (Hoy, Tezaur, Mota); what one more plain sweep would
-   bring at contact nodes */
+/* What is compared with the tolerances of the outer iteration: position, for fixed relaxation, or mismatch; that of all nodes of every body
+   from one sweep to the next (Hoy, Tezaur, Mota); what one more plain sweep would bring at contact nodes */
 typedef enum { SCHWARZ_CONVERGENCE_AUTO, SCHWARZ_CONVERGENCE_POSITION, SCHWARZ_CONVERGENCE_MISMATCH } SchwarzConvergence;
 
 typedef struct {

@@ -2,8 +2,7 @@
 #include "alternationimpl.h"
 #include <sys/petsccompat.h>
 
-/* Iterations: more of them mean that it does not converge. The plain alternation of impedance conditions takes up to 41 in the paper's
-   impacts. Evaluations do not end it: they are more than any number of iterations needs. */
+/* Most iterations: plain alternation of impedance conditions takes up to 41 in the paper's impacts; and evaluations, more than needed. */
 #define MAX_ITERATIONS  50
 #define MAX_EVALUATIONS 1000000
 /* Relative tolerance on positions: round-off of their sums, so that it is the absolute one that counts but far from the origin */
@@ -25,8 +24,7 @@ static PetscErrorCode ReadType(Contact contact, char type[], size_t size)
 }
 
 /* Type, tolerances and relaxation, as the options have them. Anderson's mixing 1/2 and eight vectors suit an iteration with a gain of about
-   -1, which is that of the Dirichlet-Neumann alternation between equal bodies. PETSc has no setter for them: they are put in before the
-   options are read, and taken out again afterwards. */
+   -1, which is that of the Dirichlet-Neumann alternation between equal bodies. PETSc has no setter: they are options for a while. */
 static PetscErrorCode SetFromOptions(Contact contact, SNES snes)
 {
   static const char *const defaults[][2] = {{"snes_anderson_beta", "0.5"}, {"snes_anderson_m", "8"}};

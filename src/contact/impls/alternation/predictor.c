@@ -43,8 +43,7 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Start of the outer iteration, and of what partners hand to each other in the first sweep. The bodies' conditions are free afterwards, if
-   it needed a trial. */
+/* Start of the outer iteration, and inputs of the first sweep. The bodies' conditions are free afterwards, if it needed a trial. */
 PetscErrorCode AlternationPredict(Contact contact)
 {
   Alternation *alternation = (Alternation *)contact->data;

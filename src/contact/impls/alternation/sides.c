@@ -20,8 +20,7 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichle
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The partner can be prescribed only where its rows are nodes of its own: then the squares of their entries have the sum one, as the
-   weights of several nodes, whose sum is one, do not */
+/* The partner can be prescribed only where its rows are single nodes: then the squares of entries have the sum one */
 static PetscErrorCode CheckSwappable(Contact contact, PetscInt b)
 {
   const ContactBodyRows *of = &contact->body_rows[b];

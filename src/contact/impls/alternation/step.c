@@ -21,9 +21,8 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows that penetrate join, rows that are pulled leave; whether there are any. One that joins again after it has left in this step is kept
-   to its end, since over the substeps of bodies a row may be pulled while it is held and penetrate when it is not: so no set comes up for
-   ever. Collective. */
+/* Rows that penetrate join, rows that are pulled leave; whether there are any. One that joins again after it has left stays to the step's
+   end, since over substeps it may be pulled while held and penetrate when not: no set repeats for ever. Collective. */
 static PetscErrorCode ChangeSet(Contact contact, PetscBool *changed)
 {
   Alternation *alternation = (Alternation *)contact->data;

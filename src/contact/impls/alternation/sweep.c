@@ -1,9 +1,6 @@
-/*
-   One sweep of the alternation, G: displacements x put on the contact rows of the Dirichlet sides -> reactions -> tractions on
-   the Neumann sides -> their displacements, G(x). Or, under Robin conditions, the right-hand side x of the first side -> its
-   force -> the right-hand side of the second -> its force -> that of the first, G(x). Written as the residual x - G(x) of the
-   outer SNES.
-*/
+/* One sweep of the alternation, G: displacements x put on the contact rows of the Dirichlet sides -> reactions -> tractions on the Neumann
+   sides -> their displacements, G(x). Or, under Robin conditions, the right-hand side x of the first side -> its force -> the right-hand
+   side of the second -> its force -> that of the first, G(x). Written as the residual x - G(x) of the outer SNES. */
 #include "alternationimpl.h"
 #include <impakt/private/bodysweeps.h>
 
@@ -41,7 +38,6 @@ static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The unknowns of a pair as a waveform */
 static PetscErrorCode CopyUnknowns(Contact contact, PetscInt p, const PetscScalar x[], Trace trace)
 {
   Alternation       *alternation = (Alternation *)contact->data;

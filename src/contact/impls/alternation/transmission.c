@@ -1,5 +1,4 @@
-/*
-   Robin transmission conditions: each side of the contact boundary gets, in place of a displacement or a force, a mixture of both,
+/* Robin transmission conditions: each side of the contact boundary gets, in place of a displacement or a force, a mixture of both,
 
      f + alpha w = r,
 
@@ -11,8 +10,7 @@
    f' = -f and the gap is closed, as under Dirichlet and Neumann conditions: the conditions change the way there, not the goal.
 
    An impedance condition, f + z dw/dt = r, is one with alpha = z / dt as soon as time is discrete: dt is the controller step here,
-   so that it is the mean velocity over it that counts, and the gap closes whatever the substeps.
-*/
+   so that it is the mean velocity over it that counts, and the gap closes whatever the substeps. */
 #include "alternationimpl.h"
 #include <impakt/private/bodymass.h>
 #include <impakt/private/bodymesh.h>
@@ -139,7 +137,6 @@ static PetscErrorCode RefuseUnshared(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the bodies the weights as their springs */
 static PetscErrorCode SetRobin(Contact contact)
 {
   const Alternation *alternation = (const Alternation *)contact->data;

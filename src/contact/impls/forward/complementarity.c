@@ -44,8 +44,7 @@ PetscErrorCode ComplementaritySetCompliance(Contact contact, Complementarity *pr
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of the problem, all that `mine` has a number for, with C of these unless it is there: 1 for rows that push, 2 for rows that pull
-   as well */
+/* The rows that `mine` has a number for, with C of these unless it is there: 1 for rows that push, 2 for rows that pull as well */
 static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
 {
   LawProblem      *law  = &problem->problem;

@@ -1,13 +1,11 @@
-/*
-   Lagrange multipliers at the end of each controller step, for bodies whose gap answers to the force there: the contact step with the rule
+/* Lagrange multipliers at the end of each controller step, for bodies whose gap answers to the force there: the contact step with the rule
    `linear`, whatever mass contact nodes have. With gap(lambda) the gaps after integrating all bodies under forces that go linearly from
    their last values to lambda,
 
      gap(lambda) >= 0,   lambda >= 0,   lambda . gap(lambda) = 0.
 
    Around the step there are impulses that end the rate of closed gaps (-contact_constraint both), and the contact-stabilised Newmark method
-   (Deuflhard, Krause, Ertel 2008).
-*/
+   (Deuflhard, Krause, Ertel 2008). */
 #include "forwardimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <impakt/private/bodyforces.h>
@@ -54,8 +52,7 @@ static PetscErrorCode Step(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corrections of the states at the end of the step: velocities without gap rate; and accelerations without contact forces, from
-   which the contact-stabilised method starts its next step */
+/* Corrections at the end of the step: velocities without gap rate; accelerations without contact forces (contact-stabilised) */
 static PetscErrorCode Accept(Contact contact)
 {
   const PetscReal parts[]     = {0, 0, 1};

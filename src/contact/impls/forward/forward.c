@@ -1,12 +1,10 @@
-/*
-   Forward-increment Lagrange multipliers (Carpenter, Taylor, Katona 1991): the contact forces at t_n are those that close the
+/* Forward-increment Lagrange multipliers (Carpenter, Taylor, Katona 1991): the contact forces at t_n are those that close the
    gaps at t_{n+1}. With central differences a force lambda that acts at t_n moves the gaps at t_{n+1} by C lambda,
    C = dt^2 sum_bodies B M^{-1} B^T, so that after a free trial step with gaps g
 
      g + C lambda >= 0,   lambda >= 0,   lambda . (g + C lambda) = 0.
 
-   All is divided by dt^2: so the same matrix finds the impulses that close the rate beside the gap.
-*/
+   All is divided by dt^2: so the same matrix finds the impulses that close the rate beside the gap. */
 #include "forwardimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
@@ -60,8 +58,7 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The velocities do not have the force yet that begins at the end of the step: much of it goes into these impulses, and is told
-   with the force of the step */
+/* Velocities lack the force that begins at the end of the step: much of it is in these impulses, told with the force of the step */
 static PetscErrorCode ContactAccept_ForwardLagrange(Contact contact)
 {
   Complementarity *problem = (Complementarity *)contact->data;

@@ -47,8 +47,7 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forward increments, whose matrices are made once, may not; which bodies there are to be is not known yet, but none of those with friction
-   are theirs */
+/* Forward increments, whose matrices are made once, may not; their bodies are not known yet, but none has friction */
 static PetscBool MayReplaceRows(Contact contact)
 {
   return ContactAnyPairHas(contact, CONTACT_LAW_FRICTION);

@@ -39,8 +39,7 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The naive stabilisation (Hoy, Tezaur, Mota, section 5): after a step in contact the acceleration of the nodes in contact is set to zero
- */
+/* The naive stabilisation (Hoy, Tezaur, Mota, section 5): zero acceleration of nodes in contact after the step */
 PetscErrorCode ContactStabilize(Contact contact)
 {
   PetscBool in_contact;

@@ -1,12 +1,11 @@
-/*
-   The penalty method and the augmented Lagrangian: the contact step with the rule `linear`, with springs and dampers between the surfaces
+/* The penalty method and the augmented Lagrangian: the contact step with the rule `linear`, with springs and dampers between the surfaces
    (contact/step/springs.c). The force of a row at the end of a controller step is
 
      lambda = <m - tau A gap - c A (gap - last gap) / dt>,   <x> = max(x, 0)
 
    with a spring tau, a damper c, or both; m is zero but for the augmented Lagrangian. Tied rows are held by springs that pull as well. With
-   explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: S is then that of the springs.
-*/
+   explicit bodies and mass on the contact nodes the gap does not depend on the force at the end of the step: S is then that of the
+   springs. */
 #include "forwardimpl.h"
 #include <sys/units.h>
 
