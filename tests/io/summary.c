@@ -357,7 +357,7 @@ static void paths_of_fields(void **state)
 #define refuse(code, words, path, interval)                                                                                                \
   do {                                                                                                                                     \
     fields = NULL;                                                                                                                         \
-    refused(code, words, FieldsCreate(simulation->controller, path, interval, OUTPUT_SINGLE, &fields));                                    \
+    refused(code, words, FieldsCreate(simulation->controller, path, &(PetscInt){interval}, OUTPUT_SINGLE, &fields));                       \
     ok(FieldsDestroy(&fields));                                                                                                            \
   } while (0)
   MPI_Barrier(PETSC_COMM_WORLD);
@@ -370,7 +370,7 @@ static void paths_of_fields(void **state)
   refuse(PETSC_ERR_USER_INPUT, "-output_fields_interval 2 makes 10001 frames in this run of 20000 |10000 is the limit; give 3 or more",
          "fields.h5", 2);
   assert_false(exists("fields.h5") || exists("fields.xdmf") || exists("folder.part"));
-  ok(FieldsCreate(simulation->controller, "fields.h5", 3, OUTPUT_SINGLE, &fields)); /* 6668 frames */
+  ok(FieldsCreate(simulation->controller, "fields.h5", &(PetscInt){3}, OUTPUT_SINGLE, &fields)); /* 6668 frames */
   ok(FieldsDestroy(&fields));
   assert_false(exists("fields.h5")); /* it has seen no frame */
   if (IsFirst()) assert_int_equal(rmdir("folder") || rmdir("other.xdmf"), 0);
