@@ -1,3 +1,4 @@
+/* The class and its time loop. */
 #include "controllerimpl.h"
 #include <impakt/private/bodymeasures.h>
 #include <impakt/private/bodystep.h>

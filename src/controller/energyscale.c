@@ -1,3 +1,4 @@
+/* What changes of the energy of all bodies are relative to: in the summary, in the history and on the terminal alike. */
 #include "energyscale.h"
 #include <impakt/private/bodymeasures.h>
 

@@ -1,3 +1,4 @@
+/* The points of all bodies that are observed. */
 #include "controllerimpl.h"
 
 /* After the set-up of the contact problem, which finishes that of the bodies */

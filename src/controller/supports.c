@@ -1,3 +1,4 @@
+/* What holds the bodies: their surfaces with prescribed displacements, and obstacles. */
 #include "controllerimpl.h"
 
 /* A list of all, with room for their forces; after the set-up of the contact problem, which finishes that of the bodies */

@@ -1,3 +1,4 @@
+/* What programs set of elements beside their options. */
 #include <impakt/private/elementimpl.h>
 #include <sys/units.h>
 

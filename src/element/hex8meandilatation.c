@@ -1,3 +1,4 @@
+/* hex8 with a mean dilatation. */
 #include <element/hex8.h>
 #include <element/boxpoints.h>
 

@@ -1,3 +1,4 @@
+/* hex8 with one point of integration. */
 #include <element/hex8.h>
 #include <element/reducedloops.h>
 

@@ -1,3 +1,4 @@
+/* quad4 with a mean dilatation. */
 #include <element/quad4.h>
 #include <element/boxpoints.h>
 

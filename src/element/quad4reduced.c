@@ -1,3 +1,4 @@
+/* quad4 with one point of integration. */
 #include <element/quad4.h>
 #include <element/reducedloops.h>
 

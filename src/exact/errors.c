@@ -1,3 +1,4 @@
+/* How far a run is from the exact solution. */
 #include "exactimpl.h"
 #include <math.h>
 

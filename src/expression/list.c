@@ -1,3 +1,4 @@
+/* Several expressions in one text. */
 #include "expressionimpl.h"
 
 /* Length of the text up to the next comma outside parentheses, or to its end */

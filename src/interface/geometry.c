@@ -1,3 +1,4 @@
+/* Faces in space, and polygons in the plane of a face. */
 #include "interfaceimpl.h"
 
 /* Newton's method for the inverse of a bilinear map ends when the sum of its steps in both natural coordinates, which are of order 1, is

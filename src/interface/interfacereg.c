@@ -1,3 +1,4 @@
+/* The packages of the classes. */
 #include <impakt/private/transfer.h>
 #include <sys/package.h>
 

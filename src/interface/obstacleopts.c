@@ -1,3 +1,4 @@
+/* Rigid obstacles from options. */
 #include <impakt/obstacle.h>
 #include <petsc/private/petscimpl.h>
 #include <sys/units.h>

@@ -1,3 +1,4 @@
+/* Where a surface is now, with its normals and areas. */
 #include "interfaceimpl.h"
 
 /* Present positions of all nodes of this rank; u NULL: the reference positions */

@@ -1,3 +1,4 @@
+/* When the rows of a transfer are built again. */
 #include "interfaceimpl.h"
 #include "obstacleimpl.h"
 

@@ -1,3 +1,4 @@
+/* How far bodies are from displacements that the user gives as formulas. */
 #include "deviation.h"
 #include <petsc/private/petscimpl.h>
 #include <math.h>

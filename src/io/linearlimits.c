@@ -1,3 +1,4 @@
+/* What is too much for a linear material: bodies that turn far, and elements that are turned inside out. */
 #include "linearlimits.h"
 #include <sys/units.h>
 #include <impakt/private/bodymeasures.h>

@@ -1,3 +1,4 @@
+/* How the work of a run lies on the ranks: the most that one of them has, and the mean. */
 #include "ranks.h"
 #include <impakt/private/contactsteps.h>
 #include <petscsf.h>

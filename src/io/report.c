@@ -1,3 +1,4 @@
+/* The table that a run prints at its end. */
 #include "report.h"
 #include "ranks.h"
 #include <math.h>

@@ -1,3 +1,4 @@
+/* What the summary has of the bodies and obstacles. */
 #include "summaryimpl.h"
 
 /* The mass of a body, and what its massless contact layer has changed */

@@ -1,3 +1,4 @@
+/* The class: creation, type, options, view, destruction. */
 #include <impakt/private/materialimpl.h>
 #include <sys/names.h>
 #include <sys/units.h>

@@ -1,3 +1,4 @@
+/* Nodes and elements of Gmsh's files. */
 #include "gmshimpl.h"
 
 static PetscErrorCode AllocateNodes(Gmsh *gmsh, PetscInt n)

@@ -1,3 +1,4 @@
+/* The mesh of a body from its options. */
 #include "meshimpl.h"
 #include <petsc/private/petscimpl.h>
 #include <sys/names.h>

@@ -1,3 +1,4 @@
+/* The state of a constrained solver, for checkpoints. */
 #include "constrainedsolverimpl.h"
 
 /* The columns of A^{-1} B^T follow from A and B, as they are, to the last bit if each was found by itself */

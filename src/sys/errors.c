@@ -1,3 +1,4 @@
+/* How errors reach the user of the program, and the exit code that goes with them. */
 #include <impakt.h>
 #include <string.h>
 #include <unistd.h>

@@ -1,3 +1,4 @@
+/* Stages of a run for -log_view. */
 #include "stages.h"
 
 static const char *const names[N_STAGES] = {"Set-up", "Search", "Rows", "Sweeps", "Interface", "Output"};

@@ -1,3 +1,4 @@
+/* The substeps of a controller step. */
 #include <body/layout/bodyimpl.h>
 
 /* Notes body, time and step where a substep failed or its solution has NaN or infinity in it. Both get into the velocity from

@@ -1,3 +1,4 @@
+/* Integration over one controller step. */
 #include <body/layout/bodyimpl.h>
 #include <impakt/private/simd.h>
 

@@ -1,3 +1,4 @@
+/* The package of the class. */
 #include <body/layout/bodyimpl.h>
 #include <sys/package.h>
 

@@ -1,3 +1,4 @@
+/* What a body tells about itself. */
 #include <body/layout/bodyimpl.h>
 #include "bodysetup.h"
 #include <sys/units.h>

@@ -1,3 +1,4 @@
+/* The state that a body goes back to: the start of a controller step. */
 #include <body/layout/bodyimpl.h>
 
 /* Takes the current state as the start of the next controller step. Collective. */

@@ -1,3 +1,4 @@
+/* Substeps, and the TS of a body. */
 #include <body/layout/bodyimpl.h>
 
 /* What -<body>_ts_time_step auto takes of the stable step, that of the undeformed body: a nonlinear one may stiffen */

@@ -1,3 +1,4 @@
+/* Displacements prescribed on surfaces. */
 #include "loadsimpl.h"
 #include <impakt/private/mesh.h>
 

@@ -1,3 +1,4 @@
+/* Displacement and velocity at the start, from options. */
 #include "loadsimpl.h"
 #include <sys/units.h>
 

@@ -1,3 +1,4 @@
+/* Internal force, tangent and stiffness matrix. */
 #include <body/layout/bodyimpl.h>
 
 /* The elements that forces and tangents come from */

@@ -1,3 +1,4 @@
+/* The class: creation, type, step, destruction. */
 #include <contact/parts.h>
 #include <sys/names.h>
 #include <sys/stages.h>

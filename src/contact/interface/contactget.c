@@ -1,3 +1,4 @@
+/* What contact tells of itself. */
 #include <contact/laws/pairlaws.h>
 
 /*@

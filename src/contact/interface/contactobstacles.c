@@ -1,3 +1,4 @@
+/* Obstacles of a contact problem. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 #include <impakt/private/mesh.h>

@@ -1,3 +1,4 @@
+/* Contact from the options. */
 #include <contact/parts.h>
 #include <sys/names.h>
 #include <sys/optionvalues.h>

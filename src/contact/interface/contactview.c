@@ -1,3 +1,4 @@
+/* What a contact problem prints of itself. */
 #include <contact/parts.h>
 #include <sys/units.h>
 

@@ -1,3 +1,4 @@
+/* The energy that contact takes in a controller step. */
 #include <contact/parts.h>
 
 /* Whether a row joins or leaves contact in the step under way, on any rank; and whether the nodes of such a row have mass, or a body of

@@ -1,3 +1,4 @@
+/* Bodies that are inside each other, or inside obstacles. */
 #include <contact/parts.h>
 #include <impakt/private/mesh.h>
 #include <sys/units.h>

@@ -1,3 +1,4 @@
+/* The registry of the laws of the contact step. */
 #include "rowlaw.h"
 #include <sys/names.h>
 

@@ -1,3 +1,4 @@
+/* What all ranks agree on. */
 #include <contact/parts.h>
 
 /* A flag that is 1 on any rank becomes 1 on all ranks; it is 0 or 1 before */

@@ -1,3 +1,4 @@
+/* The contact type `schwarz`: the contact step, its rule and law. */
 #include "stepimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
