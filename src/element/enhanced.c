@@ -42,10 +42,8 @@ static PetscErrorCode GetPoints(Element element, PetscInt first, const PetscScal
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < SIMD_WIDTH; p++) {
-    if (first + p < element->count) {
-      EnhancedPrepare(element, first + p, u, &enhanced);
-      PetscCall(EnhancedBalance((const Solid *)element->data, &enhanced, forces));
-    }
+    EnhancedPrepare(element, PetscMin(first + p, element->count - 1), u, &enhanced);
+    PetscCall(EnhancedBalance((const Solid *)element->data, &enhanced, forces));
     for (PetscInt g = 0; g < enhanced.n_points; g++) {
       for (PetscInt k = 0; k < 9; k++) H[g][k][p] = isnan(forces[0]) ? forces[0] : enhanced.H[k][g];
       weights[g][p] = enhanced.weight[g] / element->cross_section;

@@ -1,17 +1,18 @@
 /* Elements with one point of integration, one at a time: their tangent, and their viscosity. The formulation is in reducedloops.h. */
 #include <element/reduced.h>
 
-enum { MAX_DOFS = SOLID_MAX_NODES * 3, HOURGLASSES = 4, COMPONENTS = 3 * HOURGLASSES };
+enum { MAX_DOFS = SOLID_MAX_NODES * 3, MOST_HOURGLASSES = 4, COMPONENTS = 3 * MOST_HOURGLASSES };
 
 static const PetscReal middle[3] = {0};
 
 /* One element. Hourglasses in the order of reducedloops.h: that without coordinate k is number k, the product of all three number 3. */
 typedef struct {
   PetscInt  dim, nodes, hourglasses;
-  PetscReal volume;                                  /* with the thickness */
-  PetscReal modes[SOLID_MAX_NODES][3 + HOURGLASSES]; /* coefficients of the coordinates and their products in a shape function */
-  PetscReal gradient[SOLID_MAX_NODES * 3], gamma[SOLID_MAX_NODES][HOURGLASSES]; /* mean gradients; the part of an hourglass that is left */
-  PetscReal x[3][3], q[3][HOURGLASSES], squares[3];
+  PetscReal volume;                                       /* with the thickness */
+  PetscReal modes[SOLID_MAX_NODES][3 + MOST_HOURGLASSES]; /* coefficients of the coordinates and their products in a shape function */
+  PetscReal gradient[SOLID_MAX_NODES * 3],
+      gamma[SOLID_MAX_NODES][MOST_HOURGLASSES]; /* mean gradients; the part of an hourglass that is left */
+  PetscReal x[3][3], q[3][MOST_HOURGLASSES], squares[3];
 } Reduced;
 
 /* The mean gradients by the rule of the loads, which is exact for them; the volume with the thickness */
@@ -58,19 +59,19 @@ static void Prepare(Element element, PetscInt e, PetscBool finite, const PetscSc
   const Solid    *solid = (const Solid *)element->data;
   const PetscInt *nodes = element->connectivity + e * element->nodes;
   const PetscInt  dim = element->dim, n = element->nodes;
-  PetscReal       X[3][3 + HOURGLASSES] = {{0}}, hoop[SOLID_MAX_NODES];
+  PetscReal       X[3][3 + MOST_HOURGLASSES] = {{0}}, hoop[SOLID_MAX_NODES];
 
   PetscArrayzero(reduced, 1);
   reduced->dim         = dim;
   reduced->nodes       = n;
-  reduced->hourglasses = dim == 3 ? HOURGLASSES : 1;
+  reduced->hourglasses = dim == 3 ? MOST_HOURGLASSES : 1;
   reduced->volume      = GetPoint(element, e, 0, reduced->gradient, hoop);
   GetModes(element, reduced);
   for (PetscInt a = 0; a < n; a++)
     for (PetscInt i = 0; i < dim; i++) {
       const PetscReal at = solid->coordinates[dim * nodes[a] + i], moved = u[dim * nodes[a] + i];
 
-      for (PetscInt k = 0; k < 3 + HOURGLASSES; k++) X[i][k] += at * reduced->modes[a][k];
+      for (PetscInt k = 0; k < 3 + MOST_HOURGLASSES; k++) X[i][k] += at * reduced->modes[a][k];
       for (PetscInt k = 0; k < dim; k++) reduced->x[i][k] += (at + (finite ? moved : 0)) * reduced->modes[a][k];
     }
   for (PetscInt k = 0; k < dim; k++) {
@@ -88,7 +89,8 @@ static void Prepare(Element element, PetscInt e, PetscBool finite, const PetscSc
 }
 
 /* s = dE / dc, linear in c; component h of coordinate k is number 4 k + h */
-static void GetHourglassForces(const Hourglass *constants, const Reduced *reduced, const PetscReal c[COMPONENTS], PetscReal s[COMPONENTS])
+static void GetForcesOfHourglasses(const Hourglass *constants, const Reduced *reduced, const PetscReal c[COMPONENTS],
+                                   PetscReal s[COMPONENTS])
 {
   const PetscReal *squares = reduced->squares, third = reduced->volume / 3, ninth = reduced->volume / 9;
 
@@ -128,12 +130,12 @@ static void AddHourglasses(const Hourglass *constants, const Reduced *reduced, P
   for (PetscInt k = 0; k < dim; k++)
     for (PetscInt h = 0; h < reduced->hourglasses; h++)
       for (PetscInt i = 0; i < dim; i++) c[4 * k + h] += reduced->x[i][k] * reduced->q[i][h];
-  GetHourglassForces(constants, reduced, c, s);
+  GetForcesOfHourglasses(constants, reduced, c, s);
   for (PetscInt row = 0; row < n; row++) GetVariation(reduced, finite, row / dim, row % dim, variation[row]);
   for (PetscInt column = 0; column < n; column++) {
     PetscReal change[COMPONENTS];
 
-    GetHourglassForces(constants, reduced, variation[column], change);
+    GetForcesOfHourglasses(constants, reduced, variation[column], change);
     for (PetscInt row = 0; row < n; row++) {
       const PetscInt a = row / dim, b = column / dim;
 

@@ -1,7 +1,7 @@
 /* What the sources of the fields share. Private to src/io. */
 #pragma once
 #include "fields.h"
-#include "fieldsobstacles.h"
+#include "obstaclegrid.h"
 #include "hdf5file.h"
 #include <impakt/private/contactsteps.h>
 

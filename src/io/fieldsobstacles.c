@@ -1,6 +1,6 @@
 /* Surfaces of the obstacles, to be shown with the fields: /mesh/obstacles/<name>/{points,cells}, listed by an XDMF file of their own. In
    that of the bodies they would disturb: meshio takes the first grid alone for the mesh, and VTK returns blocks where there are two. */
-#include "fieldsobstacles.h"
+#include "obstaclegrid.h"
 #include "fieldsfile.h"
 #include "hdf5file.h"
 #include "outputfile.h"

@@ -7,7 +7,7 @@
 #include "fields.h"
 #include "history.h"
 #include "outputlock.h"
-#include "statistics.h"
+#include "statisticstypes.h"
 
 struct _p_Output {
   PETSCHEADER(int);

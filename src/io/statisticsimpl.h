@@ -1,6 +1,6 @@
 /* What the sources of the statistics share. Private to src/io. */
 #pragma once
-#include "statistics.h"
+#include "statisticstypes.h"
 
 /* What is remembered of the last step, for each pair and for all pairs together */
 typedef struct {

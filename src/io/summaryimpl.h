@@ -2,7 +2,7 @@
 #pragma once
 #include <impakt.h>
 #include <jansson.h>
-#include "statistics.h"
+#include "statisticstypes.h"
 
 PETSC_INTERN PetscErrorCode SummarySetMember(json_t *, const char[], json_t *);
 PETSC_INTERN PetscErrorCode SummarySetReal(json_t *, const char[], PetscReal);

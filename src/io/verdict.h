@@ -1,6 +1,6 @@
 /* What a user should know before believing the figures of a run. */
 #pragma once
-#include "statistics.h"
+#include "statisticstypes.h"
 #include <sys/units.h>
 
 /* What may be amiss with the run, and with each of many bodies or pairs */

@@ -1,7 +1,7 @@
 /* The XDMF file beside a file of fields. */
 #pragma once
 #include "fieldsfile.h"
-#include "fieldsobstacles.h"
+#include "obstaclegrid.h"
 
 #define XDMF_BODIES    ".xdmf"
 #define XDMF_OBSTACLES "-obstacles.xdmf"

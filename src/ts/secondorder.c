@@ -1,5 +1,6 @@
 /* What time integrators of second order share: what driving them in sweeps takes. */
 #include <impakt/private/tssecondorder.h>
+#include "constructors.h"
 #include <petsc/private/tsimpl.h>
 
 static PetscErrorCode RollBack(TS ts)

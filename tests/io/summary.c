@@ -6,7 +6,7 @@
 #include <controller/energyscale.h>
 #include <io/fields.h>
 #include <io/history.h>
-#include <io/statistics.h>
+#include <io/statisticstypes.h>
 #include <jansson.h>
 #include <sys/stat.h>
 #include <unistd.h>

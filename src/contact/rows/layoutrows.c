@@ -13,7 +13,7 @@ typedef struct {
 } Kept;
 
 /* Of a pair: impulses, sums of energies, what friction has taken, and the work of an obstacle [J] */
-enum { SUM_ENERGY = CONTACT_IMPULSES, SUM_FRICTION = SUM_ENERGY + 2, SUM_DRIVEN, N_SUMS };
+enum { SUM_ENERGY = CONTACT_IMPULSES, SUM_FRICTION = SUM_ENERGY + 2, SUM_DRIVEN = SUM_FRICTION + 1, N_SUMS = SUM_DRIVEN + 1 };
 
 static void CopySums(Contact contact, PetscInt p, PetscBool back, PetscReal sums[])
 {

@@ -9,7 +9,7 @@
    Nonlinear bodies repeat it with the tangents at the displacements found. The forces are those of the first record of the history. */
 #include <contact/parts.h>
 #include <contact/rows/inversemass.h>
-#include <contact/solve/lawproblem.h>
+#include <contact/solve/lawimpl.h>
 #include <impakt/private/bodystart.h>
 
 /* Rows up to which S has entries; more are products with it */

@@ -1,5 +1,5 @@
 /* What is told of a step with friction: by how much nodes miss the law, and whether forces may have been others. */
-#include "lawproblem.h"
+#include "lawimpl.h"
 
 static PetscBool HasFriction(const LawProblem *problem, PetscInt node)
 {

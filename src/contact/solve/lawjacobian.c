@@ -1,5 +1,5 @@
 /* The Jacobian of the equations of laws, in known patterns and as matrices lie in memory; see lawproblem.c. */
-#include "lawproblem.h"
+#include "lawimpl.h"
 #include <petsc/private/petscimpl.h>
 
 #define FEW_DENSE    500 /* rows of a dense S whose Jacobian is factored each time it changes */

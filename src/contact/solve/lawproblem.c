@@ -10,7 +10,7 @@
    Sources: L. Qi, J. Sun, A nonsmooth version of Newton's method, Mathematical Programming 58 (1993); S. C. Eisenstat, H. F. Walker, Choosing
    the forcing terms in an inexact Newton method, SIAM Journal on Scientific Computing 17 (1996); R. T. Rockafellar, Monotone operators and
    the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976). */
-#include "lawproblem.h"
+#include "lawimpl.h"
 #include <petsc/private/petscimpl.h>
 #include <sys/petsccompat.h>
 

@@ -1,5 +1,5 @@
 /* What rows read under forces, what the laws of nodes make of it, and how readings are weighed against forces; see lawproblem.c. */
-#include "lawproblem.h"
+#include "lawimpl.h"
 #include <petsc/private/petscimpl.h>
 
 #define OF_MANY    4   /* 1/r of many rows, in parts of the diagonal of S */

@@ -1,5 +1,5 @@
 /* How the equations of laws are solved: Newton's method, sweeps node by node, and the proximal term of singular S; see lawproblem.c. */
-#include "lawproblem.h"
+#include "lawimpl.h"
 #include <sys/petsccompat.h>
 
 #define VANISHES      1e-12 /* of what rows read, by themselves or by their own force */

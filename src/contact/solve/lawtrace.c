@@ -2,7 +2,7 @@
 
    Source: M. F. Hutchinson, A stochastic estimator of the trace of the influence matrix for Laplacian smoothing splines, Communications in
    Statistics - Simulation and Computation 19 (1990). */
-#include "lawproblem.h"
+#include "lawimpl.h"
 
 /* Gives a matrix near S the trace of S, for weights of laws: by x x^T S with random signs x (Hutchinson 1990), the same on all ranks. */
 PetscErrorCode LawProblemMatchTrace(Mat S, Mat near)

@@ -1,7 +1,7 @@
 /* The one contact step: rows under forces, a rule for how these run within the step, a law for what they are. */
 #pragma once
 #include <contact/parts.h>
-#include <contact/solve/lawproblem.h>
+#include <contact/solve/lawimpl.h>
 #include <contact/laws/pairlaws.h>
 #include <impakt/private/bodyforces.h>
 

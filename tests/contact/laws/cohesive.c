@@ -2,7 +2,7 @@
    breaking takes. Numbers of the law: k = 100 N/m^3, s = 2 Pa, G = 1 J/m^2, so that damage begins at 0.02 m and nothing is left at 1 m. */
 #include "support.h"
 #include <contact/laws/rowlaw.h>
-#include <contact/solve/lawproblem.h>
+#include <contact/solve/lawimpl.h>
 #include <impakt/contact.h>
 
 #define K     100.0

@@ -1,7 +1,7 @@
 /* The equations of the laws of rows: solutions against enumeration of all states, with friction, ties, singular S; where Newton's method
    goes round in a circle; and problems that have no solution. */
 #include "support.h"
-#include <contact/solve/lawproblem.h>
+#include <contact/solve/lawimpl.h>
 #include <math.h>
 #include <petscblaslapack.h>
 

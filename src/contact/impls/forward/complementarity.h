@@ -1,7 +1,7 @@
 /* A complementarity problem on rows: 0 <= gaps + C forces, forces >= 0, one of them zero; C is sparse. Private to src/contact/impls. */
 #pragma once
 #include <contact/parts.h>
-#include <contact/solve/lawproblem.h>
+#include <contact/solve/lawimpl.h>
 #include <impakt/private/bodyforces.h>
 
 typedef struct {
