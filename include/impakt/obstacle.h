@@ -7,7 +7,7 @@
 
    Level: beginner
 
-.seealso: `ObstacleCreate()`, `ObstacleSetPlane()`, `ObstacleGetGap()`, `ContactAddObstacle()`
+.seealso: `ObstacleCreate()`, `ObstacleSetPlane()`, `ObstacleSetFromOptions()`, `ContactAddObstacle()`
 S*/
 typedef struct _p_Obstacle *Obstacle;
 
@@ -37,10 +37,6 @@ PETSC_EXTERN PetscErrorCode ObstacleSetCylinder(Obstacle, const PetscReal[], con
 PETSC_EXTERN PetscErrorCode ObstacleSetVelocity(Obstacle, const char[]);
 PETSC_EXTERN PetscErrorCode ObstacleGetVelocity(Obstacle, const PetscReal[], PetscReal, PetscReal[], PetscBool *);
 PETSC_EXTERN PetscErrorCode ObstacleSetFromOptions(Obstacle);
-PETSC_EXTERN PetscErrorCode ObstacleSetUp(Obstacle);
 PETSC_EXTERN PetscErrorCode ObstacleGetType(Obstacle, ObstacleType *);
-PETSC_EXTERN PetscErrorCode ObstacleGetPlace(Obstacle, PetscReal[], PetscReal[]);
-PETSC_EXTERN PetscErrorCode ObstacleGetGap(Obstacle, const PetscReal[], PetscReal *, PetscReal[]);
-PETSC_EXTERN PetscErrorCode ObstacleGetName(Obstacle, const char *[]);
 PETSC_EXTERN PetscErrorCode ObstacleView(Obstacle, PetscViewer);
 PETSC_EXTERN PetscErrorCode ObstacleDestroy(Obstacle *);

@@ -29,7 +29,7 @@ PetscErrorCode ControllerSetUpSupports(Controller controller)
 
     support[next].body = -1;
     PetscCall(ContactGetObstacle(controller->contact, o, &obstacle));
-    PetscCall(ObstacleGetName(obstacle, &support[next].name));
+    PetscCall(PetscObjectGetName((PetscObject)obstacle, &support[next].name));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -153,18 +153,7 @@ PetscErrorCode ObstacleSetCylinder(Obstacle obstacle, const PetscReal point[], c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ObstacleSetUp - makes sure that an obstacle has a shape
-
-  Logically Collective
-
-  Input Parameter:
-. obstacle - the `Obstacle`
-
-  Level: developer
-
-.seealso: `Obstacle`, `ContactAddObstacle()`
-@*/
+/* Makes sure that an obstacle has a shape. Logically collective. */
 PetscErrorCode ObstacleSetUp(Obstacle obstacle)
 {
   PetscFunctionBegin;
@@ -200,22 +189,8 @@ PetscErrorCode ObstacleGetType(Obstacle obstacle, ObstacleType *type)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ObstacleGetPlace - where an obstacle is
-
-  Not Collective
-
-  Input Parameter:
-. obstacle - the `Obstacle`
-
-  Output Parameters:
-+ point     - a point of the plane or of the cylinder's axis, or the centre of the sphere, 3 numbers [m]
-- direction - unit normal of the plane or direction of the cylinder; zeros for a sphere; 3 numbers
-
-  Level: developer
-
-.seealso: `Obstacle`, `ObstacleGetType()`
-@*/
+/* A point of the plane or of the axis of the cylinder, or the centre of the sphere [m]; unit normal of the plane or direction of the
+   cylinder, zeros for a sphere. 3 numbers each. Not collective. */
 PetscErrorCode ObstacleGetPlace(Obstacle obstacle, PetscReal point[], PetscReal direction[])
 {
   PetscFunctionBegin;
@@ -227,26 +202,9 @@ PetscErrorCode ObstacleGetPlace(Obstacle obstacle, PetscReal point[], PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ObstacleGetGap - how far a point is from an obstacle
-
-  Not Collective
-
-  Input Parameters:
-+ obstacle - the `Obstacle`
-- point    - 3 numbers [m]
-
-  Output Parameters:
-+ distance - negative inside [m]
-- normal   - outward unit normal of the obstacle where it is closest, the gradient of the distance; 3 numbers
-
-  Level: developer
-
-  Note:
-  At the centre of a sphere, and on the axis of a cylinder, any normal would do; one of them is returned.
-
-.seealso: `Obstacle`
-@*/
+/* Distance of a point (3 numbers) from the obstacle, negative inside [m], and the outward unit normal where the obstacle is closest (3
+   numbers), the gradient of the distance; at the centre of a sphere, and on the axis of a cylinder, one of those possible. Not
+   collective. */
 PetscErrorCode ObstacleGetGap(Obstacle obstacle, const PetscReal point[], PetscReal *distance, PetscReal normal[])
 {
   PetscReal along = 0, length = 0;
@@ -280,30 +238,6 @@ PetscErrorCode ObstacleGetGap(Obstacle obstacle, const PetscReal point[], PetscR
     }
     for (PetscInt d = 0; d < 3; d++) normal[d] /= PetscSqrtReal(length);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@C
-  ObstacleGetName - the name an obstacle was given
-
-  Not Collective
-
-  Input Parameter:
-. obstacle - the `Obstacle`
-
-  Output Parameter:
-. name - owned by the obstacle
-
-  Level: developer
-
-.seealso: `Obstacle`
-@*/
-PetscErrorCode ObstacleGetName(Obstacle obstacle, const char *name[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
-  PetscAssertPointer(name, 2);
-  *name = ((PetscObject)obstacle)->name;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -7,6 +7,7 @@
 #include "xdmf.h"
 #include <impakt/private/bodymesh.h>
 #include <impakt/private/contactsteps.h>
+#include <impakt/private/transfer.h>
 
 #define SIZE        1.5  /* of a plane, and length of a cylinder, in diagonals of the box of all bodies */
 #define FLAT_CELLS  8    /* along each side of a plane, and along a cylinder */
@@ -184,7 +185,7 @@ PetscErrorCode FieldsObstaclesFind(Contact contact, PetscInt n_bodies, const Bod
 
     PetscCall(ContactGetObstacle(contact, o, &obstacle));
     PetscCall(FindGrid(obstacle, dim, centre, SIZE * diagonal, grid));
-    PetscCall(ObstacleGetName(obstacle, &grid->name));
+    PetscCall(PetscObjectGetName((PetscObject)obstacle, &grid->name));
     if (grid->segments) (*n)++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -572,7 +572,7 @@ static void supports_and_probes(void **state)
   ok(ContactGetNumObstacles(simulation->contact, &n));
   assert_int_equal(n, 1);
   ok(ContactGetObstacle(simulation->contact, 0, &obstacle));
-  ok(ObstacleGetName(obstacle, &name));
+  ok(PetscObjectGetName((PetscObject)obstacle, &name));
   assert_string_equal(name, "wall");
   refused(PETSC_ERR_ARG_OUTOFRANGE, "no obstacle 1", ContactGetObstacle(simulation->contact, 1, &obstacle));
   ok(ContactGetPairObstacle(simulation->contact, 0, &i));

@@ -67,6 +67,10 @@ typedef struct {
 /* Numbers by which the motion of the surfaces is told, see TransferMeasureMotion() */
 #define TRANSFER_MOTION 7
 
+PETSC_EXTERN PetscErrorCode ObstacleSetUp(Obstacle);
+PETSC_EXTERN PetscErrorCode ObstacleGetPlace(Obstacle, PetscReal[], PetscReal[]);
+PETSC_EXTERN PetscErrorCode ObstacleGetGap(Obstacle, const PetscReal[], PetscReal *, PetscReal[]);
+
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, const TransferOptions *, Transfer *);
 PETSC_EXTERN PetscErrorCode TransferGetDrift(Transfer, Vec, Vec, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);

@@ -17,7 +17,7 @@ PetscErrorCode ContactCheckObstacleName(Contact contact, const char name[])
     PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of a body already", name);
   }
   for (PetscInt o = 0; o < contact->n_obstacles; o++) {
-    PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+    PetscCall(PetscObjectGetName((PetscObject)contact->obstacles[o], &other));
     PetscCall(PetscStrcmp(name, other, &same));
     PetscCheck(!same, comm, PETSC_ERR_USER_INPUT, "-obstacles: '%s' is the name of an obstacle already", name);
   }
@@ -52,7 +52,7 @@ PetscErrorCode ContactAddObstacle(Contact contact, Obstacle obstacle)
   PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 2);
   ContactCheckNotSetUp(contact);
   PetscCall(ObstacleSetUp(obstacle));
-  PetscCall(ObstacleGetName(obstacle, &name));
+  PetscCall(PetscObjectGetName((PetscObject)obstacle, &name));
   PetscCall(ContactCheckObstacleName(contact, name));
   PetscCall(PetscRealloc((size_t)(contact->n_obstacles + 1) * sizeof(*contact->obstacles), &contact->obstacles));
   PetscCall(PetscObjectReference((PetscObject)obstacle));
@@ -133,7 +133,7 @@ static PetscErrorCode AdviseObstacle(const ContactPair *pair, size_t size, char 
   ObstacleType type;
 
   PetscFunctionBegin;
-  PetscCall(ObstacleGetName(pair->obstacle, &name));
+  PetscCall(PetscObjectGetName((PetscObject)pair->obstacle, &name));
   PetscCall(ObstacleGetType(pair->obstacle, &type));
   if (type == OBSTACLE_PLANE)
     PetscCall(PetscSNPrintf(advice, size, "-%s_normal may point the wrong way (it points from what is solid to where bodies are)", name));
@@ -183,7 +183,7 @@ PetscErrorCode ContactWarnOfObstacles(Contact contact)
     }
     PetscCall(ContactOr(contact, &rows));
     if (rows) continue;
-    PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+    PetscCall(PetscObjectGetName((PetscObject)contact->obstacles[o], &name));
     PetscCall(PetscFPrintf(
         PetscObjectComm((PetscObject)contact), stderr, "impakt: warning: no body can touch the obstacle '%s': %s\n", name,
         pairs ? "no face of any body faces it; is it, or its normal, where it should be?" : "it is in no pair of -contact_pairs"));

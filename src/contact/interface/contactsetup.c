@@ -201,7 +201,7 @@ PetscErrorCode ContactSetUp(Contact contact)
     PetscBool   moves;
 
     PetscCall(ObstacleGetVelocity(contact->obstacles[o], NULL, 0, NULL, &moves));
-    PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+    PetscCall(PetscObjectGetName((PetscObject)contact->obstacles[o], &name));
     PetscCheck(!moves, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-%s_velocity: bodies feel the velocity of an obstacle by friction alone; set -contact_law coulomb", name);
   }

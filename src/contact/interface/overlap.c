@@ -256,7 +256,8 @@ PetscErrorCode ContactGetOverlapName(Contact contact, const ContactOverlap *over
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(overlap, 2);
   PetscAssertPointer(name, 3);
-  if (overlap->other >= contact->n_bodies) PetscCall(ObstacleGetName(contact->obstacles[overlap->other - contact->n_bodies], name));
+  if (overlap->other >= contact->n_bodies)
+    PetscCall(PetscObjectGetName((PetscObject)contact->obstacles[overlap->other - contact->n_bodies], name));
   else *name = overlap->other < 0 ? NULL : ((PetscObject)contact->bodies[overlap->other])->name;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

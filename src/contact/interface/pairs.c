@@ -28,7 +28,7 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
   for (PetscInt o = 0; o < contact->n_obstacles; o++) {
     const char *other;
 
-    PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+    PetscCall(PetscObjectGetName((PetscObject)contact->obstacles[o], &other));
     PetscCall(NamesAppend(known, sizeof(known), o ? ", " : " ", other));
     PetscCall(PetscStrcmp(other, name, &same));
     if (!same || !obstacle || dot || *body >= 0) continue;
@@ -175,7 +175,7 @@ static PetscErrorCode AppendChosen(Contact contact, PetscInt first, PetscInt sec
   char           names[256];
 
   PetscFunctionBegin;
-  if (o >= 0) PetscCall(ObstacleGetName(contact->obstacles[o], &name));
+  if (o >= 0) PetscCall(PetscObjectGetName((PetscObject)contact->obstacles[o], &name));
   else name = ((PetscObject)contact->bodies[second])->name;
   PetscCall(PetscSNPrintf(names, sizeof(names), "%s:%s", ((PetscObject)contact->bodies[first])->name, name));
   PetscCall(AppendPair(contact, names, pair));

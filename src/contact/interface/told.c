@@ -32,7 +32,7 @@ PetscErrorCode ContactSetUpTold(Contact contact)
       if (o >= 0) {
         PetscBool taken;
 
-        PetscCall(ObstacleGetName(contact->obstacles[o], &other));
+        PetscCall(PetscObjectGetName((PetscObject)contact->obstacles[o], &other));
         PetscCall(PetscStrcmp(other, OTHERS, &taken));
         same = (PetscBool)(same || taken);
       }

@@ -14,7 +14,7 @@ static PetscErrorCode CheckObstacle(Contact contact, const ContactPair *pair)
   DM           dm;
 
   PetscFunctionBegin;
-  PetscCall(ObstacleGetName(pair->obstacle, &name));
+  PetscCall(PetscObjectGetName((PetscObject)pair->obstacle, &name));
   PetscCall(ObstacleGetType(pair->obstacle, &type));
   PetscCall(ObstacleGetPlace(pair->obstacle, point, direction));
   PetscCall(ObstacleGetVelocity(pair->obstacle, NULL, 0, NULL, &moves));
