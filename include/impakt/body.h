@@ -135,7 +135,6 @@ PETSC_EXTERN PetscErrorCode BodySetMassType(Body, BodyMassType);
 PETSC_EXTERN PetscErrorCode BodyGetMassType(Body, BodyMassType *);
 PETSC_EXTERN PetscErrorCode BodySetMassRedistribute(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodySetFromOptions(Body);
-PETSC_EXTERN PetscErrorCode BodySetUp(Body);
 PETSC_EXTERN PetscErrorCode BodyView(Body, PetscViewer);
 PETSC_EXTERN PetscErrorCode BodyDestroy(Body *);
 
@@ -147,7 +146,6 @@ PETSC_EXTERN PetscErrorCode BodySetGravity(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetInitialDisplacement(Body, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodySetInitialVelocity(Body, const PetscReal[]);
 
-PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode BodySetInitialState(Body, PetscErrorCode (*)(PetscInt, const PetscReal[], PetscScalar[], PetscScalar[], void *),
                                                 void *);
 
@@ -183,7 +181,5 @@ PETSC_EXTERN PetscErrorCode BodySetBlockMaterial(Body, const char[], Material);
 PETSC_EXTERN PetscErrorCode BodyGetBlocks(Body, PetscInt *, const char *const *[], const Material *[]);
 PETSC_EXTERN PetscErrorCode BodyGetCellBlocks(Body, const PetscInt *[]);
 PETSC_EXTERN PetscErrorCode BodyGetBlockMass(Body, const PetscReal *[]);
-PETSC_EXTERN PetscErrorCode BodyGetSurfaceMaterial(Body, Material *);
-PETSC_EXTERN PetscErrorCode BodyIsLinear(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyComputeDeviation(Body, const Expression[], PetscReal *, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetTotalSubsteps(Body, PetscInt64 *, PetscLogDouble *);

@@ -1,5 +1,6 @@
 /* What programs and options set of a simulation: bodies and times; and the package of the class. */
 #include "controllerimpl.h"
+#include <impakt/private/bodystep.h>
 #include <sys/names.h>
 #include <sys/sharedoptions.h>
 #include <sys/package.h>

@@ -3,6 +3,7 @@
 #include <controller/plausible.h>
 #include <impakt/private/bodymass.h>
 #include <impakt/private/bodymesh.h>
+#include <impakt/private/bodyrows.h>
 #include <impakt/private/contactsteps.h>
 #include <stdarg.h>
 

@@ -2,6 +2,7 @@
 /* A simulation that a program sets up is the one that options describe; what comes too late, or does not fit, is refused. What observers
    are told beside energies and contact: what holds the bodies, and points of them. */
 #include "simulation.h"
+#include <impakt/private/bodystep.h>
 
 #define BODIES 2
 

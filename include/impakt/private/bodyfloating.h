@@ -4,13 +4,7 @@
 
 #define BODY_MAX_SPRINGS 6 /* as many as a body has motions as if it were rigid */
 
-/*S
-   BodySpringState - how the artificial springs of a floating body are stretched at the end of a controller step
-
-   Level: developer
-
-.seealso: `BodyMeasureSprings()`
-S*/
+/* How the artificial springs of a floating body are stretched at the end of a controller step */
 typedef struct {
   PetscInt  n;
   PetscReal stretch[BODY_MAX_SPRINGS]; /* [m] */

@@ -2,17 +2,8 @@
 #pragma once
 #include <impakt/private/bodyrows.h>
 
-/*E
-   BodyForceShape - how a force on a body runs in the course of a controller step
-
-   Values:
-+ `BODY_FORCE_LINEAR`   - from that which the last step has ended with to that at the end of this one
-- `BODY_FORCE_CONSTANT` - the same throughout
-
-   Level: developer
-
-.seealso: `BodySetConstantForces()`, `BodyGetNodalCompliance()`
-E*/
+/* How a force on a body runs in the course of a controller step: from that which the last step has ended with to that at the end of this
+   one, or the same throughout */
 typedef enum { BODY_FORCE_LINEAR, BODY_FORCE_CONSTANT } BodyForceShape;
 
 /* Where in a controller step a state is changed */

@@ -14,6 +14,7 @@ typedef enum {
                                 bars [N/m]; collective */
 } BodyScale;
 
+PETSC_EXTERN PetscErrorCode BodyGetSurfaceMaterial(Body, Material *);
 PETSC_EXTERN PetscErrorCode BodyGetScale(Body, BodyScale, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodySetContactNodes(Body, PetscInt, const PetscInt[]);
 PETSC_EXTERN PetscErrorCode BodyGetHeldDofs(Body, PetscInt *, const PetscInt *[]);

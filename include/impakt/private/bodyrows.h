@@ -5,28 +5,14 @@
 #include <impakt/private/stepfailure.h>
 #include <impakt/private/trace.h>
 
-/*E
-   BodyCondition - what a row of the interface means to a body in this controller step
-
-   Values:
-+ `BODY_FREE`       - nothing: the row is not of this body, or not in contact
-. `BODY_PRESCRIBED` - displacement, velocity and acceleration of the row follow their input traces
-. `BODY_FORCED`     - the force in its input trace acts along the row
-- `BODY_ROBIN`      - the force in its input trace less that of a spring between the row and a fixed point acts along the row
-
-   Level: developer
-
-.seealso: `BodySetConditions()`, `BodySetRobin()`
-E*/
+/* What a row of the interface means to a body in this controller step:
+   free: nothing, as the row is not of this body, or not in contact;
+   prescribed: displacement, velocity and acceleration of the row follow their input traces;
+   forced: the force in its input trace acts along the row;
+   Robin: the force in its input trace less that of a spring between the row and a fixed point acts along the row */
 typedef enum { BODY_FREE, BODY_PRESCRIBED, BODY_FORCED, BODY_ROBIN } BodyCondition;
 
-/*S
-   BodyTraces - what goes into the rows of a body and comes out of them in a controller step, at the ends of its substeps
-
-   Level: developer
-
-.seealso: `BodyGetTraces()`, `BodyIntegrate()`
-S*/
+/* What goes into the rows of a body and comes out of them in a controller step, at the ends of its substeps */
 typedef struct {
   Trace displacement_in, velocity_in, acceleration_in; /* of prescribed rows: read by BodyIntegrate() [m, m/s, m/s^2] */
   Trace force_in;                                      /* on forced and Robin rows: read by BodyIntegrate() [N] */
@@ -52,6 +38,7 @@ PETSC_EXTERN PetscErrorCode BodyHandOver(Body, const PetscReal[], const PetscRea
 PETSC_EXTERN PetscErrorCode BodySetConditions(Body, const BodyCondition[]);
 PETSC_EXTERN PetscErrorCode BodyGetTraces(Body, BodyTraces *);
 PETSC_EXTERN PetscErrorCode BodyGetRowForces(Body, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode BodyIsLinear(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodyGetStepProperties(Body, BodyStepProperties *);
 PETSC_EXTERN PetscErrorCode BodyBeginExchange(Body, PetscBool);
 PETSC_EXTERN PetscErrorCode BodyTryIntegrateRows(Body, StepConvergedReason *);

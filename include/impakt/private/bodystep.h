@@ -6,9 +6,11 @@
 PETSC_EXTERN PetscErrorCode BodySetUpDiscretization(Body);
 PETSC_EXTERN PetscErrorCode BodyExpectRows(Body);
 PETSC_EXTERN PetscErrorCode BodySetUpSteps(Body);
+PETSC_EXTERN PetscErrorCode BodySetControllerStep(Body, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode BodyShareControllerStep(Body, PetscInt);
 PETSC_EXTERN PetscErrorCode BodyBeginSetUp(Body);
 PETSC_EXTERN PetscErrorCode BodyFactor(Body);
+PETSC_EXTERN PetscErrorCode BodySetUp(Body);
 PETSC_EXTERN PetscErrorCode BodyRefuseNewtonOptions(PetscInt, const Body[]);
 PETSC_EXTERN PetscErrorCode BodyGetControllerStep(Body, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyEstimateSubsteps(Body, PetscReal, PetscReal, PetscInt *);

@@ -335,22 +335,9 @@ PetscErrorCode BodyNoteSurfaceMaterial(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyGetSurfaceMaterial - the material that impedances, penalty parameters and scales of contact are taken from
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, with mesh and material
-
-  Output Parameter:
-. material - that of the body; of one with several, the stiffest of the elements with a contact node, and before these are known, or
-             where there are none, the stiffest of all; owned by the body
-
-  Level: developer
-
-.seealso: `Body`, `BodyGetMaterial()`, `BodySetBlockMaterial()`, `BodySetContactNodes()`
-@*/
+/* The material that impedances, penalty parameters and scales of contact are taken from: that of the body; of one with several, the
+   stiffest of the elements with a contact node, and before these are known, or where there are none, the stiffest of all. Owned by the
+   body. Not collective. */
 PetscErrorCode BodyGetSurfaceMaterial(Body body, Material *material)
 {
   PetscFunctionBegin;
@@ -360,21 +347,7 @@ PetscErrorCode BodyGetSurfaceMaterial(Body body, Material *material)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodyIsLinear - whether the stiffness of a body is constant: all its materials are linear, or it is rigid and cannot turn
-
-  Not Collective
-
-  Input Parameter:
-. body - the `Body`, with mesh and material
-
-  Output Parameter:
-. linear - `PETSC_TRUE` if so
-
-  Level: developer
-
-.seealso: `Body`, `MaterialIsLinear()`
-@*/
+/* Whether the stiffness of a body is constant: all its materials are linear, or it is rigid and cannot turn. Not collective. */
 PetscErrorCode BodyIsLinear(Body body, PetscBool *linear)
 {
   PetscFunctionBegin;

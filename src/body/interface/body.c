@@ -43,20 +43,7 @@ PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetControllerStep - sets the start of the simulation and the step at whose ends all bodies are synchronised
-
-  Logically Collective
-
-  Input Parameters:
-+ body  - the `Body`
-. start - start time [s]
-- step  - controller step [s]
-
-  Level: developer
-
-.seealso: `Body`, `BodySetUp()`
-@*/
+/* The start of the simulation, and the step at whose ends all bodies are synchronised [s]. Logically collective. */
 PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
 {
   PetscFunctionBegin;
@@ -190,18 +177,7 @@ PetscErrorCode BodyFactor(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  BodySetUp - makes mass, matrices, integrator and initial state
-
-  Collective
-
-  Input Parameter:
-. body - the `Body`, with mesh and material
-
-  Level: developer
-
-.seealso: `Body`, `BodySetFromOptions()`, `BodySetInterface()`, `BodySetContactNodes()`, `BodySetControllerStep()`
-@*/
+/* Makes mass, matrices, integrator and initial state of a body that has mesh and material. Collective. */
 PetscErrorCode BodySetUp(Body body)
 {
   PetscFunctionBegin;
