@@ -9,7 +9,7 @@
 
    Level: beginner
 
-.seealso: `ContactCreate()`, `ContactSetType()`, `ContactStep()`, `ContactRegister()`
+.seealso: `ContactCreate()`, `ContactSetType()`, `ContactRegister()`
 S*/
 typedef struct _p_Contact *Contact;
 
@@ -190,8 +190,6 @@ PETSC_EXTERN PetscErrorCode ContactSetLawParameter(Contact, PetscInt, const char
 PETSC_EXTERN PetscErrorCode ContactGetPairLaw(Contact, PetscInt, ContactLaw *);
 PETSC_EXTERN PetscErrorCode ContactGetTraits(Contact, ContactTraits *);
 PETSC_EXTERN PetscErrorCode ContactSetFromOptions(Contact);
-PETSC_EXTERN PetscErrorCode ContactSetUp(Contact);
-PETSC_EXTERN PetscErrorCode ContactStep(Contact);
 PETSC_EXTERN PetscErrorCode ContactView(Contact, PetscViewer);
 PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
 

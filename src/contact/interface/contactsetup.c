@@ -155,18 +155,7 @@ PetscErrorCode ContactSetUpSurfaces(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactSetUp - finds the contact rows, sets up the bodies and the method
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, with bodies, pairs and type
-
-  Level: developer
-
-.seealso: `Contact`, `ContactSetFromOptions()`, `ContactStep()`
-@*/
+/* Finds the contact rows, sets up the bodies and the method. Collective. */
 PetscErrorCode ContactSetUp(Contact contact)
 {
   PetscFunctionBegin;

@@ -55,21 +55,8 @@ static PetscErrorCode MakeOnce(Contact contact, PetscInt pass, PetscReal *off, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  ContactStep - advances all bodies from their saved states through one controller step, or one part of it, under contact
-
-  Collective
-
-  Input Parameter:
-. contact - the `Contact`, set up
-
-  Level: developer
-
-  Note:
-  The step becomes final by `ContactAccept()`. `ContactGetParts()` tells how many make a controller step.
-
-.seealso: `Contact`, `ContactAccept()`, `BodySave()`
-@*/
+/* Advances all bodies from their saved states through one controller step, or one of the parts of it that ContactGetParts() tells of, under
+   contact. ContactAccept() makes it final. Collective. */
 PetscErrorCode ContactStep(Contact contact)
 {
   PetscReal off = 0;
