@@ -15,7 +15,6 @@
 PETSC_EXTERN PetscErrorCode ImpaktInitialize(int *, char ***);
 PETSC_EXTERN PetscErrorCode ImpaktInitialized(PetscBool *);
 PETSC_EXTERN PetscErrorCode ImpaktFinalize(void);
-PETSC_EXTERN PetscErrorCode ImpaktRegisterAll(void);
 PETSC_EXTERN PetscErrorCode ImpaktGetVersion(char[], size_t);
 PETSC_EXTERN PetscErrorCode ImpaktCheckOptions(PetscInt, const char *const[]);
 PETSC_EXTERN PetscErrorCode ImpaktPrintOptions(void);

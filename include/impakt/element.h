@@ -27,4 +27,3 @@ typedef struct _p_Element *Element;
 PETSC_EXTERN PetscClassId ELEMENT_CLASSID;
 
 PETSC_EXTERN PetscErrorCode ElementRegister(DMPolytopeType, PetscErrorCode (*)(Element));
-PETSC_EXTERN PetscErrorCode ElementRegisterFormulation(DMPolytopeType, const char[], PetscErrorCode (*)(Element));

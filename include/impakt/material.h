@@ -82,7 +82,6 @@ PETSC_EXTERN PetscErrorCode MaterialInitializePackage(void);
 PETSC_EXTERN PetscErrorCode MaterialRegister(const char[], PetscErrorCode (*)(Material));
 
 PETSC_EXTERN PetscErrorCode MaterialCreate(MPI_Comm, Material *);
-PETSC_EXTERN PetscErrorCode MaterialSetOptionsPrefix(Material, const char[]);
 PETSC_EXTERN PetscErrorCode MaterialSetType(Material, MaterialType);
 PETSC_EXTERN PetscErrorCode MaterialSetDensity(Material, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialGetDensity(Material, PetscReal *);
@@ -91,7 +90,6 @@ PETSC_EXTERN PetscErrorCode MaterialGetYoungsModulus(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialSetPoissonsRatio(Material, PetscReal);
 PETSC_EXTERN PetscErrorCode MaterialGetPoissonsRatio(Material, PetscReal *);
 PETSC_EXTERN PetscErrorCode MaterialSetFromOptions(Material);
-PETSC_EXTERN PetscErrorCode MaterialSetUp(Material);
 PETSC_EXTERN PetscErrorCode MaterialView(Material, PetscViewer);
 PETSC_EXTERN PetscErrorCode MaterialDestroy(Material *);
 

@@ -17,15 +17,6 @@ PetscErrorCode ElementCreate(MPI_Comm comm, Element *element)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sets the prefix of the elements' options */
-PetscErrorCode ElementSetOptionsPrefix(Element element, const char prefix[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(element, ELEMENT_CLASSID, 1);
-  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)element, prefix));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static const char *Prefix(Element element)
 {
   return ((PetscObject)element)->prefix ? ((PetscObject)element)->prefix : "";
@@ -149,7 +140,7 @@ PetscErrorCode ElementDuplicateOn(Element element, MPI_Comm comm, Material mater
 {
   PetscFunctionBegin;
   PetscCall(ElementCreate(comm, duplicate));
-  PetscCall(ElementSetOptionsPrefix(*duplicate, ((PetscObject)element)->prefix));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*duplicate, ((PetscObject)element)->prefix));
   PetscCall(ElementSetCellType(*duplicate, element->cell_type));
   PetscCall(ElementSetMaterial(*duplicate, material));
   (*duplicate)->cross_section     = element->cross_section;

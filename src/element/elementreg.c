@@ -38,41 +38,18 @@ PetscErrorCode ElementFormulationKey(DMPolytopeType cell_type, PetscBool axisymm
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@C
-  ElementRegisterFormulation - adds a formulation of the elements of one shape to the registry
-
-  Not Collective
-
-  Input Parameters:
-+ cell_type   - shape of the cell
-. formulation - its name
-- create      - function that is given an `Element` as the one of `ElementRegister()` has made it, with its material, before its set-up;
-                it replaces those operations that differ
-
-  Level: developer
-
-.seealso: `Element`, `ElementRegister()`
-@*/
-PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
+/* Adds a formulation of the elements of one shape to the registry. `create` is given an Element as the function of ElementRegister() has
+   made it, with its material, before its set-up, and replaces those operations that differ. Elements that are rings about an axis have
+   their formulations, the full one among them, for themselves. Not collective. */
+PetscErrorCode ElementRegisterFormulation(DMPolytopeType cell_type, PetscBool axisymmetric, const char formulation[],
+                                          PetscErrorCode (*create)(Element))
 {
   char key[128];
 
   PetscFunctionBegin;
-  PetscAssertPointer(formulation, 2);
+  PetscAssertPointer(formulation, 3);
   PetscCall(ElementInitializePackage());
-  PetscCall(ElementFormulationKey(cell_type, PETSC_FALSE, formulation, sizeof(key), key));
-  PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same for elements that are rings about an axis, which have their formulations, the full one among them, for themselves */
-PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType cell_type, const char formulation[], PetscErrorCode (*create)(Element))
-{
-  char key[128];
-
-  PetscFunctionBegin;
-  PetscCall(ElementInitializePackage());
-  PetscCall(ElementFormulationKey(cell_type, PETSC_TRUE, formulation, sizeof(key), key));
+  PetscCall(ElementFormulationKey(cell_type, axisymmetric, formulation, sizeof(key), key));
   PetscCall(PetscFunctionListAdd(&ElementFormulationList, key, create));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -85,18 +62,19 @@ static PetscErrorCode RegisterAll(void)
   PetscCall(ElementRegister(DM_POLYTOPE_QUADRILATERAL, ElementCreate_Quad4));
   PetscCall(ElementRegister(DM_POLYTOPE_TETRAHEDRON, ElementCreate_Tet4));
   PetscCall(ElementRegister(DM_POLYTOPE_HEXAHEDRON, ElementCreate_Hex8));
-  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_MEAN_DILATATION, ElementCreate_Quad4_MeanDilatation));
-  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_MEAN_DILATATION, ElementCreate_Hex8_MeanDilatation));
-  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_ENHANCED, ElementCreate_Enhanced));
-  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_ENHANCED, ElementCreate_Enhanced));
-  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, ELEMENT_REDUCED, ElementCreate_Quad4_Reduced));
-  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, ELEMENT_REDUCED, ElementCreate_Hex8_Reduced));
-  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_TRIANGLE, ELEMENT_COMPOSITE, ElementCreate_Tri6));
-  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_TETRAHEDRON, ELEMENT_COMPOSITE, ElementCreate_Tet10));
-  PetscCall(ElementRegisterAxisymmetric(DM_POLYTOPE_TRIANGLE, ELEMENT_FULL, ElementCreate_Tri3_Axisymmetric));
-  PetscCall(ElementRegisterAxisymmetric(DM_POLYTOPE_QUADRILATERAL, ELEMENT_FULL, ElementCreate_Quad4_Axisymmetric));
   PetscCall(
-      ElementRegisterAxisymmetric(DM_POLYTOPE_QUADRILATERAL, ELEMENT_MEAN_DILATATION, ElementCreate_Quad4_AxisymmetricMeanDilatation));
+      ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, PETSC_FALSE, ELEMENT_MEAN_DILATATION, ElementCreate_Quad4_MeanDilatation));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE, ELEMENT_MEAN_DILATATION, ElementCreate_Hex8_MeanDilatation));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, PETSC_FALSE, ELEMENT_ENHANCED, ElementCreate_Enhanced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE, ELEMENT_ENHANCED, ElementCreate_Enhanced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, PETSC_FALSE, ELEMENT_REDUCED, ElementCreate_Quad4_Reduced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_HEXAHEDRON, PETSC_FALSE, ELEMENT_REDUCED, ElementCreate_Hex8_Reduced));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_TRIANGLE, PETSC_FALSE, ELEMENT_COMPOSITE, ElementCreate_Tri6));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_TETRAHEDRON, PETSC_FALSE, ELEMENT_COMPOSITE, ElementCreate_Tet10));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_TRIANGLE, PETSC_TRUE, ELEMENT_FULL, ElementCreate_Tri3_Axisymmetric));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, PETSC_TRUE, ELEMENT_FULL, ElementCreate_Quad4_Axisymmetric));
+  PetscCall(ElementRegisterFormulation(DM_POLYTOPE_QUADRILATERAL, PETSC_TRUE, ELEMENT_MEAN_DILATATION,
+                                       ElementCreate_Quad4_AxisymmetricMeanDilatation));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

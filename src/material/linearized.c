@@ -18,7 +18,7 @@ PetscErrorCode MaterialLinearize(Material material, Material *linearized)
   lambda = tangent[4];     /* dP_xx / dH_yy */
   mu     = tangent[9 + 1]; /* dP_xy / dH_xy */
   PetscCall(MaterialCreate(PetscObjectComm((PetscObject)material), linearized));
-  PetscCall(MaterialSetOptionsPrefix(*linearized, ((PetscObject)material)->prefix));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*linearized, ((PetscObject)material)->prefix));
   PetscCall(MaterialSetType(*linearized, MATERIAL_LINEAR_ELASTIC));
   (*linearized)->density      = material->density;
   (*linearized)->plane_stress = material->plane_stress;

@@ -29,27 +29,6 @@ PetscErrorCode MaterialCreate(MPI_Comm comm, Material *material)
 }
 
 /*@
-  MaterialSetOptionsPrefix - sets the prefix of the material's options
-
-  Logically Collective
-
-  Input Parameters:
-+ material - the `Material`
-- prefix   - the prefix, for example `left_`
-
-  Level: developer
-
-.seealso: `Material`
-@*/
-PetscErrorCode MaterialSetOptionsPrefix(Material material, const char prefix[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
-  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)material, prefix));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   MaterialSetType - chooses the constitutive model
 
   Collective
@@ -144,21 +123,7 @@ PetscErrorCode MaterialSetFromOptions(Material material)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/*@
-  MaterialSetUp - makes sure that a material has all that it needs
-
-  Logically Collective
-
-  Input Parameter:
-. material - the `Material`
-
-  Level: developer
-
-  Note:
-  A body calls this for its material; an error names what is missing.
-
-.seealso: `Material`, `MaterialSetType()`, `MaterialSetDensity()`, `MaterialSetFromOptions()`
-@*/
+/* Makes sure that a material has all that it needs; an error names what is missing. Logically collective. */
 PetscErrorCode MaterialSetUp(Material material)
 {
   PetscFunctionBegin;

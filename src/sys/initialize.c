@@ -17,20 +17,9 @@ static struct {
   PetscBool began_petsc; /* the first of them has started PETSc */
 } library = {0, PETSC_FALSE};
 
-/*@
-  ImpaktRegisterAll - registers all classes, integrators, materials, elements and contact methods
-
-  Not Collective
-
-  Level: developer
-
-  Note:
-  Every class registers itself when it is first used; `ImpaktInitialize()` calls this so that the order of classes and events, and with
-  it that of `-log_view`, does not hang on what a program does first.
-
-.seealso: `ImpaktInitialize()`
-@*/
-PetscErrorCode ImpaktRegisterAll(void)
+/* Every class registers itself when it is first used. All are registered at the start so that the order of classes and events, and with it
+   that of -log_view, does not hang on what a program does first. */
+static PetscErrorCode RegisterAll(void)
 {
   PetscFunctionBegin;
   PetscCall(BodyInitializePackage());
@@ -95,7 +84,7 @@ PetscErrorCode ImpaktInitialize(int *argc, char ***argv)
     PetscCall(PetscInitialize(argc, argv, NULL, help));
     began = PETSC_TRUE;
   }
-  PetscCall(ImpaktRegisterAll());
+  PetscCall(RegisterAll());
   PetscCall(PetscRegisterFinalize(Forget));
   library.depth       = 1;
   library.began_petsc = began;

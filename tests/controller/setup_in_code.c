@@ -325,7 +325,7 @@ static void options_come_over_the_program(void **state)
   AddBar("other", 1, 2, 3, 0);
   AddOptions("-bodies other");
   m = material(MATERIAL_LINEAR_ELASTIC, 1, 1, 0);
-  ok(MaterialSetOptionsPrefix(m, "bar_"));
+  ok(PetscObjectSetOptionsPrefix((PetscObject)m, "bar_"));
   ok(MaterialSetFromOptions(m));
   ok(MaterialGetDensity(m, &density));
   near(density, 5, 0);

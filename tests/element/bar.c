@@ -13,7 +13,7 @@ static Element create_bars(Material *material, PetscOptions *options)
 
   *options = options_begin("-bar_density 5 -bar_youngs_modulus 3 -bar_cross_section 4");
   ok(MaterialCreate(PETSC_COMM_SELF, material));
-  ok(MaterialSetOptionsPrefix(*material, "bar_"));
+  ok(PetscObjectSetOptionsPrefix((PetscObject)*material, "bar_"));
   ok(MaterialSetFromOptions(*material));
   ok(element_create("bar_", DM_POLYTOPE_SEGMENT, *material, &element));
   ok(ElementSetUp(element, 2, connectivity, coordinates));

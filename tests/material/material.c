@@ -7,7 +7,7 @@ static Material create(void)
   Material material;
 
   ok(MaterialCreate(PETSC_COMM_WORLD, &material));
-  ok(MaterialSetOptionsPrefix(material, "bar_"));
+  ok(PetscObjectSetOptionsPrefix((PetscObject)material, "bar_"));
   return material;
 }
 

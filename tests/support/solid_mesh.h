@@ -127,7 +127,7 @@ static inline void solid_begin(Solid *solid, const Mesh *mesh, const char materi
   solid->options = options_begin("-prefix_push b_ -density 3 -youngs_modulus 200 -poissons_ratio 0.25 -material_type %s %s -prefix_pop",
                                  material, more);
   ok(MaterialCreate(PETSC_COMM_SELF, &solid->material));
-  ok(MaterialSetOptionsPrefix(solid->material, "b_"));
+  ok(PetscObjectSetOptionsPrefix((PetscObject)solid->material, "b_"));
   ok(MaterialSetFromOptions(solid->material));
   ok(element_create("b_", mesh->shape, solid->material, &solid->element));
 }

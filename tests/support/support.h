@@ -130,7 +130,7 @@ static inline PetscErrorCode element_create(const char prefix[], DMPolytopeType 
 {
   PetscFunctionBegin;
   PetscCall(ElementCreate(PETSC_COMM_SELF, element));
-  PetscCall(ElementSetOptionsPrefix(*element, prefix));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)*element, prefix));
   PetscCall(ElementSetMaterial(*element, material));
   PetscCall(ElementSetCellType(*element, cell_type));
   PetscCall(ElementSetFromOptions(*element));

@@ -91,8 +91,8 @@ struct _p_Element {
 };
 
 PETSC_EXTERN PetscErrorCode ElementInitializePackage(void);
+PETSC_EXTERN PetscErrorCode ElementRegisterFormulation(DMPolytopeType, PetscBool, const char[], PetscErrorCode (*)(Element));
 PETSC_EXTERN PetscErrorCode ElementCreate(MPI_Comm, Element *);
-PETSC_EXTERN PetscErrorCode ElementSetOptionsPrefix(Element, const char[]);
 PETSC_EXTERN PetscErrorCode ElementSetCellType(Element, DMPolytopeType);
 PETSC_EXTERN PetscErrorCode ElementSetMaterial(Element, Material);
 PETSC_EXTERN PetscErrorCode ElementSetCrossSection(Element, PetscReal);
@@ -126,7 +126,6 @@ PETSC_INTERN PetscErrorCode ElementCreate_Tet10(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Tri3_Axisymmetric(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_Axisymmetric(Element);
 PETSC_INTERN PetscErrorCode ElementCreate_Quad4_AxisymmetricMeanDilatation(Element);
-PETSC_INTERN PetscErrorCode ElementRegisterAxisymmetric(DMPolytopeType, const char[], PetscErrorCode (*)(Element));
 PETSC_INTERN PetscErrorCode ElementSetComposite(Element);
 PETSC_INTERN PetscErrorCode ElementSetBlocks(Element, PetscInt, const Material[], PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode ElementDuplicateOn(Element, MPI_Comm, Material, Element *);

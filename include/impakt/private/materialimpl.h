@@ -36,6 +36,7 @@ struct _p_Material {
 
 PETSC_INTERN PetscFunctionList MaterialList;
 
+PETSC_EXTERN PetscErrorCode MaterialSetUp(Material);
 PETSC_EXTERN PetscErrorCode MaterialCondenseKernels(Material, void (*)(const void *, const PetscReal[9][8], PetscReal[8]),
                                                     MaterialKernels *);
 PETSC_EXTERN void           MaterialFindThickness(const MaterialKernels *, PetscReal[9][8]);

@@ -149,7 +149,7 @@ static PetscErrorCode ReadBlock(Body body, const char block[], PetscInt n, const
       PetscCall(PetscOptionsSetValue(options, full, body_options[i].value[0] ? body_options[i].value : NULL));
     }
   PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &material));
-  PetscCall(MaterialSetOptionsPrefix(material, of_block));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)material, of_block));
   PetscCall(PetscObjectSetOptions((PetscObject)material, options));
   PetscCall(MaterialSetFromOptions(material));
   PetscCall(PetscObjectSetOptions((PetscObject)material, NULL));

@@ -39,7 +39,7 @@ PetscErrorCode BodyCreate(MPI_Comm comm, const char name[], Body *body)
   (*body)->springs.part      = PETSC_DECIDE;
   PetscCall(ElementCreate(comm, &(*body)->model.element));
   PetscCall(PetscObjectSetName((PetscObject)(*body)->model.element, name)); /* of what warnings speak */
-  PetscCall(ElementSetOptionsPrefix((*body)->model.element, prefix));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)(*body)->model.element, prefix));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -34,7 +34,7 @@ static PetscErrorCode ReadMaterial(Body body)
   PetscFunctionBegin;
   if (body->model.material) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MaterialCreate(PetscObjectComm((PetscObject)body), &body->model.material));
-  PetscCall(MaterialSetOptionsPrefix(body->model.material, ((PetscObject)body)->prefix));
+  PetscCall(PetscObjectSetOptionsPrefix((PetscObject)body->model.material, ((PetscObject)body)->prefix));
   PetscCall(BodyAsksForRigid(body, &rigid));
   if (rigid) { /* any modulus does where none is given */
     PetscCall(MaterialSetType(body->model.material, MATERIAL_LINEAR_ELASTIC));

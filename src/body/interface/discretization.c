@@ -1,6 +1,7 @@
 /* A body's mesh, elements and integrator made ready: what can be asked of it before its contact rows are known. */
 #include <body/layout/bodyimpl.h>
 #include <body/loads/loadsimpl.h>
+#include <impakt/private/materialimpl.h>
 #include "bodysetup.h"
 
 /* Mass matrices that are not diagonal have to be factored: too dear in two and three dimensions for division in each substep */
