@@ -221,13 +221,7 @@ static PetscErrorCode ReadUnits(Controller controller)
 + -bodies a,b         - names of the bodies; options of body a begin with -a_
 . -all_gravity g, ... - an option of each of these bodies that has none of that name, nor by its material
 . -a_material steel   - body a has the options that begin with -material_steel_, but for those that it has itself
-. -time_start t       - [s], default 0
-. -time_end t         - [s]; the run ends with the first controller step that reaches it
-. -time_step (auto|dt) - controller step, at whose ends all bodies are synchronised [s]; auto: the largest that resolves contact
-. -controller_step_cuts n - how often a controller step that fails is cut in halves, 4
-. -monitor_interval n - a line on the terminal every n controller steps, 0 (default) for none
-. -units (SI|mm-t-s|none) - what the user's numbers are in, for labels and for warnings of implausible ones
-- -progress           - a progress bar on standard error, default where that is a terminal
+- -time_step, ...     - times, steps, terminal and units, with defaults in options/README.md, which `impakt -help` prints too
 
   Level: beginner
 

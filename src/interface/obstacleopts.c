@@ -36,11 +36,7 @@ static PetscErrorCode CheckDirection(Obstacle obstacle, const char option[], con
 
   Options Database Keys:
 + -<obstacle>_obstacle_type (plane|sphere|cylinder) - its shape
-. -<obstacle>_point x,y,z                           - a point of the plane or of the cylinder's axis, or the centre of the sphere [m]
-. -<obstacle>_normal x,y,z                          - of the plane, away from what is solid
-. -<obstacle>_axis x,y,z                            - of the cylinder; across the plane (0,0,1) by default, a disc in two dimensions
-. -<obstacle>_radius r                              - of the sphere or cylinder [m]
-- -<obstacle>_velocity vx,vy[,vz]                   - of its surface along itself, with friction: formulas in x, y, z, t [m/s]
+- -<obstacle>_point, ...                            - its place and direction, see the setters, and options/README.md for defaults
 
   Level: beginner
 

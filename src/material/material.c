@@ -80,11 +80,8 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
 . material - the `Material`
 
   Options Database Keys:
-+ -<body>_material_type (linear_elastic|saint_venant_kirchhoff|neo_hookean|mooney_rivlin|j2|j2_small|johnson_cook) - the constitutive model
-. -<body>_density rho                                                       - mass density [kg/m^3], required
-. -<body>_youngs_modulus E                                                  - of these models, at zero strain [Pa], required
-. -<body>_poissons_ratio (0)                                                - of these models, at zero strain; between -1 and 0.5
-- -<body>_yield_stress, -<body>_hardening..., -<body>_mooney_rivlin_share, ... - constants of single models: impakt -help materials
++ -<body>_material_type, -<body>_density, -<body>_youngs_modulus, -<body>_poissons_ratio - of all models, see the setters
+- -<body>_yield_stress, ... - constants of single models, in options/README.md, which `impakt -help materials` prints too
 
   Level: beginner
 

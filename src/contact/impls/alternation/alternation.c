@@ -189,29 +189,10 @@ static PetscErrorCode ContactDestroy_Alternation(Contact contact)
    CONTACT_ALTERNATION - the Schwarz alternating method: displacements one way, tractions the other, until both agree
 
    Options Database Keys:
-+  -schwarz_snes_type (anderson|nrichardson|ngmres|qn) - the outer iteration, anderson
-.  -schwarz_snes_atol, -schwarz_snes_rtol                        - tolerances on the change of position: [m], 4e-12 of the size of the
-                                                                   smallest body; relative, 1e-15
-.  -schwarz_snes_max_it n                                        - limit of iterations, 50
-.  -schwarz_snes_linesearch_damping theta                        - relaxation of nrichardson, 1 (Aitken: first one, 1/2)
-.  -schwarz_relaxation (fixed|aitken)                            - relaxation of nrichardson
-.  -schwarz_traction (internal|reaction)                         - nodal force handed over: without or with inertia
-.  -schwarz_transmission (dirichlet_neumann|robin|impedance)     - what is prescribed on both sides
-.  -schwarz_robin_parameter alpha                                - stiffness of Robin conditions [3-D N/m^3; 2-D N/m^2; 1-D N/m], E/h of
-                                                                   the Neumann side's contact elements; of ties that of the first side's
-                                                                   nodes, with their inertia
-.  -schwarz_impedance_parameter z                                - impedance of impedance conditions [3-D N s/m^3; 2-D N s/m^2; 1-D N s/m],
-                                                                   that of plane waves in the Neumann side
-.  -schwarz_predictor (last|trial|extrapolate|inelastic)         - where the first sweep starts from, inelastic
-.  -schwarz_traction_waveform (linear|constant)                  - traction of a partner with longer substeps in the course of them
-.  -contact_constraint (gap|gap_rate)                            - close the gap in the first step in contact, or keep it as it is at its
-                                                                   start
-.  -contact_swap_sides (true|false)                              - whether the sides change with every controller step
-.  -schwarz_convergence (auto|position|mismatch)                 - what is compared with the tolerances from sweep to sweep: the change of
-                                                                   all positions (the paper's), or the change of the contact nodes that a
-                                                                   plain sweep would bring
-.  -schwarz_recheck (true|false)                                 - whether tensile nodes leave contact within the step
--  -schwarz_unconverged (error|accept)                           - what to do with a step that does not converge
++  -schwarz_transmission (dirichlet_neumann|robin|impedance) - what is prescribed on both sides
+.  -schwarz_traction (internal|reaction)                     - nodal force handed over: without or with inertia
+.  -schwarz_snes_...                                         - the outer iteration, a `SNES` of type anderson
+-  -schwarz_..., -contact_...                                - all others, with defaults in options/README.md
 
    Level: beginner
 
