@@ -88,7 +88,6 @@ PETSC_INTERN void           ContactListRowState(Contact, StateList *);
 PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTold(Contact);
 PETSC_INTERN PetscErrorCode ContactTakeLeave(Contact, const ContactPair *, const PetscReal[], const PetscReal[]);
-PETSC_INTERN PetscErrorCode ContactTellStates(Contact, ContactPairState[]);
 PETSC_INTERN void           ContactGetTold(Contact, PetscInt, PetscInt *, PetscInt *);
 PETSC_INTERN PetscErrorCode ContactComputePairStates(Contact, PetscInt, PetscInt, ContactPairState[]);
 PETSC_INTERN PetscErrorCode ContactSetUpPairResultants(Contact);

@@ -60,7 +60,7 @@ void SolidTangent(const Solid *solid, PetscInt e, PetscInt g, const PetscReal H[
 }
 
 /* The stress there */
-void SolidPointStress(const Solid *solid, PetscInt e, PetscInt g, const PetscReal H[9], PetscReal P[9])
+static void PointStress(const Solid *solid, PetscInt e, PetscInt g, const PetscReal H[9], PetscReal P[9])
 {
   SimdReal all_H[9], all_P[9], all_start[SOLID_MAX_HISTORY];
 
@@ -147,7 +147,7 @@ static PetscReal FillMean(Element element, PetscInt e, PetscBool finite, PetscIn
 
       for (PetscInt i = 0; i < 9; i += 4) point->H[i] += change;
     }
-    SolidPointStress(solid, e, g, point->H, point->P);
+    PointStress(solid, e, g, point->H, point->P);
     point->pi = 0;
     for (PetscInt i = 0; i < 9; i++) point->pi += point->P[i] * ((i % 4 ? 0 : 1) + point->H[i]);
     point->third = third * point->pi;

@@ -234,10 +234,8 @@ PETSC_INTERN PetscErrorCode TransferBuildObstacleRows(Transfer, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetAllocate(PetscInt, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
 PETSC_INTERN int            ShareCompare(const void *, const void *, void *);
-PETSC_INTERN PetscErrorCode RowSetConnectColumns(MPI_Comm, PetscInt, PetscInt, RowSet *);
 PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
                                 const PetscReal[]);
-PETSC_INTERN PetscReal RowBendCounts(PetscReal);
 PETSC_INTERN PetscReal RowBow(PetscInt, PetscInt, const PetscReal *[], const PetscReal *[], const PetscReal[]);
 PETSC_INTERN void      RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);

@@ -122,7 +122,7 @@ static PetscBool IsOnEdge(const PetscReal normal[])
 }
 
 /* How far a bend counts, from 1 to 0, by the cosine of the angle of the normals */
-PetscReal RowBendCounts(PetscReal cosine)
+static PetscReal BendCounts(PetscReal cosine)
 {
   return PetscMin(1, PetscMax(0, (cosine - EDGE) / (BENT - EDGE)));
 }
@@ -137,8 +137,8 @@ void RowNormal(PetscInt dim, PetscInt n, PetscReal share, const PetscReal node[]
   for (PetscInt j = 0; j < n; j++)
     for (PetscInt d = 0; d < dim; d++) partner[d] -= weights[j] * normals[j][d];
   if (Normalize(partner) > 0) cosine = Dot(partner, node);
-  of_partner = share * RowBendCounts(cosine);
-  of_node    = 1 - share + PetscMax(0, 2 * share - 1) * (1 - RowBendCounts(cosine)); /* at an edge not nothing */
+  of_partner = share * BendCounts(cosine);
+  of_node    = 1 - share + PetscMax(0, 2 * share - 1) * (1 - BendCounts(cosine)); /* at an edge not nothing */
   for (PetscInt d = 0; d < 3; d++) {
     sum[d] = d < dim ? of_node * node[d] + of_partner * partner[d] : 0;
     square += PetscSqr(sum[d]);
@@ -164,7 +164,7 @@ PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscRea
       plane += normals[j][d] * (partners[j][d] - x[d]);
       cosine += normals[j][d] * normal[d];
     }
-    counts = PetscMin(counts, RowBendCounts(-cosine));
+    counts = PetscMin(counts, BendCounts(-cosine));
     if (counts == 0) return 0;
     bulge += 0.5 * weights[j] * (along - plane / cosine);
   }

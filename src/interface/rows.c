@@ -85,7 +85,7 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
 }
 
 /* Numbers the distinct nodes of the partner that the shares name, and makes the star forest that brings their vectors from their owners */
-PetscErrorCode RowSetConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n, RowSet *set)
+static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n, RowSet *set)
 {
   const PetscInt count = set->offsets[n];
   PetscInt      *dofs;
@@ -344,7 +344,7 @@ PetscErrorCode TransferSetUpColumns(Transfer transfer, RowSet *rows, PetscBool c
   PetscFunctionBegin;
   transfer->columns_present = PETSC_FALSE;
   if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
-  if (connects) PetscCall(RowSetConnectColumns(transfer->comm, transfer->neumann->data.n_owned, transfer->n, rows));
+  if (connects) PetscCall(ConnectColumns(transfer->comm, transfer->neumann->data.n_owned, transfer->n, rows));
   n = 3 * rows->n_columns;
   PetscCall(PetscFree4(transfer->column_x, transfer->column_normals, transfer->column_moved, transfer->column_reference));
   PetscCall(PetscMalloc4(n, &transfer->column_x, n, &transfer->column_normals, n, &transfer->column_moved, n, &transfer->column_reference));

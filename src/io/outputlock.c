@@ -51,7 +51,7 @@ static void ReadHolder(int file, size_t size, char holder[])
 }
 
 /* Keeps other runs from writing to a path; an error if one does now. Where the file system has no locks, none is taken. Collective */
-PetscErrorCode OutputLocksTake(MPI_Comm comm, OutputLocks *locks, const char option[], const char path[])
+static PetscErrorCode TakeLock(MPI_Comm comm, OutputLocks *locks, const char option[], const char path[])
 {
   char        holder[64] = "", resolved[PETSC_MAX_PATH_LEN];
   int         error      = 0;
@@ -104,6 +104,6 @@ PetscErrorCode OutputLock(Output output)
   if (output->locked) PetscFunctionReturn(PETSC_SUCCESS);
   output->locked = PETSC_TRUE;
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(paths); i++)
-    if (paths[i][0]) PetscCall(OutputLocksTake(comm, &output->locks, options[i], paths[i]));
+    if (paths[i][0]) PetscCall(TakeLock(comm, &output->locks, options[i], paths[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

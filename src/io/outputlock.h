@@ -10,5 +10,4 @@ typedef struct {
   char path[OUTPUT_LOCKS][PETSC_MAX_PATH_LEN]; /* of the files that are locked */
 } OutputLocks;
 
-PETSC_INTERN PetscErrorCode OutputLocksTake(MPI_Comm, OutputLocks *, const char[], const char[]);
 PETSC_INTERN PetscErrorCode OutputLocksRelease(OutputLocks *);

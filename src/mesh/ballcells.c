@@ -211,7 +211,7 @@ static PetscErrorCode AddBack(MeshFile *file, const Ball *ball, PetscInt sphere)
 }
 
 /* Makes the nodes of a rod of those of the disc that is its section, section by section */
-PetscErrorCode BallDrawOut(BallGrid *grid)
+static PetscErrorCode DrawOut(BallGrid *grid)
 {
   MeshFile      *file     = grid->file;
   const PetscInt sections = grid->ball->sections + 1; /* of nodes */
@@ -252,7 +252,7 @@ PetscErrorCode MeshFillBall(BallGrid *grid)
   for (PetscInt i = 0; i < grid->file->n_nodes; i++)
     for (PetscInt d = 0; d < 3; d++)
       grid->file->coordinates[3 * i + d] = ball->centre[d] + ball->radius * grid->file->coordinates[3 * i + d];
-  if (ball->sections) PetscCall(BallDrawOut(grid));
+  if (ball->sections) PetscCall(DrawOut(grid));
   PetscCall(AddCells(grid));
   PetscCall(AddSurface(grid->file, ball, 1, "surface"));
   sphere = grid->file->n_runs - 1;

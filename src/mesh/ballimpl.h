@@ -39,7 +39,6 @@ PETSC_INTERN PetscErrorCode BallAddRange(const BallGrid *, const BallBlock *, Pe
 PETSC_INTERN PetscErrorCode BallChooseOrder(const char[], Ball *);
 PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);
 PETSC_INTERN PetscInt       BallGetNode(const BallGrid *, const BallBlock *, const PetscInt[3]);
-PETSC_INTERN PetscErrorCode BallDrawOut(BallGrid *);
 PETSC_INTERN PetscBool      BallBlockIsMirrored(const BallBlock *);
 PETSC_INTERN PetscInt       BallFirstCorner(const Ball *, const BallBlock *, PetscInt, const PetscInt[], const PetscInt[3]);
 PETSC_INTERN PetscBool      BallCellIsConvex(const BallGrid *, const BallBlock *, const PetscInt[], const PetscReal *[]);

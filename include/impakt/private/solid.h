@@ -95,7 +95,6 @@ PETSC_INTERN PetscErrorCode ElementPlastic_Solid(Element, PetscReal *, PetscReal
 PETSC_INTERN PetscErrorCode ElementPoints_Solid(Element, PetscInt, PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ElementNearest_Solid(Element, PetscInt, const PetscReal[], PetscReal[], PetscReal *);
 PETSC_EXTERN void           SolidTangent(const Solid *, PetscInt, PetscInt, const PetscReal H[9], PetscReal tangent[81]);
-PETSC_EXTERN void           SolidPointStress(const Solid *, PetscInt, PetscInt, const PetscReal H[9], PetscReal P[9]);
 PETSC_EXTERN void           SolidTurnTangent(const PetscReal H[9], PetscReal tangent[81]);
 
 /* sigma = P F^T / det F; of linear materials P, for which they are the same */

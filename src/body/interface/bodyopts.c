@@ -156,7 +156,7 @@ static PetscErrorCode ReadTimeStep(Body body, PetscBool *hidden)
 }
 
 /* Type, substep and parameters; what the program has chosen holds where the options are silent */
-PetscErrorCode BodySetTimeFromOptions(Body body)
+static PetscErrorCode ReadTime(Body body)
 {
   const char *prefix = ((PetscObject)body)->prefix;
   char        type[64], full[160];
@@ -231,7 +231,7 @@ PetscErrorCode BodySetFromOptions(Body body)
   PetscCall(BodySetUpCells(body));
   PetscCall(ElementSetFromOptions(body->model.element));
   PetscCall(BodySetUpMesh(body));
-  PetscCall(BodySetTimeFromOptions(body));
+  PetscCall(ReadTime(body));
   PetscCall(ReadMass(body));
   PetscCall(ReadStatic(body));
   PetscCall(ReadDamping(body));

@@ -3,7 +3,6 @@
 #include <body/layout/cells.h>
 
 PETSC_INTERN PetscErrorCode BodySetUpMesh(Body);
-PETSC_INTERN PetscErrorCode BodySetTimeFromOptions(Body);
 PETSC_INTERN PetscErrorCode BodySetUpIntegrator(Body);
 PETSC_INTERN PetscErrorCode BodySetUpMassType(Body);
 PETSC_INTERN PetscErrorCode BodyNoteHeld(Body);

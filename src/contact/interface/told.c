@@ -117,7 +117,7 @@ static void BeginState(const PetscReal sums[], const PetscReal friction[], Conta
 }
 
 /* States of all that is told; collective */
-PetscErrorCode ContactTellStates(Contact contact, ContactPairState states[])
+static PetscErrorCode TellStates(Contact contact, ContactPairState states[])
 {
   ContactTold *told = &contact->neighbours.told;
 
@@ -176,7 +176,7 @@ PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairSt
     ContactPairState *states;
 
     PetscCall(PetscMalloc1(contact->neighbours.told.n, &states));
-    PetscCall(ContactTellStates(contact, states));
+    PetscCall(TellStates(contact, states));
     *state = states[pair];
     PetscCall(PetscFree(states));
   } else PetscCall(ContactComputePairStates(contact, pair, pair + 1, state));
@@ -203,7 +203,7 @@ PetscErrorCode ContactGetPairStates(Contact contact, ContactPairState states[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->n_pairs) PetscAssertPointer(states, 2);
-  if (contact->neighbours.come_and_go) PetscCall(ContactTellStates(contact, states));
+  if (contact->neighbours.come_and_go) PetscCall(TellStates(contact, states));
   else PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -4,14 +4,14 @@
 
 static PetscFunctionList RowLawList = NULL;
 
-PetscErrorCode RowLawRegister(const char name[], PetscErrorCode (*create)(RowLaw *))
+static PetscErrorCode Register(const char name[], PetscErrorCode (*create)(RowLaw *))
 {
   PetscFunctionBegin;
   PetscCall(PetscFunctionListAdd(&RowLawList, name, create));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-#define ROW_LAW_REGISTER(law) PetscCall(RowLawRegister(#law, RowLawCreate_##law));
+#define ROW_LAW_REGISTER(law) PetscCall(Register(#law, RowLawCreate_##law));
 
 PetscErrorCode RowLawRegisterAll(void)
 {

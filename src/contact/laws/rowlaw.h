@@ -58,7 +58,6 @@ typedef struct {
                PetscReal history[]); /* what these are after a step with such a gap */
 } RowLaw;
 
-PETSC_INTERN PetscErrorCode RowLawRegister(const char[], PetscErrorCode (*)(RowLaw *));
 PETSC_INTERN PetscErrorCode RowLawRegisterAll(void);
 PETSC_INTERN PetscErrorCode RowLawDestroyList(void);
 PETSC_INTERN PetscErrorCode RowLawCreate(const char[], RowLaw *);

@@ -28,7 +28,7 @@ static PetscReal GetStiffness(Contact contact, const ContactStepper *stepper, co
 }
 
 /* What the law of a row stores at a gap at the end of the step [J] */
-PetscReal ContactStepperStored(Contact contact, PetscInt i, PetscReal gap)
+static PetscReal Stored(Contact contact, PetscInt i, PetscReal gap)
 {
   const ContactStepper *stepper = (const ContactStepper *)contact->data;
 
@@ -38,7 +38,7 @@ PetscReal ContactStepperStored(Contact contact, PetscInt i, PetscReal gap)
 /* What the law of a row has stored in the step, and its damage has taken [J] */
 PetscReal ContactStepperTaken(Contact contact, const ContactStepper *stepper, PetscInt i)
 {
-  return ContactStepperStored(contact, i, contact->end.gap[i]) -
+  return Stored(contact, i, contact->end.gap[i]) -
          0.5 * GetStiffness(contact, stepper, stepper->history, i) * PetscSqr(contact->start.gap[i]) + contact->energy.broken[i];
 }
 
@@ -47,7 +47,7 @@ PetscErrorCode ContactStepperSetUpGlue(Contact contact, ContactStepper *stepper)
   PetscFunctionBegin;
   stepper->glued = ContactAnyPairHas(contact, CONTACT_LAW_GLUE);
   if (!stepper->glued) PetscFunctionReturn(PETSC_SUCCESS);
-  contact->ops->stored = ContactStepperStored;
+  contact->ops->stored = Stored;
   PetscCall(PetscCalloc3(ROW_LAW_PARAMETERS * contact->n_pairs, &stepper->parameters, ROW_LAW_HISTORY * contact->rows.n, &stepper->history,
                          ROW_LAW_HISTORY * contact->rows.n, &stepper->grown));
   for (PetscInt p = 0; p < contact->n_pairs; p++)

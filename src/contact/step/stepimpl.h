@@ -165,7 +165,6 @@ PETSC_INTERN PetscErrorCode ContactStepperAccept(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperVisit(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactStepperDestroy(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperStep(Contact);
-PETSC_INTERN PetscReal      ContactStepperStored(Contact, PetscInt, PetscReal);
 PETSC_INTERN PetscReal      ContactStepperTaken(Contact, const ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperBeginGlue(Contact, ContactStepper *);
