@@ -191,7 +191,7 @@ static PetscErrorCode TakeAlternation(Contact contact, size_t size, char type[])
   Options Database Keys:
 + -contact_pairs a:b,b~c - pairs of bodies, Dirichlet side first, or, with a tilde, in the order that is better; a.top:b.bottom for
                            certain surfaces; default: the two bodies, where there are two
-. -contact_type (schwarz|alternation|penalty|lagrange|augmented_lagrangian) - the contact method, whose page lists its own options
+. -contact_type (schwarz|alternation|penalty|lagrange|augmented_lagrangian) - the contact method, whose page has its main options
 . -contact_law (frictionless|tied|bonded|coulomb|...), -contact_law_<pair>  - what the surfaces do to each other, of all pairs; of one
 - -contact_...           - all others, with units and defaults in options/README.md, which `impakt -help` prints too
 

@@ -261,14 +261,10 @@ PetscErrorCode ContactStepperDestroy(Contact contact)
    CONTACT_SCHWARZ - the contact step: forces of rows by a rule and a law; `CONTACT_FORCE` is another name
 
    Options Database Keys:
-+  -contact_monitor                              - a line for each pass of a step
-.  -contact_rule (auto|impulse|linear)           - how forces run within a step, and when a row counts as closed
-.  -schwarz_snes_type (nrichardson|anderson|ngmres|qn) - the outer iteration
-.  -schwarz_snes_rtol r, -schwarz_snes_atol a    - its tolerance [parts of the largest way that contact makes a row go in the step; m]
-.  -schwarz_snes_max_it n                        - its limit
-.  -law_snes_type (newtonls|...), -law_snes_max_it n - how the law of all rows is solved: Newton's method, and its limit
-.  -law_snes_rtol r                              - its tolerance [parts of the largest force]
--  -law_nodes_snes_max_it n                      - limit of sweeps node by node, where Newton's method repeats itself
++  -contact_monitor                    - a line for each pass of a step
+.  -contact_rule (auto|impulse|linear) - how forces run within a step, and when a row counts as closed
+.  -schwarz_snes_...                   - the outer iteration, a `SNES`, with defaults in options/README.md
+-  -law_snes_...                       - how the law of all rows is solved: Newton's method, and its limits
 
    Level: beginner
 

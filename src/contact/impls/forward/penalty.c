@@ -123,12 +123,10 @@ static PetscErrorCode Create(Contact contact)
    CONTACT_PENALTY - contact forces in proportion to the penetration, or to its rate
 
    Options Database Keys:
-+  -contact_penalty tau                   - penalty parameter [N/m^3; N/m in one dimension]
-.  -contact_penalty_scale s               - where tau is not given: as many times the stiffness of an element of each side, one behind the
-                                            other; 10 for massless contact nodes, 1 for others
++  -contact_penalty tau                    - penalty parameter [N/m^3; N/m in one dimension]; else by -contact_penalty_scale
 .  -contact_constraint (gap|gap_rate|both) - springs, dampers in their place, or both
-.  -contact_penalty_damping c             - damping [N s/m^3; N s/m in one dimension], required by dampers
--  -schwarz_snes_..., -law_snes_...       - the outer iteration, and how the law of rows is solved, as with `CONTACT_SCHWARZ`
+.  -contact_penalty_damping c              - damping [N s/m^3; N s/m in one dimension], required by dampers
+-  -schwarz_snes_..., -law_snes_...        - the outer iteration, and how the law of rows is solved, as with `CONTACT_SCHWARZ`
 
    Level: beginner
 
