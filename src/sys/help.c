@@ -1,4 +1,4 @@
-/* The screens of -help, -help TOPIC, -help WORD and -version.  PETSc prints its own for these options at its start and then lets the
+/* The screens of -help, -help TOPIC, -help WORD and -version. PETSc prints its own for these options at its start and then lets the
    program run, so they are looked for first and kept from PETSc. */
 #include <impakt.h>
 #include <petscts.h>

@@ -1,6 +1,6 @@
 /* Forces on the rows of a body that no trace has, impulses on them, and the displacements that they bring: the interface compliance. */
 #pragma once
-#include <impakt/private/bodyrows.h>
+#include <impakt/body.h>
 
 /* How a force on a body runs in the course of a controller step: from that which the last step has ended with to that at the end of this
    one, or the same throughout */
@@ -16,7 +16,7 @@ PETSC_EXTERN PetscErrorCode BodySetConstantForces(Body, PetscInt, const PetscInt
 PETSC_EXTERN PetscErrorCode BodyEndConstantForces(Body, const PetscScalar[], const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodySetMeanForces(Body, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode BodyAddImpulses(Body, BodyStepSide, PetscBool, const PetscReal[3], const PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyClearAcceleration(Body, BodyCondition[]);
+PETSC_EXTERN PetscErrorCode BodyClearAcceleration(Body, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode BodyGetNodalDiagonal(Body, BodyForceShape, Vec *);
 PETSC_EXTERN PetscErrorCode BodyGetNodalCompliance(Body, BodyForceShape, PetscInt, const PetscInt[], const PetscInt *[], PetscInt *,
                                                    const PetscScalar *[]);

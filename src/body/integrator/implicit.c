@@ -111,7 +111,7 @@ static PetscErrorCode SetUp(Body body)
      the solutions with a mass that is not diagonal */
   body->integrator->repeats_constant = (PetscBool)(body->model.linear && body->integrator->affine && !body->layer.exists &&
                                                    body->time.substeps == 1 && implicit->gamma == 2 * implicit->beta &&
-                                                   (body->rows.size == 1 || body->mass.diagonal));
+                                                   body->rows.size == 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -1,6 +1,10 @@
 /* Corrections of a state by impulses on the rows: at the end of a controller step, before it is accepted, or at its start. */
 #include <body/layout/bodyimpl.h>
 
+/* Part of the acceleration of rows that may be left, and iterations to get there at most: rows that depend on each other leave round-off */
+#define LEFT_OVER      1e-14
+#define MAX_ITERATIONS 1000
+
 /* change = M_L^{-1} B^T impulse with the lumped mass M_L, zero on massless nodes */
 static PetscErrorCode SolveLumpedMassOfRows(Body body, const PetscScalar impulse[], Vec change)
 {
@@ -36,22 +40,43 @@ PetscErrorCode BodyAddImpulses(Body body, BodyStepSide side, PetscBool lumped, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* a -= B^T (B B^T)^{-1} B a at the end of the controller step, on rows prescribed under these conditions. Before BodySave(). Collective. */
-PetscErrorCode BodyClearAcceleration(Body body, BodyCondition conditions[])
+/* B x on some rows, zero on the others */
+static PetscErrorCode MultiplyMarked(Body body, const PetscBool marked[], Vec x, Vec y)
 {
-  BodyRows            *rows         = &body->rows;
-  BodyCondition *const own          = rows->conditions;
-  const PetscInt       n_prescribed = rows->n_prescribed;
+  PetscScalar *row;
 
   PetscFunctionBegin;
-  rows->conditions   = conditions;
-  rows->n_prescribed = 1;
-  PetscCall(BodyUpdateGram(body));
-  PetscCall(BodyPrescribe(body, NULL, 0, body->state.a));
-  rows->conditions   = own;
-  rows->n_prescribed = n_prescribed;
-  PetscCall(BodyUpdateGram(body));
-  PetscCall(BodyWriteTrace(body, rows->matrix, body->state.a, body->traces.acceleration, body->time.substeps));
+  PetscCall(MatMult(body->rows.free_matrix, x, y));
+  PetscCall(VecGetArray(y, &row));
+  for (PetscInt i = 0; i < body->rows.local; i++)
+    if (!marked[i]) row[i] = 0;
+  PetscCall(VecRestoreArray(y, &row));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* a -= B^T (B B^T)^{-1} B a on some rows at the end of the controller step, by conjugate gradients, in one iteration if rows are
+   orthonormal. Before BodySave(). Collective. */
+PetscErrorCode BodyClearAcceleration(Body body, const PetscBool rows[])
+{
+  Vec         residual = body->work.rows[0], direction = body->work.rows[1], product = body->work.rows[2], change = body->work.nodes[2];
+  PetscScalar square, first, last, curvature;
+
+  PetscFunctionBegin;
+  PetscCall(MultiplyMarked(body, rows, body->state.a, residual));
+  PetscCall(VecCopy(residual, direction));
+  PetscCall(VecDot(residual, residual, &first));
+  square = first;
+  for (PetscInt k = 0; k < MAX_ITERATIONS && PetscRealPart(square) > PetscSqr(LEFT_OVER) * PetscRealPart(first); k++) {
+    PetscCall(MatMultTranspose(body->rows.free_matrix, direction, change));
+    PetscCall(MultiplyMarked(body, rows, change, product));
+    PetscCall(VecDot(direction, product, &curvature));
+    PetscCall(VecAXPY(body->state.a, -square / curvature, change));
+    PetscCall(VecAXPY(residual, -square / curvature, product));
+    last = square;
+    PetscCall(VecDot(residual, residual, &square));
+    PetscCall(VecAYPX(direction, square / last, residual));
+  }
+  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.a, body->traces.acceleration, body->time.substeps));
   body->repeats = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

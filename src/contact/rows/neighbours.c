@@ -243,6 +243,9 @@ PetscErrorCode ContactSetUpNeighbours(Contact contact, ContactPreference prefere
   const PetscInt     n          = contact->n_bodies;
 
   PetscFunctionBegin;
+  PetscCheck(PetscSqr((PetscInt64)(n + contact->n_obstacles)) <= PETSC_INT_MAX, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+             "%" PetscInt_FMT " bodies and obstacles are too many for pairs that come and go; take a PETSc with indices of 64 bits",
+             n + contact->n_obstacles);
   neighbours->come_and_go = PETSC_TRUE;
   PetscCall(
       PetscMalloc5(6 * n, &neighbours->boxes, n, &neighbours->edge, n, &neighbours->lower, n, &neighbours->sorted, n, &neighbours->place));

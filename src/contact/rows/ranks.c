@@ -1,7 +1,7 @@
 /* What all ranks agree on. */
 #include <contact/parts.h>
 
-/* A flag that is 1 on any rank becomes 1 on all ranks; it is 0 or 1 before */
+/* A flag becomes the largest of all ranks: 1 where it is 1 on any */
 PetscErrorCode ContactOr(Contact contact, int *flag)
 {
   PetscFunctionBegin;

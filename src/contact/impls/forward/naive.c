@@ -50,8 +50,8 @@ PetscErrorCode ContactStabilize(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const ContactBodyRows *of = &contact->body_rows[b];
 
-    for (PetscInt k = 0; k < of->n; k++) contact->work.conditions[k] = contact->end.active[of->rows[k]] ? BODY_PRESCRIBED : BODY_FREE;
-    PetscCall(BodyClearAcceleration(contact->bodies[b], contact->work.conditions));
+    for (PetscInt k = 0; k < of->n; k++) contact->work.flags[k] = contact->end.active[of->rows[k]];
+    PetscCall(BodyClearAcceleration(contact->bodies[b], contact->work.flags));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
