@@ -9,6 +9,10 @@ static const char *const free_options[] = {
     "output_", "checkpoint", "restart",     "max_wall_time", "monitor_interval", "progress", "time_end",          "options_", "log_",
     "info",    "malloc",     "memory_view", "citations",     "skip_petscrc",     "on_error", "no_signal_handler", "all_",     "material_"};
 
+typedef struct {
+  const char *name, *value;
+} Setting;
+
 static PetscBool IsFree(const char name[])
 {
   const size_t length = strlen(name);
@@ -18,53 +22,62 @@ static PetscBool IsFree(const char name[])
   return (PetscBool)(length > 5 && !strcmp(name + length - 5, "_view"));
 }
 
-/* Adds what one of two sets of options has differently from the other, or in the second pass, `back`, alone */
-static PetscErrorCode AddDifferences(PetscOptions from, PetscOptions to, PetscBool back, size_t size, char differences[])
+/* Names and values of all options in a text, see OptionsTextNext() */
+static PetscErrorCode Split(char text[], PetscInt *n, Setting *settings[])
 {
-  char       *all, *text;
-  const char *name, *value, *other;
-  PetscBool   has;
+  PetscInt room = 1;
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetAll(from, &all));
-  for (text = all; OptionsTextNext(&text, &name, &value);) {
-    const size_t used = strlen(differences);
+  for (const char *c = text; *c; c++) room += *c == ' ';
+  PetscCall(PetscMalloc1(room, settings));
+  for (*n = 0; OptionsTextNext(&text, &(*settings)[*n].name, &(*settings)[*n].value); (*n)++);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-    if (IsFree(name)) continue;
-    PetscCall(PetscOptionsFindPair(to, NULL, name, &other, &has));
-    if (has && (back || !strcmp(other ? other : "", value))) continue;
-    PetscCall(PetscSNPrintf(differences + used, size - used, "%s%s%s%s%s (it had %s)", used ? ", " : "", back || has ? "" : "no ", name,
-                            back || has ? " " : "",
-                            back  ? value
-                            : has ? other
-                                  : "",
-                            back       ? "none"
-                            : value[0] ? value
-                                       : "it"));
+static const char *Find(PetscInt n, const Setting settings[], const char name[])
+{
+  for (PetscInt i = 0; i < n; i++)
+    if (!strcmp(settings[i].name, name)) return settings[i].value;
+  return NULL;
+}
+
+/* Adds what differs in one list from the other; in the second pass only what is not in the first list at all */
+static PetscErrorCode AddDifferences(PetscInt n, const Setting from[], PetscInt m, const Setting to[], PetscBool back, size_t size,
+                                     char text[])
+{
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++) {
+    const char  *other = Find(m, to, from[i].name);
+    const size_t used  = strlen(text);
+
+    if (IsFree(from[i].name) || (other && (back || !strcmp(other, from[i].value)))) continue;
+    if (back) PetscCall(PetscSNPrintf(text + used, size - used, "%s%s %s (it had none)", used ? ", " : "", from[i].name, from[i].value));
+    else if (other)
+      PetscCall(PetscSNPrintf(text + used, size - used, "%s%s %s (it had %s)", used ? ", " : "", from[i].name, other, from[i].value));
+    else
+      PetscCall(PetscSNPrintf(text + used, size - used, "%sno %s (it had %s)", used ? ", " : "", from[i].name,
+                              from[i].value[0] ? from[i].value : "it"));
   }
-  PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* An error that names the options of this run which differ from those of the run that it continues. Collective */
 PetscErrorCode OutputCompareOptions(MPI_Comm comm, const char before[], PetscBool allow, const char path[])
 {
-  char        *texts[2], differences[2048] = "";
-  PetscOptions options[2]; /* not the database itself, which would count all as read */
+  char    *texts[2], differences[2048] = "";
+  Setting *settings[2];
+  PetscInt n[2];
 
   PetscFunctionBegin;
   PetscCall(PetscStrallocpy(before, &texts[0]));
   PetscCall(PetscOptionsGetAll(NULL, &texts[1]));
+  for (int k = 0; k < 2; k++) PetscCall(Split(texts[k], &n[k], &settings[k]));
+  PetscCall(AddDifferences(n[0], settings[0], n[1], settings[1], PETSC_FALSE, sizeof(differences), differences));
+  PetscCall(AddDifferences(n[1], settings[1], n[0], settings[0], PETSC_TRUE, sizeof(differences), differences));
   for (int k = 0; k < 2; k++) {
-    char       *text = texts[k];
-    const char *name, *value;
-
-    PetscCall(PetscOptionsCreate(&options[k]));
-    while (OptionsTextNext(&text, &name, &value)) PetscCall(PetscOptionsSetValue(options[k], name, value));
+    PetscCall(PetscFree(settings[k]));
     PetscCall(PetscFree(texts[k]));
   }
-  for (int k = 0; k < 2; k++) PetscCall(AddDifferences(options[k], options[1 - k], k == 1, sizeof(differences), differences));
-  for (int k = 0; k < 2; k++) PetscCall(PetscOptionsDestroy(&options[k]));
   PetscCheck(!differences[0] || allow, comm, PETSC_ERR_USER_INPUT,
              "-restart %s is of a run with other options: %s; give the same ones, or -restart_allow_changes; -restart_state in place of "
              "-restart begins a new run with the state of that one",
