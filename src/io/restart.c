@@ -61,7 +61,7 @@ Bodies that the checkpoint does not have begin as their options say.
 
   `OutputRestart()` takes the state, unless it has a checkpoint to go on from.
 
-.seealso: `Output`, `OutputRestart()`, `OutputSetRestart()`, `BodySetInitialState()`, `ContactCheckInitialGap()`
+.seealso: `Output`, `OutputRestart()`, `OutputSetRestart()`, `BodySetInitialState()`
 @*/
 PetscErrorCode OutputSetRestartState(Output output, const char path[])
 {

@@ -186,7 +186,8 @@ static const KnownOption options[] = {
     {"contact", OPTION_OF_RUN, "contact_pairs", "a:b,b~c|auto|none",
      "pairs that may touch, Dirichlet side first, or, with a tilde, in the order that is better; a.xmax:b.xmin for certain surfaces, a.all "
      "for the whole boundary; a:o with an obstacle; "
-     "auto: all with all; more than 100 pairs of bodies come and go as bodies are near, where -contact_facing is false, and not with -contact_type alternation"},
+     "auto: all with all; more than 100 pairs of bodies come and go as bodies are near, where -contact_facing is false, and not with "
+     "-contact_type alternation"},
     {"contact", OPTION_OF_RUN, "contact_rows", "first|second",
      "which body of a pair has a contact row for each of its nodes, and takes displacements: the one named first, which is the default, or "
      "second; or a value for each pair, with commas"},

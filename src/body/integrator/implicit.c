@@ -107,8 +107,8 @@ static PetscErrorCode SetUp(Body body)
   }
   /* a mass matrix that is not diagonal hands the acceleration of prescribed nodes to others */
   if (body->rows.have_mass && body->mass.matrix) body->integrator->repeats_prescribed = PETSC_FALSE;
-  /* else velocities at the end, and the dashpots' forces, have a part of the acceleration at the start; ranks would wait for each other in
-     the solutions with a mass that is not diagonal */
+  /* else velocities at the end, and the dashpots' forces, have a part of the acceleration at the start; several ranks would wait for each
+     other in what forces on the rows do there */
   body->integrator->repeats_constant = (PetscBool)(body->model.linear && body->integrator->affine && !body->layer.exists &&
                                                    body->time.substeps == 1 && implicit->gamma == 2 * implicit->beta &&
                                                    body->rows.size == 1);

@@ -168,9 +168,9 @@ static PetscErrorCode FindPlaces(Body body, PetscInt point, PetscReal *nearest)
   *nearest = PETSC_MAX_REAL;
   for (PetscInt e = 0; e < element->count; e++) {
     Place     place = {.point = point, .element = e, .weight = 1};
-    PetscReal size, distance;
+    PetscReal size, distance = DistanceFromBox(body, e, x, &size);
 
-    if (DistanceFromBox(body, e, x, &size) > *nearest + INSIDE * size) continue;
+    if (distance > *nearest + INSIDE * size) continue;
     PetscCall((*element->ops->nearest)(element, e, x, place.shape, &distance));
     if (distance <= INSIDE * size) {
       distance = 0;

@@ -166,10 +166,10 @@ static PetscErrorCode CheckPlanes(Contact contact)
         planes = (PetscBool)(type == OBSTACLE_PLANE);
       }
       for (PetscInt d = 0; d < 3 && planes; d++) along += normals[0][d] * normals[1][d];
-      PetscCheck(
-          along < 1 - PARALLEL, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-          "-contact_pairs %s,%s: two planes with one normal, of which the nearer one alone is ever touched; name the pairs in -contact_pairs without the other one",
-          pairs[0]->name, pairs[1]->name);
+      PetscCheck(along < 1 - PARALLEL, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+                 "-contact_pairs %s,%s: two planes with one normal, of which the nearer one alone is ever touched; name the pairs in "
+                 "-contact_pairs without the other one",
+                 pairs[0]->name, pairs[1]->name);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -198,7 +198,8 @@ static PetscErrorCode ContactDestroy_Alternation(Contact contact)
 
    Note:
    A node may belong to several pairs: in a corner, or over the joint of two bodies side by side. Partners side by side share its
-displacement and force by the areas that they cover, and the mean of their gaps is closed. Two plane obstacles with one normal at one body are an error.
+displacement and force by the areas that they cover, and the mean of their gaps is closed. Two plane obstacles with one normal at one body
+are an error.
 
    Reference:
 .  * - J. Hoy, I. Tezaur, A. Mota, The Schwarz alternating method for multiscale contact mechanics, 2021
