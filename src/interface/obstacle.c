@@ -1,4 +1,5 @@
 /* Rigid obstacles: the class, its shapes, and how far a point is from one. */
+#include <impakt/private/transfer.h>
 #include "obstacleimpl.h"
 #include <sys/units.h>
 

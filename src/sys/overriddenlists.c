@@ -38,7 +38,7 @@ static PetscErrorCode LookAt(const char option[], const char value[], const char
   const char     *name;
 
   PetscFunctionBegin;
-  if (!search->behind && strcasecmp(option, "bodies") && strcasecmp(option, "obstacles")) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!search->behind && strcasecmp(option, "bodies") != 0 && strcasecmp(option, "obstacles") != 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (again) {
     search->counts = PETSC_FALSE;
     PetscCall(PetscSNPrintf(search->last, sizeof(search->last), "-%s %s (%s)", option, value ? value : "", origin));
