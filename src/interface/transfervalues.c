@@ -29,7 +29,7 @@ static PetscErrorCode SetRow(Transfer transfer, PetscInt i, const PetscInt row[2
   PetscFunctionBegin;
   for (PetscInt d = 0; d < n; d++) {
     columns[d] = transfer->dirichlet->data.dofs[i] + first + d;
-    values[d]  = direction[d];
+    values[d]  = -direction[d];
   }
   if (rows[0]) PetscCall(MatSetValues(rows[0], 1, &row[0], n, columns, values, INSERT_VALUES));
   if (!rows[1] || !set->opposite[i]) PetscFunctionReturn(PETSC_SUCCESS);
@@ -48,9 +48,9 @@ static PetscErrorCode SetRow(Transfer transfer, PetscInt i, const PetscInt row[2
 
 /* Puts the rows of this rank into the matrices of both sides, which are assembled afterwards. `begin`: global numbers of the first row
    of this rank in both matrices; `directions`: of each row 3 numbers, or NULL: with one component the normals of the rows, else the unit
-   vectors, so that sum_j P_ij u_j - u_i has as many rows as components. The first matrix gets the direction at the displacements of the
-   node, the second one the same times the weights, at those of the nodes opposite. Either may be NULL. A force f on the gap acts on the
-   Neumann side as the transpose times f and on the Dirichlet side as its transpose times -f: both have the same resultant and moment. */
+   vectors, so that sum_j P_ij u_j - u_i has as many rows as components. The first matrix gets the direction times -1 at the displacements
+   of the node, the second one the direction times the weights, at those of the nodes opposite: a gap is the sum of both products. Either
+   may be NULL. A force f on the gap acts on each side as the transpose times f: both have the same resultant and moment. */
 PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], PetscInt components, const PetscReal directions[],
                                  const Mat rows[2])
 {

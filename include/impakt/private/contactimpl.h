@@ -494,12 +494,6 @@ static inline PetscInt ContactPairSign(const ContactPair *pair)
   return pair->turned ? -1 : 1;
 }
 
-/* Direction in which the force of a row acts on a body of its pair: the second is pushed along the rows, the first against them */
-static inline PetscInt ContactSign(const ContactPair *pair, PetscInt body)
-{
-  return (pair->body[1] == body) - (pair->body[0] == body);
-}
-
 /* The first row of the node that row i belongs to: that along its normal, unless the node is tied */
 static inline PetscInt ContactFirstRow(Contact contact, PetscInt i)
 {

@@ -69,7 +69,7 @@ PetscErrorCode ContactComputeGaps(Contact contact)
     for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
       const PetscInt i = contact->rows.near[k];
 
-      contact->end.gap[i] = contact->rows.initial_gap[i] + end[1][i - pair->shift[1]] - end[0][i - pair->shift[0]];
+      contact->end.gap[i] = contact->rows.initial_gap[i] + end[0][i - pair->shift[0]] + end[1][i - pair->shift[1]];
       if (contact->turns.n) contact->end.gap[i] += contact->turns.turned[i];
     }
   }
@@ -92,7 +92,7 @@ PetscErrorCode ContactComputeRates(Contact contact, PetscInt order, PetscBool at
       PetscCall(TraceGetSizes(trace, NULL, &levels));
       PetscCall(TraceGetLevel(trace, at_end ? levels : 0, &level[side]));
     }
-    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = level[1][i - pair->shift[1]] - level[0][i - pair->shift[0]];
+    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = level[0][i - pair->shift[0]] + level[1][i - pair->shift[1]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

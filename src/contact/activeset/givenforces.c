@@ -1,7 +1,7 @@
 /* All bodies under given contact forces: the step of methods that know the forces, or guess them until they fit. */
 #include <contact/parts.h>
 
-/* Forces on a body's rows at its substeps, linear from the last accepted step to `end`; along rows on Neumann sides, else against them */
+/* Forces on a body's rows at its substeps, linear from the last accepted step to `end` */
 PetscErrorCode ContactLoadRows(Contact contact, PetscInt b, const PetscReal end[])
 {
   const ContactBodyRows *of    = &contact->body_rows[b];
@@ -17,7 +17,7 @@ PetscErrorCode ContactLoadRows(Contact contact, PetscInt b, const PetscReal end[
       const PetscInt  i     = of->rows[k];
       const PetscReal start = contact->start.force[i];
 
-      force[k] = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * (start + (end[i] - start) * level / levels);
+      force[k] = start + (end[i] - start) * level / levels;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

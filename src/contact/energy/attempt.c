@@ -27,7 +27,7 @@ static PetscErrorCode MakeStep(Contact contact)
     for (PetscInt k = 0; k < of->n; k++) {
       const PetscInt i = of->rows[k];
 
-      energy->now[k]        = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * (energy->start_force[i] - energy->last_force[i]);
+      energy->now[k]        = energy->start_force[i] - energy->last_force[i];
       contact->work.rest[k] = energy->rest[i];
     }
     PetscCall(BodySetStartForce(contact->bodies[b], energy->now, contact->work.rest));

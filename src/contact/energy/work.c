@@ -54,8 +54,7 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
   PetscCall(BodyGetStepProperties(contact->bodies[b], &properties));
   PetscCall(TraceGetLevel(traces->displacement, 0, &first));
-  for (PetscInt k = 0; k < of->n; k++)
-    last[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * energy->last_force[of->rows[k]];
+  for (PetscInt k = 0; k < of->n; k++) last[k] = energy->last_force[of->rows[k]];
   for (PetscInt level = 1; level <= substeps; level++) {
     PetscScalar *before, *after;
 

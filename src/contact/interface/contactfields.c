@@ -96,7 +96,7 @@ static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried 
   }
 }
 
-/* Carries values of one kind to the nodes of a body: along the rows on Neumann sides, against them on Dirichlet sides */
+/* Carries values of one kind to the nodes of a body as the forces of its rows act on them */
 static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
 {
   Contact      contact = fields->contact;
@@ -116,7 +116,7 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
       PetscCall(TransferGetRows(pair->transfer, &rows));
       along = rows.normals[contact->dim * node + k];
     }
-    values[j] = ContactSign(pair, b) * RowValue(contact, i, along, kind);
+    values[j] = RowValue(contact, i, along, kind);
   }
   PetscCall(VecRestoreArrayWrite(fields->rows[b], &values));
   PetscCall(MatMultTranspose(contact->interfaces[b], fields->rows[b], fields->nodes[N_CARRIED * b + kind]));

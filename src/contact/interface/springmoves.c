@@ -121,7 +121,7 @@ static PetscReal Ahead(Contact contact, PetscInt i, const ContactPair *pair, Pet
 {
   const PetscReal *normal = contact->rows.normal + 3 * i, length = PetscSqrtReal(Dot(3, fall, fall));
 
-  return length > 0 ? -ContactSign(pair, body) * Dot(3, fall, normal) / length : 0;
+  return length > 0 ? (pair->body[0] == body ? 1 : -1) * Dot(3, fall, normal) / length : 0;
 }
 
 /* -1 for bodies that are held, or in contact with something that is, directly or by others; else 0 */

@@ -200,7 +200,7 @@ PetscErrorCode ContactComputeSlips(Contact contact)
     for (PetscInt k = all ? pair->near_begin : pair->acts_begin; k < last; k++) {
       const PetscInt i = rows[k], first = i - pair->shift[0], second = i - pair->shift[1];
 
-      contact->friction.slip[i] = PetscRealPart((end[1][second] - start[1][second]) - (end[0][first] - start[0][first])) +
+      contact->friction.slip[i] = PetscRealPart((end[0][first] - start[0][first]) + (end[1][second] - start[1][second])) +
                                   contact->friction.drive[i];
     }
   }
@@ -224,11 +224,7 @@ static PetscErrorCode AddLossOn(Contact contact, PetscInt b, const PetscReal sta
   PetscFunctionBegin;
   if (!of->n_acting) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-  for (PetscInt j = 0; j < of->n_acting; j++) {
-    const PetscInt k = of->acting[j], i = of->rows[k];
-
-    last[k] = ContactSign(&contact->pairs[contact->rows.pair[i]], b) * start_force[i];
-  }
+  for (PetscInt j = 0; j < of->n_acting; j++) last[of->acting[j]] = start_force[of->rows[of->acting[j]]];
   for (PetscInt level = 1; level <= substeps; level++) {
     PetscScalar *before, *after;
 

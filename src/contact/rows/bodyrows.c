@@ -163,11 +163,10 @@ PetscErrorCode ContactCreateRowMatrix(Contact contact, Mat *matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* sum += t part t, with a matrix of all rows of a body by all rows of it, and the directions t in which forces act on it */
+/* Adds a matrix of all rows of a body by all rows of it to one of all rows by all rows */
 PetscErrorCode ContactAddBodyMatrix(Contact contact, PetscInt b, Mat part, Mat sum)
 {
-  const ContactBodyRows *of      = &contact->body_rows[b];
-  const PetscInt        *pair_of = contact->ranks.row_pair;
+  const ContactBodyRows *of = &contact->body_rows[b];
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < of->n; k++) {
@@ -176,13 +175,7 @@ PetscErrorCode ContactAddBodyMatrix(Contact contact, PetscInt b, Mat part, Mat s
     PetscInt           n;
 
     PetscCall(MatGetRow(part, of->begin + k, &n, &columns, &values));
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscInt    column = of->all[columns[j]];
-      const PetscScalar value  = ContactSign(&contact->pairs[pair_of[row]], b) * ContactSign(&contact->pairs[pair_of[column]], b) *
-                                 values[j];
-
-      PetscCall(MatSetValue(sum, row, column, value, ADD_VALUES));
-    }
+    for (PetscInt j = 0; j < n; j++) PetscCall(MatSetValue(sum, row, of->all[columns[j]], values[j], ADD_VALUES));
     PetscCall(MatRestoreRow(part, of->begin + k, &n, &columns, &values));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

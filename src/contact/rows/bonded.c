@@ -41,7 +41,7 @@ static PetscErrorCode BondNode(Contact contact, const ContactPair *pair, PetscIn
   for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].displacement, 0, &start[side]));
   for (PetscInt i = first; i < first + pair->components; i++) {
     contact->rows.tied[i] = contact->rows.opposite[i] = PETSC_TRUE;
-    contact->rows.initial_gap[i]                      = PetscRealPart(start[0][i - pair->shift[0]] - start[1][i - pair->shift[1]]);
+    contact->rows.initial_gap[i]                      = -PetscRealPart(start[0][i - pair->shift[0]] + start[1][i - pair->shift[1]]);
     contact->start.gap[i] = contact->end.gap[i] = 0;
     contact->start.active[i]                    = PETSC_TRUE;
     if (i > first) contact->start.force[i] = 0;

@@ -13,7 +13,7 @@ void InverseMassGetBodyForces(Contact contact, PetscInt b, const PetscScalar for
 {
   const ContactBodyRows *of = &contact->body_rows[b];
 
-  for (PetscInt k = 0; k < of->n; k++) on_body[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * force[of->rows[k]];
+  for (PetscInt k = 0; k < of->n; k++) on_body[k] = force[of->rows[k]];
 }
 
 /* Adds what the rows of a body move by to the gaps */
@@ -21,7 +21,7 @@ void InverseMassAddBodyRows(Contact contact, PetscInt b, const PetscScalar moved
 {
   const ContactBodyRows *of = &contact->body_rows[b];
 
-  for (PetscInt k = 0; k < of->n; k++) gaps[of->rows[k]] += ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * moved[k];
+  for (PetscInt k = 0; k < of->n; k++) gaps[of->rows[k]] += moved[k];
 }
 
 /* y = C x by the bodies, one solution with the mass of each */

@@ -73,7 +73,7 @@ void ContactListActingRows(Contact contact, const PetscBool touches[])
 /* The gap of a row at the start of the step, from the displacements of both sides there */
 static void ReadStartGap(Contact contact, const ContactPair *pair, PetscScalar *const u[2], PetscInt i)
 {
-  contact->start.gap[i] = contact->rows.initial_gap[i] + PetscRealPart(u[1][i - pair->shift[1]] - u[0][i - pair->shift[0]]);
+  contact->start.gap[i] = contact->rows.initial_gap[i] + PetscRealPart(u[0][i - pair->shift[0]] + u[1][i - pair->shift[1]]);
   contact->end.gap[i]   = contact->start.gap[i];
 }
 

@@ -18,8 +18,8 @@ PetscErrorCode ContactComputeStartGaps(Contact contact)
 
     PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
     PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
-    contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + neumann[i - pair->shift[1]] -
-                                                  dirichlet[i - pair->shift[0]];
+    contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + dirichlet[i - pair->shift[0]] +
+                                                  neumann[i - pair->shift[1]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -146,12 +146,11 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
 
     if (!contact->work.hands_over[b]) continue;
     for (PetscInt k = 0; k < of->n; k++) {
-      const PetscInt     i    = of->rows[k];
-      const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
+      const PetscInt i = of->rows[k];
 
-      old[k]       = ContactSign(pair, b) * before[i];
-      now[k]       = ContactSign(pair, b) * contact->start.force[i];
-      intervals[k] = pair->intervals;
+      old[k]       = before[i];
+      now[k]       = contact->start.force[i];
+      intervals[k] = contact->pairs[contact->rows.pair[i]].intervals;
     }
     PetscCall(BodyHandOver(contact->bodies[b], old, now, intervals, fewest));
   }

@@ -236,7 +236,7 @@ static PetscErrorCode GetOpening(Contact contact, PetscInt i, PetscReal *opening
   PetscFunctionBegin;
   PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
   PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
-  *opening = PetscRealPart(neumann[i - pair->shift[1]] - dirichlet[i - pair->shift[0]]);
+  *opening = PetscRealPart(neumann[i - pair->shift[1]] + dirichlet[i - pair->shift[0]]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -263,8 +263,7 @@ static PetscErrorCode Relax(StartBalance *start)
     for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
       const PetscInt i = contact->body_rows[b].rows[k];
 
-      if (start->takes_part[i])
-        start->relaxed[i] += ContactSign(&contact->pairs[contact->rows.pair[i]], b) * PetscRealPart(start->moved[k]);
+      if (start->takes_part[i]) start->relaxed[i] += PetscRealPart(start->moved[k]);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -73,11 +73,10 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
 
   PetscFunctionBegin;
   for (PetscInt j = 0; j < of->n_acting; j++) {
-    const PetscInt  k = of->acting[j], i = of->rows[k];
-    const PetscReal sign = ContactSign(&contact->pairs[contact->rows.pair[i]], b);
+    const PetscInt k = of->acting[j], i = of->rows[k];
 
-    stepper->mine[k]   = sign * contact->end.force[i];
-    stepper->before[k] = sign * stepper->last[i];
+    stepper->mine[k]   = contact->end.force[i];
+    stepper->before[k] = stepper->last[i];
   }
   PetscCall(BodySetConstantForces(contact->bodies[b], of->n_acting, of->acting, stepper->mine, stepper->before, stepper->none));
   PetscFunctionReturn(PETSC_SUCCESS);

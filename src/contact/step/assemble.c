@@ -90,9 +90,7 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
   PetscCall(PetscArrayzero(entries->columns, total));
   PetscCall(PetscArrayzero(entries->values, total));
   for (PetscInt k = 0; k < entries->n; k++) {
-    const PetscInt     row  = entries->rows[k];
-    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[entries->places[k]]]];
-    const PetscInt    *columns;
+    const PetscInt     row = entries->rows[k], *columns;
     const PetscScalar *values;
     PetscReal          least;
     PetscInt           n, at = entries->begin[k];
@@ -103,7 +101,7 @@ static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, Petsc
     for (PetscInt e = 0; e < n; e++) {
       if (PetscAbsScalar(values[e]) <= least) continue;
       entries->columns[at]  = columns[e];
-      entries->values[at++] = ContactSign(pair, b) * values[e];
+      entries->values[at++] = values[e];
     }
     PetscCall(MatRestoreRow(contact->interfaces[b], row, &n, &columns, &values));
   }

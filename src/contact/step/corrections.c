@@ -80,7 +80,7 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     const PetscInt     end  = i + (pair->body[1] == b) * all;
 
     force[k] = problem->base[i] - stepper->told[i];
-    gone[k]  = ContactSign(pair, b) * (stepper->ends[end] - stepper->told[all + end]);
+    gone[k]  = stepper->ends[end] - stepper->told[all + end];
     work += PetscRealPart(force[k] * gone[k]);
   }
   told_work = StepperSecantMultiply(n, entries->block, force, product);

@@ -33,12 +33,6 @@ PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *ste
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The sign by which the gap of a touching row goes with a body */
-static PetscReal Sign(Contact contact, const ContactStepper *stepper, PetscInt b, PetscInt place)
-{
-  return ContactSign(&contact->pairs[contact->ranks.row_pair[stepper->rows[place]]], b);
-}
-
 /* Adds how the rows of a body go under forces on them, of this rank */
 static PetscErrorCode AddBody(Contact contact, StepperEntries *entries, PetscInt b, const PetscReal force[], PetscReal way[])
 {
@@ -52,12 +46,11 @@ static PetscErrorCode AddBody(Contact contact, StepperEntries *entries, PetscInt
     PetscCall(VecDuplicate(entries->force, &entries->way));
   }
   PetscCall(VecGetArrayWrite(entries->force, &on_body));
-  for (PetscInt k = 0; k < of->n; k++) on_body[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * force[of->rows[k]];
+  for (PetscInt k = 0; k < of->n; k++) on_body[k] = force[of->rows[k]];
   PetscCall(VecRestoreArrayWrite(entries->force, &on_body));
   PetscCall(BodyApplyCompliance(contact->bodies[b], entries->force, entries->way));
   PetscCall(VecGetArrayRead(entries->way, &moved));
-  for (PetscInt k = 0; k < of->n; k++)
-    way[of->rows[k]] += ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * PetscRealPart(moved[k]);
+  for (PetscInt k = 0; k < of->n; k++) way[of->rows[k]] += PetscRealPart(moved[k]);
   PetscCall(VecRestoreArrayRead(entries->way, &moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -179,7 +172,7 @@ static PetscErrorCode AddNear(Contact contact, ContactStepper *stepper, PetscInt
 
       if (PetscAbsScalar(values[e]) <= SMALL * PetscSqrtReal(PetscRealPart(diagonal[k] * diagonal[columns[e]]))) continue;
       places[count] = other;
-      kept[count++] = Sign(contact, stepper, b, place) * Sign(contact, stepper, b, other) * values[e];
+      kept[count++] = values[e];
     }
     PetscCall(MatSetValues(near, 1, &place, count, places, kept, ADD_VALUES));
     PetscCall(MatRestoreRow(rows[0], k, &n, &columns, &values));

@@ -85,12 +85,6 @@ static inline PetscInt NeumannBody(const ContactPair *pair)
   return pair->body[1 - pair->dirichlet];
 }
 
-/* A contact force acts along the row with this sign on the Neumann side, against it on the Dirichlet side */
-static inline PetscReal NeumannSign(const ContactPair *pair)
-{
-  return pair->dirichlet == 0 ? 1 : -1;
-}
-
 /* Row i of a pair has the number i - DirichletShift() among those of its Dirichlet side */
 static inline PetscInt DirichletShift(const ContactPair *pair)
 {

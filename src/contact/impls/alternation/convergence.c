@@ -23,8 +23,7 @@ PetscErrorCode AlternationGetForces(Contact contact, PetscScalar force[])
 
     PetscCall(TraceGetSizes(reaction, NULL, &levels));
     PetscCall(TraceGetLevel(reaction, levels, &end));
-    for (PetscInt i = pair->begin; i < pair->end; i++)
-      force[i] = contact->end.active[i] ? -NeumannSign(pair) * end[i - DirichletShift(pair)] : 0;
+    for (PetscInt i = pair->begin; i < pair->end; i++) force[i] = contact->end.active[i] ? end[i - DirichletShift(pair)] : 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -51,7 +50,7 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
   PetscCall(TraceGetSizes(has, NULL, &has_levels));
   PetscCall(TraceGetLevel(given, given_levels, &to));
   PetscCall(TraceGetLevel(has, has_levels, &from));
-  *lag = PetscAbsScalar(to[i - DirichletShift(pair)] - from[i - NeumannShift(pair)]) * alternation->controller_step / has_levels;
+  *lag = PetscAbsScalar(to[i - DirichletShift(pair)] + from[i - NeumannShift(pair)]) * alternation->controller_step / has_levels;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

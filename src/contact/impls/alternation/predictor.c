@@ -2,8 +2,8 @@
 #include "alternationimpl.h"
 #include <impakt/private/bodysweeps.h>
 
-/* By how much the displacement of the Dirichlet side exceeds that of its partner at a part (0 to 1) of the controller step, against the
-   row's direction: a gap that is open at its start closes linearly over it, or stays as it is if only its rate is constrained */
+/* What a closed gap has beside the displacements of both sides along the row at a part (0 to 1) of the controller step: a gap that is open
+   at its start closes linearly over it, or stays as it is if only its rate is constrained */
 PetscReal AlternationOffset(Contact contact, PetscInt i, PetscReal part)
 {
   const PetscReal left = contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE ? 1 : 1 - part;
@@ -30,7 +30,7 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   if (alternation->predictor == SCHWARZ_PREDICTOR_INELASTIC) {
     const PetscReal m_d = alternation->mass[pair->dirichlet][i], m_n = alternation->mass[1 - pair->dirichlet][i];
 
-    *displacement += time * (m_d * other[i - DirichletShift(pair)] + m_n * v[k]) / (m_d + m_n);
+    *displacement += time * (m_n * v[k] - m_d * other[i - DirichletShift(pair)]) / (m_d + m_n);
   }
   if (alternation->predictor == SCHWARZ_PREDICTOR_TRIAL) {
     PetscInt levels;
@@ -60,7 +60,7 @@ PetscErrorCode AlternationPredict(Contact contact)
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscInt     p = contact->rows.pair[i], levels = alternation->levels[contact->pairs[p].dirichlet][p];
     const ContactPair *pair = &contact->pairs[p];
-    const PetscReal    sign = NeumannSign(pair), width = alternation->controller_step / levels, force = contact->start.force[i];
+    const PetscReal    width = alternation->controller_step / levels, force = contact->start.force[i];
     PetscScalar       *unknown = x + alternation->offset[i], *reaction;
 
     for (PetscInt level = 1; level <= levels; level++) {
@@ -68,16 +68,16 @@ PetscErrorCode AlternationPredict(Contact contact)
       PetscScalar     position = 0;
 
       PetscCall(PredictNeumann(contact, i, level * width, part, &position));
-      position += sign * AlternationOffset(contact, i, part);
+      position = -position - AlternationOffset(contact, i, part);
       if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
-      else unknown[level - 1] = -sign * force + alternation->weight[i] * position;
+      else unknown[level - 1] = force + alternation->weight[i] * position;
     }
     /* what has been a Neumann side until now has no reaction yet */
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].reaction, 0, &reaction));
-    reaction[i - DirichletShift(pair)] = -sign * force;
+    reaction[i - DirichletShift(pair)] = force;
     if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) continue;
     PetscCall(TraceGetLevel(contact->traces[NeumannBody(pair)].reaction, 0, &reaction));
-    reaction[i - NeumannShift(pair)] = sign * force;
+    reaction[i - NeumannShift(pair)] = force;
   }
   PetscCall(VecRestoreArray(alternation->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -24,16 +24,16 @@ static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
   PetscCall(TraceGetLevel(alternation->rate[1], 1, &a));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
     const PetscInt    k     = i - NeumannShift(pair);
-    const PetscScalar moved = x[i - pair->begin] - NeumannSign(pair) * AlternationOffset(contact, i, 1) - u0[k];
+    const PetscScalar moved = -x[i - pair->begin] - AlternationOffset(contact, i, 1) - u0[k];
 
-    v[i] = dv * moved + v_v * v0[k] + v_a * a0[k];
-    a[i] = da * moved + a_v * v0[k] + a_a * a0[k];
+    v[i] = -(dv * moved + v_v * v0[k] + v_a * a0[k]);
+    a[i] = -(da * moved + a_v * v0[k] + a_a * a0[k]);
   }
   PetscCall(TraceGetLevel(alternation->rate[0], 0, &v));
   PetscCall(TraceGetLevel(alternation->rate[1], 0, &a));
   for (PetscInt i = pair->begin; i < pair->end; i++) {
-    v[i] = v0[i - NeumannShift(pair)];
-    a[i] = a0[i - NeumannShift(pair)];
+    v[i] = -v0[i - NeumannShift(pair)];
+    a[i] = -a0[i - NeumannShift(pair)];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -62,6 +62,7 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   const PetscBool    kinematic = alternation->kinematic[SideIndex(contact, p)];
   const PetscInt     n = pair->end - pair->begin, to_begin = pair->begin - DirichletShift(pair);
   const PetscInt     rate_begin = kinematic ? pair->begin : pair->begin - NeumannShift(pair);
+  const PetscReal    sign       = kinematic ? 1 : -1;
   PetscScalar       *start, *values;
 
   PetscFunctionBegin;
@@ -71,12 +72,12 @@ static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScal
   PetscCall(CopyUnknowns(contact, p, x, trace));
   PetscCall(TraceResample(trace, 0, n, 1, to->displacement_in, to_begin));
   if (kinematic) PetscCall(PrescribeKinematics(contact, p));
-  PetscCall(TraceResample(kinematic ? alternation->rate[0] : from->velocity, rate_begin, n, 1, to->velocity_in, to_begin));
-  PetscCall(TraceResample(kinematic ? alternation->rate[1] : from->acceleration, rate_begin, n, 1, to->acceleration_in, to_begin));
+  PetscCall(TraceResample(kinematic ? alternation->rate[0] : from->velocity, rate_begin, n, sign, to->velocity_in, to_begin));
+  PetscCall(TraceResample(kinematic ? alternation->rate[1] : from->acceleration, rate_begin, n, sign, to->acceleration_in, to_begin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The reaction holds the Dirichlet side of a pair; the Neumann side gets its opposite, over other substeps perhaps. Held at F' where the
+/* The force along rows that holds the Dirichlet side of a pair goes to the Neumann side, over other substeps perhaps. Held at F' where the
    partner takes the trapezium of F and F', forces bring more impulse in a step dt of n substeps by (1 - 1/n) (F' - F) dt / 2: ahead by that
    part of the present force, they give it back as it falls. */
 static PetscErrorCode HandReactionOn(Contact contact, const ContactPair *pair)
@@ -86,8 +87,8 @@ static PetscErrorCode HandReactionOn(Contact contact, const ContactPair *pair)
   const PetscInt     begin = pair->begin - DirichletShift(pair), to_begin = pair->begin - NeumannShift(pair), n = pair->end - pair->begin;
 
   PetscFunctionBegin;
-  if (alternation->waveform == SCHWARZ_WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, n, -1, to, to_begin));
-  else PetscCall(TraceResample(from, begin, n, -1, to, to_begin));
+  if (alternation->waveform == SCHWARZ_WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, n, 1, to, to_begin));
+  else PetscCall(TraceResample(from, begin, n, 1, to, to_begin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,7 +112,7 @@ static PetscErrorCode LoadDirichlet(Contact contact, PetscInt p, const PetscScal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Right-hand side of the Neumann side from what the Dirichlet side has answered: r' = r - 2 f - s alpha o */
+/* Right-hand side of the Neumann side from what the Dirichlet side has answered: r' = 2 f - r - alpha o */
 static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
 {
   Alternation       *alternation = (Alternation *)contact->data;
@@ -130,7 +131,7 @@ static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscInt k = i - DirichletShift(pair);
 
-      values[k] = r[k] - 2 * f[k] - NeumannSign(pair) * alternation->weight[i] * AlternationOffset(contact, i, (PetscReal)level / levels);
+      values[k] = 2 * f[k] - r[k] - alternation->weight[i] * AlternationOffset(contact, i, (PetscReal)level / levels);
     }
   }
   PetscCall(TraceResample(to, pair->begin - DirichletShift(pair), pair->end - pair->begin, 1, contact->traces[NeumannBody(pair)].force_in,
@@ -166,7 +167,6 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
   const ContactPair *pair        = &contact->pairs[p];
   const BodyTraces  *from        = &contact->traces[NeumannBody(pair)];
   const PetscInt     levels      = alternation->levels[contact->pairs[p].dirichlet][p];
-  const PetscReal    sign        = NeumannSign(pair);
   PetscInt           from_levels;
   PetscScalar       *displacement, *r, *force;
 
@@ -184,8 +184,8 @@ static PetscErrorCode ComparePair(Contact contact, PetscInt p, const PetscScalar
       PetscScalar    answer;
 
       if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
-        answer = displacement[k] + sign * AlternationOffset(contact, i, part);
-      else answer = r[k] - 2 * force[k] + sign * alternation->weight[i] * AlternationOffset(contact, i, part);
+        answer = -displacement[k] - AlternationOffset(contact, i, part);
+      else answer = 2 * force[k] - r[k] - alternation->weight[i] * AlternationOffset(contact, i, part);
       f[unknown] = contact->end.active[i] ? x[unknown] - answer : 0;
     }
   }

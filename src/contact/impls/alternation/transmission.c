@@ -2,12 +2,12 @@
 
      f + alpha w = r,
 
-   with the force f along the row and its displacement w. From what one side answers to its r, the partner's is
+   with the force f along the row and the part w of its gap that comes from the side. From what one side answers to its r, the partner's is
 
-     r' = r - 2 f - s alpha o,
+     r' = 2 f - r - alpha o,
 
-   o being the offset between the displacements of both sides of a closed gap, s the sign with which it counts. When the sides agree,
-   f' = -f and the gap is closed, as under Dirichlet and Neumann conditions: the conditions change the way there, not the goal.
+   o being what a closed gap has beside w + w' = -o. When the sides agree, f' = f and the gap is closed, as under Dirichlet and Neumann
+   conditions: the conditions change the way there, not the goal.
 
    An impedance condition, f + z dw/dt = r, is one with alpha = z / dt as soon as time is discrete: dt is the controller step here,
    so that it is the mean velocity over it that counts, and the gap closes whatever the substeps. */

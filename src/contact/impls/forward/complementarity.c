@@ -140,8 +140,7 @@ PetscErrorCode ComplementarityApply(Contact contact, Complementarity *problem, B
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const ContactBodyRows *of = &contact->body_rows[b];
 
-    for (PetscInt k = 0; k < of->n; k++)
-      problem->mine[k] = ContactSign(&contact->pairs[contact->rows.pair[of->rows[k]]], b) * problem->forces[of->rows[k]];
+    for (PetscInt k = 0; k < of->n; k++) problem->mine[k] = problem->forces[of->rows[k]];
     PetscCall(BodyAddImpulses(contact->bodies[b], when, PETSC_FALSE, parts, problem->mine));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
