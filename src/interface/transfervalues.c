@@ -31,7 +31,7 @@ static PetscErrorCode SetRow(Transfer transfer, PetscInt i, const PetscInt row[2
     columns[d] = transfer->dirichlet->data.dofs[i] + first + d;
     values[d]  = -direction[d];
   }
-  if (rows[0]) PetscCall(MatSetValues(rows[0], 1, &row[0], n, columns, values, INSERT_VALUES));
+  if (rows[0]) PetscCall(MatSetValues(rows[0], 1, &row[0], n, columns, values, ADD_VALUES));
   if (!rows[1] || !set->opposite[i]) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt begin = set->offsets[i]; begin < set->offsets[i + 1]; begin += SHARES_AT_ONCE) {
     PetscInt count = 0;
@@ -41,16 +41,16 @@ static PetscErrorCode SetRow(Transfer transfer, PetscInt i, const PetscInt row[2
         columns[count]  = set->shares[j].dof + first + d;
         values[count++] = direction[d] * set->shares[j].value;
       }
-    PetscCall(MatSetValues(rows[1], 1, &row[1], count, columns, values, INSERT_VALUES));
+    PetscCall(MatSetValues(rows[1], 1, &row[1], count, columns, values, ADD_VALUES));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the rows of this rank into the matrices of both sides, which are assembled afterwards. `begin`: global numbers of the first row
-   of this rank in both matrices; `directions`: of each row 3 numbers, or NULL: with one component the normals of the rows, else the unit
-   vectors, so that sum_j P_ij u_j - u_i has as many rows as components. The first matrix gets the direction times -1 at the displacements
-   of the node, the second one the direction times the weights, at those of the nodes opposite: a gap is the sum of both products. Either
-   may be NULL. A force f on the gap acts on each side as the transpose times f: both have the same resultant and moment. */
+/* Adds the rows of this rank to the matrices of both sides, which are zero, may be one, and are assembled afterwards. `begin`: global
+   numbers of the first row of this rank in both matrices; `directions`: of each row 3 numbers, or NULL: with one component the normals of
+   the rows, else the unit vectors, so that sum_j P_ij u_j - u_i has as many rows as components. The first matrix gets the direction times
+   -1 at the displacements of the node, the second one the direction times the weights, at those of the nodes opposite: a gap is the sum of
+   both products. Either may be NULL. A force f on the gap acts on each side as the transpose times f: sum and moment of both are zero. */
 PetscErrorCode TransferSetValues(Transfer transfer, const PetscInt begin[2], PetscInt components, const PetscReal directions[],
                                  const Mat rows[2])
 {

@@ -494,6 +494,18 @@ static inline PetscInt ContactPairSign(const ContactPair *pair)
   return pair->turned ? -1 : 1;
 }
 
+/* How many bodies have the rows of a pair: one beside an obstacle, or with both surfaces */
+static inline PetscInt ContactPairBodies(const ContactPair *pair)
+{
+  return pair->obstacle || pair->body[0] == pair->body[1] ? 1 : 2;
+}
+
+/* Row i of a pair by the traces of its bodies, see ContactGetPairTraces() */
+static inline PetscReal ContactRowSum(const ContactPair *pair, PetscScalar *const u[2], PetscInt i)
+{
+  return PetscRealPart(u[0][i - pair->shift[0]] + u[1][i - pair->shift[1]]);
+}
+
 /* The first row of the node that row i belongs to: that along its normal, unless the node is tied */
 static inline PetscInt ContactFirstRow(Contact contact, PetscInt i)
 {

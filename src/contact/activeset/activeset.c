@@ -51,6 +51,22 @@ PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* What the bodies of a pair have in their traces at the start or the end of the controller step: displacements (`order` 0), velocities or
+   accelerations. Where one body has its rows the second trace is that of obstacles, which is zero. */
+PetscErrorCode ContactGetPairTraces(Contact contact, const ContactPair *pair, PetscInt order, PetscBool at_end, PetscScalar *level[2])
+{
+  PetscFunctionBegin;
+  for (PetscInt side = 0; side < 2; side++) {
+    const BodyTraces *of    = &contact->traces[side < ContactPairBodies(pair) ? pair->body[side] : contact->n_bodies];
+    const Trace       trace = order == 0 ? of->displacement : order == 1 ? of->velocity : of->acceleration;
+    PetscInt          levels;
+
+    PetscCall(TraceGetSizes(trace, NULL, &levels));
+    PetscCall(TraceGetLevel(trace, at_end ? levels : 0, &level[side]));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Gaps at the end of the controller step, from the bodies' traces */
 PetscErrorCode ContactComputeGaps(Contact contact)
 {
@@ -59,17 +75,11 @@ PetscErrorCode ContactComputeGaps(Contact contact)
     const ContactPair *pair = &contact->pairs[p];
     PetscScalar       *end[2];
 
-    for (PetscInt side = 0; side < 2; side++) {
-      const BodyTraces *traces = &contact->traces[pair->body[side]];
-      PetscInt          levels;
-
-      PetscCall(TraceGetSizes(traces->displacement, NULL, &levels));
-      PetscCall(TraceGetLevel(traces->displacement, levels, &end[side]));
-    }
+    PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_TRUE, end));
     for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
       const PetscInt i = contact->rows.near[k];
 
-      contact->end.gap[i] = contact->rows.initial_gap[i] + end[0][i - pair->shift[0]] + end[1][i - pair->shift[1]];
+      contact->end.gap[i] = contact->rows.initial_gap[i] + ContactRowSum(pair, end, i);
       if (contact->turns.n) contact->end.gap[i] += contact->turns.turned[i];
     }
   }
@@ -84,15 +94,8 @@ PetscErrorCode ContactComputeRates(Contact contact, PetscInt order, PetscBool at
     const ContactPair *pair = &contact->pairs[p];
     PetscScalar       *level[2];
 
-    for (PetscInt side = 0; side < 2; side++) {
-      const BodyTraces *traces = &contact->traces[pair->body[side]];
-      const Trace       trace  = order == 1 ? traces->velocity : traces->acceleration;
-      PetscInt          levels;
-
-      PetscCall(TraceGetSizes(trace, NULL, &levels));
-      PetscCall(TraceGetLevel(trace, at_end ? levels : 0, &level[side]));
-    }
-    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = level[0][i - pair->shift[0]] + level[1][i - pair->shift[1]];
+    PetscCall(ContactGetPairTraces(contact, pair, order, at_end, level));
+    for (PetscInt i = pair->begin; i < pair->end; i++) rates[i] = ContactRowSum(pair, level, i);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

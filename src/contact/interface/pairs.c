@@ -90,8 +90,9 @@ static PetscErrorCode AddTilde(Contact contact, const char pair[], const char le
 
   Input Parameters:
 + contact - the `Contact`, with its bodies
-- pair    - names of two bodies, Dirichlet side first, `left:right`; or of their surfaces, `left.top:right.bottom`; or of a body and an
-            obstacle that has been added, `ball:floor`; with a tilde, `left~right`, in the order that is better
+- pair    - names of two bodies, Dirichlet side first, `left:right`; or of their surfaces, `left.top:right.bottom`, which may be two of one
+            body, `clip.upper:clip.lower`; or of a body and an obstacle that has been added, `ball:floor`; with a tilde, `left~right`, in
+the order that is better
 
   Options Database Key:
 . -contact_pairs a:b,b~c - pairs
@@ -131,8 +132,8 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscCall(AppendPair(contact, pair, &p));
   PetscCall(ParseSide(contact, pair, text, &p->body[0], &p->surface[0], NULL));
   PetscCall(ParseSide(contact, pair, colon + 1, &p->body[1], &p->surface[1], &p->obstacle));
-  PetscCheck(p->body[0] != p->body[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_pairs %s: a body cannot touch itself", pair);
+  PetscCheck(p->body[0] != p->body[1] || (p->surface[0] && p->surface[1]), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: name the two surfaces by which the body touches itself, as in clip.upper:clip.lower", pair);
   for (PetscInt other = 0; other < contact->n_pairs - 1; other++) {
     PetscBool same;
 

@@ -110,7 +110,7 @@ static PetscErrorCode FindOrder(Contact contact, PetscInt *done)
         const ContactPair *pair  = &contact->pairs[p];
         const PetscInt     first = pair->turned && !contact->prescribes ? 1 : 0;
 
-        if (pair->body[1 - first] == b && !placed[pair->body[first]] && !contact->sideless) ready = PETSC_FALSE;
+        if (pair->body[1 - first] == b && pair->body[first] != b && !placed[pair->body[first]] && !contact->sideless) ready = PETSC_FALSE;
       }
       if (!ready) continue;
       contact->order[(*done)++] = b;

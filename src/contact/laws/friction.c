@@ -189,14 +189,8 @@ PetscErrorCode ContactComputeSlips(Contact contact)
     const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, last = all ? pair->near_end : pair->acts_end;
     PetscScalar       *start[2], *end[2];
 
-    for (PetscInt side = 0; side < 2; side++) {
-      const Trace trace = contact->traces[pair->body[side]].displacement;
-      PetscInt    levels;
-
-      PetscCall(TraceGetSizes(trace, NULL, &levels));
-      PetscCall(TraceGetLevel(trace, 0, &start[side]));
-      PetscCall(TraceGetLevel(trace, levels, &end[side]));
-    }
+    PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_FALSE, start));
+    PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_TRUE, end));
     for (PetscInt k = all ? pair->near_begin : pair->acts_begin; k < last; k++) {
       const PetscInt i = rows[k], first = i - pair->shift[0], second = i - pair->shift[1];
 

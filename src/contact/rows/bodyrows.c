@@ -12,7 +12,7 @@ static PetscErrorCode ListRows(Contact contact)
     for (PetscInt row = 0; row < contact->rows.n_all; row++) {
       const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[row]];
 
-      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+      for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
         ContactBodyRows *body = &of[pair->body[side]];
 
         if (pass) body->all[body->n_all] = row;
@@ -38,7 +38,7 @@ static PetscErrorCode ListPairs(Contact contact)
       of[b].n_pairs = 0;
     }
     for (PetscInt p = 0; p < contact->n_pairs; p++)
-      for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++) {
+      for (PetscInt side = 0; side < ContactPairBodies(&contact->pairs[p]); side++) {
         ContactBodyRows *body = &of[contact->pairs[p].body[side]];
 
         if (pass) body->pairs[body->n_pairs] = p;
@@ -73,7 +73,7 @@ PetscErrorCode ContactNumberBodyRows(Contact contact)
     ContactPair *pair = &contact->pairs[p];
 
     pair->shift[1] = 0; /* obstacles have the traces of all rows */
-    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
       pair->shift[side] = pair->begin - next[pair->body[side]];
       next[pair->body[side]] += pair->end - pair->begin;
     }

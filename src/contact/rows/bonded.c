@@ -38,10 +38,10 @@ static PetscErrorCode BondNode(Contact contact, const ContactPair *pair, PetscIn
   PetscScalar *start[2];
 
   PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].displacement, 0, &start[side]));
+  PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_FALSE, start));
   for (PetscInt i = first; i < first + pair->components; i++) {
     contact->rows.tied[i] = contact->rows.opposite[i] = PETSC_TRUE;
-    contact->rows.initial_gap[i]                      = -PetscRealPart(start[0][i - pair->shift[0]] + start[1][i - pair->shift[1]]);
+    contact->rows.initial_gap[i]                      = -ContactRowSum(pair, start, i);
     contact->start.gap[i] = contact->end.gap[i] = 0;
     contact->start.active[i]                    = PETSC_TRUE;
     if (i > first) contact->start.force[i] = 0;

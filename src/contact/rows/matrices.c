@@ -10,10 +10,13 @@ static PetscErrorCode CountEntries(Contact contact, PetscInt b, PetscInt entries
   PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
     const ContactPair *pair = &contact->pairs[contact->body_rows[b].pairs[k]];
-    const PetscInt     side = pair->body[0] == b ? 0 : 1;
 
     PetscCall(TransferCountValues(pair->transfer, counts[0], pair->obstacle ? NULL : counts[1]));
-    for (PetscInt i = pair->begin; i < pair->end; i++) entries[i - pair->shift[side]] = counts[side][(i - pair->begin) / pair->components];
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscInt node = (i - pair->begin) / pair->components, place = i - pair->shift[pair->body[0] == b ? 0 : 1];
+
+      entries[place] = (pair->body[0] == b ? counts[0][node] : 0) + (!pair->obstacle && pair->body[1] == b ? counts[1][node] : 0);
+    }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -72,10 +75,13 @@ static PetscErrorCode ListContactDofs(Contact contact, PetscInt b, PetscInt *n, 
       const ContactPair *pair = &contact->pairs[of->pairs[k]];
       const SurfaceData *data;
 
-      PetscCall(SurfaceGetData(pair->surfaces[pair->body[0] == b ? 0 : 1], &data));
-      for (PetscInt i = 0; i < contact->dim * data->n_owned && pass; i++)
-        (*dofs)[count + i] = data->dofs[i / contact->dim] + i % contact->dim;
-      count += contact->dim * data->n_owned;
+      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+        if (pair->body[side] != b) continue;
+        PetscCall(SurfaceGetData(pair->surfaces[side], &data));
+        for (PetscInt i = 0; i < contact->dim * data->n_owned && pass; i++)
+          (*dofs)[count + i] = data->dofs[i / contact->dim] + i % contact->dim;
+        count += contact->dim * data->n_owned;
+      }
     }
     if (!pass) PetscCall(PetscMalloc1(count, dofs));
   }
@@ -169,7 +175,7 @@ PetscErrorCode ContactFillMatrices(Contact contact)
     PetscBool          any      = PETSC_FALSE, directed;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-      begin[side] = contact->body_rows[pair->body[side]].begin + pair->begin - pair->shift[side];
+      begin[side] = contact->body_rows[pair->body[side]].begin + pair->begin - pair->shift[side % ContactPairBodies(pair)];
       if (!contact->body_rows[pair->body[side]].affected) continue;
       rows[side] = contact->interfaces[pair->body[side]];
       any        = PETSC_TRUE;

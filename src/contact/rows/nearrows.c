@@ -19,7 +19,7 @@ static void ListActingOfBodies(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
       ContactBodyRows *of = &contact->body_rows[pair->body[side]];
 
       for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) of->acting[of->n_acting++] = contact->rows.acting[k] - pair->shift[side];
@@ -70,42 +70,43 @@ void ContactListActingRows(Contact contact, const PetscBool touches[])
   ListActingOfBodies(contact);
 }
 
-/* The gap of a row at the start of the step, from the displacements of both sides there */
-static void ReadStartGap(Contact contact, const ContactPair *pair, PetscScalar *const u[2], PetscInt i)
+/* Gaps at the start of the controller step, from the bodies' traces; those of near rows if these are wanted */
+static PetscErrorCode ReadStartGaps(Contact contact, PetscBool near)
 {
-  contact->start.gap[i] = contact->rows.initial_gap[i] + PetscRealPart(u[0][i - pair->shift[0]] + u[1][i - pair->shift[1]]);
-  contact->end.gap[i]   = contact->start.gap[i];
+  PetscInt k = 0;
+
+  PetscFunctionBegin;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair = &contact->pairs[p];
+    PetscScalar       *u[2];
+
+    PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_FALSE, u));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      const PetscBool is_near = (PetscBool)(k < contact->rows.n_near && contact->rows.near[k] == i);
+
+      k += is_near;
+      if (is_near && !near) continue; /* as the step has left it */
+      contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + ContactRowSum(pair, u, i);
+    }
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GetStart(Contact contact, const ContactPair *pair, PetscScalar *u[2])
+PetscErrorCode ContactComputeStartGaps(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) PetscCall(TraceGetLevel(contact->traces[pair->body[side]].displacement, 0, &u[side]));
+  PetscCall(ReadStartGaps(contact, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Gaps of all rows as they are where the saved states of the bodies are */
 PetscErrorCode ContactRefreshGaps(Contact contact)
 {
-  PetscInt k = 0;
-
   PetscFunctionBegin;
   if (!contact->rows.listed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (contact->body_rows[b].n_all) PetscCall(BodyWriteStartTraces(contact->bodies[b]));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    PetscScalar       *u[2];
-
-    PetscCall(GetStart(contact, pair, u));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscBool near = (PetscBool)(k < contact->rows.n_near && contact->rows.near[k] == i);
-
-      k += near;
-      if (near) continue; /* as the step has left it */
-      ReadStartGap(contact, pair, u, i);
-    }
-  }
+  PetscCall(ReadStartGaps(contact, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -182,6 +182,38 @@ static PetscErrorCode MirrorSurface(Contact contact, PetscInt body, Surface surf
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Two surfaces by which a body touches itself are apart, and the method puts forces on both */
+static PetscErrorCode CheckSelf(Contact contact, const ContactPair *pair)
+{
+  const SurfaceData *data[2];
+  PetscInt          *first, place;
+  int                common = 0;
+  PetscBool          rigid;
+
+  PetscFunctionBegin;
+  if (pair->obstacle || pair->body[0] != pair->body[1]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyIsRigid(contact->bodies[pair->body[0]], &rigid));
+  PetscCheck(
+      !rigid && !contact->prescribes && contact->dim > 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      "-contact_pairs %s: a body touches itself where it deforms, in two or three dimensions, and by forces on its surfaces: leave the "
+      "pair out for rigid bodies and bars, and choose -contact_type schwarz in place of alternation",
+      pair->name);
+  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceGetData(pair->surfaces[side], &data[side]));
+  PetscCall(PetscMalloc1(data[0]->n_owned, &first));
+  PetscCall(PetscArraycpy(first, data[0]->dofs, data[0]->n_owned));
+  PetscCall(PetscSortInt(data[0]->n_owned, first));
+  for (PetscInt i = 0; i < data[1]->n_owned && !common; i++) {
+    PetscCall(PetscFindInt(data[1]->dofs[i], data[0]->n_owned, first, &place));
+    common = place >= 0;
+  }
+  PetscCall(PetscFree(first));
+  PetscCall(ContactOr(contact, &common));
+  PetscCheck(!common, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+             "-contact_pairs %s: the two surfaces have nodes in common, which would touch themselves; name surfaces that are apart",
+             pair->name);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Surfaces of a pair. `extent` grows to the largest coordinate of their meshes, without sign [m]; of all bodies if pairs come and go. */
 PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscReal *extent)
 {
@@ -206,6 +238,7 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
              ", and another body has %" PetscInt_FMT,
              pair->name, dims[0], dims[1], contact->dim);
   PetscCall(ContactCheckAxisymmetric(contact, pair));
+  PetscCall(CheckSelf(contact, pair));
   PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, faces[0], faces[1]));
   PetscCall(CheckFacing(contact, pair));
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)

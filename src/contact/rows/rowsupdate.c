@@ -8,22 +8,6 @@
 /* What is beyond that is taken back in proportion to the slip: all of it within a slip of one over this [edges of the face] */
 #define TAKEN_BACK 3
 
-/* Gaps at the start of the controller step, from the bodies' traces */
-PetscErrorCode ContactComputeStartGaps(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-    PetscScalar       *dirichlet, *neumann;
-
-    PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
-    PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
-    contact->end.gap[i] = contact->start.gap[i] = contact->rows.initial_gap[i] + dirichlet[i - pair->shift[0]] +
-                                                  neumann[i - pair->shift[1]];
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What remains of a shift, by which the gap of a row in contact goes on from where it was [m]. If surfaces slide far without losing
    contact, shifts add up: between two builds a row moves along the plane across its normal, from which a curved partner bends away, so that
    surfaces would be kept apart by more and more. What a shift is beyond APART is taken back in proportion to the slip [edges of the face],

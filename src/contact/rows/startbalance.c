@@ -231,12 +231,11 @@ static PetscErrorCode SolveRows(StartBalance *start)
 static PetscErrorCode GetOpening(Contact contact, PetscInt i, PetscReal *opening)
 {
   const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-  PetscScalar       *dirichlet, *neumann;
+  PetscScalar       *u[2];
 
   PetscFunctionBegin;
-  PetscCall(TraceGetLevel(contact->traces[pair->body[0]].displacement, 0, &dirichlet));
-  PetscCall(TraceGetLevel(contact->traces[pair->body[1]].displacement, 0, &neumann));
-  *opening = PetscRealPart(neumann[i - pair->shift[1]] + dirichlet[i - pair->shift[0]]);
+  PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_FALSE, u));
+  *opening = ContactRowSum(pair, u, i);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

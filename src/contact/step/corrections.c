@@ -12,14 +12,11 @@ static PetscErrorCode GatherEnds(Contact contact, ContactStepper *stepper)
   PetscFunctionBegin;
   for (PetscInt side = 0; side < 2; side++) {
     for (PetscInt p = 0; p < contact->n_pairs; p++) {
-      const ContactPair *pair  = &contact->pairs[p];
-      const Trace        trace = contact->traces[pair->body[side]].displacement;
-      PetscScalar       *end;
-      PetscInt           levels;
+      const ContactPair *pair = &contact->pairs[p];
+      PetscScalar       *end[2];
 
-      PetscCall(TraceGetSizes(trace, NULL, &levels));
-      PetscCall(TraceGetLevel(trace, levels, &end));
-      for (PetscInt i = pair->begin; i < pair->end; i++) stepper->mine[i] = PetscRealPart(end[i - pair->shift[side]]);
+      PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_TRUE, end));
+      for (PetscInt i = pair->begin; i < pair->end; i++) stepper->mine[i] = PetscRealPart(end[side][i - pair->shift[side]]);
     }
     PetscCall(ContactStepperGather(contact, stepper, stepper->mine, stepper->ends + side * stepper->problem.n));
   }
@@ -77,7 +74,7 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt     i    = entries->places[k];
     const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[i]]];
-    const PetscInt     end  = i + (pair->body[1] == b) * all;
+    const PetscInt     end  = i + (pair->body[0] != b) * all;
 
     force[k] = problem->base[i] - stepper->told[i];
     gone[k]  = stepper->ends[end] - stepper->told[all + end];

@@ -85,7 +85,7 @@ PetscErrorCode ContactStepperListBodyRows(Contact contact, ContactStepper *stepp
     for (PetscInt k = 0; k < stepper->problem.n; k++) {
       const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]];
 
-      for (PetscInt side = 0; side < 2 && pair->body[side] < contact->n_bodies; side++) {
+      for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
         const PetscInt  b       = pair->body[side];
         StepperEntries *entries = &assembly->of_body[b];
 

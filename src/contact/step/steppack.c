@@ -9,11 +9,11 @@
 static PetscErrorCode FindPlace(Contact contact, const ContactPair *pair, PetscInt side, PetscInt i, PetscReal *place)
 {
   const PetscInt        b    = pair->body[side];
-  const StepperSecants *kept = b < contact->n_bodies ? &((const ContactStepper *)contact->data)->assembly.of_body[b].kept : NULL;
+  const StepperSecants *kept = &((const ContactStepper *)contact->data)->assembly.of_body[b].kept;
   PetscInt              k    = -1;
 
   PetscFunctionBegin;
-  if (kept) PetscCall(PetscFindInt(contact->body_rows[b].begin + i - pair->shift[side], kept->n, kept->rows, &k));
+  if (side < ContactPairBodies(pair)) PetscCall(PetscFindInt(contact->body_rows[b].begin + i - pair->shift[side], kept->n, kept->rows, &k));
   *place = PetscMax(k, -1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -83,7 +83,7 @@ static PetscErrorCode UnpackSecants(Contact contact, PetscInt b, PetscReal *cons
   PetscCall(PetscMalloc1(PetscMax(n, 1), &from));
   for (PetscInt r = 0; r < contact->body_rows[b].n_all && found < n; r++) {
     const PetscInt row   = contact->body_rows[b].all[r];
-    const PetscInt side  = contact->pairs[contact->ranks.row_pair[row]].body[1] == b;
+    const PetscInt side  = contact->pairs[contact->ranks.row_pair[row]].body[0] != b;
     const PetscInt place = (PetscInt)places[side][row];
 
     if (place < 0) continue;

@@ -59,7 +59,7 @@ PetscErrorCode AlternationPredict(Contact contact)
   PetscCall(VecGetArray(alternation->x, &x));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscInt     p = contact->rows.pair[i], levels = alternation->levels[contact->pairs[p].dirichlet][p];
-    const ContactPair *pair = &contact->pairs[p];
+    const ContactPair *pair  = &contact->pairs[p];
     const PetscReal    width = alternation->controller_step / levels, force = contact->start.force[i];
     PetscScalar       *unknown = x + alternation->offset[i], *reaction;
 
