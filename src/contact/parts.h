@@ -153,6 +153,8 @@ PETSC_INTERN PetscErrorCode ContactGatherRows(Contact, const PetscReal[], PetscR
 PETSC_INTERN PetscErrorCode ContactIsAtHome(Contact, PetscInt, PetscMPIInt *, PetscBool *);
 PETSC_INTERN void           ContactAffectAll(Contact);
 PETSC_INTERN void           ContactForgetMatrices(Contact);
+PETSC_INTERN void           ContactTakeRows(Contact, PetscInt, const PetscReal[], PetscReal[]);
+PETSC_INTERN void           ContactAddRows(Contact, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactCopyAreas(Contact);
 PETSC_INTERN PetscErrorCode ContactUpdateBodies(Contact, const PetscBool[]);
 PETSC_INTERN PetscErrorCode ContactCreateRowVec(Contact, Vec *);

@@ -54,7 +54,7 @@ static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
   PetscCall(BodyGetStepProperties(contact->bodies[b], &properties));
   PetscCall(TraceGetLevel(traces->displacement, 0, &first));
-  for (PetscInt k = 0; k < of->n; k++) last[k] = energy->last_force[of->rows[k]];
+  ContactTakeRows(contact, b, energy->last_force, last);
   for (PetscInt level = 1; level <= substeps; level++) {
     PetscScalar *before, *after;
 

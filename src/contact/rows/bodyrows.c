@@ -111,15 +111,27 @@ void ContactForgetMatrices(Contact contact)
   }
 }
 
+/* Of numbers of all rows, those of a body's */
+void ContactTakeRows(Contact contact, PetscInt b, const PetscReal all[], PetscReal of_body[])
+{
+  const ContactBodyRows *of = &contact->body_rows[b];
+
+  for (PetscInt k = 0; k < of->n; k++) of_body[k] = all[of->rows[k]];
+}
+
+/* Adds numbers of a body's rows to those of all */
+void ContactAddRows(Contact contact, PetscInt b, const PetscReal of_body[], PetscReal all[])
+{
+  const ContactBodyRows *of = &contact->body_rows[b];
+
+  for (PetscInt k = 0; k < of->n; k++) all[of->rows[k]] += of_body[k];
+}
+
 /* Areas of the rows, as bodies borrow them */
 PetscErrorCode ContactCopyAreas(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const ContactBodyRows *of = &contact->body_rows[b];
-
-    for (PetscInt k = 0; k < of->n; k++) of->area[k] = contact->rows.area[of->rows[k]];
-  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) ContactTakeRows(contact, b, contact->rows.area, contact->body_rows[b].area);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -8,22 +8,6 @@
 #define WORST          1e-10
 #define MAX_ITERATIONS 2000
 
-/* The forces on the rows of a body, as it takes them */
-void InverseMassGetBodyForces(Contact contact, PetscInt b, const PetscScalar force[], PetscScalar on_body[])
-{
-  const ContactBodyRows *of = &contact->body_rows[b];
-
-  for (PetscInt k = 0; k < of->n; k++) on_body[k] = force[of->rows[k]];
-}
-
-/* Adds what the rows of a body move by to the gaps */
-void InverseMassAddBodyRows(Contact contact, PetscInt b, const PetscScalar moved[], PetscScalar gaps[])
-{
-  const ContactBodyRows *of = &contact->body_rows[b];
-
-  for (PetscInt k = 0; k < of->n; k++) gaps[of->rows[k]] += moved[k];
-}
-
 /* y = C x by the bodies, one solution with the mass of each */
 static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
 {
@@ -42,13 +26,13 @@ static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
     const ContactBodyRows *of  = &contact->body_rows[b];
     PetscScalar *const on_body = inverse->work[0], *const moved = inverse->work[1];
 
-    InverseMassGetBodyForces(contact, b, force, on_body);
+    ContactTakeRows(contact, b, force, on_body);
     for (PetscInt k = 0; k < of->n; k++)
       if (!inverse->takes_part[of->rows[k]]) on_body[k] = 0;
     PetscCall(BodyMultiplyInverseMass(contact->bodies[b], on_body, moved));
     for (PetscInt k = 0; k < of->n; k++)
       if (!inverse->takes_part[of->rows[k]]) moved[k] = 0;
-    InverseMassAddBodyRows(contact, b, moved, sum);
+    ContactAddRows(contact, b, moved, sum);
   }
   PetscCall(VecRestoreArray(y, &sum));
   PetscCall(VecRestoreArrayRead(x, &force));

@@ -19,5 +19,3 @@ typedef struct _InverseMass {
 PETSC_INTERN PetscErrorCode InverseMassCreate(Contact, InverseMassType, InverseMass *);
 PETSC_INTERN PetscErrorCode InverseMassSolve(Contact, InverseMass *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode InverseMassDestroy(InverseMass *);
-PETSC_INTERN void           InverseMassGetBodyForces(Contact, PetscInt, const PetscScalar[], PetscScalar[]);
-PETSC_INTERN void           InverseMassAddBodyRows(Contact, PetscInt, const PetscScalar[], PetscScalar[]);

@@ -66,9 +66,9 @@ static PetscErrorCode Respond(StartBalance *start, const PetscScalar of_problem[
   }
   PetscCall(PetscArrayzero(start->ways, contact->rows.n));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    InverseMassGetBodyForces(contact, b, start->force, start->on_body);
+    ContactTakeRows(contact, b, start->force, start->on_body);
     PetscCall(BodyMultiplyLayerCompliance(contact->bodies[b], start->on_body, start->moved));
-    InverseMassAddBodyRows(contact, b, start->moved, start->ways);
+    ContactAddRows(contact, b, start->moved, start->ways);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -278,7 +278,7 @@ static PetscErrorCode Move(StartBalance *start)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal change;
 
-    InverseMassGetBodyForces(contact, b, start->moved, start->on_body);
+    ContactTakeRows(contact, b, start->moved, start->on_body);
     PetscCall(BodyMoveLayer(contact->bodies[b], start->on_body, &change));
     start->change = PetscMax(start->change, change);
   }
@@ -348,7 +348,7 @@ static PetscErrorCode Finish(StartBalance *start)
   PetscFunctionBegin;
   for (PetscInt i = 0; i < n; i++) start->moved[i] = contact->end.force[i];
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    InverseMassGetBodyForces(contact, b, start->moved, start->on_body);
+    ContactTakeRows(contact, b, start->moved, start->on_body);
     PetscCall(BodyStartUnderForces(contact->bodies[b], start->on_body));
   }
   PetscCall(ContactComputeStartGaps(contact));

@@ -21,7 +21,7 @@ PetscErrorCode ContactAlignTies(Contact contact, PetscScalar *const change[2])
     PetscCall(ContactComputeRates(contact, order, PETSC_TRUE, rates));
     PetscCall(InverseMassSolve(contact, ties->inverse, rates, rates));
     for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      InverseMassGetBodyForces(contact, b, rates, on_body);
+      ContactTakeRows(contact, b, rates, on_body);
       PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, (PetscBool)!ties->all_explicit, parts, on_body));
     }
   }

@@ -157,9 +157,9 @@ PetscErrorCode ContactStartTies(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const Body body = contact->bodies[b];
 
-    InverseMassGetBodyForces(contact, b, impulse, on_body);
+    ContactTakeRows(contact, b, impulse, on_body);
     PetscCall(BodyAddImpulses(body, BODY_AT_START, PETSC_FALSE, velocity, on_body));
-    InverseMassGetBodyForces(contact, b, force, on_body);
+    ContactTakeRows(contact, b, force, on_body);
     PetscCall(BodyAddImpulses(body, BODY_AT_START, PETSC_FALSE, acceleration, on_body));
     PetscCall(BodyWriteStartTraces(body));
     PetscCall(TraceGetLevel(contact->traces[b].reaction, 0, &reaction));

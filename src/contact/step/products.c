@@ -36,7 +36,6 @@ PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *ste
 /* Adds how the rows of a body go under forces on them, of this rank */
 static PetscErrorCode AddBody(Contact contact, StepperEntries *entries, PetscInt b, const PetscReal force[], PetscReal way[])
 {
-  const ContactBodyRows *of = &contact->body_rows[b];
   const PetscScalar     *moved;
   PetscScalar           *on_body;
 
@@ -46,11 +45,11 @@ static PetscErrorCode AddBody(Contact contact, StepperEntries *entries, PetscInt
     PetscCall(VecDuplicate(entries->force, &entries->way));
   }
   PetscCall(VecGetArrayWrite(entries->force, &on_body));
-  for (PetscInt k = 0; k < of->n; k++) on_body[k] = force[of->rows[k]];
+  ContactTakeRows(contact, b, force, on_body);
   PetscCall(VecRestoreArrayWrite(entries->force, &on_body));
   PetscCall(BodyApplyCompliance(contact->bodies[b], entries->force, entries->way));
   PetscCall(VecGetArrayRead(entries->way, &moved));
-  for (PetscInt k = 0; k < of->n; k++) way[of->rows[k]] += PetscRealPart(moved[k]);
+  ContactAddRows(contact, b, moved, way);
   PetscCall(VecRestoreArrayRead(entries->way, &moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -30,8 +30,8 @@ static PetscErrorCode TellForces(Contact contact, const PetscScalar start[], con
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     if (!contact->body_rows[b].n_all) continue;
-    InverseMassGetBodyForces(contact, b, start, on_body[0]);
-    InverseMassGetBodyForces(contact, b, more, on_body[1]);
+    ContactTakeRows(contact, b, start, on_body[0]);
+    ContactTakeRows(contact, b, more, on_body[1]);
     PetscCall(BodyEndConstantForces(contact->bodies[b], on_body[0], on_body[1]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -49,7 +49,7 @@ PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
   for (PetscInt i = 0; i < contact->rows.n; i++) aligns[1][i] = more[i];
   for (PetscInt b = 0; b < contact->n_bodies && !contact->ties.all_explicit; b++) {
     if (!contact->body_rows[b].n_all) continue;
-    InverseMassGetBodyForces(contact, b, aligns[1], inverse->work[0]);
+    ContactTakeRows(contact, b, aligns[1], inverse->work[0]);
     PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, PETSC_FALSE, parts, inverse->work[0]));
   }
   PetscCall(ContactAlignTies(contact, aligns));

@@ -143,9 +143,7 @@ static PetscErrorCode SetRobin(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const ContactBodyRows *of = &contact->body_rows[b];
-
-    for (PetscInt k = 0; k < of->n; k++) alternation->row_work[k] = alternation->weight[of->rows[k]];
+    ContactTakeRows(contact, b, alternation->weight, alternation->row_work);
     PetscCall(BodySetRobin(contact->bodies[b], alternation->row_work));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

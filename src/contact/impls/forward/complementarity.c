@@ -138,9 +138,7 @@ PetscErrorCode ComplementarityApply(Contact contact, Complementarity *problem, B
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const ContactBodyRows *of = &contact->body_rows[b];
-
-    for (PetscInt k = 0; k < of->n; k++) problem->mine[k] = problem->forces[of->rows[k]];
+    ContactTakeRows(contact, b, problem->forces, problem->mine);
     PetscCall(BodyAddImpulses(contact->bodies[b], when, PETSC_FALSE, parts, problem->mine));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
