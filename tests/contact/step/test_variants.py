@@ -105,8 +105,9 @@ def check_energy(v, run, impakt):
     change = energy(run)
     assert np.all(np.isfinite(change))
     if v.rule == "linear":
-        if change.max() > GAIN["cap"]:  # steps too large for it: then no more than the same step of type schwarz
-            assert change.max() <= 1.2 * energy(impakt(v.options.replace("-contact_type force", "-contact_type alternation"), timeout=60)).max()
+        if change.max() > GAIN["cap"]:  # steps too large for it: then no more than the same step of the alternation, which has no friction. Seed 171 (J2): 0.40 %, without friction 0.52 % both; at a half and a quarter of the step 0.14, 0.009 %
+            bare = re.sub(r"-contact_(law|friction) \S+", "", v.options.replace("-contact_type force", "-contact_type alternation"))
+            assert change.max() <= 1.2 * energy(impakt(" ".join(bare.split()), timeout=60)).max()
     elif "E" in v.kinds:
         assert change.max() <= GAIN["explicit"]
     elif change.max() > GAIN["linear"]:
