@@ -17,6 +17,7 @@
    change of volume that is not the mean stores is (1 - s)^2 kappa, which is made STIFFNESS times the shear modulus mu, as changes of shape
    store whatever Poisson's ratio is. */
 #include "composite.h"
+#include <impakt/private/materialimpl.h>
 
 /* Modulus of changes of volume within tetrahedra, in parts of the shear modulus. A copper rod of 6 x 44 elements that flattens on a wall
    turned some inside out, or gained 2 % of its energy, with 0.02. */
@@ -344,14 +345,12 @@ static PetscErrorCode ElementDestroy_Composite(Element element)
 /* s */
 static PetscErrorCode GetShare(Element element, PetscReal *share)
 {
-  PetscErrorCode (*get)(Material, PetscReal *);
   PetscReal ratio, shear;
 
   PetscFunctionBegin;
   *share = element->dim == 3 ? 1 - UNKNOWN : 1;
-  PetscCall(PetscObjectQueryFunction((PetscObject)element->material, "MaterialGetPoissonsRatio_C", &get));
-  if (element->dim == 2 || !get) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall((*get)(element->material, &ratio));
+  if (element->dim == 2 || !element->material->isotropic) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MaterialGetPoissonsRatio(element->material, &ratio));
   shear = 1.5 * (1 - 2 * ratio) / (1 + ratio); /* mu / kappa */
   if (shear > 0) *share = 1 - PetscMin(LARGEST, PetscSqrtReal(STIFFNESS * shear));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,5 +1,6 @@
 /* Formulations: what the elements of one shape do with their displacements. Chosen by name, from a registry. */
 #include <impakt/private/elementimpl.h>
+#include <impakt/private/materialimpl.h>
 #include <sys/names.h>
 
 /* Above this ratio of Poisson, elements that can have a mean dilatation do so, unless another formulation is asked for */
@@ -74,12 +75,9 @@ static PetscErrorCode GetNames(DMPolytopeType cell_type, PetscBool axisymmetric,
 
 static PetscErrorCode GetPoissonsRatio(Element element, PetscReal *ratio)
 {
-  PetscErrorCode (*get)(Material, PetscReal *);
-
   PetscFunctionBegin;
   *ratio = 0;
-  PetscCall(PetscObjectQueryFunction((PetscObject)element->material, "MaterialGetPoissonsRatio_C", &get));
-  if (get) PetscCall((*get)(element->material, ratio));
+  if (element->material->isotropic) PetscCall(MaterialGetPoissonsRatio(element->material, ratio));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,41 +12,15 @@ static void FindLamesConstants(Isotropic *constants)
   constants->plane_lambda = E * nu / ((1 + nu) * (1 - nu));
 }
 
-static PetscErrorCode MaterialSetYoungsModulus_Isotropic(Material material, PetscReal modulus)
-{
-  Isotropic *constants = (Isotropic *)material->data;
-
-  PetscFunctionBegin;
-  PetscCheck(modulus > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE, "Young's modulus is %g%s; it must be positive",
-             (double)modulus, UnitsOf((PetscObject)material, UNIT_STRESS));
-  constants->youngs_modulus = modulus;
-  FindLamesConstants(constants);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialSetPoissonsRatio_Isotropic(Material material, PetscReal ratio)
-{
-  Isotropic *constants = (Isotropic *)material->data;
-
-  PetscFunctionBegin;
-  PetscCheck(ratio > -1 && ratio < 0.5, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE,
-             "Poisson's ratio is %g; it must lie between -1 and 0.5", (double)ratio);
-  constants->poissons_ratio = ratio;
-  FindLamesConstants(constants);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialGetYoungsModulus_Isotropic(Material material, PetscReal *modulus)
+/* The constants of a material, which must be of an isotropic model for the function that wants them */
+static PetscErrorCode GetConstants(Material material, const char function[], Isotropic **constants)
 {
   PetscFunctionBegin;
-  *modulus = ((const Isotropic *)material->data)->youngs_modulus;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MaterialGetPoissonsRatio_Isotropic(Material material, PetscReal *ratio)
-{
-  PetscFunctionBegin;
-  *ratio = ((const Isotropic *)material->data)->poissons_ratio;
+  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscCheck(material->isotropic, PetscObjectComm((PetscObject)material), PETSC_ERR_SUP,
+             "%s(): a material of type %s has neither Young's modulus nor Poisson's ratio", function,
+             ((PetscObject)material)->type_name ? ((PetscObject)material)->type_name : "none");
+  *constants = (Isotropic *)material->data;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,7 +52,7 @@ PetscErrorCode MaterialSetFromOptions_Isotropic(Material material)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialSetUp_Isotropic(Material material)
+PetscErrorCode MaterialSetUp_Isotropic(Material material)
 {
   PetscFunctionBegin;
   PetscCheck(((const Isotropic *)material->data)->youngs_modulus > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_WRONGSTATE,
@@ -87,7 +61,7 @@ static PetscErrorCode MaterialSetUp_Isotropic(Material material)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode MaterialView_Isotropic(Material material, PetscViewer viewer)
+PetscErrorCode MaterialView_Isotropic(Material material, PetscViewer viewer)
 {
   const Isotropic *constants = (const Isotropic *)material->data;
 
@@ -100,10 +74,6 @@ static PetscErrorCode MaterialView_Isotropic(Material material, PetscViewer view
 PetscErrorCode MaterialDestroy_Isotropic(Material material)
 {
   PetscFunctionBegin;
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetYoungsModulus_C", NULL));
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialGetYoungsModulus_C", NULL));
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetPoissonsRatio_C", NULL));
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialGetPoissonsRatio_C", NULL));
   PetscCall(PetscFree(material->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -142,10 +112,15 @@ static PetscErrorCode MaterialWaveModulus_Isotropic(Material material, PetscBool
 @*/
 PetscErrorCode MaterialSetYoungsModulus(Material material, PetscReal modulus)
 {
+  Isotropic *constants;
+
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscCall(GetConstants(material, PETSC_FUNCTION_NAME, &constants));
   PetscValidLogicalCollectiveReal(material, modulus, 2);
-  PetscUseMethod(material, "MaterialSetYoungsModulus_C", (Material, PetscReal), (material, modulus));
+  PetscCheck(modulus > 0, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE, "Young's modulus is %g%s; it must be positive",
+             (double)modulus, UnitsOf((PetscObject)material, UNIT_STRESS));
+  constants->youngs_modulus = modulus;
+  FindLamesConstants(constants);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -166,10 +141,12 @@ PetscErrorCode MaterialSetYoungsModulus(Material material, PetscReal modulus)
 @*/
 PetscErrorCode MaterialGetYoungsModulus(Material material, PetscReal *modulus)
 {
+  Isotropic *constants;
+
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscCall(GetConstants(material, PETSC_FUNCTION_NAME, &constants));
   PetscAssertPointer(modulus, 2);
-  PetscUseMethod(material, "MaterialGetYoungsModulus_C", (Material, PetscReal *), (material, modulus));
+  *modulus = constants->youngs_modulus;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,10 +168,15 @@ PetscErrorCode MaterialGetYoungsModulus(Material material, PetscReal *modulus)
 @*/
 PetscErrorCode MaterialSetPoissonsRatio(Material material, PetscReal ratio)
 {
+  Isotropic *constants;
+
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscCall(GetConstants(material, PETSC_FUNCTION_NAME, &constants));
   PetscValidLogicalCollectiveReal(material, ratio, 2);
-  PetscUseMethod(material, "MaterialSetPoissonsRatio_C", (Material, PetscReal), (material, ratio));
+  PetscCheck(ratio > -1 && ratio < 0.5, PetscObjectComm((PetscObject)material), PETSC_ERR_ARG_OUTOFRANGE,
+             "Poisson's ratio is %g; it must lie between -1 and 0.5", (double)ratio);
+  constants->poissons_ratio = ratio;
+  FindLamesConstants(constants);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -215,10 +197,12 @@ PetscErrorCode MaterialSetPoissonsRatio(Material material, PetscReal ratio)
 @*/
 PetscErrorCode MaterialGetPoissonsRatio(Material material, PetscReal *ratio)
 {
+  Isotropic *constants;
+
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(material, MATERIAL_CLASSID, 1);
+  PetscCall(GetConstants(material, PETSC_FUNCTION_NAME, &constants));
   PetscAssertPointer(ratio, 2);
-  PetscUseMethod(material, "MaterialGetPoissonsRatio_C", (Material, PetscReal *), (material, ratio));
+  *ratio = constants->poissons_ratio;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -230,15 +214,12 @@ PetscErrorCode MaterialCreate_Isotropic(Material material)
   PetscFunctionBegin;
   PetscCall(PetscNew(&constants));
   material->data                 = constants;
+  material->isotropic            = PETSC_TRUE;
   material->ops->setfromoptions  = MaterialSetFromOptions_Isotropic;
   material->ops->setup           = MaterialSetUp_Isotropic;
   material->ops->view            = MaterialView_Isotropic;
   material->ops->destroy         = MaterialDestroy_Isotropic;
   material->ops->uniaxialmodulus = MaterialUniaxialModulus_Isotropic;
   material->ops->wavemodulus     = MaterialWaveModulus_Isotropic;
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetYoungsModulus_C", MaterialSetYoungsModulus_Isotropic));
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialGetYoungsModulus_C", MaterialGetYoungsModulus_Isotropic));
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialSetPoissonsRatio_C", MaterialSetPoissonsRatio_Isotropic));
-  PetscCall(PetscObjectComposeFunction((PetscObject)material, "MaterialGetPoissonsRatio_C", MaterialGetPoissonsRatio_Isotropic));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

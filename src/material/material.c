@@ -65,7 +65,7 @@ PetscErrorCode MaterialSetType(Material material, MaterialType type)
   PetscTryTypeMethod(material, destroy);
   PetscCall(PetscMemzero(material->ops, sizeof(*material->ops)));
   material->data   = NULL;
-  material->linear = PETSC_FALSE;
+  material->linear = material->isotropic = PETSC_FALSE;
   PetscCall((*create)(material));
   PetscCall(PetscObjectChangeTypeName((PetscObject)material, type));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -172,9 +172,7 @@ static PetscErrorCode SetUp(Material material)
   MPI_Comm comm    = PetscObjectComm((PetscObject)material);
 
   PetscFunctionBegin;
-  PetscCheck(plastic->elastic.youngs_modulus > 0, comm, PETSC_ERR_ARG_WRONGSTATE,
-             "The material of type %s has no Young's modulus: call MaterialSetYoungsModulus() or MaterialSetFromOptions()",
-             ((PetscObject)material)->type_name);
+  PetscCall(MaterialSetUp_Isotropic(material));
   PetscCheck(plastic->yield > 0, comm, PETSC_ERR_ARG_WRONGSTATE,
              "The material of type %s has no yield stress: call MaterialSetFromOptions()", ((PetscObject)material)->type_name);
   PetscCheck(plastic->hardening != HARDENING_VOCE || plastic->saturation >= plastic->yield, comm, PETSC_ERR_USER_INPUT,
@@ -192,8 +190,7 @@ static PetscErrorCode View(Material material, PetscViewer viewer)
 
   PetscFunctionBegin;
   unit = UnitsOf((PetscObject)material, UNIT_STRESS);
-  PetscCall(PetscViewerASCIIPrintf(viewer, "  Young's modulus %g%s, Poisson's ratio %g\n", (double)plastic->elastic.youngs_modulus, unit,
-                                   (double)plastic->elastic.poissons_ratio));
+  PetscCall(MaterialView_Isotropic(material, viewer));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  yield stress %g%s, hardening %s, modulus %g%s, kinematic %g%s\n", (double)plastic->yield,
                                    unit, plastic->hardening == HARDENING_JOHNSON_COOK ? "of Johnson and Cook" : laws[plastic->hardening],
                                    (double)plastic->modulus, unit, (double)plastic->kinematic, unit));

@@ -11,4 +11,6 @@ typedef struct {
 
 PETSC_EXTERN PetscErrorCode MaterialCreate_Isotropic(Material);
 PETSC_INTERN PetscErrorCode MaterialSetFromOptions_Isotropic(Material);
+PETSC_INTERN PetscErrorCode MaterialSetUp_Isotropic(Material);
+PETSC_INTERN PetscErrorCode MaterialView_Isotropic(Material, PetscViewer);
 PETSC_INTERN PetscErrorCode MaterialDestroy_Isotropic(Material);

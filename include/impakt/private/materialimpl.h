@@ -29,6 +29,7 @@ struct _p_Material {
   PETSCHEADER(struct _MaterialOps);
   PetscReal       density;      /* kg/m^3; 0 until set */
   PetscBool       linear;       /* stress proportional to strain: matrices are constant */
+  PetscBool       isotropic;    /* `data` begins with an `Isotropic` */
   PetscBool       plane_stress; /* what MaterialGetKernels() and MaterialGetWaveModulus() speak of */
   PlaneStressData plane;        /* data of the kernels of plane stress, for models that use MaterialCondenseKernels() */
   void           *data;
