@@ -103,12 +103,25 @@ PetscErrorCode TablesGetTable(Tables tables, PetscInt i, const char *name[], Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+static Table *LookForTable(Tables tables, const char name[])
+{
+  for (PetscInt i = 0; i < tables->n; i++)
+    if (!strcmp(tables->tables[i].name, name)) return &tables->tables[i];
+  return NULL;
+}
+
+/* TablesGetWidth - how many columns the table of a name has; 0: there is none */
+PetscInt TablesGetWidth(Tables tables, const char name[])
+{
+  const Table *table = LookForTable(tables, name);
+
+  return table ? table->width : 0;
+}
+
 static PetscErrorCode FindTable(Tables tables, const char name[], Table **table)
 {
   PetscFunctionBegin;
-  *table = NULL;
-  for (PetscInt i = 0; i < tables->n && !*table; i++)
-    if (!strcmp(tables->tables[i].name, name)) *table = &tables->tables[i];
+  *table = LookForTable(tables, name);
   PetscCheck(*table, tables->comm, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has no table '%s': it is of another problem", name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -12,6 +12,7 @@ PETSC_INTERN PetscErrorCode TablesAdd(Tables, const char[], PetscInt, PetscInt, 
 PETSC_INTERN PetscErrorCode TablesAddNumbers(Tables, const char[], PetscInt, const PetscReal[]);
 PETSC_INTERN PetscErrorCode TablesShare(Tables, const char[], PetscInt, PetscInt, PetscReal[]);
 PETSC_INTERN void           TablesGetNumber(Tables, PetscInt *);
+PETSC_INTERN PetscInt       TablesGetWidth(Tables, const char[]);
 PETSC_INTERN PetscErrorCode TablesGetTable(Tables, PetscInt, const char *[], PetscInt *, PetscInt *, const PetscReal *[]);
 PETSC_INTERN PetscErrorCode TablesGet(Tables, const char[], PetscInt, PetscInt *, const PetscReal *[]);
 PETSC_INTERN PetscErrorCode TablesGetNumbers(Tables, const char[], PetscInt *, const PetscReal *[]);

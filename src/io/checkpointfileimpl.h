@@ -32,5 +32,3 @@ static inline uint64_t CheckpointSum(uint64_t sum, size_t size, const char bytes
 
 PETSC_INTERN PetscErrorCode CheckpointSendBytes(MPI_Comm, PetscMPIInt, size_t, const void *);
 PETSC_INTERN PetscErrorCode CheckpointReceiveBytes(MPI_Comm, PetscMPIInt, size_t *, char **);
-PETSC_INTERN PetscErrorCode CheckpointReadArray(const CheckpointFile *, const char[], PetscInt[2], PetscReal **);
-PETSC_INTERN PetscErrorCode CheckpointShareArray(MPI_Comm, PetscInt[2], PetscReal **);

@@ -235,18 +235,8 @@ PetscErrorCode CheckpointFileReadShared(MPI_Comm comm, const CheckpointFile *fil
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode CheckpointReadArray(const CheckpointFile *file, const char name[], PetscInt size[2], PetscReal **values)
-{
-  hsize_t length[2];
-
-  PetscFunctionBegin;
-  PetscCall(ReadDataset(file, name, H5T_NATIVE_DOUBLE, sizeof(**values), length, values));
-  for (PetscInt d = 0; d < 2; d++) size[d] = (PetscInt)length[d];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* An array of the first rank to every rank, in blocks of rows; of the others it is NULL before. Collective. */
-PetscErrorCode CheckpointShareArray(MPI_Comm comm, PetscInt size[2], PetscReal **values)
+static PetscErrorCode ShareArray(MPI_Comm comm, PetscInt size[2], PetscReal **values)
 {
   PetscFunctionBegin;
   PetscCallMPI(MPI_Bcast(size, 2, MPIU_INT, 0, comm));
@@ -258,12 +248,14 @@ PetscErrorCode CheckpointShareArray(MPI_Comm comm, PetscInt size[2], PetscReal *
 
 static PetscErrorCode ReadTable(const CheckpointFile *file, PetscInt i, char name[512], PetscInt size[2], PetscReal **values)
 {
-  char  place[32], *text;
-  hid_t dataset;
+  char    place[32], *text;
+  hsize_t length[2];
+  hid_t   dataset;
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(place, sizeof(place), "tables/%" PetscInt_FMT, i));
-  PetscCall(CheckpointReadArray(file, place, size, values));
+  PetscCall(ReadDataset(file, place, H5T_NATIVE_DOUBLE, sizeof(**values), length, values));
+  for (PetscInt d = 0; d < 2; d++) size[d] = (PetscInt)length[d];
   dataset = H5Dopen2(file->file, place, H5P_DEFAULT);
   PetscCall(HDF5Check(dataset, "open a table", file->path));
   PetscCall(ReadText(file, dataset, "name", &text));
@@ -297,7 +289,7 @@ PetscErrorCode CheckpointFileReadTables(MPI_Comm comm, const CheckpointFile *fil
 
     if (!rank) PetscCall(ReadTable(file, i, name, size, &values));
     PetscCallMPI(MPI_Bcast(name, sizeof(name), MPI_CHAR, 0, comm));
-    PetscCall(CheckpointShareArray(comm, size, &values));
+    PetscCall(ShareArray(comm, size, &values));
     PetscCall(TablesShare(*tables, name, size[0], size[1], values));
   }
   PetscFunctionReturn(PETSC_SUCCESS);

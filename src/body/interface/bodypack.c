@@ -106,8 +106,9 @@ static PetscErrorCode UnpackPoint(Body body, const PetscInt rows[], Tables table
 PetscErrorCode BodyPack(Body body, Tables tables)
 {
   const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + N_VECS * dim;
-  PetscReal     *packed;
+  PetscReal     *packed, moves = body->integrator->has_inertia;
   Vec            vecs[N_VECS];
+  char           name[256];
 
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(n * width, &packed));
@@ -124,6 +125,8 @@ PetscErrorCode BodyPack(Body body, Tables tables)
   }
   PetscCall(TablesAdd(tables, body->hdr.name, n, width, packed));
   PetscCall(PetscFree(packed));
+  PetscCall(Name(body, "inertia", name, sizeof(name)));
+  PetscCall(TablesAddNumbers(tables, name, 1, &moves));
   PetscCall(BodyPackHistory(body, tables));
   PetscCall(PackPoint(body, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -163,6 +166,59 @@ PetscErrorCode BodyUnpack(Body body, Tables tables)
   PetscCall(UnpackPoint(body, rows, tables));
   PetscCall(PetscFree(rows));
   if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Where a body is to find the state that it begins with */
+typedef struct {
+  Body      body;
+  Tables    tables;
+  PetscBool moves; /* the body had inertia there: else its velocities mean nothing */
+} Start;
+
+/* The state of the node at a place, for BodySetInitialState() */
+static PetscErrorCode FindState(PetscInt dim, const PetscReal x[], PetscScalar u[], PetscScalar v[], void *context)
+{
+  const Start     *start           = (const Start *)context;
+  PetscReal        key[TABLES_KEY] = {0};
+  const PetscReal *packed;
+  PetscInt         n, row;
+
+  PetscFunctionBegin;
+  PetscCall(PetscArraycpy(key, x, dim));
+  PetscCall(TablesGet(start->tables, start->body->hdr.name, TABLES_KEY + N_VECS * dim, &n, &packed));
+  PetscCall(TablesLookFor(start->tables, start->body->hdr.name, key, &row));
+  PetscCheck(row >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
+             "-restart_state: the checkpoint has no node at (%.9g, %.9g, %.9g) m; the meshes must be the same", (double)key[0],
+             (double)key[1], (double)key[2]);
+  packed += row * (TABLES_KEY + N_VECS * dim) + TABLES_KEY;
+  PetscCall(PetscArraycpy(u, packed, dim));
+  if (start->moves) PetscCall(PetscArraycpy(v, packed + dim, dim));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The start of a body from the tables of another run with the same mesh, if they have it: displacements, what its material has gone
+   through, and velocities unless it had no inertia. Collective. */
+PetscErrorCode BodyTakeState(Body body, Tables tables, PetscBool *found)
+{
+  const PetscInt   width = TablesGetWidth(tables, body->hdr.name), dim = body->mesh.dim;
+  const PetscReal *moves;
+  Start            start = {.body = body, .tables = tables};
+  PetscInt         n;
+  char             name[256];
+
+  PetscFunctionBegin;
+  *found = (PetscBool)(width > 0);
+  if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCheck(width == TABLES_KEY + N_VECS * dim, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+             "-restart_state: body '%s' has %" PetscInt_FMT " dimensions there, and %" PetscInt_FMT " here", body->hdr.name,
+             (width - TABLES_KEY) / N_VECS, dim);
+  PetscCall(Name(body, "inertia", name, sizeof(name)));
+  PetscCall(TablesGetNumbers(tables, name, &n, &moves));
+  start.moves = (PetscBool)(moves[0] != 0);
+  PetscCall(BodyTakeHistory(body, tables)); /* first: stresses of the displacements follow from it */
+  PetscCall(BodySetInitialState(body, FindState, &start));
+  PetscCall(BodyNotePlasticBefore(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -11,6 +11,7 @@ PETSC_INTERN PetscErrorCode BodyPack(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyUnpack(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyPackHistory(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyUnpackHistory(Body, Tables);
+PETSC_INTERN PetscErrorCode BodyTakeState(Body, Tables, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyTakeHistory(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyNotePlasticBefore(Body);
 PETSC_INTERN PetscErrorCode BodyTakeRows(Body);
