@@ -1,6 +1,6 @@
 /* Functions of place and time that users write in options. */
 #pragma once
-#include <petscviewer.h>
+#include <petscsys.h>
 
 /* A formula in x, y, z, t (and, on surfaces, the outward unit normal nx, ny, nz), or a table in t */
 typedef struct _p_Expression *Expression;
@@ -19,12 +19,9 @@ PETSC_EXTERN PetscErrorCode ExpressionCreate(MPI_Comm, const char[], const char[
 PETSC_EXTERN PetscErrorCode ExpressionEvaluate(Expression, const ExpressionPoint *, PetscReal *);
 PETSC_EXTERN PetscErrorCode ExpressionEvaluateRates(Expression, const ExpressionPoint *, PetscReal, PetscReal, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ExpressionIsConstant(Expression, PetscBool *, PetscReal *);
-PETSC_EXTERN PetscErrorCode ExpressionIsSteady(Expression, PetscBool *);
-PETSC_EXTERN PetscErrorCode ExpressionIsUniform(Expression, PetscBool *);
-PETSC_EXTERN PetscErrorCode ExpressionUsesNormal(Expression, PetscBool *);
+PETSC_EXTERN PetscErrorCode ExpressionGetNature(Expression, PetscBool *, PetscBool *, PetscBool *);
 PETSC_EXTERN PetscErrorCode ExpressionGetOption(Expression, const char *[]);
 PETSC_EXTERN PetscErrorCode ExpressionGetText(Expression, const char *[]);
-PETSC_EXTERN PetscErrorCode ExpressionView(Expression, PetscViewer);
 PETSC_EXTERN PetscErrorCode ExpressionDestroy(Expression *);
 PETSC_EXTERN PetscErrorCode ExpressionListCreate(MPI_Comm, const char[], const char[], PetscInt, PetscBool, Expression[]);
 PETSC_EXTERN PetscErrorCode ExpressionListCount(const char[], PetscInt *);

@@ -47,8 +47,8 @@ PetscErrorCode ExpressionCreate(MPI_Comm comm, const char option[], const char t
   PetscAssertPointer(text, 3);
   PetscAssertPointer(expression, 4);
   PetscCall(ExpressionInitializePackage());
-  PetscCall(PetscHeaderCreate(*expression, EXPRESSION_CLASSID, "Expression", "Formula or table", "Expression", comm, ExpressionDestroy,
-                              ExpressionView));
+  PetscCall(
+      PetscHeaderCreate(*expression, EXPRESSION_CLASSID, "Expression", "Formula or table", "Expression", comm, ExpressionDestroy, NULL));
   PetscCall(PetscStrallocpy(option, &(*expression)->option));
   PetscCall(PetscStrallocpy(text, &(*expression)->text));
   error = Fill(*expression, comm);
@@ -86,33 +86,15 @@ PetscErrorCode ExpressionIsConstant(Expression expression, PetscBool *constant, 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether an expression does not depend on time */
-PetscErrorCode ExpressionIsSteady(Expression expression, PetscBool *steady)
+/* What an expression depends on: `steady`: not on time; `uniform`: it has the same value everywhere; `normal`: on the normal, so that it
+   has a meaning on surfaces only. Any may be `NULL` */
+PetscErrorCode ExpressionGetNature(Expression expression, PetscBool *steady, PetscBool *uniform, PetscBool *normal)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
-  PetscAssertPointer(steady, 2);
-  *steady = (PetscBool)!expression->uses_time;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether an expression has the same value everywhere */
-PetscErrorCode ExpressionIsUniform(Expression expression, PetscBool *uniform)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
-  PetscAssertPointer(uniform, 2);
-  *uniform = (PetscBool) !(expression->uses_position || expression->uses_normal);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether an expression depends on the normal, and so has a meaning on surfaces only */
-PetscErrorCode ExpressionUsesNormal(Expression expression, PetscBool *normal)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
-  PetscAssertPointer(normal, 2);
-  *normal = expression->uses_normal;
+  if (steady) *steady = (PetscBool)!expression->uses_time;
+  if (uniform) *uniform = (PetscBool) !(expression->uses_position || expression->uses_normal);
+  if (normal) *normal = expression->uses_normal;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -133,20 +115,6 @@ PetscErrorCode ExpressionGetOption(Expression expression, const char *option[])
   PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
   PetscAssertPointer(option, 2);
   *option = expression->option;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Prints an expression. `viewer`: an ASCII viewer, `NULL` for standard output. Collective */
-PetscErrorCode ExpressionView(Expression expression, PetscViewer viewer)
-{
-  PetscBool ascii;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(expression, EXPRESSION_CLASSID, 1);
-  if (!viewer) PetscCall(PetscViewerASCIIGetStdout(PetscObjectComm((PetscObject)expression), &viewer));
-  PetscValidHeaderSpecific(viewer, PETSC_VIEWER_CLASSID, 2);
-  PetscCall(PetscObjectTypeCompare((PetscObject)viewer, PETSCVIEWERASCII, &ascii));
-  if (ascii) PetscCall(PetscViewerASCIIPrintf(viewer, "%s: %s\n", expression->option, expression->text));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

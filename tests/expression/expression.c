@@ -52,9 +52,7 @@ static void tells_what_a_formula_depends_on(void **state)
 
     ok(ExpressionCreate(PETSC_COMM_WORLD, "o", natures[i].text, &expression));
     ok(ExpressionIsConstant(expression, &constant, &value));
-    ok(ExpressionIsSteady(expression, &steady));
-    ok(ExpressionIsUniform(expression, &uniform));
-    ok(ExpressionUsesNormal(expression, &normal));
+    ok(ExpressionGetNature(expression, &steady, &uniform, &normal));
     assert_int_equal(constant, natures[i].constant);
     assert_int_equal(steady, natures[i].steady);
     assert_int_equal(uniform, natures[i].uniform);
@@ -143,8 +141,7 @@ static void evaluates_tables(void **state)
   near(value_of("table:ramp.txt", 0, 0, 3e-3), -0.5, 0);
   near(value_of("table:ramp.txt", 0, 0, 1), -0.5, 0);
   ok(ExpressionCreate(PETSC_COMM_WORLD, "o", "table:ramp.txt", &expression));
-  ok(ExpressionIsSteady(expression, &steady));
-  ok(ExpressionIsUniform(expression, &uniform));
+  ok(ExpressionGetNature(expression, &steady, &uniform, NULL));
   ok(ExpressionIsConstant(expression, &constant, NULL));
   assert_false(steady || constant);
   assert_true(uniform);

@@ -269,17 +269,12 @@ static void bars_and_output(void **state)
 static void expressions(void **state)
 {
   Expression  expression;
-  PetscViewer viewer;
   const char *text;
 
   (void)state;
   ok(ExpressionCreate(PETSC_COMM_WORLD, "speed", "2*x+t", &expression));
   ok(ExpressionGetText(expression, &text));
   assert_string_equal(text, "2*x+t");
-  ok(PetscViewerASCIIOpen(PETSC_COMM_WORLD, "expression.txt", &viewer));
-  ok(ExpressionView(expression, viewer));
-  ok(PetscViewerDestroy(&viewer));
-  expect_file("expression.txt", "speed: 2*x+t");
   ok(ExpressionDestroy(&expression));
 }
 

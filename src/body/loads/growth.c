@@ -14,8 +14,7 @@ static PetscErrorCode IsSudden(Expression component, PetscReal start, PetscBool 
   PetscFunctionBegin;
   *sudden = PETSC_FALSE;
   if (!component) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ExpressionIsSteady(component, &steady));
-  PetscCall(ExpressionIsUniform(component, &uniform));
+  PetscCall(ExpressionGetNature(component, &steady, &uniform, NULL));
   if (uniform) PetscCall(ExpressionEvaluate(component, &point, &value));
   *sudden = uniform ? (PetscBool)(value != 0) : steady;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -10,7 +10,7 @@ static PetscErrorCode RefusePlace(Body body, const char name[], PetscInt n, cons
   for (PetscInt i = 0; i < n; i++) {
     PetscBool uniform = PETSC_TRUE;
 
-    if (list[i]) PetscCall(ExpressionIsUniform(list[i], &uniform));
+    if (list[i]) PetscCall(ExpressionGetNature(list[i], NULL, &uniform, NULL));
     PetscCheck(uniform, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "-%s%s: a rigid body is led as a whole; its formulas may use t, but not x, y, z or a normal", ((PetscObject)body)->prefix,
                name);

@@ -62,8 +62,7 @@ static PetscErrorCode SortComponents(Load *load)
     PetscBool steady, uniform;
 
     if (!load->component[d]) continue;
-    PetscCall(ExpressionIsSteady(load->component[d], &steady));
-    PetscCall(ExpressionIsUniform(load->component[d], &uniform));
+    PetscCall(ExpressionGetNature(load->component[d], &steady, &uniform, NULL));
     load->part[steady ? LOAD_STEADY : uniform ? LOAD_UNIFORM : LOAD_VARYING][d] = load->component[d];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

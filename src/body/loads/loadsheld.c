@@ -75,8 +75,7 @@ static PetscErrorCode FillGroup(Body body, const PetscScalar marks[], PetscInt p
   PetscFunctionBegin;
   group->prescription = prescription;
   group->displacement = displacement;
-  PetscCall(ExpressionIsSteady(group->displacement, &group->steady));
-  PetscCall(ExpressionIsUniform(group->displacement, &group->uniform));
+  PetscCall(ExpressionGetNature(group->displacement, &group->steady, &group->uniform, NULL));
   for (PetscInt dof = component; dof < n; dof += body->mesh.dim) count += marks[dof] == prescription + 1;
   PetscCall(PetscMalloc1(count, &group->held.dofs));
   if (group->steady) PetscCall(PetscMalloc1(count, &group->held.values));

@@ -35,7 +35,7 @@ static PetscErrorCode CheckSteady(Body body, const char name[], const Expression
   for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscBool steady;
 
-    PetscCall(ExpressionIsSteady(list[d], &steady));
+    PetscCall(ExpressionGetNature(list[d], &steady, NULL, NULL));
     PetscCheck(steady, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "-%s%s cannot vary in time: it is what there is at the start; use x, y, z", ((PetscObject)body)->prefix, name);
   }

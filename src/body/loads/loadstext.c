@@ -41,7 +41,7 @@ PetscErrorCode BodyLoadsRefuseNormal(Body body, const char name[], const Express
   for (PetscInt d = 0; d < body->mesh.dim; d++) {
     PetscBool normal = PETSC_FALSE;
 
-    if (list[d]) PetscCall(ExpressionUsesNormal(list[d], &normal));
+    if (list[d]) PetscCall(ExpressionGetNature(list[d], NULL, NULL, &normal));
     PetscCheck(!normal, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "-%s%s: nx, ny and nz are for tractions alone; use x, y, z", ((PetscObject)body)->prefix, name);
   }
