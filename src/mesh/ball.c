@@ -1,29 +1,6 @@
 /* Discs and balls from options: an O-grid, graded toward a pole by a conformal map, or a part of it. PETSc needs a generator for these. */
 #include "ballimpl.h"
 
-static PetscErrorCode ReadPart(MPI_Comm comm, const char prefix[], Ball *ball)
-{
-  const char *const parts[] = {"full", "half", "quarter"};
-  char              part[64];
-  PetscBool         set, same = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsGetString(NULL, prefix, "-ball_part", part, sizeof(part), &set));
-  if (!set) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < 3 && !same; p++) {
-    PetscCall(PetscStrcasecmp(part, parts[p], &same));
-    if (same) ball->n_cuts = p;
-  }
-  PetscCheck(same, comm, PETSC_ERR_USER_INPUT, "-%sball_part %s: expected full, half (x >= centre) or quarter (also y >= centre)", prefix,
-             part);
-  PetscCheck(ball->n_cuts < ball->dim, comm, PETSC_ERR_USER_INPUT,
-             "-%sball_part %s: a disc can be full or half; quarters are for -%sdm_plex_dim 3", prefix, part, prefix);
-  PetscCheck(!ball->n_cuts || ball->divisions % 2 == 0, comm, PETSC_ERR_USER_INPUT,
-             "-%sball_divisions %" PetscInt_FMT ": must be even for -%sball_part %s, which cuts the central block in its middle", prefix,
-             ball->divisions, prefix, part);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ReadPole(MPI_Comm comm, const char prefix[], Ball *ball)
 {
   const PetscInt dim = ball->dim;
@@ -47,6 +24,7 @@ static PetscErrorCode ReadPole(MPI_Comm comm, const char prefix[], Ball *ball)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A number that an option may give, with a value before */
 static PetscErrorCode ReadNumber(MPI_Comm comm, const char prefix[], const char option[], const char meaning[], PetscReal *value)
 {
   PetscReal values[4];
@@ -58,12 +36,44 @@ static PetscErrorCode ReadNumber(MPI_Comm comm, const char prefix[], const char 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For composite elements the grid is twice as fine: every second node is a corner, others are mid-edge, on the true surface */
-PetscErrorCode BallChooseOrder(const char prefix[], Ball *ball)
+PetscErrorCode BallReadLength(MPI_Comm comm, const char prefix[], const char option[], PetscReal *value)
 {
-  PetscBool composite;
+  PetscFunctionBegin;
+  PetscCall(ReadNumber(comm, prefix, option, "a length [m]", value));
+  PetscCheck(*value > 0, comm, PETSC_ERR_USER_INPUT, "-%s%s %g: must be positive", prefix, option + 1, (double)*value);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscErrorCode BallReadCount(MPI_Comm comm, const char prefix[], const char option[], PetscInt *value)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetInt(NULL, prefix, option, value, NULL));
+  PetscCheck(*value >= 1, comm, PETSC_ERR_USER_INPUT, "-%s%s %" PetscInt_FMT ": there must be at least 1", prefix, option + 1, *value);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* What balls and rods have in common. For composite elements the grid is twice as fine: every second node is a corner, others are mid-edge,
+   on the true surface */
+PetscErrorCode BallReadSection(MPI_Comm comm, const char prefix[], const BallOptions *options, Ball *ball)
+{
+  const char *const parts[]  = {"full", "half", "quarter"};
+  char              part[64] = "full";
+  PetscBool         composite, found;
 
   PetscFunctionBegin;
+  PetscCall(BallReadLength(comm, prefix, options->radius, &ball->radius));
+  PetscCall(BallReadCount(comm, prefix, options->divisions, &ball->divisions));
+  ball->layers = (ball->divisions + 1) / 2; /* the central block is as wide as the radius, and the layers beside it as half the radius */
+  PetscCall(BallReadCount(comm, prefix, options->layers, &ball->layers));
+  PetscCall(PetscOptionsGetString(NULL, prefix, options->part, part, sizeof(part), NULL));
+  PetscCall(PetscEListFind(3, parts, part, &ball->n_cuts, &found));
+  PetscCheck(found, comm, PETSC_ERR_USER_INPUT, "-%s%s %s: expected full, half (x >= centre) or quarter (also y >= centre)", prefix,
+             options->part + 1, part);
+  PetscCheck(!ball->n_cuts || ball->divisions % 2 == 0, comm, PETSC_ERR_USER_INPUT,
+             "-%s%s %" PetscInt_FMT ": must be even for -%s%s %s, which cuts the central block in its middle", prefix,
+             options->divisions + 1, ball->divisions, prefix, options->part + 1, parts[ball->n_cuts]);
+  PetscCall(PetscOptionsGetBool(NULL, prefix, options->keep_volume, &ball->keep_volume, NULL));
+  PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &ball->simplex, NULL));
   PetscCall(MeshWantsComposite(prefix, &composite));
   ball->step = composite && ball->simplex ? 2 : 1; /* other cells are refused when they are to be divided */
   ball->divisions *= ball->step;
@@ -73,44 +83,28 @@ PetscErrorCode BallChooseOrder(const char prefix[], Ball *ball)
 
 static PetscErrorCode ReadBall(MPI_Comm comm, const char prefix[], Ball *ball)
 {
-  PetscReal centre[4];
-  PetscBool set;
+  const BallOptions options = {"-ball_radius", "-ball_divisions", "-ball_layers", "-ball_part", "-ball_keep_volume"};
+  PetscReal         centre[4];
+  PetscBool         set;
 
   PetscFunctionBegin;
   *ball = (Ball){.dim = 2, .divisions = 4, .radius = 1, .grading = 1, .keep_volume = PETSC_TRUE};
   PetscCall(PetscOptionsGetInt(NULL, prefix, "-dm_plex_dim", &ball->dim, NULL));
   PetscCheck(ball->dim == 2 || ball->dim == 3, comm, PETSC_ERR_USER_INPUT,
              "-%sdm_plex_dim %" PetscInt_FMT ": -%sdm_plex_shape ball makes a disc (2) or a ball (3)", prefix, ball->dim, prefix);
-  PetscCall(ReadNumber(comm, prefix, "-ball_radius", "a radius [m]", &ball->radius));
-  PetscCheck(ball->radius > 0, comm, PETSC_ERR_USER_INPUT, "-%sball_radius %g: must be positive", prefix, (double)ball->radius);
+  PetscCall(BallReadSection(comm, prefix, &options, ball));
+  PetscCheck(ball->n_cuts < ball->dim, comm, PETSC_ERR_USER_INPUT,
+             "-%sball_part quarter: a disc can be full or half; quarters are for -%sdm_plex_dim 3", prefix, prefix);
   PetscCall(MeshReadNumbers(comm, prefix, "-ball_centre", ball->dim, "a point [m]", centre, &set));
   for (PetscInt d = 0; d < ball->dim && set; d++) ball->centre[d] = centre[d];
-  PetscCall(PetscOptionsGetInt(NULL, prefix, "-ball_divisions", &ball->divisions, NULL));
-  PetscCheck(ball->divisions >= 1, comm, PETSC_ERR_USER_INPUT,
-             "-%sball_divisions %" PetscInt_FMT ": the central block has at least 1 element along an edge", prefix, ball->divisions);
-  ball->layers = (ball->divisions + 1) / 2; /* the central block is as wide as the radius, and the layers beside it as half the radius */
-  PetscCall(PetscOptionsGetInt(NULL, prefix, "-ball_layers", &ball->layers, NULL));
-  PetscCheck(ball->layers >= 1, comm, PETSC_ERR_USER_INPUT,
-             "-%sball_layers %" PetscInt_FMT ": there is at least 1 around the central block", prefix, ball->layers);
   PetscCall(ReadNumber(comm, prefix, "-ball_grading", "a ratio of element sizes", &ball->grading));
   PetscCheck(
       ball->grading >= 1, comm, PETSC_ERR_USER_INPUT,
       "-%sball_grading %g: the ratio of the largest to the smallest element size is 1 or more; -%sball_pole says where they are small",
       prefix, (double)ball->grading, prefix);
-  PetscCall(ReadPart(comm, prefix, ball));
   PetscCall(ReadPole(comm, prefix, ball));
-  PetscCall(PetscOptionsGetBool(NULL, prefix, "-dm_plex_simplex", &ball->simplex, NULL));
-  PetscCall(PetscOptionsGetBool(NULL, prefix, "-ball_keep_volume", &ball->keep_volume, NULL));
   PetscCall(PetscOptionsGetBool(NULL, prefix, "-axisymmetric", &ball->turned, NULL));
   ball->turned = (PetscBool)(ball->turned && ball->dim == 2 && ball->n_cuts == 1 && ball->centre[0] == 0);
-  PetscCall(BallChooseOrder(prefix, ball));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Fill(void *ctx)
-{
-  PetscFunctionBegin;
-  PetscCall(MeshFillBall((BallGrid *)ctx));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,7 +118,7 @@ PetscErrorCode BallCreate(MPI_Comm comm, Ball *ball, const char where[], PetscMP
   PetscFunctionBegin;
   PetscCall(MeshFileInitialize(&file, NULL));
   file.rank = PetscMax(rank, 0);
-  error     = MeshOnRank(comm, file.rank, Fill, &grid, where);
+  error     = MeshOnRank(comm, file.rank, MeshFillBall, &grid, where);
   PetscCallMPI(MPI_Bcast(&grid.missing, 1, MPIU_REAL, file.rank, comm));
   *missing = grid.missing;
   if (!error) error = MeshBuild(comm, &file, where, dm, middles);

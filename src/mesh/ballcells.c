@@ -236,10 +236,11 @@ static PetscErrorCode DrawOut(BallGrid *grid)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* MeshFillBall - nodes, cells and surfaces of a disc, a ball or a rod */
-PetscErrorCode MeshFillBall(BallGrid *grid)
+/* Nodes, cells and surfaces of a disc, a ball or a rod, which the context, a BallGrid, describes */
+PetscErrorCode MeshFillBall(void *ctx)
 {
   static const char *const cut_names[] = {"cut_x", "cut_y"};
+  BallGrid                *grid        = (BallGrid *)ctx;
   const Ball              *ball        = grid->ball;
   PetscInt                 sphere;
 

@@ -13,6 +13,11 @@ typedef struct {
   PetscBool turned; /* half a disc that becomes a ball as it is turned about x = 0 */
 } Ball;
 
+/* The names of options that balls and rods have in common */
+typedef struct {
+  const char *radius, *divisions, *layers, *part, *keep_volume;
+} BallOptions;
+
 /* The central block, or the block of layers on one side of it: along the axis of that side places count layers */
 typedef struct {
   PetscInt axis; /* -1: the central block */
@@ -33,10 +38,12 @@ typedef struct {
 } BallGrid;
 
 PETSC_INTERN PetscErrorCode BallCreate(MPI_Comm, Ball *, const char[], PetscMPIInt, DM *, MeshMiddles *, PetscReal *);
-PETSC_INTERN PetscErrorCode MeshFillBall(BallGrid *);
+PETSC_INTERN PetscErrorCode MeshFillBall(void *);
 PETSC_INTERN PetscErrorCode BallAddRange(const BallGrid *, const BallBlock *, PetscInt, const PetscInt[], const PetscInt[3],
                                          const PetscInt[3]);
-PETSC_INTERN PetscErrorCode BallChooseOrder(const char[], Ball *);
+PETSC_INTERN PetscErrorCode BallReadLength(MPI_Comm, const char[], const char[], PetscReal *);
+PETSC_INTERN PetscErrorCode BallReadCount(MPI_Comm, const char[], const char[], PetscInt *);
+PETSC_INTERN PetscErrorCode BallReadSection(MPI_Comm, const char[], const BallOptions *, Ball *);
 PETSC_INTERN PetscErrorCode BallSetNodes(BallGrid *);
 PETSC_INTERN PetscInt       BallGetNode(const BallGrid *, const BallBlock *, const PetscInt[3]);
 PETSC_INTERN PetscBool      BallBlockIsMirrored(const BallBlock *);
