@@ -33,26 +33,6 @@ static PetscErrorCode DivideGraph(DM dm, const MeshRanks *ranks, PetscInt part[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sends a mesh on its way as its partitioner says, and with it the positions in the middle of its edges, if there are any */
-static PetscErrorCode Send(DM *dm, MeshMiddles *middles)
-{
-  const char *prefix;
-  DM          sent;
-
-  PetscFunctionBegin;
-  if (middles->section) {
-    PetscCall(MeshDivideWithMiddles(dm, middles));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(DMPlexDistribute(*dm, 0, NULL, &sent));
-  if (!sent) PetscFunctionReturn(PETSC_SUCCESS); /* there is one rank */
-  PetscCall(DMGetOptionsPrefix(*dm, &prefix));
-  PetscCall(DMSetOptionsPrefix(sent, prefix));
-  PetscCall(DMDestroy(dm));
-  *dm = sent;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Divides a mesh that is on the first rank among these ranks: by the coordinates of its cells where a surface may touch another body and
    that makes a step cheaper, else as a graph. stage: what there was of it before DMSetFromOptions() */
 PetscErrorCode MeshDivideAmong(const MeshRanks *ranks, const char prefix[], const char name[], MeshStage stage, PetscBool placed, DM *dm,
@@ -70,6 +50,6 @@ PetscErrorCode MeshDivideAmong(const MeshRanks *ranks, const char prefix[], cons
     PetscCall(MeshSetParts(*dm, ranks, end - start, part));
     PetscCall(PetscFree(part));
   }
-  PetscCall(Send(dm, middles));
+  PetscCall(MeshDivideWithMiddles(dm, middles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

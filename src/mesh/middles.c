@@ -118,7 +118,8 @@ PetscErrorCode MeshMiddlesDestroy(MeshMiddles *middles)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Divides a mesh that is on the first rank as its partitioner says, and with it the positions in the middle of its edges */
+/* Divides a mesh that is on the first rank as its partitioner says, and with it the positions in the middle of its edges, if there are any
+ */
 PetscErrorCode MeshDivideWithMiddles(DM *dm, MeshMiddles *middles)
 {
   MeshMiddles part;
@@ -128,12 +129,14 @@ PetscErrorCode MeshDivideWithMiddles(DM *dm, MeshMiddles *middles)
 
   PetscFunctionBegin;
   PetscCall(DMPlexDistribute(*dm, 0, &sf, &parallel));
-  if (parallel) {
+  if (parallel && middles->section) {
     PetscCall(PetscSectionCreate(PetscObjectComm((PetscObject)*dm), &part.section));
     PetscCall(VecCreate(PETSC_COMM_SELF, &part.positions));
     PetscCall(DMPlexDistributeField(*dm, sf, middles->section, middles->positions, part.section, part.positions));
     PetscCall(MeshMiddlesDestroy(middles));
     *middles = part;
+  }
+  if (parallel) { /* there is more than one rank */
     PetscCall(DMGetOptionsPrefix(*dm, &prefix));
     PetscCall(DMSetOptionsPrefix(parallel, prefix));
     PetscCall(DMDestroy(dm));
