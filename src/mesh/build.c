@@ -38,13 +38,6 @@ PetscErrorCode MeshOnRank(MPI_Comm comm, PetscMPIInt rank, PetscErrorCode (*work
   SETERRQ(comm, (PetscErrorCode)code, "%s: %s", where, message);
 }
 
-static PetscErrorCode SelectCells(void *ctx)
-{
-  PetscFunctionBegin;
-  PetscCall(MeshFileSelect((MeshFile *)ctx));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode LabelGroups(void *ctx)
 {
   Labelling *labelling = (Labelling *)ctx;
@@ -80,7 +73,7 @@ PetscErrorCode MeshBuild(MPI_Comm comm, MeshFile *file, const char where[], DM *
   PetscMPIInt mine;
 
   PetscFunctionBegin;
-  PetscCall(MeshOnRank(comm, file->rank, SelectCells, file, where));
+  PetscCall(MeshOnRank(comm, file->rank, MeshFileSelect, file, where));
   PetscCallMPI(MPI_Comm_rank(comm, &mine));
   if (mine == file->rank && file->path) PetscCall(MeshFileDoubt(file, where));
   sizes[0] = file->dim;

@@ -109,7 +109,7 @@ PETSC_INTERN PetscErrorCode MeshFileAddElement(MeshFile *, PetscInt, PetscInt *[
 PETSC_INTERN PetscErrorCode MeshFileNumberNodes(MeshFile *);
 PETSC_INTERN PetscErrorCode MeshFileFindNode(MeshFile *, PetscInt, PetscInt *);
 PETSC_INTERN PetscErrorCode MeshFileWants(const MeshFile *, PetscInt, const char[], PetscBool *);
-PETSC_INTERN PetscErrorCode MeshFileSelect(MeshFile *);
+PETSC_INTERN PetscErrorCode MeshFileSelect(void *);
 PETSC_INTERN PetscErrorCode MeshFileDoubt(const MeshFile *, const char[]);
 PETSC_INTERN PetscErrorCode MeshFileLabel(const MeshFile *, DM);
 PETSC_INTERN PetscErrorCode MeshReadGmsh(MeshFile *);

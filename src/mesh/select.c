@@ -241,8 +241,11 @@ static PetscErrorCode CheckCells(const MeshFile *file)
           (double)volume_of_first);
 }
 
-PetscErrorCode MeshFileSelect(MeshFile *file)
+/* Chooses the body's cells and vertices in the context, a MeshFile */
+PetscErrorCode MeshFileSelect(void *ctx)
 {
+  MeshFile *file = (MeshFile *)ctx;
+
   PetscFunctionBegin;
   PetscCall(DecideGroups(file));
   PetscCall(CheckWanted(file));
