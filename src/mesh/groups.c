@@ -39,18 +39,8 @@ static void UseSide(PetscInt side, const PetscReal lower[], const PetscReal uppe
   selection->tolerance = ON_SIDE * (upper[side / 2] - lower[side / 2]);
 }
 
-static PetscErrorCode FindSide(DM dm, PetscInt side, Selection *selection)
-{
-  PetscReal lower[3], upper[3];
-
-  PetscFunctionBegin;
-  PetscCall(DMGetBoundingBox(dm, lower, upper));
-  UseSide(side, lower, upper, selection);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Finds a label by its name; or, if the name is a number which any rank has in the label `sets`, that value of this label */
-static PetscErrorCode FindLabel(DM dm, const char name[], const char sets[], Selection *selection, PetscBool *found)
+/* Finds a label by its name; or, if the name is a number which any of these ranks has in the label `sets`, that value of this label */
+static PetscErrorCode FindLabel(MPI_Comm comm, DM dm, const char name[], const char sets[], Selection *selection, PetscBool *found)
 {
   PetscBool internal, exists = PETSC_FALSE;
   char     *end;
@@ -70,11 +60,30 @@ static PetscErrorCode FindLabel(DM dm, const char name[], const char sets[], Sel
   PetscCall(DMGetLabel(dm, sets, &selection->label));
   if (selection->label) PetscCall(DMLabelHasValue(selection->label, (PetscInt)number, &exists));
   any = exists;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)dm)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &any, 1, MPI_INT, MPI_MAX, comm));
   *found = (PetscBool)any;
   if (!*found) selection->label = NULL;
   selection->by_value = *found;
   selection->value    = (PetscInt)number;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Finds what the name of a surface stands for, on all ranks or on this one alone */
+static PetscErrorCode FindSurface(DM dm, const char name[], PetscBool alone, PetscBool by_side, Selection *selection, PetscBool *found)
+{
+  PetscReal lower[3], upper[3];
+  PetscInt  dim;
+
+  PetscFunctionBegin;
+  PetscCall(FindLabel(alone ? PETSC_COMM_SELF : PetscObjectComm((PetscObject)dm), dm, name, "Face Sets", selection, found));
+  PetscCall(DMGetCoordinateDim(dm, &dim));
+  for (PetscInt side = 0; side < 2 * dim && by_side && !*found; side++) {
+    PetscCall(PetscStrcmp(name, sides[side], found));
+    if (!*found) continue;
+    if (alone) PetscCall(DMGetLocalBoundingBox(dm, lower, upper));
+    else PetscCall(DMGetBoundingBox(dm, lower, upper));
+    UseSide(side, lower, upper, selection);
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,7 +235,7 @@ PetscErrorCode MeshHasSurface(DM dm, const char name[], PetscBool *has)
   PetscInt  dim;
 
   PetscFunctionBegin;
-  PetscCall(FindLabel(dm, name, "Face Sets", &selection, has));
+  PetscCall(FindLabel(PetscObjectComm((PetscObject)dm), dm, name, "Face Sets", &selection, has));
   PetscCall(DMGetCoordinateDim(dm, &dim));
   for (PetscInt side = 0; side < 2 * dim && !*has; side++) PetscCall(PetscStrcmp(name, sides[side], has));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -240,7 +249,7 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
 {
   Selection selection = {.side = -1};
   DMLabel   boundary;
-  PetscInt  dim, total;
+  PetscInt  total;
   PetscBool found = PETSC_FALSE;
 
   PetscFunctionBegin;
@@ -248,12 +257,7 @@ PetscErrorCode MeshGetSurface(DM dm, const char name[], PetscInt *n_faces, Petsc
   PetscAssertPointer(n_faces, 3);
   PetscAssertPointer(faces, 4);
   if (name && name[0]) {
-    PetscCall(FindLabel(dm, name, "Face Sets", &selection, &found));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
-    for (PetscInt side = 0; side < 2 * dim && !found; side++) {
-      PetscCall(PetscStrcmp(name, sides[side], &found));
-      if (found) PetscCall(FindSide(dm, side, &selection));
-    }
+    PetscCall(FindSurface(dm, name, PETSC_FALSE, PETSC_TRUE, &selection, &found));
     if (!found) PetscCall(RefuseSurface(dm, name, ""));
   }
   PetscCall(MarkBoundary(dm, &boundary));
@@ -272,30 +276,13 @@ PetscErrorCode MeshFindSurface(DM dm, const char name[], PetscBool by_side, Pets
 {
   Selection selection = {.side = -1};
   DMLabel   boundary;
-  PetscBool internal, found = PETSC_FALSE;
-  PetscInt  dim, start, end, number;
-  PetscReal lower[3], upper[3];
-  char     *rest;
+  PetscBool found;
+  PetscInt  start, end;
 
   PetscFunctionBegin;
   *n_faces = 0;
   *faces   = NULL;
-  number   = (PetscInt)strtol(name, &rest, 10);
-  PetscCall(MeshLabelIsInternal(name, &internal));
-  if (!internal) PetscCall(DMGetLabel(dm, name, &selection.label));
-  if (!selection.label && rest != name && !*rest) {
-    PetscCall(DMGetLabel(dm, "Face Sets", &selection.label));
-    selection.by_value = PETSC_TRUE;
-    selection.value    = number;
-  }
-  found = (PetscBool)(selection.label != NULL);
-  PetscCall(DMGetCoordinateDim(dm, &dim));
-  for (PetscInt side = 0; side < 2 * dim && by_side && !found; side++) {
-    PetscCall(PetscStrcmp(name, sides[side], &found));
-    if (!found) continue;
-    PetscCall(DMGetLocalBoundingBox(dm, lower, upper));
-    UseSide(side, lower, upper, &selection);
-  }
+  PetscCall(FindSurface(dm, name, PETSC_TRUE, by_side, &selection, &found));
   if (!found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DMLabelCreate(PETSC_COMM_SELF, "boundary", &boundary));
   PetscCall(DMPlexGetHeightStratum(dm, 1, &start, &end));
@@ -361,7 +348,7 @@ PetscErrorCode MeshGetNodeSet(DM dm, const char name[], PetscInt *n_vertices, Pe
   PetscAssertPointer(n_vertices, 3);
   PetscAssertPointer(vertices, 4);
   PetscCall(DMPlexGetDepthStratum(dm, 0, &vstart, &vend));
-  if (name && name[0]) PetscCall(FindLabel(dm, name, "Vertex Sets", &selection, &found));
+  if (name && name[0]) PetscCall(FindLabel(PetscObjectComm((PetscObject)dm), dm, name, "Vertex Sets", &selection, &found));
   if (found && !selection.by_value) PetscCall(MeshLabelHasPoints(dm, selection.label, vstart, vend, &found));
   PetscCall(DMPlexGetChart(dm, &start, &end));
   PetscCall(PetscCalloc1(end - start, &marks));
