@@ -67,32 +67,19 @@ static PetscErrorCode GetMPIVersion(char text[], size_t size)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-typedef struct {
+static PetscErrorCode PrintVersions(void)
+{
   PetscInt petsc[3];
   char     mpi[128];
   unsigned hdf5[3];
-} Versions;
-
-static PetscErrorCode GetVersions(Versions *versions)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscGetVersionNumber(&versions->petsc[0], &versions->petsc[1], &versions->petsc[2], NULL));
-  PetscCall(GetMPIVersion(versions->mpi, sizeof(versions->mpi)));
-  PetscCheck(H5get_libversion(&versions->hdf5[0], &versions->hdf5[1], &versions->hdf5[2]) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB,
-             "HDF5 does not tell its version");
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PrintVersions(void)
-{
-  Versions v;
 
   PetscFunctionBegin;
-  PetscCall(GetVersions(&v));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
-                        "Impakt   %s\nPETSc    %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT "%s\nMPI      %s\nHDF5     %u.%u.%u\n",
-                        IMPAKT_VERSION, v.petsc[0], v.petsc[1], v.petsc[2], PetscDefined(USE_DEBUG) ? ", with debugging" : "", v.mpi,
-                        v.hdf5[0], v.hdf5[1], v.hdf5[2]));
+  PetscCall(PetscGetVersionNumber(&petsc[0], &petsc[1], &petsc[2], NULL));
+  PetscCall(GetMPIVersion(mpi, sizeof(mpi)));
+  PetscCheck(H5get_libversion(&hdf5[0], &hdf5[1], &hdf5[2]) >= 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "HDF5 does not tell its version");
+  PetscCall(PetscPrintf(
+      PETSC_COMM_WORLD, "Impakt   %s\nPETSc    %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT "%s\nMPI      %s\nHDF5     %u.%u.%u\n",
+      IMPAKT_VERSION, petsc[0], petsc[1], petsc[2], PetscDefined(USE_DEBUG) ? ", with debugging" : "", mpi, hdf5[0], hdf5[1], hdf5[2]));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "compiler %s, %s\nscalars  %s, %d bytes\nintegers %d bytes\n", COMPILER, IMPAKT_OPTIMISATION,
                         PetscDefined(USE_COMPLEX) ? "complex" : "real", (int)sizeof(PetscScalar), (int)sizeof(PetscInt)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -116,20 +103,15 @@ static PetscErrorCode PrintScreen(void)
 {
   const OptionTopic *topics;
   size_t             n;
-  Versions           v;
 
   PetscFunctionBegin;
-  PetscCall(GetVersions(&v));
   topics = OptionTopicsGet(&n);
   PetscCall(ImpaktPrintUsage(stdout));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "-help TOPIC prints the options of a topic, -help WORD those for a word:\n"));
   for (size_t t = 0; t < n; t++) PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  %-10s %s\n", topics[t].name, topics[t].text));
   PetscCall(PetscPrintf(PETSC_COMM_WORLD, "  all        the options of all topics, and those of PETSc\n"
                                           "  markdown   the options of all topics, as tables in Markdown\n"
-                                          "-example [NAME] lists or writes options files; -version lists what is built in.\n\n"));
-  PetscCall(PetscPrintf(PETSC_COMM_WORLD,
-                        "PETSc %" PetscInt_FMT ".%" PetscInt_FMT ".%" PetscInt_FMT ", %s, HDF5 %u.%u.%u\nbuilt by %s, %s\n", v.petsc[0],
-                        v.petsc[1], v.petsc[2], v.mpi, v.hdf5[0], v.hdf5[1], v.hdf5[2], COMPILER, IMPAKT_OPTIMISATION));
+                                          "-example [NAME] lists or writes options files; -version lists what is built in.\n"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
