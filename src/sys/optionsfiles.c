@@ -2,9 +2,10 @@
 
    PETSc forgets which file and line an option came from, waits for ever for what a pipe or a device may say, and follows a file that
    includes itself until its stack ends. So the files are looked at before PETSC reads them, and again when an error is to name a line. */
-#define _POSIX_C_SOURCE 200809L /* getline() */
+#define _XOPEN_SOURCE 700 /* getline(), tsearch() */
 #include <impakt.h>
 #include <errno.h>
+#include <search.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -16,7 +17,7 @@
 #define BYTE_ORDER_MARK "\xef\xbb\xbf"
 
 typedef struct {
-  char    *name;
+  char     name[PETSC_MAX_OPTION_NAME];
   PetscInt line;
 } Given;
 
@@ -27,8 +28,7 @@ struct Place {
   PetscInt    line;
   struct stat status;
   const Place by;
-  Given      *given; /* the options that the file itself has given so far, where they are checked */
-  size_t      n_given;
+  void       *given; /* a tree of the options that the file itself has given so far, where they are checked */
 };
 
 typedef struct {
@@ -142,52 +142,41 @@ static PetscErrorCode PushPrefix(Walk *walk, const char prefix[], Place place)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Keeps an option, with its prefix, to be compared with the others of the file. PETSc's own allocation wants PETSc to run */
-static PetscErrorCode KeepGiven(const char option[], Place place)
+static int CompareNames(const void *a, const void *b)
 {
-  PetscFunctionBegin;
-  if (!(place->n_given & (place->n_given + 1))) { /* room for 1, 3, 7, ... */
-    Given *larger = realloc(place->given, 2 * (place->n_given + 1) * sizeof(*larger));
-
-    PetscCheck(larger, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the options of '%s'", place->path);
-    place->given = larger;
-  }
-  place->given[place->n_given].line = place->line;
-  place->given[place->n_given].name = strdup(option);
-  PetscCheck(place->given[place->n_given].name, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the options of '%s'", place->path);
-  place->n_given++;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return strcasecmp(((const Given *)a)->name, ((const Given *)b)->name);
 }
 
-static int CompareGiven(const void *a, const void *b)
+/* Keeps an option of a file, with its prefix, and blames the file if it has given it before. PETSc's own allocation wants PETSc to run */
+static PetscErrorCode KeepGiven(Walk *walk, const char option[], Place place)
 {
-  const Given *left = (const Given *)a, *right = (const Given *)b;
-  const int    order = strcasecmp(left->name, right->name);
-
-  return order ? order : left->line < right->line ? -1 : left->line > right->line;
-}
-
-/* Blames the file for the first option that it gives twice, if there is one, and forgets its options */
-static PetscErrorCode CheckGiven(Walk *walk, Place place)
-{
-  const Given *first = NULL;
+  Given *given = malloc(sizeof(*given)), **kept;
 
   PetscFunctionBegin;
-  if (place->n_given) qsort(place->given, place->n_given, sizeof(*place->given), CompareGiven);
-  for (size_t i = 1; i < place->n_given; i++)
-    if (!strcasecmp(place->given[i - 1].name, place->given[i].name) && (!first || place->given[i].line < first[1].line))
-      first = &place->given[i - 1];
-  if (first && !walk->error[0]) {
+  PetscCheck(given, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the options of '%s'", place->path);
+  given->line = place->line;
+  PetscCall(PetscStrncpy(given->name, option, sizeof(given->name)));
+  kept = tsearch(given, &place->given, CompareNames);
+  PetscCheck(kept, PETSC_COMM_SELF, PETSC_ERR_MEM, "No memory for the options of '%s'", place->path);
+  if (*kept != given) {
     char problem[PETSC_MAX_OPTION_NAME + 64];
 
-    PetscCall(PetscSNPrintf(problem, sizeof(problem), "-%s stands in line %" PetscInt_FMT " already: take one of the two out", first->name,
-                            first->line));
-    place->line = first[1].line;
+    free(given);
+    PetscCall(PetscSNPrintf(problem, sizeof(problem), "-%s stands in line %" PetscInt_FMT " already: take one of the two out",
+                            (*kept)->name, (*kept)->line));
     PetscCall(Blame(walk, place, problem));
   }
-  for (size_t i = 0; i < place->n_given; i++) free(place->given[i].name);
-  free(place->given);
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static void ForgetGiven(Place place)
+{
+  while (place->given) {
+    Given *given = *(Given **)place->given; /* of the root */
+
+    tdelete(given, &place->given, CompareNames);
+    free(given);
+  }
 }
 
 /* A line of a file: the name of an option and, where it has one, its value */
@@ -208,7 +197,7 @@ static PetscErrorCode VisitOption(Walk *walk, const char name[], const char valu
 
     PetscCall(PetscSNPrintf(full, sizeof(full), "%s%s", walk->n_prefixes ? walk->prefixes[walk->n_prefixes - 1] : "", name + 1));
     PetscCall(PetscSNPrintf(origin, sizeof(origin), "%s, line %" PetscInt_FMT, place->path, place->line));
-    if (walk->checks) PetscCall(KeepGiven(full, place));
+    if (walk->checks) PetscCall(KeepGiven(walk, full, place));
     if (walk->visit) PetscCall((*walk->visit)(full, value, origin, walk->context));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -277,7 +266,7 @@ static PetscErrorCode VisitLines(Walk *walk, FILE *file, Place place)
     }
   }
   free(text);
-  PetscCall(CheckGiven(walk, place));
+  ForgetGiven(place);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
