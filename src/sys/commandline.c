@@ -11,28 +11,12 @@
 #include "optionsfiles.h"
 #include "optionvalues.h"
 
-static PetscErrorCode IsOneOf(const char word[], const char *const names[], size_t n, PetscBool *is)
-{
-  PetscFunctionBegin;
-  *is = PETSC_FALSE;
-  for (size_t i = 0; i < n && !*is; i++) PetscCall(PetscStrcasecmp(word, names[i], is));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether a word is an option by which PETSc reads a file at once */
 static PetscErrorCode ReadsFile(const char word[], PetscBool *reads)
 {
-  const char *const names[] = {"-options_file", "-options_file_yaml"};
-
   PetscFunctionBegin;
-  PetscCall(IsOneOf(word, names, PETSC_STATIC_ARRAY_LENGTH(names), reads));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode IsOptionsFile(const char word[], PetscBool *is)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscStrendswith(word, ".opts", is));
+  PetscCall(PetscStrcasecmp(word, "-options_file", reads));
+  if (!*reads) PetscCall(PetscStrcasecmp(word, "-options_file_yaml", reads));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,7 +67,7 @@ static PetscErrorCode TakeOption(CommandLine *line, int argc, char **argv, int *
   line->words[line->n++] = argv[*i];
   PetscCall(ReadsFile(argv[*i], &reads));
   if (*i + 1 < argc) PetscCall(PetscOptionsValidKey(argv[*i + 1], &key));
-  if (!key && !reads) PetscCall(IsOptionsFile(argv[*i + 1], &file));
+  if (!key && !reads) PetscCall(PetscStrendswith(argv[*i + 1], ".opts", &file));
   if (file) PetscCall(OptionsDescribeMissing(argv[*i] + 1, text, sizeof(text)));
   *has_value = (PetscBool)(!key && !(file && !text[0]));
   if (*has_value && !argv[*i + 1][0])
@@ -117,7 +101,7 @@ PetscErrorCode CommandLineCreate(int argc, char **argv, CommandLine *line)
       value = has_value ? argv[i] : NULL;
       continue;
     }
-    PetscCall(IsOptionsFile(argv[i], &file));
+    PetscCall(PetscStrendswith(argv[i], ".opts", &file));
     if (file) {
       line->words[line->n++] = line->files_option;
       line->words[line->n++] = argv[i];
