@@ -7,7 +7,7 @@
 #include <string.h>
 #include "example.h"
 #include "names.h"
-#include "optiontable.h"
+#include "optionvalues.h"
 
 typedef struct {
   const char        *name;
@@ -69,43 +69,31 @@ static PetscErrorCode PrintList(void)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the option at the beginning of a line means, if the table knows it. `owner` changes where options get a prefix */
-static PetscErrorCode FindMeaning(const char line[], OptionOwner owner, const KnownOption **meaning)
+/* What the option at the beginning of a line means, if the table knows it. `prefixed`: it gets the prefix of a body there */
+static PetscErrorCode FindMeaning(const char line[], PetscBool prefixed, const KnownOption **meaning)
 {
-  const KnownOption *known;
-  const char        *name   = line + strspn(line, " ");
-  const size_t       length = strcspn(name, " ");
-  size_t             n;
+  const char *name = line + strspn(line, " ");
+  char        option[PETSC_MAX_OPTION_NAME];
 
   PetscFunctionBegin;
   *meaning = NULL;
-  known    = KnownOptionsGet(&n);
   if (name[0] != '-') PetscFunctionReturn(PETSC_SUCCESS);
-  for (size_t i = 0; i < n && !*meaning; i++) {
-    const size_t whole = strlen(known[i].name), fixed = strcspn(known[i].name, "<"), at = length - 1;
-    const char  *end = owner == OPTION_OF_RUN && known[i].owner != OPTION_OF_RUN && at > whole ? name + 1 + at - whole : name + 1;
-    PetscBool    same;
-
-    if (!fixed || (owner != OPTION_OF_RUN && known[i].owner == OPTION_OF_RUN)) continue; /* not those of blocks, whose names come first */
-    if (owner == OPTION_OF_RUN && known[i].owner != OPTION_OF_RUN && (end == name + 1 || end[-1] != '_')) continue;
-    same = fixed < whole ? (PetscBool)(at > fixed && !strncmp(name + 1, known[i].name, fixed))
-                         : (PetscBool)((size_t)(name + length - end) == whole && !strncmp(end, known[i].name, whole));
-    if (same) *meaning = &known[i];
-  }
+  PetscCall(PetscSNPrintf(option, sizeof(option), "%s%.*s", prefixed ? "body_" : "", (int)strcspn(name, " ") - 1, name + 1));
+  PetscCall(OptionsFindKnown(option, meaning));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode WriteLines(const Example *example, FILE *file)
 {
-  OptionOwner owner = OPTION_OF_RUN;
+  PetscBool prefixed = PETSC_FALSE;
 
   PetscFunctionBegin;
   for (const char *const *line = example->lines; *line; line++) {
     const KnownOption *meaning;
 
-    PetscCall(FindMeaning(*line, owner, &meaning));
-    if (strstr(*line, "-prefix_push")) owner = OPTION_OF_BODY;
-    if (strstr(*line, "-prefix_pop")) owner = OPTION_OF_RUN;
+    PetscCall(FindMeaning(*line, prefixed, &meaning));
+    if (strstr(*line, "-prefix_push")) prefixed = PETSC_TRUE;
+    if (strstr(*line, "-prefix_pop")) prefixed = PETSC_FALSE;
     if (meaning && !strchr(*line, '#')) fprintf(file, "%-*s # %s\n", COLUMN, *line, meaning->text);
     else fprintf(file, "%s\n", *line);
   }

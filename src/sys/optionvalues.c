@@ -10,7 +10,6 @@
 #include <string.h>
 #include "names.h"
 #include "optionsfiles.h"
-#include "optiontable.h"
 #include "optionvalues.h"
 #include "sharedoptions.h"
 
@@ -38,7 +37,8 @@ static PetscErrorCode Matches(const char option[], const KnownOption *known, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode FindKnown(const char option[], const KnownOption **found)
+/* The line of the table that an option belongs to; NULL: none */
+PetscErrorCode OptionsFindKnown(const char option[], const KnownOption **found)
 {
   const KnownOption *known;
   size_t             n;
@@ -85,7 +85,7 @@ PetscErrorCode OptionsDescribeMissing(const char option[], char text[], size_t s
 
   PetscFunctionBegin;
   text[0] = 0;
-  PetscCall(FindKnown(option, &known));
+  PetscCall(OptionsFindKnown(option, &known));
   if (known) {
     PetscCall(PetscStrcmp(known->value, "true|false", &on_or_off));
     if (!on_or_off) PetscCall(PetscStrcmp(known->value, "true|false|auto", &on_or_off));
@@ -124,7 +124,7 @@ static PetscErrorCode FindTooLarge(const char option[], const char value[], char
 
   PetscFunctionBegin;
   number[0] = 0;
-  PetscCall(FindKnown(option, &known));
+  PetscCall(OptionsFindKnown(option, &known));
   if (!known) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscStrcmp(known->value, "n", &whole));
   if (!whole) PetscCall(PetscStrncmp(known->value, "n[,", 3, &whole));
@@ -207,26 +207,16 @@ static PetscBool Contains(const char value[], const char text[])
   return PETSC_FALSE;
 }
 
-/* Whether a value is a list with a number in it that is not finite */
-static PetscBool HasInfinite(const char value[])
+/* Whether a value is a number, or a list with a number in it, that is not finite or, with `printed`, has been printed with six digits as
+   that */
+static PetscBool HasNumber(const char value[], const PetscReal *printed)
 {
   for (const char *at = value; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
     char        *end;
     const double number = strtod(at, &end);
 
-    if (end > at && (!*end || *end == ',') && !(fabs(number) <= PETSC_MAX_REAL)) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
-/* Whether a value is a number, or a list with a number in it, that may have been printed with six digits as another */
-static PetscBool HasNumber(const char value[], PetscReal printed)
-{
-  for (const char *at = value; at; at = strchr(at, ',') ? strchr(at, ',') + 1 : NULL) {
-    char        *end;
-    const double number = strtod(at, &end);
-
-    if (end > at && (!*end || *end == ',') && fabs(number - printed) <= 1e-5 * fabs(printed)) return PETSC_TRUE;
+    if (end == at || (*end && *end != ',')) continue;
+    if (printed ? fabs(number - *printed) <= 1e-5 * fabs(*printed) : !(fabs(number) <= PETSC_MAX_REAL)) return PETSC_TRUE;
   }
   return PETSC_FALSE;
 }
@@ -253,8 +243,8 @@ static PetscErrorCode Describe(const char value[], const PetscReal *printed, cha
     if (!key || OptionsIsShared(word + 1)) continue; /* ImpaktReportError() adds whence the option of a body comes */
     PetscCall(PetscOptionsUsed(NULL, word + 1, &used));
     if (used) PetscCall(PetscOptionsFindPair(NULL, NULL, word, &given, &set));
-    if (!set || !given || !(value ? Contains(given, value) : printed ? HasNumber(given, *printed) : HasInfinite(given))) continue;
-    PetscCall(FindKnown(word + 1, &known));
+    if (!set || !given || !(value ? Contains(given, value) : HasNumber(given, printed))) continue;
+    PetscCall(OptionsFindKnown(word + 1, &known));
     PetscCall(NameWithOrigin(word + 1, name, sizeof(name)));
     PetscCall(PetscSNPrintf(one, sizeof(one), "%s%s%s", name, known ? ", which takes " : "", known ? known->value : ""));
     if (!value) PetscCall(PetscSNPrintf(one, sizeof(one), printed ? "%s %s" : "%s: '%s'", name, given));
