@@ -43,6 +43,9 @@ static PetscErrorCode LockFiles(Controller controller, const ControllerFrame *fr
 @*/
 PetscErrorCode OutputCreate(Controller controller, Output *output)
 {
+  const Body *bodies;
+  PetscInt    n;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   PetscAssertPointer(output, 2);
@@ -54,7 +57,9 @@ PetscErrorCode OutputCreate(Controller controller, Output *output)
   PetscCall(ControllerMonitorSet(controller, LockFiles, *output, NULL));
   PetscCall(StatisticsCreate(controller, &(*output)->statistics));
   PetscCall(ControllerMonitorSet(controller, StatisticsMonitor, (*output)->statistics, NULL));
-  PetscCall(DeviationCreate(controller, &(*output)->deviation));
+  PetscCall(ControllerGetBodies(controller, &n, &bodies));
+  (*output)->n_displacements = 3 * n;
+  PetscCall(PetscCalloc1(3 * n, &(*output)->displacements));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,6 +184,7 @@ PetscErrorCode OutputSetFromOptions(Output output)
 PetscErrorCode OutputReport(Output output)
 {
   const StatisticsResults *results;
+  const Body              *bodies;
   PetscViewer              viewer;
   Verdict                  verdict;
 
@@ -186,7 +192,8 @@ PetscErrorCode OutputReport(Output output)
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
   PetscCall(StatisticsGetResults(output->statistics, &results));
   PetscCall(StatisticsAddOverlaps(output->statistics));
-  PetscCall(StatisticsSetDeviation(output->statistics, output->deviation));
+  PetscCall(ControllerGetBodies(output->controller, NULL, &bodies));
+  PetscCall(StatisticsSetDeviation(output->statistics, bodies, output->displacements));
   if (output->history) PetscCall(HistoryFlush(output->history));
   if (output->fields) PetscCall(FieldsFinish(output->fields));
   PetscCall(VerdictMake(output->controller, results, &verdict));
@@ -296,7 +303,8 @@ PetscErrorCode OutputDestroy(Output *output)
   errors[0] = HistoryDestroy(&(*output)->history);
   errors[1] = FieldsDestroy(&(*output)->fields);
   PetscCall(ExactDestroy(&(*output)->exact));
-  PetscCall(DeviationDestroy(&(*output)->deviation));
+  for (PetscInt i = 0; i < (*output)->n_displacements; i++) PetscCall(ExpressionDestroy(&(*output)->displacements[i]));
+  PetscCall(PetscFree((*output)->displacements));
   if ((*output)->checkpoints.catches) StopSignalsRelease();
   PetscCall(OutputLocksRelease(&(*output)->locks)); /* even where the files cannot be written, so that no lock is left beside them */
   PetscCall(errors[0]);

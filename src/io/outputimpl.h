@@ -3,7 +3,6 @@
 #include <impakt/io.h>
 #include <petsc/private/petscimpl.h>
 #include "checkpoints.h"
-#include "deviation.h"
 #include "fields.h"
 #include "history.h"
 #include "outputlock.h"
@@ -16,7 +15,8 @@ struct _p_Output {
   History     history;
   Fields      fields;
   Exact       exact;
-  Deviation   deviation;
+  PetscInt    n_displacements;
+  Expression *displacements;                    /* exact ones that bodies are compared with: three for each body, NULL if none is given */
   char        summary_path[PETSC_MAX_PATH_LEN]; /* empty: there is none */
   char        history_path[PETSC_MAX_PATH_LEN], fields_path[PETSC_MAX_PATH_LEN];
   OutputLocks locks;

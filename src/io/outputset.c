@@ -64,11 +64,24 @@ PetscErrorCode OutputSetExact(Output output, ExactType type)
 @*/
 PetscErrorCode OutputSetExactDisplacement(Output output, Body body, const char components[])
 {
+  MPI_Comm    comm = PetscObjectComm((PetscObject)output);
+  char        option[256];
+  const char *prefix;
+  const Body *bodies;
+  PetscInt    n, dim, b = 0;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(output, OUTPUT_CLASSID, 1);
   PetscValidHeaderSpecific(body, BODY_CLASSID, 2);
   PetscAssertPointer(components, 3);
-  PetscCall(DeviationSet(output->deviation, body, components));
+  PetscCall(ControllerGetBodies(output->controller, &n, &bodies));
+  while (b < n && bodies[b] != body) b++;
+  PetscCheck(b < n, comm, PETSC_ERR_ARG_WRONG, "Body '%s' is none of the controller's", ((PetscObject)body)->name);
+  PetscCall(PetscObjectGetOptionsPrefix((PetscObject)body, &prefix));
+  PetscCall(PetscSNPrintf(option, sizeof(option), "%sexact_displacement", prefix));
+  PetscCall(BodyGetDimension(body, &dim));
+  for (PetscInt d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&output->displacements[3 * b + d]));
+  PetscCall(ExpressionListCreate(comm, option, components, dim, PETSC_FALSE, output->displacements + 3 * b));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

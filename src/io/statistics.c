@@ -248,16 +248,18 @@ PetscErrorCode StatisticsMonitor(Controller controller, const ControllerFrame *f
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Takes note of how far bodies are from exact displacements now. Collective */
-PetscErrorCode StatisticsSetDeviation(Statistics statistics, Deviation deviation)
+/* Takes note of the relative L2 errors of the bodies' displacements now, absolute [m] where the exact one is zero. `exact`: three
+   components for each body, NULL if none is given. Collective */
+PetscErrorCode StatisticsSetDeviation(Statistics statistics, const Body bodies[], const Expression exact[])
 {
-  PetscReal *errors;
-
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(statistics->results.n_bodies, &errors));
-  PetscCall(DeviationCompute(deviation, errors));
-  for (PetscInt i = 0; i < statistics->results.n_bodies; i++) statistics->results.bodies[i].displacement_error = errors[i];
-  PetscCall(PetscFree(errors));
+  for (PetscInt i = 0; i < statistics->results.n_bodies; i++) {
+    PetscReal difference, norm;
+
+    if (!exact[3 * i]) continue;
+    PetscCall(BodyComputeDeviation(bodies[i], exact + 3 * i, &difference, &norm));
+    statistics->results.bodies[i].displacement_error = norm > 0 ? difference / norm : difference;
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

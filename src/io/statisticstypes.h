@@ -2,7 +2,6 @@
 #pragma once
 #include <checkpoint/checkpoint.h>
 #include "contacttimes.h"
-#include "deviation.h"
 
 /* Mean rotation of a linear body from which on the user is warned [rad]: its material counts 1 - cos of the angle as strain, 0.1 % here */
 #define STATISTICS_FAR_TURN 0.05
@@ -96,6 +95,6 @@ PETSC_INTERN ControllerMonitorFn StatisticsMonitor;
 PETSC_INTERN PetscErrorCode      StatisticsSetFrames(Statistics, PetscInt);
 PETSC_INTERN PetscErrorCode      StatisticsAddOverlaps(Statistics);
 PETSC_INTERN PetscErrorCode      StatisticsGetResults(Statistics, const StatisticsResults **);
-PETSC_INTERN PetscErrorCode      StatisticsSetDeviation(Statistics, Deviation);
+PETSC_INTERN PetscErrorCode      StatisticsSetDeviation(Statistics, const Body[], const Expression[]);
 PETSC_INTERN PetscErrorCode      StatisticsVisit(Statistics, Checkpoint);
 PETSC_INTERN PetscErrorCode      StatisticsDestroy(Statistics *);
