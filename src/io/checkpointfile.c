@@ -33,19 +33,12 @@ PetscErrorCode CheckpointFileGetPrevious(const char path[], size_t size, char pr
 static PetscErrorCode WriteDataset(hid_t file, const char name[], hid_t type, int rank, const hsize_t size[], const void *values,
                                    const char path[])
 {
-  hid_t space, links, dataset;
+  hid_t dataset;
 
   PetscFunctionBegin;
-  space = H5Screate_simple(rank, size, NULL);
-  PetscCall(HDF5Check(space, "make a data space", path));
-  links = H5Pcreate(H5P_LINK_CREATE);
-  PetscCall(HDF5Check(H5Pset_create_intermediate_group(links, 1), "make groups", path));
-  dataset = H5Dcreate2(file, name, type, space, links, H5P_DEFAULT, H5P_DEFAULT);
-  PetscCall(HDF5Check(dataset, "create a dataset", path));
+  PetscCall(HDF5CreateDataset(file, name, type, rank, size, NULL, H5P_DEFAULT, path, &dataset));
   if (size[0]) PetscCall(HDF5Check(H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values), "write a dataset", path));
   PetscCall(HDF5Check(H5Dclose(dataset), "write a dataset", path));
-  PetscCall(HDF5Check(H5Pclose(links), "close a property list", path));
-  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

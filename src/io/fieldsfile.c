@@ -51,34 +51,17 @@ static PetscErrorCode CreateDataset(hid_t file, const char name[], hid_t type, h
                                     Units units, const char path[], hid_t *dataset)
 {
   const hsize_t size[2] = {rows, (hsize_t)components};
-  hid_t         space, layout, created;
+  const hid_t   layout  = H5Pcreate(H5P_DATASET_CREATE);
+  hid_t         created;
 
   PetscFunctionBegin;
-  space = H5Screate_simple(components > 1 ? 2 : 1, size, NULL);
-  PetscCall(HDF5Check(space, "make a data space", path));
-  layout = H5Pcreate(H5P_DATASET_CREATE);
   PetscCall(HDF5Check(H5Pset_alloc_time(layout, H5D_ALLOC_TIME_EARLY), "place a dataset", path));
   PetscCall(HDF5Check(H5Pset_fill_time(layout, H5D_FILL_TIME_NEVER), "place a dataset", path));
   PetscCall(HDF5Check(H5Pset_obj_track_times(layout, 0), "place a dataset", path));
-  created = H5Dcreate2(file, name, type, space, H5P_DEFAULT, layout, H5P_DEFAULT);
-  PetscCall(HDF5Check(created, "create a dataset", path));
+  PetscCall(HDF5CreateDataset(file, name, type, components > 1 ? 2 : 1, size, NULL, layout, path, &created));
   PetscCall(HDF5WriteText(created, "units", UnitsLabel(units, dimension), PETSC_TRUE, path));
-  PetscCall(HDF5Check(H5Pclose(layout), "close a property list", path));
-  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
   if (dataset) *dataset = created;
   else PetscCall(HDF5Check(H5Dclose(created), "create a dataset", path));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* FieldsFileCreateGroup - makes a group; one rank calls it */
-PetscErrorCode FieldsFileCreateGroup(hid_t file, const char name[], const char path[])
-{
-  hid_t group;
-
-  PetscFunctionBegin;
-  group = H5Gcreate2(file, name, H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-  PetscCall(HDF5Check(group, "make a group", path));
-  PetscCall(HDF5Check(H5Gclose(group), "make a group", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -118,7 +101,6 @@ static PetscErrorCode CreateMesh(hid_t file, const FieldsMesh *mesh, Units units
   hid_t       dataset;
 
   PetscFunctionBegin;
-  PetscCall(FieldsFileCreateGroup(file, "mesh", path));
   PetscCall(CreateDataset(file, "mesh/positions", H5T_IEEE_F64LE, mesh->nodes.total, 3, UNIT_LENGTH, units, path, NULL));
   PetscCall(CreateDataset(file, "mesh/cells", H5T_STD_I32LE, mesh->topology.total, mesh->cell_nodes, UNIT_ONE, units, path, NULL));
   PetscCall(CreateDataset(file, "mesh/rank", H5T_STD_I32LE, mesh->cells.total, 1, UNIT_ONE, units, path, NULL));
@@ -163,7 +145,6 @@ PetscErrorCode FieldsFileCreate(const char path[], const FieldsMesh *mesh, Field
     const FieldsField *field = &fields_of_a_frame[i];
 
     if (!FieldsSetHas(set, i)) continue;
-    PetscCall(FieldsFileCreateGroup(file, field->name, path));
     for (PetscInt k = 0; k < n_frames; k++) {
       PetscCall(FieldsFileGetDataset(i, k, sizeof(name), name));
       PetscCall(CreateDataset(file, name, type, (field->on_cells ? mesh->cells : mesh->nodes).total, field->components, field->dimension,

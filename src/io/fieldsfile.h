@@ -50,7 +50,6 @@ static inline PetscBool FieldsSetHas(FieldsSet set, FieldsKind kind)
 
 PETSC_INTERN PetscInt64     FieldsFileGetSize(const FieldsMesh *, FieldsSet, PetscInt, OutputPrecision);
 PETSC_INTERN PetscErrorCode FieldsFileCreate(const char[], const FieldsMesh *, FieldsSet, PetscInt, OutputPrecision, const char[]);
-PETSC_INTERN PetscErrorCode FieldsFileCreateGroup(hid_t, const char[], const char[]);
 PETSC_INTERN PetscErrorCode FieldsFileAdd(hid_t, const char[], hid_t, hsize_t, PetscInt, UnitDimension, const void *, const char[]);
 PETSC_INTERN PetscErrorCode FieldsFileCount(const char[], PetscInt *);
 PETSC_INTERN PetscErrorCode FieldsFileCut(const char[], PetscInt, PetscInt, PetscReal[]);

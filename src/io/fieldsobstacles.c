@@ -109,7 +109,7 @@ static PetscErrorCode WriteGrid(hid_t file, const ObstacleGrid *grid, const char
 {
   PetscReal *points;
   int       *cells, *cell;
-  char       group[PETSC_MAX_PATH_LEN];
+  char       name[PETSC_MAX_PATH_LEN];
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(3 * ObstacleGridCountPoints(grid), &points, grid->corners * ObstacleGridCountCells(grid), &cells));
@@ -123,12 +123,10 @@ static PetscErrorCode WriteGrid(hid_t file, const ObstacleGrid *grid, const char
     *cell++ = begin + 1;
     if (grid->corners == 4) *cell++ = above + 1, *cell++ = above;
   }
-  PetscCall(PetscSNPrintf(group, sizeof(group), "/mesh/obstacles/%s", grid->name));
-  PetscCall(FieldsFileCreateGroup(file, group, path));
-  PetscCall(PetscSNPrintf(group, sizeof(group), "/mesh/obstacles/%s/points", grid->name));
-  PetscCall(FieldsFileAdd(file, group, H5T_NATIVE_DOUBLE, (hsize_t)ObstacleGridCountPoints(grid), 3, UNIT_LENGTH, points, path));
-  PetscCall(PetscSNPrintf(group, sizeof(group), "/mesh/obstacles/%s/cells", grid->name));
-  PetscCall(FieldsFileAdd(file, group, H5T_NATIVE_INT, (hsize_t)ObstacleGridCountCells(grid), grid->corners, UNIT_ONE, cells, path));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "/mesh/obstacles/%s/points", grid->name));
+  PetscCall(FieldsFileAdd(file, name, H5T_NATIVE_DOUBLE, (hsize_t)ObstacleGridCountPoints(grid), 3, UNIT_LENGTH, points, path));
+  PetscCall(PetscSNPrintf(name, sizeof(name), "/mesh/obstacles/%s/cells", grid->name));
+  PetscCall(FieldsFileAdd(file, name, H5T_NATIVE_INT, (hsize_t)ObstacleGridCountCells(grid), grid->corners, UNIT_ONE, cells, path));
   PetscCall(PetscFree2(points, cells));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -200,7 +198,6 @@ PetscErrorCode FieldsObstaclesWrite(const char path[], PetscInt n, const Obstacl
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   file = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
   PetscCall(HDF5Check(file, "open the file again", path));
-  PetscCall(FieldsFileCreateGroup(file, "mesh/obstacles", path));
   for (PetscInt i = 0; i < n; i++) PetscCall(WriteGrid(file, &grids[i], path));
   PetscCall(HDF5Check(H5Fclose(file), "write the last bytes", path));
   PetscFunctionReturn(PETSC_SUCCESS);

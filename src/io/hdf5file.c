@@ -29,6 +29,26 @@ PetscErrorCode HDF5Create(const char path[], hid_t *file)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Makes a dataset, and the groups that it is in. `most`: the sizes that it may grow to, NULL: those that it has; `layout`: of its creation,
+   which is closed, or H5P_DEFAULT */
+PetscErrorCode HDF5CreateDataset(hid_t file, const char name[], hid_t type, int n, const hsize_t size[], const hsize_t most[], hid_t layout,
+                                 const char path[], hid_t *dataset)
+{
+  hid_t space, links;
+
+  PetscFunctionBegin;
+  space = H5Screate_simple(n, size, most);
+  PetscCall(HDF5Check(space, "make a data space", path));
+  links = H5Pcreate(H5P_LINK_CREATE);
+  PetscCall(HDF5Check(H5Pset_create_intermediate_group(links, 1), "make groups", path));
+  *dataset = H5Dcreate2(file, name, type, space, links, layout, H5P_DEFAULT);
+  PetscCall(HDF5Check(*dataset, "create a dataset", path));
+  PetscCall(HDF5Check(H5Pclose(links), "close a property list", path));
+  if (layout != H5P_DEFAULT) PetscCall(HDF5Check(H5Pclose(layout), "close a property list", path));
+  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Adds an attribute: a string of variable length, or `fixed`, in the object's own header: fast with ten thousands of datasets */
 PetscErrorCode HDF5WriteText(hid_t object, const char name[], const char value[], PetscBool fixed, const char path[])
 {

@@ -11,6 +11,8 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode HDF5Check(hid_t, const char[], const char[]);
 PETSC_INTERN PetscErrorCode HDF5Create(const char[], hid_t *);
+PETSC_INTERN PetscErrorCode HDF5CreateDataset(hid_t, const char[], hid_t, int, const hsize_t[], const hsize_t[], hid_t, const char[],
+                                              hid_t *);
 PETSC_INTERN PetscErrorCode HDF5WriteText(hid_t, const char[], const char[], PetscBool, const char[]);
 PETSC_INTERN PetscErrorCode HDF5WriteRun(hid_t, const char[], const char[]);
 PETSC_INTERN void           HDF5SilenceBegin(HDF5Silence *);

@@ -32,22 +32,15 @@ static PetscErrorCode CreateDataset(hid_t file, const Series *series, hsize_t re
   const hsize_t size[2]    = {0, (hsize_t)series->components};
   const hsize_t maximum[2] = {H5S_UNLIMITED, (hsize_t)series->components};
   const hsize_t chunk[2]   = {records, (hsize_t)series->components};
-  hid_t         space, links, layout, dataset;
+  const hid_t   layout     = H5Pcreate(H5P_DATASET_CREATE);
+  hid_t         dataset;
 
   PetscFunctionBegin;
-  space = H5Screate_simple(rank, size, maximum);
-  PetscCall(HDF5Check(space, "make a data space", path));
-  links  = H5Pcreate(H5P_LINK_CREATE);
-  layout = H5Pcreate(H5P_DATASET_CREATE);
-  PetscCall(HDF5Check(H5Pset_create_intermediate_group(links, 1), "make groups", path));
   PetscCall(HDF5Check(H5Pset_chunk(layout, rank, chunk), "make chunks", path));
-  dataset = H5Dcreate2(file, series->name, series->integer ? H5T_STD_I32LE : H5T_IEEE_F64LE, space, links, layout, H5P_DEFAULT);
-  PetscCall(HDF5Check(dataset, "create a dataset", path));
+  PetscCall(
+      HDF5CreateDataset(file, series->name, series->integer ? H5T_STD_I32LE : H5T_IEEE_F64LE, rank, size, maximum, layout, path, &dataset));
   PetscCall(HDF5WriteText(dataset, "units", series->units, PETSC_FALSE, path));
   PetscCall(HDF5Check(H5Dclose(dataset), "create a dataset", path));
-  PetscCall(HDF5Check(H5Pclose(layout), "close a property list", path));
-  PetscCall(HDF5Check(H5Pclose(links), "close a property list", path));
-  PetscCall(HDF5Check(H5Sclose(space), "close a data space", path));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
