@@ -11,6 +11,12 @@
 S*/
 typedef struct _p_Controller *Controller;
 
+/* What a run takes of this process */
+typedef struct {
+  PetscLogDouble setup, wall, cpu; /* wall time of the set-up; wall and CPU time of the time loop [s] */
+  PetscLogDouble memory;           /* most before there were bodies: what the process needs by itself [B] */
+} ControllerCost;
+
 PETSC_EXTERN PetscClassId CONTROLLER_CLASSID;
 
 /*S
@@ -144,5 +150,4 @@ PETSC_EXTERN PetscErrorCode ControllerGetSupports(Controller, PetscInt *, const 
 PETSC_EXTERN PetscErrorCode ControllerGetStatics(Controller, ControllerStatics *);
 PETSC_EXTERN PetscErrorCode ControllerGetTimes(Controller, PetscReal *, PetscReal *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ControllerGetResolvedStep(Controller, PetscReal *);
-PETSC_EXTERN PetscErrorCode ControllerGetTimings(Controller, PetscLogDouble *, PetscLogDouble *, PetscLogDouble *);
-PETSC_EXTERN PetscErrorCode ControllerGetStartMemory(Controller, PetscLogDouble *);
+PETSC_EXTERN PetscErrorCode ControllerGetCost(Controller, ControllerCost *);

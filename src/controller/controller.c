@@ -37,7 +37,7 @@ PetscErrorCode ControllerCreate(MPI_Comm comm, Controller *controller)
                               ControllerDestroy, ControllerView));
   (*controller)->guard.part = ENERGY_GUARD;
   (*controller)->most_cuts  = PETSC_DECIDE;
-  if (!getrusage(RUSAGE_SELF, &usage)) (*controller)->start_memory = 1024 * (PetscLogDouble)usage.ru_maxrss; /* Linux counts kB */
+  if (!getrusage(RUSAGE_SELF, &usage)) (*controller)->cost.memory = 1024 * (PetscLogDouble)usage.ru_maxrss; /* Linux counts kB */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,7 +94,7 @@ PetscErrorCode ControllerSetUp(Controller controller)
   PetscCall(ControllerSetUpProbes(controller));
   if (n >= MANY_BODIES) UseLargePages();
   PetscCall(PetscTime(&end));
-  controller->setup_seconds += end - begin;
+  controller->cost.setup += end - begin;
   controller->setup = PETSC_TRUE;
   PetscCall(StageEnd(logged));
   PetscCall(PetscObjectViewFromOptions((PetscObject)controller, NULL, "-controller_view"));
@@ -150,8 +150,8 @@ PetscErrorCode ControllerSolve(Controller controller)
   }
   PetscCall(PetscTime(&wall[1]));
   getrusage(RUSAGE_SELF, &cpu[1]);
-  controller->wall_seconds = wall[1] - wall[0];
-  controller->cpu_seconds  = Seconds(&cpu[1]) - Seconds(&cpu[0]);
+  controller->cost.wall = wall[1] - wall[0];
+  controller->cost.cpu  = Seconds(&cpu[1]) - Seconds(&cpu[0]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -227,23 +227,11 @@ PetscErrorCode ControllerDestroy(Controller *controller)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Cost of the run. `setup`: wall time of the set-up [s]; `wall`, `cpu`: wall and CPU time of this process in the time loop [s] */
-PetscErrorCode ControllerGetTimings(Controller controller, PetscLogDouble *setup, PetscLogDouble *wall, PetscLogDouble *cpu)
+PetscErrorCode ControllerGetCost(Controller controller, ControllerCost *cost)
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  if (setup) *setup = controller->setup_seconds;
-  if (wall) *wall = controller->wall_seconds;
-  if (cpu) *cpu = controller->cpu_seconds;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What the process needs by itself. `bytes`: most memory of this process before there were bodies [B] */
-PetscErrorCode ControllerGetStartMemory(Controller controller, PetscLogDouble *bytes)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
-  PetscAssertPointer(bytes, 2);
-  *bytes = controller->start_memory;
+  PetscAssertPointer(cost, 2);
+  *cost = controller->cost;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -61,9 +61,7 @@ struct _p_Controller {
     PetscReal  given;   /* of that, kinetic energy of rigid bodies that are led: no measure of what contact may change [J] */
     PetscReal  largest; /* energy of all bodies so far [J] */
   } guard;
-  /* cost */
-  PetscLogDouble setup_seconds, wall_seconds, cpu_seconds;
-  PetscLogDouble start_memory; /* of this process, before there were bodies [B] */
+  ControllerCost cost;
   PetscBool      setup;
 };
 

@@ -251,7 +251,7 @@ PetscErrorCode ControllerSetFromOptions(Controller controller)
   PetscCall(ControllerGetContact(controller, &contact));
   PetscCall(ContactSetFromOptions(contact));
   PetscCall(PetscTime(&end));
-  controller->setup_seconds = end - begin;
+  controller->cost.setup = end - begin;
   PetscCall(StageEnd(logged));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

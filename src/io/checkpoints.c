@@ -33,12 +33,13 @@ PetscErrorCode OutputVisitShared(Output output, PetscBool same_ranks, Checkpoint
 PetscErrorCode OutputStartClock(Output output)
 {
   Checkpoints   *c = &output->checkpoints;
-  PetscLogDouble now, setup;
+  PetscLogDouble now;
+  ControllerCost cost;
 
   PetscFunctionBegin;
   PetscCall(PetscTime(&now));
-  PetscCall(ControllerGetTimings(output->controller, &setup, NULL, NULL));
-  c->begin      = now - setup;
+  PetscCall(ControllerGetCost(output->controller, &cost));
+  c->begin      = now - cost.setup;
   c->written    = now;
   c->looked     = c->begin;
   c->look_every = 1;

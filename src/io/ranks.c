@@ -36,7 +36,7 @@ static PetscErrorCode CountOnRank(Controller controller, PetscMPIInt size, Petsc
   const Body    *bodies;
   Contact        contact;
   PetscBool     *neighbour;
-  PetscLogDouble memory;
+  ControllerCost cost;
   struct rusage  usage;
 
   PetscFunctionBegin;
@@ -70,8 +70,8 @@ static PetscErrorCode CountOnRank(Controller controller, PetscMPIInt size, Petsc
   PetscCall(ContactGetShare(contact, &facets, &rows));
   counts[RANKS_FACETS] = (PetscReal)facets;
   counts[RANKS_ROWS]   = (PetscReal)rows;
-  PetscCall(ControllerGetStartMemory(controller, &memory));
-  counts[RANKS_BASE_MEMORY] = (PetscReal)memory;
+  PetscCall(ControllerGetCost(controller, &cost));
+  counts[RANKS_BASE_MEMORY] = (PetscReal)cost.memory;
   if (!getrusage(RUSAGE_SELF, &usage)) counts[RANKS_PEAK_MEMORY] = 1024 * (PetscReal)usage.ru_maxrss; /* Linux counts kB */
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -264,7 +264,7 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   Contact        contact;
   const Body    *bodies;
   PetscInt       n;
-  PetscLogDouble setup, wall, cpu;
+  ControllerCost cost;
   RanksSummary   ranks;
   Report         report = {.viewer = viewer, .results = results, .exact = {NAN, NAN, NAN, NAN}};
 
@@ -274,7 +274,7 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(ControllerGetStatics(controller, &report.statics));
   PetscCall(ControllerGetBodies(controller, &n, &bodies));
   PetscCall(ControllerGetContact(controller, &contact));
-  PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
+  PetscCall(ControllerGetCost(controller, &cost));
   PetscCall(RanksGather(controller, &ranks));
   PetscCall(VerdictView(controller, results, verdict, viewer));
   if (results->n_pairs) {
@@ -285,7 +285,7 @@ PetscErrorCode ReportView(Controller controller, const StatisticsResults *result
   PetscCall(ViewEnergies(&report, bodies));
   PetscCall(ViewReactions(&report, bodies));
   if (exact) PetscCall(ViewErrors(&report, exact));
-  PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)wall, (double)cpu));
+  PetscCall(PetscViewerASCIIPrintf(viewer, "%-34s %13.6g s wall, %.6g s processor\n", "time loop", (double)cost.wall, (double)cost.cpu));
   PetscCall(RanksView(&ranks, viewer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

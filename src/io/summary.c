@@ -271,14 +271,14 @@ static PetscErrorCode AddTiming(json_t *root, Controller controller, Contact con
                                 const RanksSummary *ranks)
 {
   json_t        *object;
-  PetscLogDouble setup, wall, cpu;
+  ControllerCost cost;
 
   PetscFunctionBegin;
-  PetscCall(ControllerGetTimings(controller, &setup, &wall, &cpu));
+  PetscCall(ControllerGetCost(controller, &cost));
   PetscCall(SummarySetObject(root, "timing", &object));
-  PetscCall(SummarySetReal(object, "wall", (PetscReal)wall));
-  PetscCall(SummarySetReal(object, "cpu", (PetscReal)cpu));
-  PetscCall(SummarySetReal(object, "wall_setup", (PetscReal)setup));
+  PetscCall(SummarySetReal(object, "wall", (PetscReal)cost.wall));
+  PetscCall(SummarySetReal(object, "cpu", (PetscReal)cost.cpu));
+  PetscCall(SummarySetReal(object, "wall_setup", (PetscReal)cost.setup));
   PetscCall(AddPhases(object, contact, n, bodies));
   PetscCall(AddRanks(object, ranks));
   PetscFunctionReturn(PETSC_SUCCESS);
