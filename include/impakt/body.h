@@ -117,7 +117,6 @@ PETSC_EXTERN PetscErrorCode BodyCreate(MPI_Comm, const char[], Body *);
 PETSC_EXTERN PetscErrorCode BodySetDM(Body, DM);
 PETSC_EXTERN PetscErrorCode BodySetRanks(Body, PetscInt, const PetscMPIInt[]);
 PETSC_EXTERN PetscErrorCode BodyGetRanks(Body, PetscInt *, const PetscMPIInt *[]);
-PETSC_EXTERN PetscErrorCode BodySetMeshRank(Body, PetscMPIInt);
 PETSC_EXTERN PetscErrorCode BodyGetMeshRank(Body, PetscMPIInt *);
 PETSC_EXTERN PetscErrorCode BodySetMaterial(Body, Material);
 PETSC_EXTERN PetscErrorCode BodySetCrossSection(Body, PetscReal);

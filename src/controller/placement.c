@@ -97,7 +97,11 @@ PetscErrorCode ControllerPlaceBodies(Controller controller, PetscInt begin)
   for (PetscInt i = 0; i < p.n; i++) list[i] = i;
   PetscCall(MeshBisect(3, weights, &p.places[0][0], p.work, p.n, list, 0, size, ranks));
   for (PetscInt i = 0; i < p.n; i++) p.ranks[p.bodies[i]] = ranks[i];
-  for (PetscInt b = 0; b < n && size > 1; b++) PetscCall(BodySetMeshRank(controller->bodies[begin + b], (PetscMPIInt)p.ranks[b]));
+  for (PetscInt b = 0; b < n && size > 1; b++) {
+    const PetscMPIInt rank = (PetscMPIInt)p.ranks[b];
+
+    PetscCall(BodySetRanks(controller->bodies[begin + b], rank == PETSC_DECIDE ? 0 : 1, &rank));
+  }
   PetscCall(PetscFree(asks));
   PetscCall(PetscFree6(p.bodies, p.places, p.work, p.ranks, list, ranks));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -285,7 +285,6 @@ static void setters(void **state)
   ok(BodySetFromOptions(body));
   ExpectRanks(body, 1u | 1u << last);
   refused(PETSC_ERR_ARG_WRONGSTATE, "'bar' has a mesh|BodySetRanks()", BodySetRanks(body, n, ranks));
-  refused(PETSC_ERR_ARG_WRONGSTATE, "'bar' has a mesh", BodySetMeshRank(body, 0));
   bar_destroy(&body, options);
   options = Open(&body, "-ranks 0");
   ok(BodySetRanks(body, n, ranks));
@@ -293,13 +292,13 @@ static void setters(void **state)
   ExpectRanks(body, 1u);
   bar_destroy(&body, options);
   options = Open(&body, "");
-  ok(BodySetMeshRank(body, last));
+  ok(BodySetRanks(body, 1, &last));
   ok(BodySetFromOptions(body));
   ExpectRanks(body, 1u << last);
   bar_destroy(&body, options);
   options = Open(&body, "");
   ok(BodySetRanks(body, n, ranks));
-  ok(BodySetMeshRank(body, PETSC_DECIDE)); /* takes it back */
+  ok(BodySetRanks(body, 0, NULL)); /* takes it back */
   ok(BodySetFromOptions(body));
   assert_int_equal(BodyCellsHere(body), 12 / size_of_world());
   bar_destroy(&body, options);
@@ -318,7 +317,6 @@ static void bad_setters(void **state)
   refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|rank", BodySetRanks(body, 1, negative));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|rank", BodySetRanks(body, 2, twice));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|4 ranks", BodySetRanks(body, 4, many));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|rank", BodySetMeshRank(body, none[0]));
   ok(BodyDestroy(&body));
   options_drop(options);
   options = Open(&body, "-ranks 0");

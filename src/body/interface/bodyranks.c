@@ -23,10 +23,10 @@
   Notes:
   The body stays on its communicator: ranks without cells go through the same calls.
 
-  One rank has all of the mesh, as with `BodySetMeshRank()`. Several have a part each: a brick of a box, or of other meshes a part of the
-graph.
+  One rank has all of the mesh, as with `-<body>_mesh_division whole`; `ControllerSetFromOptions()` chooses it for bodies with few elements,
+  where there are many. Several have a part each: a brick of a box, or of other meshes a part of the graph.
 
-.seealso: `Body`, `BodyGetRanks()`, `BodySetMeshRank()`, `BodySetFromOptions()`, `MeshCreateOnRanks()`
+.seealso: `Body`, `BodyGetRanks()`, `BodyGetMeshRank()`, `BodySetFromOptions()`, `MeshCreateOnRanks()`
 @*/
 PetscErrorCode BodySetRanks(Body body, PetscInt n, const PetscMPIInt ranks[])
 {
@@ -80,37 +80,6 @@ PetscErrorCode BodyGetRanks(Body body, PetscInt *n, const PetscMPIInt *ranks[])
 }
 
 /*@
-  BodySetMeshRank - sets the rank that has all of a mesh from options
-
-  Logically Collective
-
-  Input Parameters:
-+ body - the `Body`, before `BodySetFromOptions()`
-- rank - a rank of its communicator; `PETSC_DECIDE` (default): the mesh is divided among all
-
-  Options Database Keys:
-+ -<body>_mesh_division whole - some rank has it
-- -<body>_ranks rank          - this one has it
-
-  Level: intermediate
-
-  Note:
-  `ControllerSetFromOptions()` chooses it for bodies with few elements, where there are many.
-
-.seealso: `Body`, `BodyGetMeshRank()`, `BodySetRanks()`, `BodySetFromOptions()`
-@*/
-PetscErrorCode BodySetMeshRank(Body body, PetscMPIInt rank)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
-  PetscValidLogicalCollectiveMPIInt(body, rank, 2);
-  PetscCheck(rank == PETSC_DECIDE || (rank >= 0 && rank < body->rows.size), PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
-             "Body '%s' cannot lie on rank %d of %d", body->hdr.name, rank, body->rows.size);
-  PetscCall(BodySetRanks(body, rank >= 0 ? 1 : 0, &rank));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   BodyGetMeshRank - the rank that has all of the mesh
 
   Not Collective
@@ -123,7 +92,7 @@ PetscErrorCode BodySetMeshRank(Body body, PetscMPIInt rank)
 
   Level: intermediate
 
-.seealso: `Body`, `BodySetMeshRank()`
+.seealso: `Body`, `BodySetRanks()`
 @*/
 PetscErrorCode BodyGetMeshRank(Body body, PetscMPIInt *rank)
 {
