@@ -73,47 +73,23 @@ static PetscErrorCode FindOptionOfGraph(const char prefix[], const char **option
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ReadBricks(MPI_Comm comm, const char prefix[], MeshBox *box, PetscBool *set)
-{
-  const PetscMPIInt size = box->ranks->n;
-  const char *const of   = box->ranks->list ? " that have a part of the body" : "";
-  PetscInt          n = 3, product = 1;
-
-  PetscFunctionBegin;
-  PetscCall(PetscOptionsGetIntArray(NULL, prefix, "-mesh_bricks", box->bricks, &n, set));
-  if (!*set) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt d = 0; d < n; d++) {
-    PetscCheck(box->bricks[d] > 0 && box->bricks[d] <= size, comm, PETSC_ERR_USER_INPUT,
-               "-%smesh_bricks: %" PetscInt_FMT " bricks along axis %" PetscInt_FMT "; there are %d ranks%s", prefix, box->bricks[d], d + 1,
-               size, of);
-    product *= box->bricks[d];
-  }
-  PetscCheck(n == box->dim && product == size, comm, PETSC_ERR_USER_INPUT,
-             "-%smesh_bricks gives %" PetscInt_FMT " bricks along %" PetscInt_FMT " axes: give one number for each of %" PetscInt_FMT
-             " axes, with the number of ranks%s, %d, as their product",
-             prefix, product, n, box->dim, of, size);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether each rank makes its own brick of the box */
 static PetscErrorCode ReadDivision(MPI_Comm comm, const char prefix[], const char name[], MeshBox *box, PetscBool *bricks)
 {
   const char *const divisions[] = {"bricks", "graph", "whole"};
   const char       *option;
   PetscInt          division = 0;
-  PetscBool         given, set, balance;
+  PetscBool         set, balance;
 
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 3, &division, &set));
-  PetscCall(ReadBricks(comm, prefix, box, &given));
   PetscCall(FindOptionOfGraph(prefix, &option));
-  PetscCheck(!given || !division, comm, PETSC_ERR_USER_INPUT, "-%smesh_bricks needs -%smesh_division bricks", prefix, prefix);
-  PetscCheck(!option || !(given || (set && !division)), comm, PETSC_ERR_USER_INPUT,
-             "-%s%s needs -%smesh_division graph, without -%smesh_bricks", prefix, option ? option + 1 : "", prefix, prefix);
+  PetscCheck(!option || !set || division, comm, PETSC_ERR_USER_INPUT, "-%s%s needs -%smesh_division graph", prefix,
+             option ? option + 1 : "", prefix);
   *bricks = (PetscBool)(!option && !division);
   PetscCall(MeshBoxMarkContact(comm, prefix, name, box));
-  if (*bricks && !given) PetscCall(MeshBricksChoose(box, &balance));
-  if (*bricks && !given && !set) *bricks = balance;
+  if (*bricks) PetscCall(MeshBricksChoose(box, &balance));
+  if (*bricks && !set) *bricks = balance;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

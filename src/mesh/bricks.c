@@ -61,21 +61,6 @@ static Brick CutForRank(const MeshBox *box, PetscMPIInt size, PetscMPIInt rank)
   return brick;
 }
 
-/* The brick of a rank where the number of bricks along each axis is given */
-static Brick BrickInGrid(const MeshBox *box, PetscMPIInt rank)
-{
-  Brick brick = {{0, 0, 0}, {1, 1, 1}};
-
-  for (PetscInt d = 0; d < box->dim; d++) {
-    const PetscInt place = rank % box->bricks[d];
-
-    brick.begin[d] = (PetscInt)((PetscInt64)box->faces[d] * place / box->bricks[d]);
-    brick.end[d]   = (PetscInt)((PetscInt64)box->faces[d] * (place + 1) / box->bricks[d]);
-    rank /= (PetscMPIInt)box->bricks[d];
-  }
-  return brick;
-}
-
 static PetscReal CountCells(const Brick *brick)
 {
   PetscReal n = 1;
@@ -364,7 +349,7 @@ PetscErrorCode MeshCreateBricks(MPI_Comm comm, const MeshBox *box, DM *dm)
   PetscCheck(points < (PetscReal)PETSC_INT_MAX, comm, PETSC_ERR_USER_INPUT,
              "a box of this size has more points than indices of %d bits can count%s", (int)(8 * sizeof(PetscInt)),
              sizeof(PetscInt) == 4 ? "; build with INDICES=64" : "");
-  if (part >= 0) brick = box->bricks[0] ? BrickInGrid(box, part) : CutForRank(box, box->ranks->n, part);
+  if (part >= 0) brick = CutForRank(box, box->ranks->n, part);
   PetscCall(DMCreate(comm, dm));
   PetscCall(DMSetType(*dm, DMPLEX));
   PetscCall(DMSetDimension(*dm, box->dim));

@@ -95,7 +95,6 @@ typedef struct {
   PetscBool simplex, is_box;
   /* how it is divided among ranks */
   const MeshRanks *ranks;        /* that have a part */
-  PetscInt         bricks[3];    /* bricks along each axis, one for each of these ranks; 0: not given */
   PetscBool        contact[6];   /* sides (xmin, xmax, ymin, ...) that may touch another body */
   PetscReal        contact_cost; /* work for one of their faces, in units of the work for an element */
   PetscReal        along[3];     /* how much the cells along each axis count when the longest edge is looked for, to be cut */

@@ -100,15 +100,14 @@ PetscErrorCode MeshMayBeWhole(MPI_Comm comm, const char prefix[], PetscBool *may
   PetscCall(MeshHasShape(prefix, "rod", &rod));
   PetscCall(PetscOptionsHasName(NULL, NULL, "-petscpartitioner_type", &has));
   for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(options) && !has; i++) PetscCall(PetscOptionsHasName(NULL, prefix, options[i], &has));
-  if (!has && !file && !ball && !rod) PetscCall(PetscOptionsHasName(NULL, prefix, "-mesh_bricks", &has));
   PetscCall(PetscOptionsGetEList(NULL, prefix, "-mesh_division", divisions, 3, &division, &set));
   PetscCheck(!set || division || !(file || ball || rod), comm, PETSC_ERR_USER_INPUT,
              "-%smesh_division bricks: boxes alone are made of bricks; choose graph or whole, or leave the option out", prefix);
   PetscCall(PetscOptionsHasName(NULL, prefix, "-ranks", &placed));
   *asks = (PetscBool)(set && division == 2);
   PetscCheck(!*asks || !has, comm, PETSC_ERR_USER_INPUT,
-             "-%smesh_division whole: another option divides the mesh (petscpartitioner_type, dm_distribute, mesh_bricks, "
-             "mesh_contact_surfaces, ...); leave one of them out",
+             "-%smesh_division whole: another option divides the mesh (petscpartitioner_type, dm_distribute, mesh_contact_surfaces, ...); "
+             "leave one of them out",
              prefix);
   if (placed) *asks = PETSC_FALSE;
   *may = (PetscBool) !(has || set || placed);

@@ -39,10 +39,12 @@ static const char *const late_options[] = {"schwarz_snes_view",
                                            "on_error_abort",
                                            "on_error_mpiabort"};
 
-/* Options that are gone, accepted for older options files, with what happens instead. Names that end in _ begin those of a solver. */
+/* Options that are gone, accepted for older options files, with what happens instead. Names that end in _ begin those of a solver, and
+   names that begin with _ are of a body. */
 static const struct {
   const char *name, *now;
 } gone_options[] = {
+    {"_mesh_bricks", "a box is cut such that a step costs least, as -<body>_mesh_contact_cost weighs its faces"},
     {"contact_friction_dense_limit", "matrices are as the bodies need them"},
     {"contact_surface_view", "-contact_view shows pairs and their rows"},
     {"contact_transfer_view", "-contact_view shows pairs and their rows"},
@@ -60,10 +62,11 @@ static PetscErrorCode AcceptGone(const char name[], const char value[], PetscBoo
   PetscFunctionBegin;
   *gone = PETSC_FALSE;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(gone_options) && !*gone; k++) {
-    const size_t length = strlen(gone_options[k].name);
+    const size_t length = strlen(gone_options[k].name), whole = strlen(name);
+    const char  *at = gone_options[k].name[0] == '_' && whole > length ? name + whole - length : name;
     char         option[PETSC_MAX_OPTION_NAME];
 
-    if (strncasecmp(name, gone_options[k].name, length) != 0 || (name[length] && name[length - 1] != '_')) continue;
+    if (strncasecmp(at, gone_options[k].name, length) != 0 || (at[length] && at[length - 1] != '_')) continue;
     PetscCall(PetscSNPrintf(option, sizeof(option), "-%s", name));
     PetscCall(PetscOptionsHasName(NULL, NULL, option, gone));
     PetscCall(PetscFPrintf(PETSC_COMM_WORLD, stderr, "impakt: warning: %s%s%s has no effect any more: %s; leave it out\n", option,
@@ -137,10 +140,11 @@ static PetscErrorCode AddShared(Unread *unread, PetscInt n, const char *const bo
   PetscFunctionBegin;
   PetscCall(PetscOptionsGetAll(NULL, &all));
   for (text = all; OptionsTextNext(&text, &name, &value);) {
-    PetscBool lost = PETSC_FALSE;
+    PetscBool lost = PETSC_FALSE, gone = PETSC_FALSE;
 
     if (OptionsIsShared(name + 1)) PetscCall(OptionsSharedIsUnread(name + 1, n, bodies, &lost));
-    if (lost) PetscCall(Add(unread, name + 1, value, n, bodies));
+    if (lost) PetscCall(AcceptGone(name + 1, value, &gone));
+    if (lost && !gone) PetscCall(Add(unread, name + 1, value, n, bodies));
   }
   PetscCall(PetscFree(all));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -178,7 +182,6 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
 
     for (size_t k = 0; k < sizeof(late_options) / sizeof(late_options[0]) && !late; k++)
       PetscCall(PetscStrcmp(names[i], late_options[k], &late));
-    if (!late) PetscCall(AcceptGone(names[i], values[i], &late));
     if (late) continue;
     PetscCall(OptionsFindShared(names[i], values[i], shared, sizeof(shared)));
     if (shared[0]) { /* it has been given to all bodies, some of which have no use for it */
@@ -186,7 +189,10 @@ PetscErrorCode ImpaktCheckOptions(PetscInt n, const char *const bodies[])
 
       PetscCall(PetscSNPrintf(name, sizeof(name), "-%s", names[i]));
       PetscCall(PetscOptionsHasName(NULL, NULL, name, &late));
-    } else PetscCall(Add(&unread, names[i], values[i], n, bodies));
+    } else {
+      PetscCall(AcceptGone(names[i], values[i], &late));
+      if (!late) PetscCall(Add(&unread, names[i], values[i], n, bodies));
+    }
   }
   PetscCall(PetscOptionsLeftRestore(NULL, &n_left, &names, &values));
   PetscCall(Close(&unread));

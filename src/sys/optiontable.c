@@ -52,10 +52,6 @@ static const KnownOption options[] = {
      "rank has all of it; default whole for explicit bodies of up to 2000 elements of a box, a ball or a rod where there are 4 or more for "
      "each rank, else bricks, but graph where a brick would have 1.1 times the mean number of elements, or where another option needs it "
      "(petscpartitioner_type, dm_distribute, dm_distribute_overlap, dm_plex_box_bd)"},
-    {"meshes", OPTION_OF_BODY, "mesh_bricks", "n[,n,n]",
-     "number of bricks along each axis of a box, their product the number of ranks that have a part; default: edges are halved again and "
-     "again, the longest "
-     "first, those along the normals of contact surfaces less often as far as a step costs less by that"},
     {"meshes", OPTION_OF_BODY, "ranks", "0-7|0,2,5-6",
      "ranks among which the mesh is divided; others have none of it; one: it has all; default all, or, of small explicit bodies, one (see "
      "mesh_division)"},

@@ -76,28 +76,6 @@ static void more_ranks_than_cells(void **state)
   }
 }
 
-/* All bricks side by side along the axis with fewest cells, where the division by itself would cut across the last */
-static void given_bricks(void **state)
-{
-  char     more[64];
-  DM       dm;
-  PetscInt start, end;
-
-  (void)state;
-  ok(PetscSNPrintf(more, sizeof(more), "-mesh_bricks %d,1,1", size_of_world()));
-  dm = CreateBox(3, "6,8,10", more);
-  CheckMesh(dm);
-  ok(DMPlexGetHeightStratum(dm, 0, &start, &end));
-  assert_int_equal(end - start, 480 / size_of_world());
-  for (PetscInt c = start; c < end; c++) {
-    PetscReal volume, centre[3];
-
-    ok(DMPlexComputeCellGeometryFVM(dm, c, &volume, centre, NULL));
-    assert_int_equal((int)(centre[0] * size_of_world()), rank_of_world());
-  }
-  ok(DMDestroy(&dm));
-}
-
 /* Cells and faces of zmax on the rank that has most of them */
 static void CountMost(DM dm, PetscReal most[2])
 {
@@ -174,12 +152,6 @@ static void bad_divisions(void **state)
 
   (void)state;
   mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_contact_cost|-1", "%s -mesh_contact_cost -1", box);
-  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|7 bricks|axis 2", "%s -mesh_bricks 1,7,1", box);
-  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|0 bricks|axis 1", "%s -mesh_bricks 0,1,1", box);
-  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|2 axes|3", "%s -mesh_bricks %d,1", box, size_of_world());
-  if (size_of_world() > 1) mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|1 bricks|product", "%s -mesh_bricks 1,1,1", box);
-  mesh_refused(PETSC_ERR_USER_INPUT, "-a_mesh_bricks|-a_mesh_division", "%s -mesh_bricks %d,1,1 -mesh_division graph", box,
-               size_of_world());
 }
 
 /* Cells, and faces of a surface, on the rank that has most of them */
@@ -260,7 +232,6 @@ int main(int argc, char **argv)
   const struct CMUnitTest tests[] = {
       cmocka_unit_test(same_as_graph),
       cmocka_unit_test(more_ranks_than_cells),
-      cmocka_unit_test(given_bricks),
       cmocka_unit_test(graph_where_needed),
       cmocka_unit_test(bad_divisions),
       cmocka_unit_test(contact_faces_are_spread),

@@ -159,10 +159,8 @@ static void bad_sets(void **state)
   Refused(&descending, PETSC_ERR_ARG_OUTOFRANGE, "ascending", box);
   Refused(&first, PETSC_ERR_USER_INPUT, "-a_dm_distribute|-a_ranks", "-dm_plex_dim 2 -dm_distribute 1");
   Refused(&first, PETSC_ERR_USER_INPUT, "-a_dm_distribute_overlap|-a_ranks", "-dm_plex_dim 2 -dm_distribute_overlap 1");
-  Refused(&first, PETSC_ERR_USER_INPUT, "-a_mesh_bricks|2 bricks|axis 1", "-dm_plex_dim 2 -mesh_bricks 2,1");
   if (!last) return;
   Refused(&two, PETSC_ERR_USER_INPUT, "-a_mesh_division whole|-a_ranks names 2", "-dm_plex_dim 2 -mesh_division whole");
-  Refused(&two, PETSC_ERR_USER_INPUT, "-a_mesh_bricks|1 bricks|product", "-dm_plex_dim 2 -mesh_bricks 1,1");
   Refused(&two, PETSC_ERR_USER_INPUT, "-a_mesh_contact_surfaces|no surface 'nowhere'", "-dm_plex_dim 2 -mesh_contact_surfaces nowhere");
 }
 

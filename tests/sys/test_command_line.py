@@ -137,7 +137,11 @@ def test_no_file_repeats_an_option(words, tmp_path):
 
 
 # Options that are gone, with a value, and what the warning says that happens instead
-GONE = {"-schwarz_sweep": ("additive", "the second body of a pair takes the reactions of the first")}
+GONE = {
+    "-schwarz_sweep": ("additive", "the second body of a pair takes the reactions of the first"),
+    "-left_mesh_bricks": ("3", "a box is cut such that a step costs least"),
+    "-all_mesh_bricks": ("3", "a box is cut such that a step costs least"),
+}
 
 
 @pytest.mark.parametrize("option", list(GONE))
