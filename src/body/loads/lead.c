@@ -5,19 +5,6 @@
 /* Between the times at which angular velocities are compared for their rate, in parts of the step */
 #define SPACING 0.25
 
-static PetscErrorCode RefusePlace(Body body, const char name[], PetscInt n, const Expression list[])
-{
-  for (PetscInt i = 0; i < n; i++) {
-    PetscBool uniform = PETSC_TRUE;
-
-    if (list[i]) PetscCall(ExpressionGetNature(list[i], NULL, &uniform, NULL));
-    PetscCheck(uniform, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-               "-%s%s: a rigid body is led as a whole; its formulas may use t, but not x, y, z or a normal", ((PetscObject)body)->prefix,
-               name);
-  }
-  return PETSC_SUCCESS;
-}
-
 /* The displacement of the centre of mass: for each dimension a formula in t [m], or the word free */
 PetscErrorCode BodyLoadsSetRigidDisplacement(Body body, const char text[])
 {
@@ -26,7 +13,7 @@ PetscErrorCode BodyLoadsSetRigidDisplacement(Body body, const char text[])
   PetscFunctionBegin;
   for (PetscInt d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&loads->lead[d]));
   PetscCall(BodyLoadsGetComponents(body, "rigid_displacement", text, PETSC_TRUE, loads->lead));
-  PetscCall(RefusePlace(body, "rigid_displacement", body->mesh.dim, loads->lead));
+  PetscCall(BodyLoadsRefuse(body, "rigid_displacement", LOADS_PLACE, body->mesh.dim, loads->lead));
   for (PetscInt d = 0; d < body->mesh.dim; d++) loads->led = (PetscBool)(loads->led || loads->lead[d]);
   PetscCheck(!body->model.element->axisymmetric || !loads->lead[0], PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%srigid_displacement %s: an axisymmetric body moves along its axis, y, alone; write free for the first component",
@@ -53,7 +40,7 @@ PetscErrorCode BodyLoadsSetRigidRotation(Body body, const char text[])
              option, text, n, n == 1 ? "" : "s", body->hdr.name, body->mesh.dim, turns);
   for (PetscInt d = 0; d < 3; d++) PetscCall(ExpressionDestroy(&loads->lead[3 + d]));
   PetscCall(ExpressionListCreate(comm, option, text, turns, PETSC_FALSE, loads->lead + 3));
-  PetscCall(RefusePlace(body, "rigid_rotation", turns, loads->lead + 3));
+  PetscCall(BodyLoadsRefuse(body, "rigid_rotation", LOADS_PLACE, turns, loads->lead + 3));
   if (turns == 1) { /* about the third axis */
     loads->lead[5] = loads->lead[3];
     loads->lead[3] = NULL;

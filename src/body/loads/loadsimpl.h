@@ -3,6 +3,9 @@
 
 #define LOADS_NAME_LENGTH 512 /* of options, as PETSc has it */
 
+/* What formulas of some options may not depend on */
+typedef enum { LOADS_NORMAL, LOADS_TIME, LOADS_PLACE } LoadsRefused;
+
 typedef enum {
   LOAD_STEADY,
   LOAD_UNIFORM, /* varies in time alone */
@@ -67,7 +70,7 @@ struct _BodyLoads {
 
 PETSC_INTERN PetscErrorCode BodyLoadsGetText(Body, const char[], const char *[]);
 PETSC_INTERN PetscErrorCode BodyLoadsGetComponents(Body, const char[], const char[], PetscBool, Expression[]);
-PETSC_INTERN PetscErrorCode BodyLoadsRefuseNormal(Body, const char[], const Expression[]);
+PETSC_INTERN PetscErrorCode BodyLoadsRefuse(Body, const char[], LoadsRefused, PetscInt, const Expression[]);
 PETSC_INTERN PetscErrorCode BodyLoadsAddDisplacement(Body, const char[], const char[]);
 PETSC_INTERN PetscErrorCode BodyLoadsAddTraction(Body, const char[], const char[]);
 PETSC_INTERN PetscErrorCode BodyLoadsAddBodyForce(Body, const char[]);

@@ -28,20 +28,6 @@ static PetscErrorCode Evaluate(Body body, const Expression list[], Vec values)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckSteady(Body body, const char name[], const Expression list[])
-{
-  PetscFunctionBegin;
-  PetscCall(BodyLoadsRefuseNormal(body, name, list));
-  for (PetscInt d = 0; d < body->mesh.dim; d++) {
-    PetscBool steady;
-
-    PetscCall(ExpressionGetNature(list[d], &steady, NULL, NULL));
-    PetscCheck(steady, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-               "-%s%s cannot vary in time: it is what there is at the start; use x, y, z", ((PetscObject)body)->prefix, name);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Beyond these no body moves that is between 1e-15 and 1e22 m large: a wrong unit, or a formula that runs away */
 static PetscErrorCode CheckSize(Body body, int which, Vec values)
 {
@@ -67,7 +53,8 @@ static PetscErrorCode ReadVector(Body body, int which)
   if (!text) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyLoadsGetComponents(body, name, text, PETSC_FALSE, list));
   PetscCall(BodyCreateVec(body, &values));
-  error = CheckSteady(body, name, list);
+  error = BodyLoadsRefuse(body, name, LOADS_NORMAL, body->mesh.dim, list);
+  if (!error) error = BodyLoadsRefuse(body, name, LOADS_TIME, body->mesh.dim, list);
   if (!error) error = Evaluate(body, list, values);
   if (!error) error = CheckSize(body, which, values);
   if (!error) error = PetscObjectCompose((PetscObject)body, name, (PetscObject)values);

@@ -19,7 +19,7 @@ PetscErrorCode BodyLoadsAddDisplacement(Body body, const char surface[], const c
   PetscCall(PetscStrallocpy(surface, &prescribed->surface));
   PetscCall(PetscSNPrintf(name, sizeof(name), "boundary_displacement_%s", surface));
   PetscCall(BodyLoadsGetComponents(body, name, text, PETSC_TRUE, prescribed->component));
-  PetscCall(BodyLoadsRefuseNormal(body, name, prescribed->component));
+  PetscCall(BodyLoadsRefuse(body, name, LOADS_NORMAL, body->mesh.dim, prescribed->component));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -58,7 +58,7 @@ PetscErrorCode BodyLoadsAddBodyForce(Body body, const char text[])
              DMPolytopeTypes[body->mesh.cell_shape]);
   PetscCall(AddLoad(body, &load));
   PetscCall(BodyLoadsGetComponents(body, "body_force", text, PETSC_FALSE, load->component));
-  PetscCall(BodyLoadsRefuseNormal(body, "body_force", load->component));
+  PetscCall(BodyLoadsRefuse(body, "body_force", LOADS_NORMAL, body->mesh.dim, load->component));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -35,15 +35,25 @@ PetscErrorCode BodyLoadsGetComponents(Body body, const char name[], const char t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BodyLoadsRefuseNormal(Body body, const char name[], const Expression list[])
+/* An error where one of n formulas of an option, or NULL, depends on what it must not */
+PetscErrorCode BodyLoadsRefuse(Body body, const char name[], LoadsRefused what, PetscInt n, const Expression list[])
 {
-  PetscFunctionBegin;
-  for (PetscInt d = 0; d < body->mesh.dim; d++) {
-    PetscBool normal = PETSC_FALSE;
+  static const char *const why[] = {
+      [LOADS_NORMAL] = ": nx, ny and nz are for tractions alone; use x, y, z",
+      [LOADS_TIME]   = " cannot vary in time: it is what there is at the start; use x, y, z",
+      [LOADS_PLACE]  = ": a rigid body is led as a whole; its formulas may use t, but not x, y, z or a normal",
+  };
 
-    if (list[d]) PetscCall(ExpressionGetNature(list[d], NULL, NULL, &normal));
-    PetscCheck(!normal, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
-               "-%s%s: nx, ny and nz are for tractions alone; use x, y, z", ((PetscObject)body)->prefix, name);
+  PetscFunctionBegin;
+  for (PetscInt i = 0; i < n; i++) {
+    PetscBool steady, uniform, normal;
+
+    if (!list[i]) continue;
+    PetscCall(ExpressionGetNature(list[i], &steady, &uniform, &normal));
+    PetscCheck(what == LOADS_NORMAL ? !normal
+               : what == LOADS_TIME ? steady
+                                    : uniform,
+               PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT, "-%s%s%s", ((PetscObject)body)->prefix, name, why[what]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
