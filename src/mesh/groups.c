@@ -1,4 +1,4 @@
-/* Surfaces and node sets of a mesh by their names. */
+/* Surfaces, node sets and blocks of a mesh by their names. */
 #include "meshimpl.h"
 #include <petsc/private/petscimpl.h>
 #include <petscsf.h>
@@ -333,6 +333,23 @@ static PetscErrorCode MarkVerticesOfFaces(DM dm, PetscInt n, const PetscInt face
       if (closure[2 * p] >= vstart && closure[2 * p] < vend) marks[closure[2 * p] - start] = 1;
     PetscCall(DMPlexRestoreTransitiveClosure(dm, faces[f], PETSC_TRUE, &n_points, &closure));
   }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The cells of a block by its name, or by its number; found: any rank has some. To be freed */
+PetscErrorCode MeshFindBlock(DM dm, const char name[], PetscInt *n, PetscInt *cells[], PetscBool *found)
+{
+  Selection selection = {.side = -1};
+  PetscInt  start, end;
+
+  PetscFunctionBegin;
+  PetscCall(DMPlexGetHeightStratum(dm, 0, &start, &end));
+  PetscCall(FindLabel(PetscObjectComm((PetscObject)dm), dm, name, "Cell Sets", &selection, found));
+  if (*found && !selection.by_value) PetscCall(MeshLabelHasPoints(dm, selection.label, start, end, found));
+  PetscCall(PetscMalloc1(end - start, cells));
+  *n = 0;
+  for (PetscInt c = start; c < end && selection.label; c++)
+    if (InLabel(&selection, c)) (*cells)[(*n)++] = c;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -135,6 +135,7 @@ PETSC_INTERN PetscInt       MeshBoxSideNumber(PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode MeshHasSurface(DM, const char[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshCheckContact(DM, const char[]);
 PETSC_INTERN PetscErrorCode MeshReadContact(MPI_Comm, const char[], const char[], PetscInt *, char ***, PetscReal *);
+PETSC_INTERN PetscErrorCode MeshFindBlock(DM, const char[], PetscInt *, PetscInt *[], PetscBool *);
 PETSC_INTERN PetscErrorCode MeshFindSurface(DM, const char[], PetscBool, PetscInt *, PetscInt *[]);
 PETSC_INTERN PetscErrorCode MeshSpreadContact(DM, const MeshRanks *, const char[], const char[], PetscBool, PetscBool *);
 PETSC_INTERN PetscErrorCode MeshBoxMarkContact(MPI_Comm, const char[], const char[], MeshBox *);
