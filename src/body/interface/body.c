@@ -246,6 +246,7 @@ PetscErrorCode BodyDestroy(Body *body)
   PetscCall(MatDestroy(&b->mass.product));
   PetscCall(MatDestroy(&b->mass.of_nodes));
   PetscCall(MatDestroy(&b->mass.extrapolation));
+  PetscCall(PetscFree(b->mass.diagonals));
   PetscCall(MatDestroy(&b->rows.matrix));
   PetscCall(VecDestroy(&b->rows.free_dofs));
   PetscCall(TSDestroy(&b->time.ts));

@@ -83,6 +83,7 @@ typedef struct {
   Vec               diagonal;     /* the mass matrix where it is diagonal, else NULL */
   Mat               matrix;       /* the mass matrix where it is not diagonal, else NULL */
   Mat               product;      /* the same for products with vectors */
+  PetscScalar      *diagonals;    /* the same where it is tridiagonal, of a body of one dimension on one rank, else NULL: 3 x rows */
   Mat               of_nodes;     /* the same for nodes, where it couples nodes that share no element; else NULL */
   Vec               inverse;      /* of a diagonal one: 1/m, 0 on massless nodes */
   ConstrainedSolver solver;       /* of one that is not diagonal; NULL until first needed */
