@@ -115,6 +115,32 @@ static PetscErrorCode AfterStep(Controller controller, PetscBool *stop)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether an option names a view. For these PETSc looks in each solution, of which a step has many: an eighth of a run of small bodies. */
+static PetscErrorCode AsksForViews(PetscBool *asks)
+{
+  char *all, *view;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  PetscCall(PetscStrtolower(all));
+  PetscCall(PetscStrstr(all, "view", &view));
+  *asks = (PetscBool)(view != NULL);
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode MakeStepWithoutViews(Controller controller)
+{
+  PetscErrorCode error;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsPushCreateViewerOff(PETSC_TRUE));
+  error = ControllerMakeStep(controller);
+  PetscCall(PetscOptionsPopCreateViewerOff());
+  PetscCall(error);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /*@
   ControllerSolve - runs all controller steps that are left
 
@@ -134,17 +160,18 @@ PetscErrorCode ControllerSolve(Controller controller)
 {
   PetscLogDouble wall[2];
   struct rusage  cpu[2];
-  PetscBool      stop = PETSC_FALSE;
+  PetscBool      stop = PETSC_FALSE, views = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(controller, CONTROLLER_CLASSID, 1);
   PetscCall(ControllerSetUp(controller));
+  PetscCall(AsksForViews(&views));
   PetscCall(PetscTime(&wall[0]));
   getrusage(RUSAGE_SELF, &cpu[0]);
   if (!controller->goes_on) PetscCall(ControllerNotify(controller, 0));
   if (!controller->goes_on) PetscCall(AfterStep(controller, &stop));
   while (controller->step < controller->steps && !stop) {
-    PetscCall(ControllerMakeStep(controller));
+    PetscCall(views ? ControllerMakeStep(controller) : MakeStepWithoutViews(controller));
     PetscCall(ControllerNotify(controller, ++controller->step));
     PetscCall(AfterStep(controller, &stop));
   }
