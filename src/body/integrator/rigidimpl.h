@@ -20,6 +20,7 @@ typedef struct {
 } Resultant;
 
 PETSC_INTERN BodyRigid     *BodyGetRigid(Body);
+PETSC_INTERN void           BodyRigidGetArm(const struct _p_Body *, PetscInt, PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodyRigidFindPlace(Body, Vec, RigidMotion *);
 PETSC_INTERN PetscErrorCode BodyRigidFindMomentum(Body, const RigidMotion *, Vec, Vec, Momentum *);
 PETSC_INTERN PetscErrorCode BodyRigidFindResultant(Body, Vec, Resultant *);

@@ -8,7 +8,7 @@ BodyRigid *BodyGetRigid(Body body)
 }
 
 /* Reference position of an owned node from the centre of mass */
-static void GetArm(const struct _p_Body *body, PetscInt node, PetscReal Y[3])
+void BodyRigidGetArm(const struct _p_Body *body, PetscInt node, PetscReal Y[3])
 {
   const PetscInt dim = body->mesh.dim;
 
@@ -37,7 +37,7 @@ PetscErrorCode BodyRigidFindPlace(Body body, Vec u, RigidMotion *motion)
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
     PetscReal Y[3];
 
-    GetArm(body, node, Y);
+    BodyRigidGetArm(body, node, Y);
     for (PetscInt d = 0; d < dim; d++) {
       const PetscReal moment = PetscRealPart(mass[node * dim + d] * way[node * dim + d]);
 
@@ -73,7 +73,7 @@ PetscErrorCode BodyRigidFindMomentum(Body body, const RigidMotion *motion, Vec v
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
     PetscReal Y[3], r[3], q[3] = {0}, moment[3];
 
-    GetArm(body, node, Y);
+    BodyRigidGetArm(body, node, Y);
     RigidMultiply(motion->rotation, Y, r);
     for (PetscInt d = 0; d < dim; d++) q[d] = PetscRealPart(p[node * dim + d]);
     RigidCross(r, q, moment);
@@ -100,7 +100,7 @@ PetscErrorCode BodyRigidFindResultant(Body body, Vec f, Resultant *resultant)
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
     PetscReal Y[3];
 
-    GetArm(body, node, Y);
+    BodyRigidGetArm(body, node, Y);
     for (PetscInt d = 0; d < dim; d++) {
       const PetscReal component = PetscRealPart(force[node * dim + d]);
 
@@ -128,7 +128,7 @@ PetscErrorCode BodyRigidWriteMotion(Body body, const RigidMotion *motion, Vec u,
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
     PetscReal Y[3], r[3], spin[3], pull[3], twist[3];
 
-    GetArm(body, node, Y);
+    BodyRigidGetArm(body, node, Y);
     RigidMultiply(motion->rotation, Y, r);
     RigidCross(motion->angular_velocity, r, spin);
     RigidCross(motion->angular_velocity, spin, pull);
@@ -205,7 +205,7 @@ PetscErrorCode BodyRigidFindInertia(Body body)
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
     PetscReal y[3];
 
-    GetArm(body, node, y);
+    BodyRigidGetArm(body, node, y);
     for (PetscInt d = 0; d < dim; d++) arm[node * dim + d] = y[d];
   }
   PetscCall(VecRestoreArrayWrite(Y, &arm));
@@ -215,7 +215,7 @@ PetscErrorCode BodyRigidFindInertia(Body body)
   for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
     PetscReal y[3];
 
-    GetArm(body, node, y);
+    BodyRigidGetArm(body, node, y);
     for (PetscInt a = 0; a < dim; a++)
       for (PetscInt b = 0; b < dim; b++) {
         sums[3 * a + b] += y[a] * PetscRealPart(moment[node * dim + b]);
