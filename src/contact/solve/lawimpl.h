@@ -3,6 +3,17 @@
 #include <contact/laws/rowlaw.h>
 #include <petscsnes.h>
 
+#define LAW_FEW 60 /* rows, up to which dense matrices and their solvers are kept while there are others: rows come and go */
+
+/* What solves equations of so many rows of one kind */
+typedef struct {
+  Vec       x, f;
+  Vec       in, out;            /* the last product with S */
+  Mat       jacobian, operator; /* by entries; products with it, where entries precondition alone, or NULL */
+  PetscBool factored;           /* there are factors of an earlier Jacobian of this pattern */
+  SNES      newton, nodes;
+} LawSolvers;
+
 typedef struct {
   PetscInt       n, n_nodes;  /* rows; nodes, whose rows follow each other */
   PetscInt      *begin;       /* per node: its first row; n_nodes + 1 */
@@ -17,7 +28,7 @@ typedef struct {
   PetscReal      resolution;  /* what rows read is right to so much, by round-off of positions [m] */
   PetscReal      proximal;    /* weight of the proximal term, in parts of the diagonal of S */
   PetscBool      regular;     /* S is, so that there need be no such term: springs are on its diagonal */
-  PetscBool      alone;       /* it was when it was taken, and rows of different nodes did not move each other: sweeps are tried first */
+  PetscBool      alone;       /* it was when it was taken, and rows of different nodes did not move each other: sweeps come first */
   PetscScalar   *base, *read; /* per row: a force [N], and what is read under it [m] */
   PetscScalar   *centre;      /* per row: the force that the proximal term pulls to [N] */
   PetscScalar   *force;       /* per row: the solution [N] */
@@ -30,17 +41,16 @@ typedef struct {
   PetscBool      solved;      /* there is a solution since the last call */
   PetscBool      by_nodes;    /* Newton's method failed, so that sweeps or secants came in */
   PetscBool      sparse;      /* the matrix of entries is */
-  Vec            x, f;
-  Vec            in, out;            /* the last product with S */
-  PetscInt64     product_of;         /* state of the S of that; -1: none */
-  Mat            jacobian, operator; /* by entries; products with it, where entries precondition alone, or NULL */
-  PetscInt64     jacobian_of;        /* state of the entries that it has; -1: none */
-  PetscBool      factored;           /* there are factors of an earlier Jacobian of this pattern */
-  SNES           newton, nodes;
+  PetscInt64     product_of;  /* state of the S that the last product is with; -1: none */
+  PetscInt64     jacobian_of; /* state of the entries that the Jacobian has; -1: none */
+  LawSolvers     solvers;
+  LawSolvers     kept[LAW_FEW + 1];  /* per number of rows: those of dense equations that are not in use; what is not there is NULL */
+  Mat            dense[LAW_FEW + 1]; /* the same of S, in use or not */
 } LawProblem;
 
 PETSC_INTERN PetscErrorCode LawProblemSetUp(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemResize(LawProblem *, PetscInt);
+PETSC_INTERN PetscErrorCode LawProblemGetDense(LawProblem *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemMultiply(LawProblem *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemMatchTrace(Mat, Mat);
@@ -75,6 +85,7 @@ static inline PetscBool LawProblemSlides(const LawProblem *problem, PetscInt nod
 #define LAW_LAG_AFTER_NEXT (-2)  /* for PETSc: the preconditioner is made anew once, and then stays */
 PETSC_INTERN PetscErrorCode LawProblemRead(LawProblem *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemHolds(LawProblem *, PetscBool *);
+PETSC_INTERN PetscErrorCode LawProblemSweep(LawProblem *, PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemLetGo(LawProblem *, PetscReal);
 PETSC_INTERN void           LawProblemFindWeights(LawProblem *);
 PETSC_INTERN void           LawProblemGetTrial(const LawProblem *, PetscInt, const PetscScalar[], const PetscScalar[], PetscReal[]);

@@ -74,7 +74,7 @@ static PetscErrorCode IsSmall(const LawProblem *problem, const PetscScalar x[], 
   PetscReal allowed, atol, rtol;
 
   PetscFunctionBegin;
-  PetscCall(SNESGetTolerances(problem->newton, &atol, &rtol, NULL, NULL, NULL));
+  PetscCall(SNESGetTolerances(problem->solvers.newton, &atol, &rtol, NULL, NULL, NULL));
   allowed   = rtol * LawProblemForceScale(problem, x) + atol;
   *is_small = PETSC_TRUE;
   for (PetscInt i = 0; i < problem->n && *is_small; i++)
@@ -142,19 +142,15 @@ static void AddColumn(const LawProblem *problem, LawPattern of_S, const PetscSca
     for (PetscInt j = 0; j < problem->n; j++) y[j] += a * S[i * problem->n + j];
 }
 
-/* One sweep: the rows of each node, one node after the other */
-static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
+/* LawProblemSweep - one sweep: the rows of each node, one node after the other */
+PetscErrorCode LawProblemSweep(LawProblem *problem, PetscScalar x[])
 {
-  LawProblem        *problem = (LawProblem *)ctx;
-  PetscScalar       *x, *y = problem->work;
+  PetscScalar       *y = problem->work;
   const PetscScalar *S;
   LawPattern         of_S;
 
   PetscFunctionBegin;
-  (void)snes;
-  (void)B;
   PetscCall(LawProblemGetS(problem, &of_S, &S));
-  PetscCall(VecGetArray(X, &x));
   PetscCall(LawProblemRead(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
@@ -175,22 +171,34 @@ static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
       }
     }
   }
-  PetscCall(VecRestoreArray(X, &x));
   PetscCall(LawProblemRestoreS(problem, &of_S, &S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode DestroySolvers(LawProblem *problem)
+static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
+{
+  PetscScalar *x;
+
+  PetscFunctionBegin;
+  (void)snes;
+  (void)B;
+  PetscCall(VecGetArray(X, &x));
+  PetscCall(LawProblemSweep((LawProblem *)ctx, x));
+  PetscCall(VecRestoreArray(X, &x));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode DestroySolvers(LawSolvers *solvers)
 {
   PetscFunctionBegin;
-  PetscCall(SNESDestroy(&problem->newton));
-  PetscCall(SNESDestroy(&problem->nodes));
-  PetscCall(MatDestroy(&problem->jacobian));
-  PetscCall(MatDestroy(&problem->operator));
-  PetscCall(VecDestroy(&problem->x));
-  PetscCall(VecDestroy(&problem->f));
-  PetscCall(VecDestroy(&problem->in));
-  PetscCall(VecDestroy(&problem->out));
+  PetscCall(SNESDestroy(&solvers->newton));
+  PetscCall(SNESDestroy(&solvers->nodes));
+  PetscCall(MatDestroy(&solvers->jacobian));
+  PetscCall(MatDestroy(&solvers->operator));
+  PetscCall(VecDestroy(&solvers->x));
+  PetscCall(VecDestroy(&solvers->f));
+  PetscCall(VecDestroy(&solvers->in));
+  PetscCall(VecDestroy(&solvers->out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,7 +207,7 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
   PetscFunctionBegin;
   PetscCall(SNESCreate(PETSC_COMM_SELF, snes));
   PetscCall(SNESSetOptionsPrefix(*snes, prefix));
-  PetscCall(SNESSetFunction(*snes, problem->f, ComputeResidual, problem));
+  PetscCall(SNESSetFunction(*snes, problem->solvers.f, ComputeResidual, problem));
   PetscCall(SNESSetType(*snes, type));
   PetscCall(SNESSetTolerances(*snes, 0, LAW_TOLERANCE, 0, most, PETSC_INT_MAX));
   PetscCall(SNESSetConvergenceTest(*snes, TestConvergence, problem, NULL));
@@ -216,41 +224,41 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PC             pc;
 
   PetscFunctionBegin;
-  PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->x));
-  PetscCall(VecDuplicate(problem->x, &problem->f));
-  PetscCall(VecDuplicate(problem->x, &problem->in));
-  PetscCall(VecDuplicate(problem->x, &problem->out));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->solvers.x));
+  PetscCall(VecDuplicate(problem->solvers.x, &problem->solvers.f));
+  PetscCall(VecDuplicate(problem->solvers.x, &problem->solvers.in));
+  PetscCall(VecDuplicate(problem->solvers.x, &problem->solvers.out));
   problem->product_of = -1;
-  PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->newton));
+  PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->solvers.newton));
   PetscCall(LawProblemCreateJacobian(problem));
-  PetscCall(SNESGetLineSearch(problem->newton, &line_search));
+  PetscCall(SNESGetLineSearch(problem->solvers.newton, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-  PetscCall(SNESGetKSP(problem->newton, &ksp));
+  PetscCall(SNESGetKSP(problem->solvers.newton, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   /* a sparse S is nearly diagonal: a few iterations, to round-off, are faster than factors; where a dense one is large, those of an earlier
      Jacobian precondition; where it is products, incomplete ones of that of a matrix near it, whose entries fall off fast */
   PetscCall(KSPSetType(ksp, LawProblemHasProducts(problem) ? KSPFGMRES : iterative ? KSPGMRES : KSPPREONLY));
   PetscCall(PCSetType(pc, LawProblemHasProducts(problem) ? PCILU : problem->sparse ? PCSOR : PCLU));
   if (LawProblemIsLagged(problem)) {
-    PetscCall(SNESSetLagPreconditioner(problem->newton, LAW_LAG_AFTER_NEXT));
-    PetscCall(SNESSetLagPreconditionerPersists(problem->newton, PETSC_TRUE));
+    PetscCall(SNESSetLagPreconditioner(problem->solvers.newton, LAW_LAG_AFTER_NEXT));
+    PetscCall(SNESSetLagPreconditionerPersists(problem->solvers.newton, PETSC_TRUE));
   }
   if (iterative) {
     PetscCall(KSPGMRESSetPreAllocateVectors(ksp));
     PetscCall(KSPSetPCSide(ksp, PC_RIGHT)); /* its residual is that of Newton's method */
-    PetscCall(SNESSetMaxLinearSolveFailures(problem->newton, PETSC_INT_MAX));
+    PetscCall(SNESSetMaxLinearSolveFailures(problem->solvers.newton, PETSC_INT_MAX));
   }
   if (LawProblemIsLagged(problem)) { /* each iteration takes a product with a large S: no more of them than Newton's method is good for */
-    PetscCall(SNESKSPSetUseEW(problem->newton, PETSC_TRUE));
-    PetscCall(SNESKSPSetParametersEW(problem->newton, PETSC_CURRENT, FORCING, FORCING, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT,
+    PetscCall(SNESKSPSetUseEW(problem->solvers.newton, PETSC_TRUE));
+    PetscCall(SNESKSPSetParametersEW(problem->solvers.newton, PETSC_CURRENT, FORCING, FORCING, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT,
                                      PETSC_CURRENT));
   }
   if (LawProblemHasProducts(problem)) PetscCall(KSPSetMinimumIterations(ksp, 1)); /* one row alone may miss its tolerance */
   PetscCall(KSPSetTolerances(ksp, SPARSE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, MOST_LINEAR));
-  PetscCall(SNESSetFromOptions(problem->newton));
-  PetscCall(CreateSNES(problem, "law_nodes_", SNESNGS, MOST_SWEEPS, &problem->nodes));
-  PetscCall(SNESSetNGS(problem->nodes, SweepNodes, problem));
-  PetscCall(SNESSetFromOptions(problem->nodes));
+  PetscCall(SNESSetFromOptions(problem->solvers.newton));
+  PetscCall(CreateSNES(problem, "law_nodes_", SNESNGS, MOST_SWEEPS, &problem->solvers.nodes));
+  PetscCall(SNESSetNGS(problem->solvers.nodes, SweepNodes, problem));
+  PetscCall(SNESSetFromOptions(problem->solvers.nodes));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -279,33 +287,77 @@ PetscErrorCode LawProblemSetUp(LawProblem *problem)
 
   PetscFunctionBegin;
   PetscCall(LawProblemResize(problem, 1));
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, 1, 1, NULL, &S));
+  PetscCall(LawProblemGetDense(problem, &S));
   PetscCall(LawProblemTakeS(problem, &S, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether nodes do not move each other, and S is regular by its diagonal: a sweep or two solve then, as for lumped masses on an obstacle */
+/* Whether nodes do not move each other, and S is regular by its diagonal: as that of one node, or of lumped masses on an obstacle */
 static PetscErrorCode FindAlone(LawProblem *problem)
 {
   const PetscScalar *S;
   LawPattern         of_S;
 
   PetscFunctionBegin;
-  problem->alone = (PetscBool)(problem->sparse && !LawProblemHasProducts(problem));
+  problem->alone = (PetscBool)!LawProblemHasProducts(problem);
   if (!problem->alone) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(LawProblemGetS(problem, &of_S, &S));
   for (PetscInt node = 0; node < problem->n_nodes && problem->alone; node++)
-    for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++) {
-      PetscReal others = 0;
+    for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1] && problem->alone; i++) {
+      const PetscInt begin = of_S.begin ? of_S.begin[i] : i * problem->n, end = of_S.begin ? of_S.begin[i + 1] : begin + problem->n;
+      PetscReal      others = 0;
 
-      for (PetscInt e = of_S.begin[i]; e < of_S.begin[i + 1]; e++) {
-        if (of_S.columns[e] != i) others += PetscAbsScalar(S[e]);
-        if (S[e] != 0 && (of_S.columns[e] < problem->begin[node] || of_S.columns[e] >= problem->begin[node + 1]))
-          problem->alone = PETSC_FALSE;
+      for (PetscInt e = begin; e < end && problem->alone; e++) {
+        const PetscInt column = of_S.begin ? of_S.columns[e] : e - begin;
+
+        if (column != i) others += PetscAbsScalar(S[e]);
+        if (S[e] != 0 && (column < problem->begin[node] || column >= problem->begin[node + 1])) problem->alone = PETSC_FALSE;
       }
       if (!(others < problem->diagonal[i])) problem->alone = PETSC_FALSE;
     }
   PetscCall(LawProblemRestoreS(problem, &of_S, &S));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solvers for the rows there are, of which S is dense or not: those that have been kept of that many, or new ones */
+static PetscErrorCode ChangeSolvers(LawProblem *problem, PetscBool dense)
+{
+  const PetscBool  keeps = (PetscBool)(!problem->sparse && !problem->solvers.operator&& problem->rows <= LAW_FEW);
+  const LawSolvers none  = {0};
+  LawSolvers      *kept;
+
+  PetscFunctionBegin;
+  if (keeps) problem->kept[problem->rows] = problem->solvers;
+  else PetscCall(DestroySolvers(&problem->solvers));
+  problem->solvers = none;
+  problem->sparse  = (PetscBool)!dense;
+  problem->rows    = problem->n;
+  kept             = dense && problem->n <= LAW_FEW ? &problem->kept[problem->n] : NULL;
+  if (!kept || !kept->newton) {
+    PetscCall(CreateSolvers(problem));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  problem->solvers = *kept;
+  *kept            = none;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A dense matrix for S of the rows there are, to fill and hand to LawProblemTakeS(): the one there is, where it has the size */
+PetscErrorCode LawProblemGetDense(LawProblem *problem, Mat *S)
+{
+  const PetscInt n    = problem->n;
+  Mat           *kept = n <= LAW_FEW ? &problem->dense[n] : NULL;
+
+  PetscFunctionBegin;
+  *S = kept ? *kept : !problem->sparse && problem->rows == n ? problem->S : NULL;
+  if (*S) {
+    PetscCall(PetscObjectReference((PetscObject)*S));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
+  if (!kept) PetscFunctionReturn(PETSC_SUCCESS);
+  *kept = *S;
+  PetscCall(PetscObjectReference((PetscObject)*S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -328,17 +380,14 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
   if (products) *near = NULL;
   PetscCall(PetscObjectTypeCompare((PetscObject)problem->entries, MATSEQDENSE, &dense));
   if (problem->n != problem->rows || problem->sparse == dense || other) {
-    problem->sparse = (PetscBool)!dense;
-    PetscCall(DestroySolvers(problem));
-    PetscCall(CreateSolvers(problem));
-    problem->rows = problem->n;
+    PetscCall(ChangeSolvers(problem, dense));
   } else if (another && problem->sparse) PetscCall(LawProblemCreateJacobian(problem));
   if (another) problem->jacobian_of = -1;
   problem->product_of = -1;
-  PetscCall(MatGetDiagonal(problem->entries, problem->out));
-  PetscCall(VecGetArrayRead(problem->out, &diagonal));
+  PetscCall(MatGetDiagonal(problem->entries, problem->solvers.out));
+  PetscCall(VecGetArrayRead(problem->solvers.out, &diagonal));
   for (PetscInt i = 0; i < problem->n; i++) problem->diagonal[i] = PetscRealPart(diagonal[i]);
-  PetscCall(VecRestoreArrayRead(problem->out, &diagonal));
+  PetscCall(VecRestoreArrayRead(problem->solvers.out, &diagonal));
   PetscCall(FindAlone(problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -346,7 +395,11 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
 PetscErrorCode LawProblemDestroy(LawProblem *problem)
 {
   PetscFunctionBegin;
-  PetscCall(DestroySolvers(problem));
+  PetscCall(DestroySolvers(&problem->solvers));
+  for (PetscInt n = 0; n <= LAW_FEW; n++) {
+    PetscCall(DestroySolvers(&problem->kept[n]));
+    PetscCall(MatDestroy(&problem->dense[n]));
+  }
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
   PetscCall(PetscFree5(problem->diagonal, problem->weight, problem->law, problem->glue, problem->derivatives));
   PetscCall(MatDestroy(&problem->S));
