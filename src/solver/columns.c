@@ -1,6 +1,15 @@
 /* Many right-hand sides at once. A solution reads all factors of A, which are larger than any cache: together each costs a fraction. */
 #include "constrainedsolverimpl.h"
 
+/* Factors of MUMPS on all ranks, or NULL */
+PetscErrorCode ConstrainedSolverGetMUMPS(ConstrainedSolver s, Mat *factors)
+{
+  PetscFunctionBegin;
+  *factors = NULL;
+  if (s->block > 1 && !s->home) PetscCall(PCFactorGetMatrix(s->factors, factors));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* x = A^{-1} b for the columns of dense matrices, without constraints: together where MUMPS has factors on all ranks */
 PetscErrorCode ConstrainedSolverSolveFreeColumns(ConstrainedSolver s, Mat b, Mat x)
 {
@@ -8,8 +17,8 @@ PetscErrorCode ConstrainedSolverSolveFreeColumns(ConstrainedSolver s, Mat b, Mat
   Mat      factors;
 
   PetscFunctionBegin;
-  if (s->block > 1 && !s->home) {
-    PetscCall(PCFactorGetMatrix(s->factors, &factors));
+  PetscCall(ConstrainedSolverGetMUMPS(s, &factors));
+  if (factors) {
     PetscCall(MatMumpsSetIcntl(factors, 27, (PetscInt)MAX_BLOCK));
     PetscCall(MatMatSolve(factors, b, x));
     PetscFunctionReturn(PETSC_SUCCESS);

@@ -24,6 +24,7 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverReplaceRows(ConstrainedSolver, 
 PETSC_INTERN PetscErrorCode     ConstrainedSolverApplyCompliance(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFree(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolveFreeColumns(ConstrainedSolver, Mat, Mat);
+PETSC_INTERN PetscErrorCode     ConstrainedSolverGetMUMPS(ConstrainedSolver, Mat *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSolve(ConstrainedSolver, Vec, Vec);
 PETSC_INTERN KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver);
 PETSC_INTERN PetscBool          ConstrainedSolverIsDirect(ConstrainedSolver);

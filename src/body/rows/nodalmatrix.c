@@ -201,22 +201,23 @@ PetscErrorCode NodalMatrixRenew(Body body, BodyForceShape shape, PetscInt n, Pet
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Unit forces on some displacements, in terms of P */
-static PetscErrorCode FillForces(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Mat forces)
+/* Unit forces on some displacements, in terms of P: columns of a dense matrix, or rows of a sparse one */
+static PetscErrorCode FillForces(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], PetscBool sparse, Mat forces)
 {
-  PetscInt begin, end;
+  const PetscScalar one = 1;
+  PetscInt          begin, end;
 
   PetscFunctionBegin;
   PetscCall(VecGetOwnershipRange(body->state.u, &begin, &end));
   for (PetscInt k = 0; k < n; k++) {
-    const PetscInt    *columns;
-    const PetscScalar *values;
-    PetscInt           entries;
+    const PetscInt    *columns = &dofs[k];
+    const PetscScalar *values  = &one;
+    PetscInt           entries = 1;
 
     if (dofs[k] < begin || dofs[k] >= end) continue;
     if (nodal->functions) PetscCall(MatGetRow(nodal->functions, dofs[k], &entries, &columns, &values));
-    if (nodal->functions) PetscCall(MatSetValues(forces, entries, columns, 1, &k, values, INSERT_VALUES));
-    else PetscCall(MatSetValue(forces, dofs[k], k, 1, INSERT_VALUES));
+    if (sparse) PetscCall(MatSetValues(forces, 1, &k, entries, columns, values, INSERT_VALUES));
+    else PetscCall(MatSetValues(forces, entries, columns, 1, &k, values, INSERT_VALUES));
     if (nodal->functions) PetscCall(MatRestoreRow(nodal->functions, dofs[k], &entries, &columns, &values));
   }
   PetscCall(MatAssemblyBegin(forces, MAT_FINAL_ASSEMBLY));
@@ -224,32 +225,59 @@ static PetscErrorCode FillForces(Body body, const NodalMatrix nodal, PetscInt n,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* By factors of MUMPS on one rank: forward solutions begin where forces are, which halves their cost */
+static PetscErrorCode SolveSparse(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Mat factors, Mat answers)
+{
+  PetscInt all;
+  Mat      forces;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetSize(answers, &all, NULL));
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, all, nodal->functions ? PETSC_DEFAULT : 1, NULL, &forces));
+  PetscCall(MatSetOption(forces, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
+  PetscCall(FillForces(body, nodal, n, dofs, PETSC_TRUE, forces));
+  PetscCall(MatMumpsSetIcntl(factors, 27, COLUMNS));
+  PetscCall(MatMatTransposeSolve(factors, forces, answers));
+  PetscCall(MatDestroy(&forces));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Displacements under unit forces on some of them, at most COLUMNS: of all, or of those that P has one by one */
 static PetscErrorCode Solve(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Mat *answers)
 {
-  PetscInt local;
-  Mat      forces, factors;
-  PC       pc;
+  MPI_Comm    comm    = PetscObjectComm((PetscObject)body);
+  Mat         factors = NULL, forces;
+  PetscInt    local;
+  PetscMPIInt size;
+  PC          pc;
 
   PetscFunctionBegin;
   if (nodal->functions) PetscCall(MatGetLocalSize(nodal->functions, NULL, &local));
   else PetscCall(VecGetLocalSize(body->state.u, &local));
-  PetscCall(MatCreateDense(PetscObjectComm((PetscObject)body), local, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, &forces));
-  PetscCall(FillForces(body, nodal, n, dofs, forces));
-  PetscCall(MatDuplicate(forces, MAT_DO_NOT_COPY_VALUES, answers));
+  PetscCall(MatCreateDense(comm, local, PETSC_DECIDE, PETSC_DETERMINE, n, NULL, answers));
+  if (nodal->solver) PetscCall(ConstrainedSolverGetMUMPS(nodal->solver, &factors));
+  else {
+    PetscCall(KSPGetPC(nodal->ksp, &pc));
+    PetscCall(PCFactorGetMatrix(pc, &factors));
+  }
+  PetscCallMPI(MPI_Comm_size(comm, &size));
+  if (factors && size == 1) {
+    PetscCall(SolveSparse(body, nodal, n, dofs, factors, *answers));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(MatDuplicate(*answers, MAT_DO_NOT_COPY_VALUES, &forces));
+  PetscCall(FillForces(body, nodal, n, dofs, PETSC_FALSE, forces));
   if (nodal->solver) {
     KSPConvergedReason reason;
 
     PetscCall(ConstrainedSolverSolveFreeColumns(nodal->solver, forces, *answers));
     reason = ConstrainedSolverTakeFailure(nodal->solver);
-    PetscCheck(reason >= 0, PetscObjectComm((PetscObject)body), PETSC_ERR_NOT_CONVERGED,
+    PetscCheck(reason >= 0, comm, PETSC_ERR_NOT_CONVERGED,
                "The linear solver of body '%s' did not converge at time %.9g s (its step %" PetscInt_FMT
                "): %s; allow more iterations (-%sksp_max_it), or choose another preconditioner or a direct solver (-%spc_type cholesky)",
                ((PetscObject)body)->name, (double)(body->saved.time + body->time.step), body->saved.step + 1, KSPConvergedReasons[reason],
                ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
   } else {
-    PetscCall(KSPGetPC(nodal->ksp, &pc));
-    PetscCall(PCFactorGetMatrix(pc, &factors));
     PetscCall(MatMumpsSetIcntl(factors, 27, COLUMNS));
     PetscCall(MatMatSolve(factors, forces, *answers));
   }
