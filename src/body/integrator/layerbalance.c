@@ -146,8 +146,7 @@ static PetscErrorCode ComputeMissing(Body body, const LoadCase *load, PetscBool 
   PetscFunctionBegin;
   if (follows) PetscCall(BodyComputeOutsideForce(body, load->time, load->position, PETSC_TRUE, u, load->force));
   if (load->outside) {
-    PetscCall(VecScatterBegin(body->layer.scatter, load->force, body->layer.rhs, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecScatterEnd(body->layer.scatter, load->force, body->layer.rhs, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(BodyReadLayer(body, load->force, body->layer.rhs));
   } else PetscCall(VecZeroEntries(body->layer.rhs));
   PetscCall(BodySubtractLayerForce(body, u, body->layer.rhs));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -157,8 +156,7 @@ static PetscErrorCode ComputeMissing(Body body, const LoadCase *load, PetscBool 
 static PetscErrorCode Move(Body body, Vec u)
 {
   PetscFunctionBegin;
-  PetscCall(VecScatterBegin(body->layer.scatter, body->layer.solution, u, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(body->layer.scatter, body->layer.solution, u, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(BodyWriteLayer(body, body->layer.solution, ADD_VALUES, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,8 +242,7 @@ PetscErrorCode LayerBalanceGetForce(Body body, Vec u, Vec force)
   PetscCall(VecZeroEntries(body->layer.rhs));
   PetscCall(BodySubtractLayerForce(body, u, body->layer.rhs));
   PetscCall(VecScale(body->layer.rhs, -1));
-  PetscCall(VecScatterBegin(body->layer.scatter, body->layer.rhs, force, INSERT_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(body->layer.scatter, body->layer.rhs, force, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(BodyWriteLayer(body, body->layer.rhs, INSERT_VALUES, force));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -115,7 +115,6 @@ typedef struct {
   PetscInt     *dofs;          /* owned dofs (rank numbering) of massless nodes that are not held; none unless mass is redistributed */
   LayerElements elements;      /* those that touch massless nodes; NULL until somebody balances them, and so is what follows */
   IS            global;        /* `dofs`, numbers in the vectors of the body */
-  VecScatter    scatter;       /* from such a vector to one of the layer */
   Vec           rhs, solution; /* work space, of the layer */
   LayerSolver   solver;        /* NULL until BodySolveLayer() */
 } BodyLayer;
@@ -456,6 +455,8 @@ PETSC_INTERN PetscErrorCode BodyCreateLayerMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode BodySubtractLayerForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyPrepareLayer(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyApplyLayerCompliance(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyReadLayer(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyWriteLayer(Body, Vec, InsertMode, Vec);
 PETSC_INTERN PetscErrorCode BodySolveLayer(Body, Vec, Vec, Vec, Vec);
 PETSC_INTERN PetscInt       BodyCountLayerTangents(Body);
 PETSC_INTERN PetscErrorCode BodyMultiplyLayerTangent(Body, const PetscScalar[], Vec, Vec);

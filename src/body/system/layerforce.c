@@ -9,8 +9,9 @@ struct _n_LayerElements {
   PetscInt   n_dofs;  /* of the nodes of these elements */
   PetscInt  *numbers; /* of each: within the layer, over all ranks; -1 for others */
   Vec        u, f;    /* n_dofs each, of this rank alone */
-  VecScatter gather;  /* from a vector of the body to u */
-  VecScatter add;     /* from f to a vector of the layer */
+  PetscInt  *dofs;    /* of each: of this rank's nodes */
+  VecScatter gather;  /* from a vector of the body to u; NULL where no other rank has these nodes, */
+  VecScatter add;     /* and so is that from f to a vector of the layer */
   PetscInt  *of_body; /* the number of each element in the body */
   char      *memory;  /* of the history that these elements begin the substep with, NULL where the material has none */
   PetscReal *history;
@@ -97,6 +98,8 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
   PetscFunctionBegin;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, layer->n_dofs, &layer->u));
   PetscCall(VecDuplicate(layer->u, &layer->f));
+  for (PetscInt i = 0; i < layer->n_dofs; i++) layer->dofs[i] = nodes[i / dim] * dim + i % dim;
+  if (!body->mesh.ghosted) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
   PetscCall(PetscMalloc1(layer->n_dofs, &dofs));
   for (PetscInt k = 0; k < n_nodes; k++) {
@@ -163,7 +166,7 @@ PetscErrorCode BodyLayerCopyHistory(Body body, PetscReal history[], PetscReal *s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Vectors of the layer, one number for each of its dofs, and the way to them */
+/* Vectors of the layer, one number for each of its dofs */
 static PetscErrorCode CreateVectors(Body body)
 {
   MPI_Comm   comm  = PetscObjectComm((PetscObject)body);
@@ -179,8 +182,6 @@ static PetscErrorCode CreateVectors(Body body)
   PetscCall(VecSetSizes(layer->rhs, layer->n_dofs, PETSC_DETERMINE));
   PetscCall(VecSetType(layer->rhs, VECSTANDARD));
   PetscCall(VecDuplicate(layer->rhs, &layer->solution));
-  PetscCall(VecScatterCreate(body->state.u, layer->global, layer->rhs, NULL, &layer->scatter));
-  PetscCall(BodyUseScatter(layer->scatter, body->state.u, layer->rhs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,7 +199,7 @@ PetscErrorCode BodySetUpLayerElements(Body body)
   PetscCall(NumberLayer(body, &number));
   PetscCall(SelectElements(body, number, layer, &count, &n_nodes, &nodes));
   layer->n_dofs = n_nodes * dim;
-  PetscCall(PetscMalloc2(layer->n_dofs, &layer->coordinates, layer->n_dofs, &layer->numbers));
+  PetscCall(PetscMalloc3(layer->n_dofs, &layer->coordinates, layer->n_dofs, &layer->numbers, layer->n_dofs, &layer->dofs));
   for (PetscInt k = 0; k < n_nodes; k++) {
     PetscCall(PetscArraycpy(layer->coordinates + k * dim, body->mesh.coordinates + nodes[k] * dim, dim));
     PetscCall(PetscArraycpy(layer->numbers + k * dim, number + nodes[k] * dim, dim));
@@ -220,7 +221,6 @@ PetscErrorCode BodyLayerElementsDestroy(BodyLayer *of_body)
   PetscFunctionBegin;
   if (!layer) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ISDestroy(&of_body->global));
-  PetscCall(VecScatterDestroy(&of_body->scatter));
   PetscCall(VecDestroy(&of_body->rhs));
   PetscCall(VecDestroy(&of_body->solution));
   PetscCall(ElementDestroy(&layer->element));
@@ -229,11 +229,45 @@ PetscErrorCode BodyLayerElementsDestroy(BodyLayer *of_body)
   PetscCall(VecScatterDestroy(&layer->add));
   PetscCall(VecDestroy(&layer->u));
   PetscCall(VecDestroy(&layer->f));
-  PetscCall(PetscFree2(layer->coordinates, layer->numbers));
+  PetscCall(PetscFree3(layer->coordinates, layer->numbers, layer->dofs));
   PetscCall(PetscFree(layer->connectivity));
   PetscCall(PetscFree(layer->of_body));
   PetscCall(PetscFree(layer->memory));
   PetscCall(PetscFree(of_body->elements));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From a vector of the body to one of the layer: a rank has the same dofs of both */
+PetscErrorCode BodyReadLayer(Body body, Vec u, Vec layer)
+{
+  const PetscScalar *from;
+  PetscScalar       *to;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(u, &from));
+  PetscCall(VecGetArrayWrite(layer, &to));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) to[i] = from[body->layer.dofs[i]];
+  PetscCall(VecRestoreArrayWrite(layer, &to));
+  PetscCall(VecRestoreArrayRead(u, &from));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The way back; on other dofs u stays as it is */
+PetscErrorCode BodyWriteLayer(Body body, Vec layer, InsertMode mode, Vec u)
+{
+  const PetscScalar *from;
+  PetscScalar       *to;
+
+  PetscFunctionBegin;
+  PetscCall(VecGetArrayRead(layer, &from));
+  PetscCall(VecGetArray(u, &to));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++) {
+    const PetscInt dof = body->layer.dofs[i];
+
+    to[dof] = mode == ADD_VALUES ? to[dof] + from[i] : from[i];
+  }
+  PetscCall(VecRestoreArray(u, &to));
+  PetscCall(VecRestoreArrayRead(layer, &from));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -246,6 +280,28 @@ PetscErrorCode BodyLayerLinearize(Body body)
   if (!layer || layer->linearized) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ElementCreateSelection(layer->element, PETSC_TRUE, layer->element->count, NULL, layer->connectivity, layer->coordinates,
                                    &layer->linearized));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* From a vector on the nodes of these elements to another one, in which they have places, negative ones being none: by a scatter, if any */
+static PetscErrorCode Spread(LayerElements layer, VecScatter scatter, ScatterMode way, const PetscInt places[], Vec near, InsertMode mode,
+                             Vec to)
+{
+  const PetscScalar *values;
+  PetscScalar       *all;
+
+  PetscFunctionBegin;
+  if (scatter) {
+    PetscCall(VecScatterBegin(scatter, near, to, mode, way));
+    PetscCall(VecScatterEnd(scatter, near, to, mode, way));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecGetArrayRead(near, &values));
+  PetscCall(VecGetArray(to, &all));
+  for (PetscInt i = 0; i < layer->n_dofs; i++)
+    if (places[i] >= 0) all[places[i]] = mode == ADD_VALUES ? all[places[i]] + values[i] : values[i];
+  PetscCall(VecRestoreArray(to, &all));
+  PetscCall(VecRestoreArrayRead(near, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -268,8 +324,7 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
   for (PetscInt i = 0; i < layer->n_dofs; i++) f_array[i] = -f_array[i];
   PetscCall(VecRestoreArrayWrite(layer->f, &f_array));
   PetscCall(VecRestoreArrayRead(layer->u, &u_array));
-  PetscCall(VecScatterBegin(layer->add, layer->f, rhs, ADD_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(layer->add, layer->f, rhs, ADD_VALUES, SCATTER_FORWARD));
+  PetscCall(Spread(layer, layer->add, SCATTER_FORWARD, layer->numbers, layer->f, ADD_VALUES, rhs));
   PetscCall(PetscLogEventEnd(BODY_LayerForce, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -285,18 +340,31 @@ PetscErrorCode BodyCreateLayerVec(Body body, Vec *near)
 /* near = what a vector of the body is on the nodes of the elements that touch the layer */
 PetscErrorCode BodyGatherLayer(Body body, Vec u, Vec near)
 {
+  LayerElements      layer = body->layer.elements;
+  const PetscScalar *all;
+  PetscScalar       *values;
+
   PetscFunctionBegin;
-  PetscCall(VecScatterBegin(body->layer.elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(body->layer.elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+  if (layer->gather) {
+    PetscCall(VecScatterBegin(layer->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+    PetscCall(VecScatterEnd(layer->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecGetArrayRead(u, &all));
+  PetscCall(VecGetArrayWrite(near, &values));
+  for (PetscInt i = 0; i < layer->n_dofs; i++) values[i] = all[layer->dofs[i]];
+  PetscCall(VecRestoreArrayWrite(near, &values));
+  PetscCall(VecRestoreArrayRead(u, &all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The way back: u gets the values of these nodes, and others stay. Ranks that have a node in common have the same values of it. */
 PetscErrorCode BodySpreadLayer(Body body, Vec near, Vec u)
 {
+  LayerElements layer = body->layer.elements;
+
   PetscFunctionBegin;
-  PetscCall(VecScatterBegin(body->layer.elements->gather, near, u, INSERT_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(body->layer.elements->gather, near, u, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(Spread(layer, layer->gather, SCATTER_REVERSE, layer->dofs, near, INSERT_VALUES, u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -365,8 +433,7 @@ PetscErrorCode BodyMultiplyLayerTangent(Body body, const PetscScalar tangents[],
   PetscCall(VecRestoreArrayWrite(layer->f, &product));
   PetscCall(VecRestoreArrayRead(layer->u, &change));
   PetscCall(VecZeroEntries(f));
-  PetscCall(VecScatterBegin(layer->gather, layer->f, f, ADD_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(layer->gather, layer->f, f, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(Spread(layer, layer->gather, SCATTER_REVERSE, layer->dofs, layer->f, ADD_VALUES, f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

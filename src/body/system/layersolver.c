@@ -78,12 +78,10 @@ PetscErrorCode BodyApplyLayerCompliance(Body body, Vec f, Vec du)
   const BodyLayer *layer = &body->layer;
 
   PetscFunctionBegin;
-  PetscCall(VecScatterBegin(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
-  PetscCall(VecScatterEnd(layer->scatter, f, layer->rhs, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(BodyReadLayer(body, f, layer->rhs));
   PetscCall(ConstrainedSolverSolveFree(layer->solver->own ? layer->solver->own : body->solver, layer->rhs, layer->solution));
   PetscCall(VecZeroEntries(du));
-  PetscCall(VecScatterBegin(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
-  PetscCall(VecScatterEnd(layer->scatter, layer->solution, du, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(BodyWriteLayer(body, layer->solution, INSERT_VALUES, du));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
