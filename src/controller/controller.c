@@ -3,6 +3,7 @@
 #include <impakt/private/bodymeasures.h>
 #include <impakt/private/bodystep.h>
 #include <sys/largepages.h>
+#include <sys/optionstext.h>
 #include <sys/resource.h>
 #include <sys/stages.h>
 #include <sys/units.h>
@@ -115,20 +116,18 @@ static PetscErrorCode AfterStep(Controller controller, PetscBool *stop)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether an option names a view. For these PETSc looks in each solution, of which a step has many: an eighth of a run of small bodies. */
+/* Whether options ask to see anything of solvers, some of which read their options within a step */
 static PetscErrorCode AsksForViews(PetscBool *asks)
 {
-  char *all, *view;
+  const char *const of[] = {"view", "monitor", "snes_", "ksp_", "pc_"};
 
   PetscFunctionBegin;
-  PetscCall(PetscOptionsGetAll(NULL, &all));
-  PetscCall(PetscStrtolower(all));
-  PetscCall(PetscStrstr(all, "view", &view));
-  *asks = (PetscBool)(view != NULL);
-  PetscCall(PetscFree(all));
+  *asks = PETSC_FALSE;
+  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(of) && !*asks; k++) PetscCall(OptionsTextHas(of[k], asks));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* PETSc looks for views by their names in each solution, of which a step has many: an eighth of a run of small bodies */
 static PetscErrorCode MakeStepWithoutViews(Controller controller)
 {
   PetscErrorCode error;

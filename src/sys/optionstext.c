@@ -17,3 +17,17 @@ PetscBool OptionsTextNext(char **text, const char **name, const char **value)
   *text = next;
   return PETSC_TRUE;
 }
+
+/* Whether the options of the run have some text in them, in small letters */
+PetscErrorCode OptionsTextHas(const char text[], PetscBool *has)
+{
+  char *all, *found;
+
+  PetscFunctionBegin;
+  PetscCall(PetscOptionsGetAll(NULL, &all));
+  PetscCall(PetscStrtolower(all));
+  PetscCall(PetscStrstr(all, text, &found));
+  *has = (PetscBool)(found != NULL);
+  PetscCall(PetscFree(all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}

@@ -2,4 +2,5 @@
 #pragma once
 #include <petscsys.h>
 
-PETSC_INTERN PetscBool OptionsTextNext(char **, const char **, const char **);
+PETSC_INTERN PetscBool      OptionsTextNext(char **, const char **, const char **);
+PETSC_INTERN PetscErrorCode OptionsTextHas(const char[], PetscBool *);

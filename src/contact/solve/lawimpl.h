@@ -38,6 +38,7 @@ typedef struct {
   PetscInt       iterations;  /* of Newton's method, and node by node, in the last solution */
   PetscBool      softens;     /* the force of a node falls as its gap grows */
   PetscBool      secant;      /* glue has its present stiffness in the Jacobian, see lawsolve.c */
+  PetscBool      asked;       /* options name the solvers, which solve all then */
   PetscBool      solved;      /* there is a solution since the last call */
   PetscBool      by_nodes;    /* Newton's method failed, so that sweeps or secants came in */
   PetscBool      sparse;      /* the matrix of entries is */

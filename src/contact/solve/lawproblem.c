@@ -12,6 +12,7 @@
    the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976). */
 #include "lawimpl.h"
 #include <petsc/private/petscimpl.h>
+#include <sys/optionstext.h>
 #include <sys/petsccompat.h>
 
 #define MOST_NEWTON      50
@@ -224,6 +225,7 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PC             pc;
 
   PetscFunctionBegin;
+  PetscCall(OptionsTextHas("-law_", &problem->asked));
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->solvers.x));
   PetscCall(VecDuplicate(problem->solvers.x, &problem->solvers.f));
   PetscCall(VecDuplicate(problem->solvers.x, &problem->solvers.in));

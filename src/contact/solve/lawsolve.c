@@ -75,7 +75,7 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
 
   PetscFunctionBegin;
   PetscCall(LawProblemHolds(problem, &problem->solved));
-  if (!problem->solved && problem->alone && !problem->softens) PetscCall(SolveAlone(problem));
+  if (!problem->solved && problem->alone && !problem->asked && !problem->softens) PetscCall(SolveAlone(problem));
   if (problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetKSP(problem->solvers.newton, &ksp));
   PetscCall(SNESGetTolerances(problem->solvers.newton, NULL, &rtol, NULL, NULL, NULL));
