@@ -3,17 +3,6 @@
 #include <contact/laws/rowlaw.h>
 #include <petscsnes.h>
 
-#define LAW_FEW 60 /* rows, up to which dense matrices and their solvers are kept while there are others: rows come and go */
-
-/* What solves equations of so many rows of one kind */
-typedef struct {
-  Vec       x, f;
-  Vec       in, out;            /* the last product with S */
-  Mat       jacobian, operator; /* by entries; products with it, where entries precondition alone, or NULL */
-  PetscBool factored;           /* there are factors of an earlier Jacobian of this pattern */
-  SNES      newton, nodes;
-} LawSolvers;
-
 typedef struct {
   PetscInt       n, n_nodes;  /* rows; nodes, whose rows follow each other */
   PetscInt      *begin;       /* per node: its first row; n_nodes + 1 */
@@ -38,20 +27,21 @@ typedef struct {
   PetscInt       iterations;  /* of Newton's method, and node by node, in the last solution */
   PetscBool      softens;     /* the force of a node falls as its gap grows */
   PetscBool      secant;      /* glue has its present stiffness in the Jacobian, see lawsolve.c */
-  PetscBool      asked;       /* options name the solvers, which solve all then */
+  PetscBool      asked;       /* options name the solvers, which are called then whatever sweeps have found */
   PetscBool      solved;      /* there is a solution since the last call */
   PetscBool      by_nodes;    /* Newton's method failed, so that sweeps or secants came in */
   PetscBool      sparse;      /* the matrix of entries is */
-  PetscInt64     product_of;  /* state of the S that the last product is with; -1: none */
-  PetscInt64     jacobian_of; /* state of the entries that the Jacobian has; -1: none */
-  LawSolvers     solvers;
-  LawSolvers     kept[LAW_FEW + 1];  /* per number of rows: those of dense equations that are not in use; what is not there is NULL */
-  Mat            dense[LAW_FEW + 1]; /* the same of S, in use or not */
+  Vec            x, f;
+  Vec            in, out;            /* the last product with S */
+  PetscInt64     product_of;         /* state of the S of that; -1: none */
+  Mat            jacobian, operator; /* by entries; products with it, where entries precondition alone, or NULL */
+  PetscInt64     jacobian_of;        /* state of the entries that it has; -1: none */
+  PetscBool      factored;           /* there are factors of an earlier Jacobian of this pattern */
+  SNES           newton, nodes;
 } LawProblem;
 
 PETSC_INTERN PetscErrorCode LawProblemSetUp(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemResize(LawProblem *, PetscInt);
-PETSC_INTERN PetscErrorCode LawProblemGetDense(LawProblem *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemTakeS(LawProblem *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode LawProblemMultiply(LawProblem *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode LawProblemMatchTrace(Mat, Mat);

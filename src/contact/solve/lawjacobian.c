@@ -124,10 +124,10 @@ static PetscErrorCode AreStale(LawProblem *problem, PetscBool *stale)
   KSP      ksp;
 
   PetscFunctionBegin;
-  PetscCall(SNESGetKSP(problem->solvers.newton, &ksp));
+  PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(KSPGetIterationNumber(ksp, &iterations));
-  *stale                    = (PetscBool)(!problem->solvers.factored || iterations > (problem->sparse ? STALE_SPARSE : STALE_DENSE));
-  problem->solvers.factored = PETSC_TRUE;
+  *stale            = (PetscBool)(!problem->factored || iterations > (problem->sparse ? STALE_SPARSE : STALE_DENSE));
+  problem->factored = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -226,7 +226,7 @@ static PetscErrorCode SetPattern(LawProblem *problem)
     for (PetscInt i = first + 1; i < end; i++) PetscCall(PetscArraycpy(columns + begin[i], mine, n));
   }
   PetscCall(LawProblemRestoreS(problem, &of_S, &S));
-  PetscCall(MatSeqAIJSetPreallocationCSR(problem->solvers.jacobian, begin, columns, NULL));
+  PetscCall(MatSeqAIJSetPreallocationCSR(problem->jacobian, begin, columns, NULL));
   PetscCall(PetscFree2(begin, columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -234,20 +234,20 @@ static PetscErrorCode SetPattern(LawProblem *problem)
 PetscErrorCode LawProblemCreateJacobian(LawProblem *problem)
 {
   PetscFunctionBegin;
-  PetscCall(MatDestroy(&problem->solvers.jacobian));
-  PetscCall(MatCreate(PETSC_COMM_SELF, &problem->solvers.jacobian));
-  PetscCall(MatSetSizes(problem->solvers.jacobian, problem->n, problem->n, problem->n, problem->n));
-  PetscCall(MatSetType(problem->solvers.jacobian, problem->sparse ? MATSEQAIJ : MATSEQDENSE));
+  PetscCall(MatDestroy(&problem->jacobian));
+  PetscCall(MatCreate(PETSC_COMM_SELF, &problem->jacobian));
+  PetscCall(MatSetSizes(problem->jacobian, problem->n, problem->n, problem->n, problem->n));
+  PetscCall(MatSetType(problem->jacobian, problem->sparse ? MATSEQAIJ : MATSEQDENSE));
   if (problem->sparse) PetscCall(SetPattern(problem));
-  else PetscCall(MatSetUp(problem->solvers.jacobian));
-  PetscCall(MatDestroy(&problem->solvers.operator));
+  else PetscCall(MatSetUp(problem->jacobian));
+  PetscCall(MatDestroy(&problem->operator));
   if (LawProblemIsLagged(problem)) {
-    PetscCall(MatCreateShell(PETSC_COMM_SELF, problem->n, problem->n, problem->n, problem->n, problem, &problem->solvers.operator));
-    PetscCall(MatShellSetOperation(problem->solvers.operator, MATOP_MULT, (void (*)(void))Multiply));
+    PetscCall(MatCreateShell(PETSC_COMM_SELF, problem->n, problem->n, problem->n, problem->n, problem, &problem->operator));
+    PetscCall(MatShellSetOperation(problem->operator, MATOP_MULT, (void (*)(void))Multiply));
   }
-  PetscCall(SNESSetJacobian(problem->solvers.newton, problem->solvers.operator ? problem->solvers.operator : problem->solvers.jacobian, problem->solvers.jacobian, ComputeJacobian,
+  PetscCall(SNESSetJacobian(problem->newton, problem->operator ? problem->operator : problem->jacobian, problem->jacobian, ComputeJacobian,
                             problem));
-  problem->jacobian_of      = -1;
-  problem->solvers.factored = PETSC_FALSE;
+  problem->jacobian_of = -1;
+  problem->factored    = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

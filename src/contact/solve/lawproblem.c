@@ -75,7 +75,7 @@ static PetscErrorCode IsSmall(const LawProblem *problem, const PetscScalar x[], 
   PetscReal allowed, atol, rtol;
 
   PetscFunctionBegin;
-  PetscCall(SNESGetTolerances(problem->solvers.newton, &atol, &rtol, NULL, NULL, NULL));
+  PetscCall(SNESGetTolerances(problem->newton, &atol, &rtol, NULL, NULL, NULL));
   allowed   = rtol * LawProblemForceScale(problem, x) + atol;
   *is_small = PETSC_TRUE;
   for (PetscInt i = 0; i < problem->n && *is_small; i++)
@@ -143,7 +143,7 @@ static void AddColumn(const LawProblem *problem, LawPattern of_S, const PetscSca
     for (PetscInt j = 0; j < problem->n; j++) y[j] += a * S[i * problem->n + j];
 }
 
-/* LawProblemSweep - one sweep: the rows of each node, one node after the other */
+/* One sweep: the rows of each node, one node after the other */
 PetscErrorCode LawProblemSweep(LawProblem *problem, PetscScalar x[])
 {
   PetscScalar       *y = problem->work;
@@ -189,17 +189,27 @@ static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode DestroySolvers(LawSolvers *solvers)
+static PetscErrorCode DestroySolvers(LawProblem *problem)
 {
   PetscFunctionBegin;
-  PetscCall(SNESDestroy(&solvers->newton));
-  PetscCall(SNESDestroy(&solvers->nodes));
-  PetscCall(MatDestroy(&solvers->jacobian));
-  PetscCall(MatDestroy(&solvers->operator));
-  PetscCall(VecDestroy(&solvers->x));
-  PetscCall(VecDestroy(&solvers->f));
-  PetscCall(VecDestroy(&solvers->in));
-  PetscCall(VecDestroy(&solvers->out));
+  PetscCall(SNESDestroy(&problem->newton));
+  PetscCall(SNESDestroy(&problem->nodes));
+  PetscCall(MatDestroy(&problem->jacobian));
+  PetscCall(MatDestroy(&problem->operator));
+  PetscCall(VecDestroy(&problem->x));
+  PetscCall(VecDestroy(&problem->f));
+  PetscCall(VecDestroy(&problem->in));
+  PetscCall(VecDestroy(&problem->out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode CreateVecs(LawProblem *problem)
+{
+  PetscFunctionBegin;
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->x));
+  PetscCall(VecDuplicate(problem->x, &problem->f));
+  PetscCall(VecDuplicate(problem->x, &problem->in));
+  PetscCall(VecDuplicate(problem->x, &problem->out));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -208,7 +218,7 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
   PetscFunctionBegin;
   PetscCall(SNESCreate(PETSC_COMM_SELF, snes));
   PetscCall(SNESSetOptionsPrefix(*snes, prefix));
-  PetscCall(SNESSetFunction(*snes, problem->solvers.f, ComputeResidual, problem));
+  PetscCall(SNESSetFunction(*snes, problem->f, ComputeResidual, problem));
   PetscCall(SNESSetType(*snes, type));
   PetscCall(SNESSetTolerances(*snes, 0, LAW_TOLERANCE, 0, most, PETSC_INT_MAX));
   PetscCall(SNESSetConvergenceTest(*snes, TestConvergence, problem, NULL));
@@ -226,41 +236,56 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
 
   PetscFunctionBegin;
   PetscCall(OptionsTextHas("-law_", &problem->asked));
-  PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->solvers.x));
-  PetscCall(VecDuplicate(problem->solvers.x, &problem->solvers.f));
-  PetscCall(VecDuplicate(problem->solvers.x, &problem->solvers.in));
-  PetscCall(VecDuplicate(problem->solvers.x, &problem->solvers.out));
-  problem->product_of = -1;
-  PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->solvers.newton));
+  PetscCall(CreateVecs(problem));
+  PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->newton));
   PetscCall(LawProblemCreateJacobian(problem));
-  PetscCall(SNESGetLineSearch(problem->solvers.newton, &line_search));
+  PetscCall(SNESGetLineSearch(problem->newton, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-  PetscCall(SNESGetKSP(problem->solvers.newton, &ksp));
+  PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(KSPGetPC(ksp, &pc));
   /* a sparse S is nearly diagonal: a few iterations, to round-off, are faster than factors; where a dense one is large, those of an earlier
      Jacobian precondition; where it is products, incomplete ones of that of a matrix near it, whose entries fall off fast */
   PetscCall(KSPSetType(ksp, LawProblemHasProducts(problem) ? KSPFGMRES : iterative ? KSPGMRES : KSPPREONLY));
   PetscCall(PCSetType(pc, LawProblemHasProducts(problem) ? PCILU : problem->sparse ? PCSOR : PCLU));
   if (LawProblemIsLagged(problem)) {
-    PetscCall(SNESSetLagPreconditioner(problem->solvers.newton, LAW_LAG_AFTER_NEXT));
-    PetscCall(SNESSetLagPreconditionerPersists(problem->solvers.newton, PETSC_TRUE));
+    PetscCall(SNESSetLagPreconditioner(problem->newton, LAW_LAG_AFTER_NEXT));
+    PetscCall(SNESSetLagPreconditionerPersists(problem->newton, PETSC_TRUE));
   }
   if (iterative) {
     PetscCall(KSPGMRESSetPreAllocateVectors(ksp));
     PetscCall(KSPSetPCSide(ksp, PC_RIGHT)); /* its residual is that of Newton's method */
-    PetscCall(SNESSetMaxLinearSolveFailures(problem->solvers.newton, PETSC_INT_MAX));
+    PetscCall(SNESSetMaxLinearSolveFailures(problem->newton, PETSC_INT_MAX));
   }
   if (LawProblemIsLagged(problem)) { /* each iteration takes a product with a large S: no more of them than Newton's method is good for */
-    PetscCall(SNESKSPSetUseEW(problem->solvers.newton, PETSC_TRUE));
-    PetscCall(SNESKSPSetParametersEW(problem->solvers.newton, PETSC_CURRENT, FORCING, FORCING, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT,
+    PetscCall(SNESKSPSetUseEW(problem->newton, PETSC_TRUE));
+    PetscCall(SNESKSPSetParametersEW(problem->newton, PETSC_CURRENT, FORCING, FORCING, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT,
                                      PETSC_CURRENT));
   }
   if (LawProblemHasProducts(problem)) PetscCall(KSPSetMinimumIterations(ksp, 1)); /* one row alone may miss its tolerance */
   PetscCall(KSPSetTolerances(ksp, SPARSE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, MOST_LINEAR));
-  PetscCall(SNESSetFromOptions(problem->solvers.newton));
-  PetscCall(CreateSNES(problem, "law_nodes_", SNESNGS, MOST_SWEEPS, &problem->solvers.nodes));
-  PetscCall(SNESSetNGS(problem->solvers.nodes, SweepNodes, problem));
-  PetscCall(SNESSetFromOptions(problem->solvers.nodes));
+  PetscCall(SNESSetFromOptions(problem->newton));
+  PetscCall(CreateSNES(problem, "law_nodes_", SNESNGS, MOST_SWEEPS, &problem->nodes));
+  PetscCall(SNESSetNGS(problem->nodes, SweepNodes, problem));
+  PetscCall(SNESSetFromOptions(problem->nodes));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Solvers with factors of a dense matrix, for other rows: to read their options anew costs more than a small solution */
+static PetscErrorCode ResizeSolvers(LawProblem *problem)
+{
+  SNES solvers[2] = {problem->newton, problem->nodes};
+
+  PetscFunctionBegin;
+  problem->newton = problem->nodes = NULL;
+  PetscCall(DestroySolvers(problem));
+  PetscCall(CreateVecs(problem));
+  for (PetscInt k = 0; k < 2; k++) {
+    PetscCall(SNESReset(solvers[k]));
+    PetscCall(SNESSetFunction(solvers[k], problem->f, ComputeResidual, problem));
+  }
+  problem->newton = solvers[0];
+  problem->nodes  = solvers[1];
+  PetscCall(LawProblemCreateJacobian(problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -289,7 +314,7 @@ PetscErrorCode LawProblemSetUp(LawProblem *problem)
 
   PetscFunctionBegin;
   PetscCall(LawProblemResize(problem, 1));
-  PetscCall(LawProblemGetDense(problem, &S));
+  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, 1, 1, NULL, &S));
   PetscCall(LawProblemTakeS(problem, &S, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -321,54 +346,12 @@ static PetscErrorCode FindAlone(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solvers for the rows there are, of which S is dense or not: those that have been kept of that many, or new ones */
-static PetscErrorCode ChangeSolvers(LawProblem *problem, PetscBool dense)
-{
-  const PetscBool  keeps = (PetscBool)(!problem->sparse && !problem->solvers.operator&& problem->rows <= LAW_FEW);
-  const LawSolvers none  = {0};
-  LawSolvers      *kept;
-
-  PetscFunctionBegin;
-  if (keeps) problem->kept[problem->rows] = problem->solvers;
-  else PetscCall(DestroySolvers(&problem->solvers));
-  problem->solvers = none;
-  problem->sparse  = (PetscBool)!dense;
-  problem->rows    = problem->n;
-  kept             = dense && problem->n <= LAW_FEW ? &problem->kept[problem->n] : NULL;
-  if (!kept || !kept->newton) {
-    PetscCall(CreateSolvers(problem));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  problem->solvers = *kept;
-  *kept            = none;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A dense matrix for S of the rows there are, to fill and hand to LawProblemTakeS(): the one there is, where it has the size */
-PetscErrorCode LawProblemGetDense(LawProblem *problem, Mat *S)
-{
-  const PetscInt n    = problem->n;
-  Mat           *kept = n <= LAW_FEW ? &problem->dense[n] : NULL;
-
-  PetscFunctionBegin;
-  *S = kept ? *kept : !problem->sparse && problem->rows == n ? problem->S : NULL;
-  if (*S) {
-    PetscCall(PetscObjectReference((PetscObject)*S));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
-  if (!kept) PetscFunctionReturn(PETSC_SUCCESS);
-  *kept = *S;
-  PetscCall(PetscObjectReference((PetscObject)*S));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* S of the rows there are, which the equations own from now on: the one that they have with other values, or another; solvers are those of
    its size and kind. `near`: (NULL where S has entries) a sparse matrix for S that is only multiplied with. `begin` is known. */
 PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
 {
-  const PetscBool    products = (PetscBool)(near != NULL), other = (PetscBool)(products != LawProblemHasProducts(problem));
-  const PetscBool    another = (PetscBool)(*S != problem->S);
+  const PetscBool products = (PetscBool)(near != NULL), other = (PetscBool)(products != LawProblemHasProducts(problem));
+  const PetscBool another = (PetscBool)(*S != problem->S), direct = (PetscBool)(problem->newton && !problem->sparse && !problem->operator);
   const PetscScalar *diagonal;
   PetscBool          dense;
 
@@ -382,14 +365,20 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
   if (products) *near = NULL;
   PetscCall(PetscObjectTypeCompare((PetscObject)problem->entries, MATSEQDENSE, &dense));
   if (problem->n != problem->rows || problem->sparse == dense || other) {
-    PetscCall(ChangeSolvers(problem, dense));
+    problem->sparse = (PetscBool)!dense;
+    if (direct && dense && !LawProblemIsLagged(problem)) PetscCall(ResizeSolvers(problem));
+    else {
+      PetscCall(DestroySolvers(problem));
+      PetscCall(CreateSolvers(problem));
+    }
+    problem->rows = problem->n;
   } else if (another && problem->sparse) PetscCall(LawProblemCreateJacobian(problem));
   if (another) problem->jacobian_of = -1;
   problem->product_of = -1;
-  PetscCall(MatGetDiagonal(problem->entries, problem->solvers.out));
-  PetscCall(VecGetArrayRead(problem->solvers.out, &diagonal));
+  PetscCall(MatGetDiagonal(problem->entries, problem->out));
+  PetscCall(VecGetArrayRead(problem->out, &diagonal));
   for (PetscInt i = 0; i < problem->n; i++) problem->diagonal[i] = PetscRealPart(diagonal[i]);
-  PetscCall(VecRestoreArrayRead(problem->solvers.out, &diagonal));
+  PetscCall(VecRestoreArrayRead(problem->out, &diagonal));
   PetscCall(FindAlone(problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -397,11 +386,7 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
 PetscErrorCode LawProblemDestroy(LawProblem *problem)
 {
   PetscFunctionBegin;
-  PetscCall(DestroySolvers(&problem->solvers));
-  for (PetscInt n = 0; n <= LAW_FEW; n++) {
-    PetscCall(DestroySolvers(&problem->kept[n]));
-    PetscCall(MatDestroy(&problem->dense[n]));
-  }
+  PetscCall(DestroySolvers(problem));
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
   PetscCall(PetscFree5(problem->diagonal, problem->weight, problem->law, problem->glue, problem->derivatives));
   PetscCall(MatDestroy(&problem->S));

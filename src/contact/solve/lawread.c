@@ -16,16 +16,16 @@ PetscErrorCode LawProblemMultiply(LawProblem *problem, const PetscScalar in[], P
   PetscFunctionBegin;
   for (PetscInt i = 0; i < problem->n && zero; i++) zero = (PetscBool)(in[i] == 0);
   PetscCall(PetscObjectStateGet((PetscObject)problem->S, &state));
-  PetscCall(VecGetArray(problem->solvers.in, &x));
+  PetscCall(VecGetArray(problem->in, &x));
   PetscCall(PetscArraycmp(x, in, problem->n, &same));
   PetscCall(PetscArraycpy(x, in, problem->n));
-  PetscCall(VecRestoreArray(problem->solvers.in, &x));
-  if (zero) PetscCall(VecZeroEntries(problem->solvers.out));
-  else if (!same || problem->product_of != state) PetscCall(MatMult(problem->S, problem->solvers.in, problem->solvers.out));
+  PetscCall(VecRestoreArray(problem->in, &x));
+  if (zero) PetscCall(VecZeroEntries(problem->out));
+  else if (!same || problem->product_of != state) PetscCall(MatMult(problem->S, problem->in, problem->out));
   problem->product_of = state;
-  PetscCall(VecGetArrayRead(problem->solvers.out, &product));
+  PetscCall(VecGetArrayRead(problem->out, &product));
   PetscCall(PetscArraycpy(out, product, problem->n));
-  PetscCall(VecRestoreArrayRead(problem->solvers.out, &product));
+  PetscCall(VecRestoreArrayRead(problem->out, &product));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

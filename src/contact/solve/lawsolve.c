@@ -17,16 +17,16 @@ static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, SNESConvergedReaso
   PetscInt     iterations;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(problem->solvers.x, &x));
+  PetscCall(VecGetArrayWrite(problem->x, &x));
   PetscCall(PetscArraycpy(x, problem->force, problem->n));
-  PetscCall(VecRestoreArrayWrite(problem->solvers.x, &x));
-  PetscCall(SNESSolve(snes, NULL, problem->solvers.x));
+  PetscCall(VecRestoreArrayWrite(problem->x, &x));
+  PetscCall(SNESSolve(snes, NULL, problem->x));
   PetscCall(SNESGetConvergedReason(snes, reason));
   PetscCall(SNESGetIterationNumber(snes, &iterations));
   problem->iterations += iterations;
-  PetscCall(VecGetArray(problem->solvers.x, &x));
+  PetscCall(VecGetArray(problem->x, &x));
   PetscCall(PetscArraycpy(problem->force, x, problem->n));
-  PetscCall(VecRestoreArray(problem->solvers.x, &x));
+  PetscCall(VecRestoreArray(problem->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -38,15 +38,15 @@ static PetscErrorCode SolveBySecants(LawProblem *problem, PetscInt iterations, S
   PetscInt most;
 
   PetscFunctionBegin;
-  PetscCall(SNESGetTolerances(problem->solvers.newton, NULL, NULL, NULL, &most, NULL));
-  PetscCall(SNESSetTolerances(problem->solvers.newton, PETSC_CURRENT, PETSC_CURRENT, 0, iterations, PETSC_INT_MAX));
+  PetscCall(SNESGetTolerances(problem->newton, NULL, NULL, NULL, &most, NULL));
+  PetscCall(SNESSetTolerances(problem->newton, PETSC_CURRENT, PETSC_CURRENT, 0, iterations, PETSC_INT_MAX));
   for (PetscInt back = 0; back < 2; back++) {
     problem->secant      = (PetscBool)!back;
     problem->jacobian_of = -1;
     LawProblemFindWeights(problem);
-    if (!back) PetscCall(SolveBy(problem, problem->solvers.newton, reason));
+    if (!back) PetscCall(SolveBy(problem, problem->newton, reason));
   }
-  PetscCall(SNESSetTolerances(problem->solvers.newton, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
+  PetscCall(SNESSetTolerances(problem->newton, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -75,32 +75,32 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
 
   PetscFunctionBegin;
   PetscCall(LawProblemHolds(problem, &problem->solved));
-  if (!problem->solved && problem->alone && !problem->asked && !problem->softens) PetscCall(SolveAlone(problem));
-  if (problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SNESGetKSP(problem->solvers.newton, &ksp));
-  PetscCall(SNESGetTolerances(problem->solvers.newton, NULL, &rtol, NULL, NULL, NULL));
+  if (!problem->solved && problem->alone && !problem->softens) PetscCall(SolveAlone(problem));
+  if (problem->solved && !problem->asked) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SNESGetKSP(problem->newton, &ksp));
+  PetscCall(SNESGetTolerances(problem->newton, NULL, &rtol, NULL, NULL, NULL));
   enough = ENOUGH * rtol * LawProblemForceScale(problem, problem->force);
   /* each product takes solutions with the bodies' matrices: no more of them than for what readings are right to, by a mean of rows */
   if (LawProblemHasProducts(problem))
     enough = PetscMax(enough, MEAN * PetscSqrtReal((PetscReal)problem->n) * problem->resolution / problem->largest);
   PetscCall(KSPSetTolerances(ksp, PETSC_CURRENT, enough, PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(PetscArraycpy(start, problem->force, problem->n));
-  PetscCall(SNESGetTolerances(problem->solvers.nodes, NULL, NULL, NULL, &most, NULL));
-  PetscCall(SolveBy(problem, problem->solvers.newton, &reason));
+  PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
+  PetscCall(SolveBy(problem, problem->newton, &reason));
   for (; reason < 0 && sweeps <= (LawProblemHasProducts(problem) ? PetscMin(most, MOST_NEAR) : most); sweeps *= 4) {
     PetscCall(PetscInfo(
-        problem->solvers.newton, "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps %s\n",
+        problem->newton, "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps %s\n",
         problem->n, SNESConvergedReasons[reason], problem->iterations, sweeps, problem->softens ? "with secants" : "node by node"));
     problem->by_nodes = PETSC_TRUE;
     PetscCall(PetscArraycpy(problem->force, start, problem->n));
-    PetscCall(SNESSetTolerances(problem->solvers.nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
+    PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
     if (problem->softens) PetscCall(SolveBySecants(problem, sweeps, &reason));
-    else PetscCall(SolveBy(problem, problem->solvers.nodes, &reason));
+    else PetscCall(SolveBy(problem, problem->nodes, &reason));
     if (reason == SNES_DIVERGED_NAN) break;
     PetscCall(PetscArraycpy(start, problem->force, problem->n));
-    if (reason < 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->solvers.newton, &reason));
+    if (reason < 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, &reason));
   }
-  PetscCall(SNESSetTolerances(problem->solvers.nodes, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
+  PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
   problem->solved = (PetscBool)(reason > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -131,7 +131,7 @@ static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
     for (PetscInt i = 0; i < problem->n; i++) pull = PetscMax(pull, PetscAbsScalar(problem->force[i] - problem->centre[i]));
     if (problem->proximal * pull <= LAW_TOLERANCE * LawProblemForceScale(problem, problem->force) || ProximalVanishes(problem, 0))
       PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(PetscInfo(problem->solvers.newton, "law of %" PetscInt_FMT " rows: forces of dependent rows change by %g N, solved again\n",
+    PetscCall(PetscInfo(problem->newton, "law of %" PetscInt_FMT " rows: forces of dependent rows change by %g N, solved again\n",
                         problem->n, (double)pull));
   }
   problem->solved = ProximalVanishes(problem, VANISHES);

@@ -306,14 +306,18 @@ static PetscBool AnyBody(const StepperAssembly *assembly, PetscBool alone)
   return any;
 }
 
-/* A dense S */
+/* A dense S: the one there is, where it has the size */
 static PetscErrorCode AssembleDense(ContactStepper *stepper, Mat *S)
 {
   const PetscInt n = stepper->problem.n;
   PetscScalar   *values;
+  PetscInt       size = -1;
 
   PetscFunctionBegin;
-  PetscCall(LawProblemGetDense(&stepper->problem, S));
+  if (!stepper->problem.sparse) PetscCall(MatGetSize(stepper->problem.S, &size, NULL));
+  *S = stepper->problem.S;
+  if (size == n) PetscCall(PetscObjectReference((PetscObject)*S));
+  else PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
   PetscCall(MatDenseGetArrayWrite(*S, &values));
   PetscCall(PetscArrayzero(values, n * n));
   if (AnyBody(&stepper->assembly, PETSC_TRUE)) PetscCall(AddProduct(&stepper->assembly, values));

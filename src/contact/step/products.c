@@ -36,8 +36,8 @@ PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *ste
 /* Adds how the rows of a body go under forces on them, of this rank */
 static PetscErrorCode AddBody(Contact contact, StepperEntries *entries, PetscInt b, const PetscReal force[], PetscReal way[])
 {
-  const PetscScalar     *moved;
-  PetscScalar           *on_body;
+  const PetscScalar *moved;
+  PetscScalar       *on_body;
 
   PetscFunctionBegin;
   if (!entries->force) {
