@@ -510,6 +510,7 @@ PETSC_INTERN PetscErrorCode BodyPrepareLinearized(Body);
 PETSC_INTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_INTERN PetscErrorCode BodyProbeNodes(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode BodyAnswerAtStart(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyNoteStart(Body);
 PETSC_INTERN PetscErrorCode BodyComputeForceChange(Body, PetscBool *, Vec);
 PETSC_INTERN PetscErrorCode BodyCreateTraces(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyTraces(Body);

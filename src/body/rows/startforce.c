@@ -47,6 +47,17 @@ static PetscErrorCode CopyAnswering(Body body, Vec from, Vec to)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Notes the acceleration with which the step begins, before forces at its start change that: BodyDropStartForce() goes back to it */
+PetscErrorCode BodyNoteStart(Body body)
+{
+  PetscFunctionBegin;
+  if (body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->start.a) PetscCall(BodyCreateVec(body, &body->start.a));
+  PetscCall(CopyAnswering(body, body->saved.a, body->start.a));
+  body->start.changed = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Lets the controller step begin with contact forces that exceed those at the end of the last step by `force` along each row [N], until
    BodySave() or BodyDropStartForce(). The body goes back to the saved state, whose acceleration becomes that under the new forces, with
    the massless layer in balance. `rest`: the part that remains of forces handed over, see BodyHandOver(); NULL: all. A static body has
@@ -58,10 +69,8 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const Pet
   if (!body->start.changed && body->state.step == body->saved.step && BodyAnswersByNodes(body) && !BodyHandsOver(body) &&
       BodyNearRowsAreZero(body, force))
     PetscFunctionReturn(PETSC_SUCCESS); /* as it is */
-  if (!body->start.a) PetscCall(BodyCreateVec(body, &body->start.a));
   if (body->start.changed) PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
-  else PetscCall(CopyAnswering(body, body->saved.a, body->start.a));
-  body->start.changed = PETSC_TRUE;
+  PetscCall(BodyNoteStart(body));
   if (BodyAnswersByNodes(body)) {
     const PetscReal one = 1;
 

@@ -20,8 +20,10 @@ PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[
   for (PetscInt k = 0; k < n && body->rows.idle; k++) body->rows.idle = (PetscBool)(force[rows[k]] == 0);
   if (!BodyAnswersByNodes(body)) PetscCall(PetscArrayzero(change, body->rows.local)); /* all rows count there */
   for (PetscInt k = 0; k < n; k++) change[rows[k]] = force[rows[k]] - last[rows[k]];
-  /* BodyRepeat() moves the end state by what these forces are more than those before */
-  if (body->start.changed && body->repeats && body->rows.constant && body->integrator->repeats_constant) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->repeats && body->rows.constant && body->integrator->repeats_constant) {
+    PetscCall(BodyNoteStart(body)); /* BodyRepeat() moves start and end by what these forces are more than those before */
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   body->rows.constant = PETSC_TRUE;
   PetscCall(BodySetStartForce(body, change, none));
   PetscFunctionReturn(PETSC_SUCCESS);
