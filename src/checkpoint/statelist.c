@@ -51,20 +51,6 @@ PetscErrorCode StateListCopy(const StateList *list, PetscBool back, PetscReal as
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the arrays which[0] to which[1] - 1, of one number for each node or row, of some of these aside, where all have been put before */
-void StateListSaveSome(const StateList *list, const PetscInt which[2], PetscInt n, const PetscInt some[], PetscReal aside[])
-{
-  StateArray places[STATE_ARRAYS];
-
-  FindPlaces(list, aside, places);
-  for (PetscInt k = which[0]; k < which[1]; k++) {
-    const StateArray *own = &list->arrays[k];
-
-    for (PetscInt j = 0; j < n && own->reals; j++) places[k].reals[some[j]] = own->reals[some[j]];
-    for (PetscInt j = 0; j < n && own->bools; j++) places[k].bools[some[j]] = own->bools[some[j]];
-  }
-}
-
 /* The numbers of node or row i, to a packed line or back */
 void StateListCopyOne(const StateList *list, PetscInt i, PetscBool back, PetscReal packed[])
 {

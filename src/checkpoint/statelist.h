@@ -20,7 +20,6 @@ typedef struct {
 PETSC_INTERN PetscInt       StateListGetWidth(const StateList *);
 PETSC_INTERN PetscErrorCode StateListAllocate(const StateList *, PetscReal *[]);
 PETSC_INTERN PetscErrorCode StateListCopy(const StateList *, PetscBool, PetscReal[]);
-PETSC_INTERN void           StateListSaveSome(const StateList *, const PetscInt[2], PetscInt, const PetscInt[], PetscReal[]);
 PETSC_INTERN void           StateListCopyOne(const StateList *, PetscInt, PetscBool, PetscReal[]);
 PETSC_INTERN PetscErrorCode StateListVisit(const StateList *, const char[], Checkpoint);
 PETSC_INTERN PetscErrorCode StateListCopyNodes(const StateList *, PetscInt, PetscInt, PetscInt, const PetscReal[], const char[], PetscBool,

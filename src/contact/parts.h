@@ -40,6 +40,12 @@ static inline void ContactJoinGroups(PetscInt of[], PetscInt a, PetscInt b)
   of[PetscMax(first, second)] = PetscMin(first, second);
 }
 
+/* By how many rows those of a pair follow each other that have a gap: rows across the normal, with friction, have none */
+static inline PetscInt ContactGapStride(const ContactPair *pair)
+{
+  return pair->law == CONTACT_LAW_FRICTION ? pair->components : 1;
+}
+
 /* The number of the second body of a pair, or the number of bodies and that of the obstacle */
 static inline PetscInt ContactPairPartner(Contact contact, const ContactPair *pair)
 {
@@ -188,6 +194,7 @@ PETSC_INTERN void           ContactListActingRows(Contact, const PetscBool[]);
 PETSC_INTERN PetscErrorCode ContactRefreshGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactGetPairTraces(Contact, const ContactPair *, PetscInt, PetscBool, PetscScalar *[2]);
 PETSC_INTERN PetscErrorCode ContactComputeRates(Contact, PetscInt, PetscBool, PetscScalar[]);
+PETSC_INTERN PetscErrorCode ContactSaveRowState(Contact);
 PETSC_INTERN PetscErrorCode ContactSaveRows(Contact);
 PETSC_INTERN PetscErrorCode ContactRestoreRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyRows(Contact);

@@ -132,37 +132,51 @@ PetscErrorCode TransferMeasureMotion(Transfer transfer, PetscReal near, PetscRea
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
   if (IsDue(transfer, near) || transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < 2 && data[side]; side++)
-    for (PetscInt i = 0; i < 3 * data[side]->n_owned; i++) {
-      const PetscReal moved = data[side]->positions[i] - transfer->built_x[side][i];
+    for (PetscInt d = 0; d < 3; d++) {
+      const PetscReal *x = data[side]->positions + d, *built = transfer->built_x[side] + d;
+      PetscReal        lower = least[d], upper = -least[3 + d];
 
-      least[i % 3]     = PetscMin(least[i % 3], moved);
-      least[3 + i % 3] = PetscMin(least[3 + i % 3], -moved);
+      for (PetscInt i = 0; i < data[side]->n_owned; i++) {
+        lower = PetscMin(lower, x[3 * i] - built[3 * i]);
+        upper = PetscMax(upper, x[3 * i] - built[3 * i]);
+      }
+      least[d]     = lower;
+      least[3 + d] = -upper;
     }
   if (!transfer->some_near || !IsFlat(transfer)) PetscCall(HasSlipped(transfer, &slipped));
   least[6] = slipped ? -1 : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rest of TransferUpdate(). `least`: of all ranks; `anew`: builds all rows, and none goes on from where it is */
-PetscErrorCode TransferRenew(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscBool anew,
-                             const PetscReal least[TRANSFER_MOTION], PetscBool *rebuilt)
+/* Whether rows are to be built, by TransferRenew(). `least`: of all ranks; `anew`: builds all rows, and none goes on from where it is */
+PetscErrorCode TransferIsStale(Transfer transfer, PetscReal near, PetscBool anew, const PetscReal least[TRANSFER_MOTION], PetscBool *stale)
 {
-  const PetscBool due = (PetscBool)(anew || IsDue(transfer, near)), looks = (PetscBool)(!due && transfer->dim > 1);
-  PetscReal       square = 0, reach;
-  PetscBool       slipped;
+  const PetscBool due    = (PetscBool)(anew || IsDue(transfer, near));
+  PetscReal       square = 0;
 
   PetscFunctionBegin;
-  *rebuilt = PETSC_FALSE;
+  *stale = PETSC_FALSE;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
   if (due) PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (anew && transfer->follow.known) PetscCall(PetscArrayzero(transfer->follow.known, transfer->n));
   for (PetscInt d = 0; d < 3; d++) square += PetscSqr(least[d] + least[3 + d]);
-  *rebuilt = (PetscBool)(due || (looks && (least[6] < 0 || PetscSqrtReal(square) > FAR_MOTION * transfer->numbers.smallest_size)));
-  for (PetscInt row = 0; row < transfer->n; row++) {
-    transfer->goes_on[row]  = (PetscBool)(*rebuilt && transfer->follow.known && transfer->follow.known[row] && !transfer->keep[row]);
-    transfer->followed[row] = PETSC_FALSE;
-  }
-  if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
+  *stale = (PetscBool)(due ||
+                       (transfer->dim > 1 && (least[6] < 0 || PetscSqrtReal(square) > FAR_MOTION * transfer->numbers.smallest_size)));
+  PetscCall(PetscArrayzero(transfer->goes_on, transfer->n));
+  PetscCall(PetscArrayzero(transfer->followed, transfer->n));
+  for (PetscInt row = 0; row < transfer->n && *stale && transfer->follow.known; row++)
+    transfer->goes_on[row] = (PetscBool)(transfer->follow.known[row] && !transfer->keep[row]);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The rest of TransferUpdate(), where TransferIsStale() */
+PetscErrorCode TransferRenew(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal near, PetscBool anew)
+{
+  const PetscBool looks = (PetscBool)(!anew && !IsDue(transfer, near) && transfer->dim > 1);
+  PetscReal       reach;
+  PetscBool       slipped;
+
+  PetscFunctionBegin;
   if (transfer->some_near) { /* normals, areas and sizes of all nodes */
     PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
     if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
@@ -223,6 +237,7 @@ PetscErrorCode TransferUpdate(Transfer transfer, Vec u_dirichlet, Vec u_neumann,
   if (transfer->neumann) PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
   PetscCall(TransferMeasureMotion(transfer, near, least));
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, least, TRANSFER_MOTION, MPIU_REAL, MPIU_MIN, transfer->comm));
-  PetscCall(TransferRenew(transfer, u_dirichlet, u_neumann, near, PETSC_FALSE, least, rebuilt));
+  PetscCall(TransferIsStale(transfer, near, PETSC_FALSE, least, rebuilt));
+  if (*rebuilt) PetscCall(TransferRenew(transfer, u_dirichlet, u_neumann, near, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

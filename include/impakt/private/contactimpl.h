@@ -226,6 +226,7 @@ typedef struct {
 /* Rows and their states at the start of the controller step, before any have changed, see src/contact/rows/saverows.c */
 typedef struct {
   PetscReal *state;    /* that of all rows, see ContactListRowState(); their normals come first; NULL: none have been put aside */
+  PetscBool  known;    /* it has been put aside in this step; else rows have stayed in it */
   PetscInt   rebuilds; /* counted then */
 } ContactSavedRows;
 
@@ -461,7 +462,7 @@ struct _p_Contact {
   Mat              *interfaces; /* per body: its rows */
   Mat              *spares;     /* the same of other steps, to be filled next */
   Vec              *ends;       /* per body: where rows are laid if not where it is, as where the last attempt at the step has ended */
-  PetscBool        *at_end;     /* per body: rows of all its pairs are laid there */
+  PetscReal        *ahead;      /* per body: rows of all its pairs are laid where it will be in that time, by its velocities [s] */
   ContactNodes      nodes;
   ContactRows       rows;
   ContactTurns      turns;

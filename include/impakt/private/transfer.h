@@ -77,7 +77,8 @@ PETSC_EXTERN PetscErrorCode TransferSetBounds(Transfer, PetscReal, PetscReal);
 PETSC_EXTERN PetscErrorCode TransferSetNear(Transfer, const PetscBool[], PetscBool[], PetscBool[]);
 PETSC_EXTERN PetscErrorCode TransferUpdate(Transfer, Vec, Vec, PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferMeasureMotion(Transfer, PetscReal, PetscReal[TRANSFER_MOTION]);
-PETSC_EXTERN PetscErrorCode TransferRenew(Transfer, Vec, Vec, PetscReal, PetscBool, const PetscReal[TRANSFER_MOTION], PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferIsStale(Transfer, PetscReal, PetscBool, const PetscReal[TRANSFER_MOTION], PetscBool *);
+PETSC_EXTERN PetscErrorCode TransferRenew(Transfer, Vec, Vec, PetscReal, PetscBool);
 PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscReal, PetscReal, PetscBool, PetscBool, PetscReal, PetscReal,
                                            PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSave(Transfer);

@@ -76,7 +76,7 @@ PetscErrorCode ContactComputeGaps(Contact contact)
     PetscScalar       *end[2];
 
     PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_TRUE, end));
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactGapStride(pair)) {
       const PetscInt i = contact->rows.near[k];
 
       contact->end.gap[i] = contact->rows.initial_gap[i] + ContactRowSum(pair, end, i);

@@ -176,7 +176,7 @@ PetscErrorCode ContactAccept(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++)
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactGapStride(pair))
       contact->start.gap[contact->rows.near[k]] = contact->end.gap[contact->rows.near[k]];
   }
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
@@ -231,7 +231,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree2(c->reach.mean, c->reach.spread));
   PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
   PetscCall(PetscFree4(c->spares, c->work.hands_over, c->work.traces, c->work.left_out));
-  PetscCall(PetscFree2(c->ends, c->at_end));
+  PetscCall(PetscFree2(c->ends, c->ahead));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyOverlaps(c));
   PetscCall(ContactDestroyFloating(c));

@@ -177,6 +177,7 @@ static PetscErrorCode SumBodyTrace(Contact contact, PetscInt body, PetscReal sum
   const PetscScalar *x, *u, *v;
   Vec                positions, displacements, velocities;
   PetscInt           dim;
+  PetscReal          sum[6] = {0};
 
   PetscFunctionBegin;
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
@@ -191,10 +192,11 @@ static PetscErrorCode SumBodyTrace(Contact contact, PetscInt body, PetscReal sum
     const PetscInt dof = contact->nodes.dofs[body][i];
 
     for (PetscInt d = 0; d < dim; d++) {
-      sums[d] += x[dof + d] + u[dof + d];
-      sums[3 + d] += v[dof + d];
+      sum[d] += x[dof + d] + u[dof + d];
+      sum[3 + d] += v[dof + d];
     }
   }
+  PetscCall(PetscArraycpy(sums, sum, 6));
   PetscCall(VecRestoreArrayRead(velocities, &v));
   PetscCall(VecRestoreArrayRead(displacements, &u));
   PetscCall(VecRestoreArrayRead(positions, &x));

@@ -12,7 +12,7 @@ static PetscErrorCode AllocateBodies(Contact contact)
   const PetscInt n = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc2(n, &contact->ends, n, &contact->at_end));
+  PetscCall(PetscCalloc2(n, &contact->ends, n, &contact->ahead));
   PetscCall(PetscCalloc2(4 * n, &contact->reach.mean, 2 * n, &contact->reach.spread));
   contact->reach.acceleration = contact->reach.spread + n;
   PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));

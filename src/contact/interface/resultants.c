@@ -189,7 +189,7 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
   maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
   maxima[MAX_TENSION]      = 0;
-  for (PetscInt k = pair->near_begin; k < pair->near_end; k++)
+  for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactGapStride(pair))
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[contact->rows.near[k]]);
   if (!contact->held.merger && !IsLoaded(contact, pair))
     PetscFunctionReturn(PETSC_SUCCESS); /* moments of merged rows take a word of all ranks */

@@ -15,7 +15,7 @@ static PetscErrorCode LaysAhead(Contact contact, const ContactPair *pair, PetscB
 
   PetscFunctionBegin;
   *ahead = PETSC_FALSE;
-  if (pair->bonded || contact->at_end[pair->body[0]]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (pair->bonded || contact->ahead[pair->body[0]] != 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < 2 && !pair->obstacle && !*ahead; side++) {
     const Body body = contact->bodies[pair->body[side]];
     PetscBool  is_linear, is_rigid;

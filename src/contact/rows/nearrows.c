@@ -150,6 +150,7 @@ PetscErrorCode ContactListAllRows(Contact contact)
   PetscFunctionBegin;
   if (!contact->body_rows) PetscFunctionReturn(PETSC_SUCCESS); /* no rows have been laid out yet */
   PetscCall(ContactRefreshGaps(contact));
+  if (before && !contact->saved.known) PetscCall(ContactSaveRowState(contact));
   for (PetscInt b = 0; b < contact->n_bodies && before; b++)
     if (contact->body_rows[b].n_all) PetscCall(BodySetNearRows(contact->bodies[b], -1, NULL));
   contact->rows.listed     = PETSC_FALSE;

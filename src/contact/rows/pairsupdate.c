@@ -28,8 +28,9 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   }
   for (PetscInt i = pair->begin; i < pair->end; i += pair->components)
     touches[(i - pair->begin) / pair->components] = contact->start.active[i];
-  PetscCall(TransferFollow(pair->transfer, touches, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear, contact->at_end[pair->body[0]],
-                           contact->step, contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
+  PetscCall(TransferFollow(pair->transfer, touches, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,
+                           (PetscBool)(contact->ahead[pair->body[0]] != 0), contact->step,
+                           contact->attempt.whole_step / PetscPowRealInt(2, contact->attempt.accepted_level), any));
   if (contact->turns.n) PetscCall(TransferBalance(pair->transfer, contact->start.force + pair->begin, near, any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -74,13 +75,16 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt
   const PetscReal   *least = contact->work.motion + CONTACT_MOTION * p;
   const ContactPair *pair  = &contact->pairs[p];
   const PetscBool    anew  = (PetscBool)(pair->ahead || (least[MOTION_TOUCHES] == 0 && least[MOTION_CLOSES] < 0));
+  const PetscReal    near  = ContactPairReach(contact, pair);
   Vec                u[2], at[2];
 
   PetscFunctionBegin;
+  PetscCall(TransferIsStale(pair->transfer, near, anew, least, rebuilt));
+  if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(GetDisplacements(contact, pair, u));
   for (PetscInt side = 0; side < 2; side++) at[side] = pair->ahead && u[side] ? contact->ends[pair->body[side]] : u[side];
   for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
-  PetscCall(TransferRenew(pair->transfer, at[0], at[1], ContactPairReach(contact, pair), anew, least, rebuilt));
+  PetscCall(TransferRenew(pair->transfer, at[0], at[1], near, anew));
   /* other pairs may have these surfaces too */
   for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], u[side]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -15,20 +15,24 @@ static PetscReal Norm(const PetscReal v[3])
 /* Adds vectors of a surface's nodes on this rank, and their number, to `sum`; NULL: the most by which one of them differs from `mean` */
 static PetscErrorCode LookAtNodes(const SurfaceData *data, Vec vec, PetscReal sum[4], const PetscReal mean[3], PetscReal *most)
 {
+  const PetscInt     dim = data->dim;
   const PetscScalar *values;
   PetscInt           first;
+  PetscReal          largest = 0; /* square */
 
   PetscFunctionBegin;
   PetscCall(VecGetOwnershipRange(vec, &first, NULL));
   PetscCall(VecGetArrayRead(vec, &values));
   for (PetscInt i = 0; i < data->n_owned; i++) {
-    PetscReal off[3] = {0};
+    const PetscScalar *value  = values + data->dofs[i] - first;
+    PetscReal          square = 0;
 
-    for (PetscInt d = 0; d < data->dim; d++) off[d] = PetscRealPart(values[data->dofs[i] - first + d]) - (sum ? 0 : mean[d]);
-    for (PetscInt d = 0; d < 3 && sum; d++) sum[d] += off[d];
-    if (sum) sum[3] += 1;
-    else *most = PetscMax(*most, Norm(off));
+    for (PetscInt d = 0; d < dim && sum; d++) sum[d] += PetscRealPart(value[d]);
+    for (PetscInt d = 0; d < dim && !sum; d++) square += PetscSqr(PetscRealPart(value[d]) - mean[d]);
+    largest = PetscMax(largest, square);
   }
+  if (sum) sum[3] += data->n_owned;
+  else *most = PetscMax(*most, PetscSqrtReal(largest));
   PetscCall(VecRestoreArrayRead(vec, &values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -72,7 +72,7 @@ static void DropShifts(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactGapStride(pair)) {
       const PetscInt i = contact->rows.near[k];
       PetscReal      part;
 
@@ -180,20 +180,20 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactMoveSurfaces(contact));
   PetscCall(StageEnd(logged));
   PetscCall(ContactUpdatePairs(contact));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const PetscBool rebuilt = (PetscBool)(contact->work.updated[p] == ROWS_REBUILT);
-
-    if (contact->work.updated[p] == ROWS_STAY) continue;
-    built = (PetscBool)(built || rebuilt);
-    any   = PETSC_TRUE;
-    Affect(contact, &contact->pairs[p], rebuilt);
-    PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
-  }
+  for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || contact->work.updated[p] != ROWS_STAY);
   if (!any) {
     PetscCall(ContactListNearRows(contact, reach));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(ContactListAllRows(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const PetscBool rebuilt = (PetscBool)(contact->work.updated[p] == ROWS_REBUILT);
+
+    if (contact->work.updated[p] == ROWS_STAY) continue;
+    built = (PetscBool)(built || rebuilt);
+    Affect(contact, &contact->pairs[p], rebuilt);
+    PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
+  }
   if (built) contact->counts.rebuilds++;
   contact->energy.rebuilt = PETSC_TRUE;
   PetscCall(ContactMergeDroppedRows(contact));

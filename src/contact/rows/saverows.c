@@ -5,9 +5,6 @@
    change the rows that the whole step did, to round-off of the compliance where the whole step changes more. */
 #include <contact/parts.h>
 
-/* Arrays of the list that change while rows stay as they are: of near rows, and of those that act */
-static const PetscInt of_near[] = {1, 5}, of_acting[] = {5, 9};
-
 /* What is remembered of each row */
 void ContactListRowState(Contact contact, StateList *list)
 {
@@ -46,31 +43,26 @@ void ContactListRowState(Contact contact, StateList *list)
                                  {rubs, .bools = friction->slides}}};
 }
 
-/* What changes of near rows while these stay, and forces of those that have acted; all else has been put aside before */
-static void SaveNear(Contact contact, const StateList *list)
-{
-  const ContactRows *rows = &contact->rows;
-
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-
-    StateListSaveSome(list, of_near, pair->near_end - pair->near_begin, rows->near + pair->near_begin, contact->saved.state);
-  }
-  StateListSaveSome(list, of_acting, rows->n_acting, rows->acting, contact->saved.state);
-}
-
-/* At the start of a controller step that may have to be made again, before the rows change */
-PetscErrorCode ContactSaveRows(Contact contact)
+/* Puts aside what is remembered of each row */
+PetscErrorCode ContactSaveRowState(Contact contact)
 {
   StateList list;
 
   PetscFunctionBegin;
   ContactListRowState(contact, &list);
-  if (contact->rows.listed) SaveNear(contact, &list);
-  else {
-    if (!contact->saved.state) PetscCall(StateListAllocate(&list, &contact->saved.state));
-    PetscCall(StateListCopy(&list, PETSC_FALSE, contact->saved.state));
-  }
+  if (!contact->saved.state) PetscCall(StateListAllocate(&list, &contact->saved.state));
+  PetscCall(StateListCopy(&list, PETSC_FALSE, contact->saved.state));
+  contact->saved.known = PETSC_TRUE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* At the start of a controller step that may have to be made again, before the rows change. Where near rows are listed a step in which rows
+   stay leaves all as it was but for what ContactStepBack() brings back: then ContactListAllRows() puts it aside, before rows change. */
+PetscErrorCode ContactSaveRows(Contact contact)
+{
+  PetscFunctionBegin;
+  contact->saved.known = PETSC_FALSE;
+  if (!contact->rows.listed) PetscCall(ContactSaveRowState(contact));
   contact->saved.rebuilds = contact->counts.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].saved = contact->body_rows[b].pattern;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
@@ -85,7 +77,7 @@ PetscErrorCode ContactRestoreRows(Contact contact)
 
   PetscFunctionBegin;
   ContactListRowState(contact, &list);
-  PetscCall(StateListCopy(&list, PETSC_TRUE, contact->saved.state));
+  if (contact->saved.known) PetscCall(StateListCopy(&list, PETSC_TRUE, contact->saved.state));
   contact->counts.rebuilds = contact->saved.rebuilds;
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (contact->body_rows[b].pattern != contact->body_rows[b].saved) contact->body_rows[b].pattern++;

@@ -18,20 +18,27 @@ PetscErrorCode ContactCreateSurface(Contact contact, PetscInt body, const char n
 /* The displacement of a body with which rows are laid, unless those of a pair are laid elsewhere, see ContactPair's `ahead` */
 PetscErrorCode ContactGetRowPlace(Contact contact, PetscInt b, Vec *u)
 {
+  Vec v;
+
   PetscFunctionBegin;
-  if (contact->at_end[b]) *u = contact->ends[b];
-  else PetscCall(BodyGetSolution(contact->bodies[b], u, NULL, NULL));
+  PetscCall(BodyGetSolution(contact->bodies[b], u, &v, NULL));
+  if (contact->ahead[b] == 0) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!contact->ends[b]) PetscCall(VecDuplicate(*u, &contact->ends[b]));
+  PetscCall(VecWAXPY(contact->ends[b], contact->ahead[b], v, *u));
+  *u = contact->ends[b];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* All surfaces to where rows are laid: their own nodes alone */
 PetscErrorCode ContactMoveSurfaces(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
-    Vec u;
+    const PetscInt b = contact->surfaces[s].body;
+    Vec            u, v;
 
-    PetscCall(ContactGetRowPlace(contact, contact->surfaces[s].body, &u));
-    PetscCall(SurfaceMove(contact->surfaces[s].surface, u));
+    PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
+    PetscCall(SurfaceMove(contact->surfaces[s].surface, u, v, contact->ahead[b]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,19 +14,6 @@
 #define DEEP   0.25
 #define GRAZES 1e-3
 
-/* Where a body will be in the middle of the step, if its nodes keep their velocities */
-static PetscErrorCode Place(Contact contact, PetscInt b)
-{
-  Vec u, v;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
-  if (!contact->ends[b]) PetscCall(VecDuplicate(u, &contact->ends[b]));
-  PetscCall(VecWAXPY(contact->ends[b], 0.5 * contact->step, v, u));
-  contact->at_end[b] = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A node that touched first in the last step has lost its rate along the normal. If it is bonded now, it loses that across as well, as rows
    do that join: it sticks where half of its way in the step leads. */
 static void Bond(Contact contact, PetscInt i, PetscReal way)
@@ -145,7 +132,7 @@ const ContactRule ContactRuleImpulse = {
     .name  = "impulse",
     .takes = "contact takes the kinetic energy of the contact nodes that hit, which have mass; finer elements lose less, "
              "and in thick bodies massless contact nodes (-<body>_mass_redistribute true)",
-    .place = Place,
+    .ahead = 0.5,
     .begin = Begin,
     .load  = Load,
     .shape = BODY_FORCE_CONSTANT,

@@ -12,8 +12,8 @@ PetscErrorCode ContactStepperGuess(Contact contact, ContactStepper *stepper)
     const ContactPair *pair     = &contact->pairs[p];
     const PetscBool    constant = (PetscBool)(ContactStepperRule(stepper, pair)->shape == BODY_FORCE_CONSTANT);
 
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-      const PetscInt  i     = contact->rows.near[k];
+    for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
+      const PetscInt  i     = contact->rows.acting[k];
       const PetscBool known = (PetscBool)(stepper->touches[i] && !stepper->joins[i] && !(constant && stepper->joined[i]));
 
       contact->end.force[i] = known ? contact->start.force[i] : 0;

@@ -115,10 +115,9 @@ static PetscErrorCode LayRows(Contact contact)
   const ContactStepper *stepper = Stepper(contact);
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies && stepper->rules; b++)
-    if (stepper->rules[b]->place) PetscCall((*stepper->rules[b]->place)(contact, b));
+  for (PetscInt b = 0; b < contact->n_bodies && stepper->rules; b++) contact->ahead[b] = stepper->rules[b]->ahead * contact->step;
   for (PetscInt p = 0; p < contact->n_pairs && stepper->rules; p++)
-    if (contact->pairs[p].obstacle && stepper->rules[contact->pairs[p].body[0]]->place)
+    if (contact->pairs[p].obstacle && contact->ahead[contact->pairs[p].body[0]] != 0)
       PetscCall(TransferSetBounds(contact->pairs[p].transfer, contact->options.slip_bound, PetscMin(contact->options.angle_bound, STILL)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

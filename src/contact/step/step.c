@@ -121,24 +121,26 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
 
 PetscErrorCode ContactStepperStep(Contact contact)
 {
-  ContactStepper *stepper = Stepper(contact);
-  PetscBool       more    = PETSC_TRUE;
+  ContactStepper  *stepper = Stepper(contact);
+  PetscBool        more    = PETSC_TRUE;
+  const PetscReal *drive = contact->friction.drive, step = contact->step;
+  PetscReal       *rate = stepper->rate;
 
   PetscFunctionBegin;
   stepper->passes = 0;
   if (stepper->has_rigid || stepper->forms) stepper->state++;
   stepper->forms = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
-  PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, stepper->rate));
-  for (PetscInt i = 0; i < contact->rows.n && contact->friction.drive; i++) stepper->rate[i] += contact->friction.drive[i] / contact->step;
+  PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, rate));
+  for (PetscInt i = 0; i < contact->rows.n && drive; i++) rate[i] += drive[i] / step;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
+  ContactListActingRows(contact, stepper->touches);
   PetscCall(ContactStepperGuess(contact, stepper));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   PetscCall(ContactStepperBeginSecants(contact, stepper));
   PetscCall(ContactStepperBeginTurns(contact, stepper));
   while (more) {
-    ContactListActingRows(contact, stepper->touches);
     for (PetscInt k = 0; k < contact->rows.n_acting; k++)
       stepper->last[contact->rows.acting[k]] = contact->start.force[contact->rows.acting[k]];
     PetscCall(ContactStepperListRows(contact, stepper));
@@ -152,6 +154,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
     } else PetscCall(ContactStepperAdvance(contact, stepper));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(FindMore(contact, stepper, &more));
+    if (more) ContactListActingRows(contact, stepper->touches);
   }
   PetscCall(EndStep(contact, stepper));
   PetscFunctionReturn(PETSC_SUCCESS);

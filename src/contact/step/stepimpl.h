@@ -11,7 +11,7 @@ typedef struct _ContactStepper ContactStepper;
 typedef struct {
   const char *name;
   const char *takes; /* (NULL) what closed rows take of the energy, which they bring none of, and what makes that less */
-  PetscErrorCode (*place)(Contact, PetscInt);                              /* (NULL) where rows of a body are to be laid, before they are */
+  PetscReal   ahead; /* rows are laid where bodies will be then, by their velocities [parts of the step] */
   PetscErrorCode (*begin)(Contact, ContactStepper *, const ContactPair *); /* which rows may touch, what closed rows may move */
   PetscErrorCode (*load)(Contact, ContactStepper *, PetscInt);             /* the forces `contact->end.force` on the rows of a body */
   BodyForceShape shape;                                                    /* of forces in the step */
