@@ -8,8 +8,7 @@
 typedef struct {
   PetscInt  n;
   PetscReal stretch[BODY_MAX_SPRINGS]; /* [m] */
-  PetscReal fall[3];                   /* by which that takes the body along as a whole, without turning it [m] */
-  PetscReal falls[BODY_MAX_SPRINGS];   /* the part of the stretch which that is [m] */
+  PetscReal falls[BODY_MAX_SPRINGS];   /* the part of it by which the body does not turn [m] */
   PetscReal stiffness;                 /* of each [N/m] */
   PetscReal part;                      /* the same, in parts of that of the body */
   PetscBool linear;                    /* the body is */

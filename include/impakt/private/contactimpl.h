@@ -338,34 +338,30 @@ typedef struct {
 
 /* The artificial springs of a body in a controller step */
 typedef struct {
-  PetscInt  body;   /* its number */
-  PetscInt  begin;  /* number of its first spring among all */
-  PetscInt  steady; /* times in a row that their stretch has stayed as it is */
-  PetscInt  stalls; /* times in a row that it has not fallen much */
-  PetscReal lowest; /* square of the stretch that it is to fall below [J] */
-  PetscInt  leaps;  /* times that they have been moved far, since nothing resisted */
+  PetscInt        body;   /* its number */
+  PetscInt        begin;  /* number of its first spring among all */
+  BodySpringState state;  /* as the step has left it when made last */
+  PetscReal       least;  /* square of the least stretch in the step [m^2] */
+  PetscInt        stalls; /* times in a row that the stretch has not fallen much below that */
+  PetscBool       falls;  /* the stretch is steady, since nothing resists: they leap */
+  PetscReal       steady; /* square of the stretch when they have leapt last [m^2] */
+  PetscReal       leap;   /* of how many times the stretch the last leap was */
 } ContactSprings;
 
 /* Static bodies that contact or ties alone hold, see src/contact/interface/floating.c */
 typedef struct {
-  PetscInt         n;
-  ContactSprings  *bodies;
-  BodySpringState *states;             /* per body: as the step has left it when made last */
-  PetscReal       *work, *held;        /* work space, one for each of all bodies */
-  PetscInt         n_springs;          /* of all bodies; the following have a number for each, times the square root of its stiffness */
-  PetscReal       *root;               /* that root [sqrt(N/m)] */
-  PetscReal       *stretch;            /* [sqrt(J)] */
-  PetscReal       *last;               /* the same, of the time before */
-  PetscReal       *move;               /* by which they have been moved last, then the next move */
-  PetscInt         n_history;          /* times that are remembered, the last one at the end, and room for one more */
-  PetscInt         plain;              /* times that are made without them, since the stretch has grown */
-  PetscInt         patience;           /* how many that will be when it grows again */
-  PetscBool        leapt;              /* a body has leapt the last time */
-  PetscReal       *moves, *changes;    /* by which they have been moved then; by how much that has changed the stretch */
-  PetscReal       *basis, *directions; /* work space */
-  PetscReal       *start_force;        /* per row: at the start of the step [N] */
-  PetscBool       *start_active;       /* the same, in contact */
-  PetscReal        time;               /* at which the step begins [s] */
+  PetscInt        n;
+  ContactSprings *bodies;
+  PetscInt        n_springs;       /* of all bodies; the following have a number for each */
+  PetscReal      *stretch, *last;  /* as the step has left them when made last, and the time before [m] */
+  PetscReal      *move;            /* by which they have been moved last [m] */
+  PetscBool       leapt;           /* a body has leapt then */
+  PetscInt        n_known;         /* moves whose changes of the stretch are known: */
+  PetscReal      *changes, *moves; /* an orthonormal basis of these; moves that bring them [m] */
+  PetscReal      *forces;          /* work space, per body of the contact */
+  PetscReal      *start_force;     /* per row: at the start of the step [N] */
+  PetscBool      *start_active;    /* the same, in contact */
+  PetscReal       time;            /* at which the step begins [s] */
 } ContactFloating;
 
 /* What is told of pairs that come and go, see src/contact/interface/told.c */

@@ -62,7 +62,7 @@ static PetscErrorCode FindMotions(Body body, const PetscReal values[], PetscReal
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What of the stretch is a translation, of those that are free */
+/* What of the stretch is a translation of the body, of those that are free */
 static PetscErrorCode FindFall(Body body, BodySpringState *state)
 {
   const BodySprings *springs = &body->springs;
@@ -75,7 +75,6 @@ static PetscErrorCode FindFall(Body body, BodySpringState *state)
     PetscReal amount = 0;
 
     for (PetscInt i = 0; i < dim; i++) amount += parts[i] * springs->motions[k * n_rigid + i];
-    for (PetscInt i = 0; i < dim; i++) state->fall[i] += amount * springs->motions[k * n_rigid + i];
     for (PetscInt n = 0; n < springs->n; n++) state->falls[n] += amount * springs->at_springs[k * springs->n + n];
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -207,7 +207,6 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointBegin(checkpoint, "contact method"));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, visit, checkpoint);
   PetscCall(CheckpointBegin(checkpoint, "contact states"));
-  if (contact->floating.n) PetscCall(CheckpointVisitReals(checkpoint, "stretch", contact->floating.n_springs, contact->floating.stretch));
   if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;
   PetscCall(CheckpointVisitReals(checkpoint, "impulses", CONTACT_IMPULSES * contact->n_pairs, contact->resultants.impulse));
   PetscCall(CheckpointVisitReals(checkpoint, "gone", CONTACT_IMPULSES * contact->neighbours.told.n, contact->neighbours.told.gone));

@@ -9,12 +9,12 @@
 /* Default tolerances of the outer iteration, of the way that rows go by contact: forces are as right */
 #define RTOL       1e-7
 #define RTOL_EXACT 1e-9 /* linear bodies, of which S tells right; and static ones: without inertia the balance is what is wanted */
+/* What rows read is right to so much, as positions are round-off, in parts of the size of the smallest body */
+#define RESOLUTION 2e-15
 /* Springs of bodies that contact alone holds find their rest from how the step changes with them, so that it has to be right to round-off:
    with the other tolerances linear stacks took 32 passes for 18. For nonlinear bodies each digit is a pass. */
 #define RTOL_FLOATING 1e-13
-#define ATOL_FLOATING 1e-2 /* of that on positions */
-/* What rows read is right to so much, as positions are round-off, in parts of the size of the smallest body */
-#define RESOLUTION 2e-15
+#define ATOL_FLOATING 0.1 /* of what rows read is right to */
 /* Turn of an obstacle's normal above which a row is laid again [rad], as rows between bodies are, see pairsupdate.c */
 #define STILL 1e-6
 
@@ -68,7 +68,7 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   PetscCall(ImpaktCite(CITE_SCHWARZ));
   if (contact->dim == 1) PetscCall(ContactRefuseFriction(contact, "bars of one dimension cannot slide; choose frictionless"));
   floating = (PetscBool)(contact->floating.n > 0);
-  for (PetscInt k = 0; k < contact->floating.n; k++) floating = (PetscBool)(floating && contact->floating.states[k].linear);
+  for (PetscInt k = 0; k < contact->floating.n; k++) floating = (PetscBool)(floating && contact->floating.bodies[k].state.linear);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscBool is_static, linear;
 
@@ -95,7 +95,7 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
       contact->rows.lists = PETSC_FALSE;
   contact->ties.by_mean       = (PetscBool)(contact->impulses && ContactAllPairsTie(contact) && contact->options.shared_times);
   stepper->rtol               = floating ? RTOL_FLOATING : any_static || all_linear ? RTOL_EXACT : RTOL;
-  stepper->atol               = (floating ? ATOL_FLOATING * CONTACT_POSITION_TOLERANCE : RESOLUTION) * contact->scale.length;
+  stepper->atol               = (floating ? ATOL_FLOATING : 1) * RESOLUTION * contact->scale.length;
   stepper->assembled          = -1;
   stepper->problem.resolution = RESOLUTION * contact->scale.length;
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
