@@ -10,22 +10,6 @@ PetscInt StateListGetWidth(const StateList *list)
   return width;
 }
 
-/* Where each array begins in what is put aside */
-static void FindPlaces(const StateList *list, PetscReal aside[], StateArray places[STATE_ARRAYS])
-{
-  PetscBool *bools;
-
-  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
-    places[k].reals = aside;
-    if (list->arrays[k].reals) aside += list->arrays[k].per * list->n;
-  }
-  bools = (PetscBool *)aside;
-  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
-    places[k].bools = bools;
-    if (list->arrays[k].bools) bools += list->arrays[k].per * list->n;
-  }
-}
-
 /* Room for what is put aside, never NULL. Free with PetscFree(). */
 PetscErrorCode StateListAllocate(const StateList *list, PetscReal *aside[])
 {
@@ -37,16 +21,23 @@ PetscErrorCode StateListAllocate(const StateList *list, PetscReal *aside[])
 /* All arrays, aside or back */
 PetscErrorCode StateListCopy(const StateList *list, PetscBool back, PetscReal aside[])
 {
-  StateArray places[STATE_ARRAYS];
+  PetscBool *bools;
 
   PetscFunctionBegin;
-  FindPlaces(list, aside, places);
   for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
-    const StateArray *own = &list->arrays[k];
-    const PetscInt    n   = own->per * list->n;
+    PetscReal     *own = list->arrays[k].reals;
+    const PetscInt n   = own ? list->arrays[k].per * list->n : 0;
 
-    if (own->reals) PetscCall(PetscArraycpy(back ? own->reals : places[k].reals, back ? places[k].reals : own->reals, n));
-    if (own->bools) PetscCall(PetscArraycpy(back ? own->bools : places[k].bools, back ? places[k].bools : own->bools, n));
+    PetscCall(PetscArraycpy(back ? own : aside, back ? aside : own, n));
+    aside += n;
+  }
+  bools = (PetscBool *)aside;
+  for (PetscInt k = 0; k < STATE_ARRAYS; k++) {
+    PetscBool     *own = list->arrays[k].bools;
+    const PetscInt n   = own ? list->arrays[k].per * list->n : 0;
+
+    PetscCall(PetscArraycpy(back ? own : bools, back ? bools : own, n));
+    bools += n;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

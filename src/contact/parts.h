@@ -108,7 +108,7 @@ PETSC_INTERN PetscErrorCode ContactTakeSurfaces(Contact, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactSetUpRows(Contact, PetscReal);
 PETSC_INTERN PetscErrorCode ContactCheckNear(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
-PETSC_INTERN PetscErrorCode ContactComputeStartGaps(Contact);
+PETSC_INTERN PetscErrorCode ContactReadStartGaps(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode ContactGetLeastElement(Contact, const ContactPair *, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactLetTouch(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode ContactGetBoundary(Contact, PetscInt, Surface *);

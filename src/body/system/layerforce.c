@@ -9,9 +9,8 @@ struct _n_LayerElements {
   PetscInt   n_dofs;  /* of the nodes of these elements */
   PetscInt  *numbers; /* of each: within the layer, over all ranks; -1 for others */
   Vec        u, f;    /* n_dofs each, of this rank alone */
-  PetscInt  *dofs;    /* of each: of this rank's nodes */
-  VecScatter gather;  /* from a vector of the body to u; NULL where no other rank has these nodes, */
-  VecScatter add;     /* and so is that from f to a vector of the layer */
+  VecScatter gather;  /* from a vector of the body to u */
+  VecScatter add;     /* from f to a vector of the layer */
   PetscInt  *of_body; /* the number of each element in the body */
   char      *memory;  /* of the history that these elements begin the substep with, NULL where the material has none */
   PetscReal *history;
@@ -98,8 +97,6 @@ static PetscErrorCode CreateScatters(Body body, LayerElements layer, PetscInt n_
   PetscFunctionBegin;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, layer->n_dofs, &layer->u));
   PetscCall(VecDuplicate(layer->u, &layer->f));
-  for (PetscInt i = 0; i < layer->n_dofs; i++) layer->dofs[i] = nodes[i / dim] * dim + i % dim;
-  if (!body->mesh.ghosted) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetOwnershipRange(body->mesh.positions, &rstart, NULL));
   PetscCall(PetscMalloc1(layer->n_dofs, &dofs));
   for (PetscInt k = 0; k < n_nodes; k++) {
@@ -199,7 +196,7 @@ PetscErrorCode BodySetUpLayerElements(Body body)
   PetscCall(NumberLayer(body, &number));
   PetscCall(SelectElements(body, number, layer, &count, &n_nodes, &nodes));
   layer->n_dofs = n_nodes * dim;
-  PetscCall(PetscMalloc3(layer->n_dofs, &layer->coordinates, layer->n_dofs, &layer->numbers, layer->n_dofs, &layer->dofs));
+  PetscCall(PetscMalloc2(layer->n_dofs, &layer->coordinates, layer->n_dofs, &layer->numbers));
   for (PetscInt k = 0; k < n_nodes; k++) {
     PetscCall(PetscArraycpy(layer->coordinates + k * dim, body->mesh.coordinates + nodes[k] * dim, dim));
     PetscCall(PetscArraycpy(layer->numbers + k * dim, number + nodes[k] * dim, dim));
@@ -229,7 +226,7 @@ PetscErrorCode BodyLayerElementsDestroy(BodyLayer *of_body)
   PetscCall(VecScatterDestroy(&layer->add));
   PetscCall(VecDestroy(&layer->u));
   PetscCall(VecDestroy(&layer->f));
-  PetscCall(PetscFree3(layer->coordinates, layer->numbers, layer->dofs));
+  PetscCall(PetscFree2(layer->coordinates, layer->numbers));
   PetscCall(PetscFree(layer->connectivity));
   PetscCall(PetscFree(layer->of_body));
   PetscCall(PetscFree(layer->memory));
@@ -283,28 +280,6 @@ PetscErrorCode BodyLayerLinearize(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* From a vector on the nodes of these elements to another one, in which they have places, negative ones being none: by a scatter, if any */
-static PetscErrorCode Spread(LayerElements layer, VecScatter scatter, ScatterMode way, const PetscInt places[], Vec near, InsertMode mode,
-                             Vec to)
-{
-  const PetscScalar *values;
-  PetscScalar       *all;
-
-  PetscFunctionBegin;
-  if (scatter) {
-    PetscCall(VecScatterBegin(scatter, near, to, mode, way));
-    PetscCall(VecScatterEnd(scatter, near, to, mode, way));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(VecGetArrayRead(near, &values));
-  PetscCall(VecGetArray(to, &all));
-  for (PetscInt i = 0; i < layer->n_dofs; i++)
-    if (places[i] >= 0) all[places[i]] = mode == ADD_VALUES ? all[places[i]] + values[i] : values[i];
-  PetscCall(VecRestoreArray(to, &all));
-  PetscCall(VecRestoreArrayRead(near, &values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* rhs -= internal force of the layer for displacement u of the body [N] */
 PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
 {
@@ -324,7 +299,8 @@ PetscErrorCode BodySubtractLayerForce(Body body, Vec u, Vec rhs)
   for (PetscInt i = 0; i < layer->n_dofs; i++) f_array[i] = -f_array[i];
   PetscCall(VecRestoreArrayWrite(layer->f, &f_array));
   PetscCall(VecRestoreArrayRead(layer->u, &u_array));
-  PetscCall(Spread(layer, layer->add, SCATTER_FORWARD, layer->numbers, layer->f, ADD_VALUES, rhs));
+  PetscCall(VecScatterBegin(layer->add, layer->f, rhs, ADD_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(layer->add, layer->f, rhs, ADD_VALUES, SCATTER_FORWARD));
   PetscCall(PetscLogEventEnd(BODY_LayerForce, body, 0, 0, 0));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -340,31 +316,18 @@ PetscErrorCode BodyCreateLayerVec(Body body, Vec *near)
 /* near = what a vector of the body is on the nodes of the elements that touch the layer */
 PetscErrorCode BodyGatherLayer(Body body, Vec u, Vec near)
 {
-  LayerElements      layer = body->layer.elements;
-  const PetscScalar *all;
-  PetscScalar       *values;
-
   PetscFunctionBegin;
-  if (layer->gather) {
-    PetscCall(VecScatterBegin(layer->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
-    PetscCall(VecScatterEnd(layer->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(VecGetArrayRead(u, &all));
-  PetscCall(VecGetArrayWrite(near, &values));
-  for (PetscInt i = 0; i < layer->n_dofs; i++) values[i] = all[layer->dofs[i]];
-  PetscCall(VecRestoreArrayWrite(near, &values));
-  PetscCall(VecRestoreArrayRead(u, &all));
+  PetscCall(VecScatterBegin(body->layer.elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(body->layer.elements->gather, u, near, INSERT_VALUES, SCATTER_FORWARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The way back: u gets the values of these nodes, and others stay. Ranks that have a node in common have the same values of it. */
 PetscErrorCode BodySpreadLayer(Body body, Vec near, Vec u)
 {
-  LayerElements layer = body->layer.elements;
-
   PetscFunctionBegin;
-  PetscCall(Spread(layer, layer->gather, SCATTER_REVERSE, layer->dofs, near, INSERT_VALUES, u));
+  PetscCall(VecScatterBegin(body->layer.elements->gather, near, u, INSERT_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(body->layer.elements->gather, near, u, INSERT_VALUES, SCATTER_REVERSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -433,7 +396,8 @@ PetscErrorCode BodyMultiplyLayerTangent(Body body, const PetscScalar tangents[],
   PetscCall(VecRestoreArrayWrite(layer->f, &product));
   PetscCall(VecRestoreArrayRead(layer->u, &change));
   PetscCall(VecZeroEntries(f));
-  PetscCall(Spread(layer, layer->gather, SCATTER_REVERSE, layer->dofs, layer->f, ADD_VALUES, f));
+  PetscCall(VecScatterBegin(layer->gather, layer->f, f, ADD_VALUES, SCATTER_REVERSE));
+  PetscCall(VecScatterEnd(layer->gather, layer->f, f, ADD_VALUES, SCATTER_REVERSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

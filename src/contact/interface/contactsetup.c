@@ -212,7 +212,7 @@ static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
 
   PetscFunctionBegin;
   PetscCall(ContactRenewNeighbours(contact, 0, PETSC_TRUE, &renewed)); /* initial displacements count */
-  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactReadStartGaps(contact, PETSC_TRUE));
   PetscCall(ContactTie(contact));
   ContactAlignRubbingRows(contact);
   PetscCall(ContactLetTouch(contact, of_state));

@@ -71,7 +71,7 @@ void ContactListActingRows(Contact contact, const PetscBool touches[])
 }
 
 /* Gaps at the start of the controller step, from the bodies' traces; those of near rows if these are wanted */
-static PetscErrorCode ReadStartGaps(Contact contact, PetscBool near)
+PetscErrorCode ContactReadStartGaps(Contact contact, PetscBool near)
 {
   PetscInt k = 0;
 
@@ -92,13 +92,6 @@ static PetscErrorCode ReadStartGaps(Contact contact, PetscBool near)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContactComputeStartGaps(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(ReadStartGaps(contact, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Gaps of all rows as they are where the saved states of the bodies are */
 PetscErrorCode ContactRefreshGaps(Contact contact)
 {
@@ -106,7 +99,7 @@ PetscErrorCode ContactRefreshGaps(Contact contact)
   if (!contact->rows.listed) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (contact->body_rows[b].n_all) PetscCall(BodyWriteStartTraces(contact->bodies[b]));
-  PetscCall(ReadStartGaps(contact, PETSC_FALSE));
+  PetscCall(ContactReadStartGaps(contact, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

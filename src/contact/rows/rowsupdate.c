@@ -203,7 +203,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
     contact->work.moved[i] = (PetscBool)(contact->rows.changed[i] || contact->rows.followed[i]);
   PetscCall(ContactUpdateBodies(contact, contact->work.moved));
   PetscCall(PetscArraycpy(contact->work.last_gap, contact->start.gap, contact->rows.n));
-  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactReadStartGaps(contact, PETSC_TRUE));
   ContactAlignRubbingRows(contact);
   PetscCall(PetscArraycpy(contact->work.last_force, contact->start.force, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
@@ -259,7 +259,7 @@ PetscErrorCode ContactTie(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || ContactPairTies(&contact->pairs[p]));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(RebuildTies(contact));
-  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactReadStartGaps(contact, PETSC_TRUE));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (!contact->rows.tied[i]) continue;
     contact->rows.initial_gap[i] -= contact->start.gap[i];

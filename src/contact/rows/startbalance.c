@@ -246,7 +246,7 @@ static PetscErrorCode Relax(StartBalance *start)
 
   PetscFunctionBegin;
   start->change = 0;
-  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactReadStartGaps(contact, PETSC_TRUE));
   ContactAlignRubbingRows(contact);
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     start->relaxed[i] = contact->start.gap[i];
@@ -351,7 +351,7 @@ static PetscErrorCode Finish(StartBalance *start)
     ContactTakeRows(contact, b, start->moved, start->on_body);
     PetscCall(BodyStartUnderForces(contact->bodies[b], start->on_body));
   }
-  PetscCall(ContactComputeStartGaps(contact));
+  PetscCall(ContactReadStartGaps(contact, PETSC_TRUE));
   ContactAlignRubbingRows(contact);
   for (PetscInt i = 0; i < n; i++)
     if (ContactRowRubs(contact, i)) contact->end.active[i] = contact->end.active[ContactFirstRow(contact, i)];
