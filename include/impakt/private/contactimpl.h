@@ -356,6 +356,8 @@ typedef struct {
   PetscReal      *stretch, *last;  /* as the step has left them when made last, and the time before [m] */
   PetscReal      *move;            /* by which they have been moved last [m] */
   PetscBool       leapt;           /* a body has leapt then */
+  PetscInt        plain;           /* times that are made without them, since the stretch has grown */
+  PetscInt        patience;        /* how many that will be when it grows again */
   PetscInt        n_known;         /* moves whose changes of the stretch are known: */
   PetscReal      *changes, *moves; /* an orthonormal basis of these; moves that bring them [m] */
   PetscReal      *forces;          /* work space, per body of the contact */

@@ -4,7 +4,8 @@
 
    Springs are moved by their stretch, at least. Where contact resists little, that is slow. So a stretch that is a sum of changes which
    earlier moves have brought is undone by the same sum of moves, and the rest is moved by its stretch (Anderson 1965): a linear problem
-   takes as many times as there are springs. Where the stretch grows, as it may where the active set changes, this starts anew.
+   takes as many times as there are springs. Where the stretch grows, as it may where the active set changes, this starts anew after
+   some moves by the stretch alone, which never make it grow.
 
    A stretch that does not change is that of a body which nothing resists: it falls until it lands. Then it leaps, farther each time, and
    without turning: springs beside its middle would tilt it. */
@@ -25,8 +26,10 @@
 /* One that changes by less than this part of it is steady; each leap is so many times longer than the last one */
 #define STEADY 1e-3
 #define LONGER 8
+/* Times with moves by the stretch alone after it has grown: two at first, then twice as many each time it grows, up to so many */
+#define MOST_PATIENCE 8
 /* Moves that are remembered; what is left of a change after those before have been taken out of it, below which it has nothing new */
-#define MOST_KNOWN  12
+#define MOST_KNOWN  24
 #define NOTHING_NEW 1e-4
 /* A leap strains a nonlinear body by no more than this if the springs hold it where it is not */
 #define LARGE_STRAIN 0.1
@@ -228,8 +231,13 @@ static PetscErrorCode FindMove(ContactFloating *f, PetscBool moved)
   const PetscBool grows = (PetscBool)(Dot(n, f->stretch, f->stretch) > Dot(n, f->last, f->last));
 
   PetscFunctionBegin;
+  if (grows && f->n_known && !f->leapt) {
+    f->plain    = f->patience;
+    f->patience = PetscMin(2 * f->patience, MOST_PATIENCE);
+  }
   if (grows || f->leapt || f->n_known == MOST_KNOWN) f->n_known = 0;
-  else if (moved) PetscCall(Learn(f));
+  else if (moved && !f->plain) PetscCall(Learn(f));
+  if (f->plain) f->plain--;
   PetscCall(PetscArraycpy(f->move, f->stretch, n));
   for (PetscInt j = 0; j < f->n_known; j++) {
     const PetscReal part = Dot(n, f->stretch, f->changes + j * n);
@@ -271,8 +279,9 @@ static PetscErrorCode MakeStepOfFloating(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ContactGetTime(contact, &f->time));
-  f->n_known = 0;
-  f->leapt   = PETSC_FALSE;
+  f->n_known = f->plain = 0;
+  f->patience           = 2;
+  f->leapt              = PETSC_FALSE;
   for (PetscInt k = 0; k < f->n; k++) {
     f->bodies[k].leap   = 1;
     f->bodies[k].steady = 0;

@@ -15,6 +15,7 @@
 #include <sys/optionstext.h>
 #include <sys/petsccompat.h>
 
+#define LAW_PREFIX       "law_" /* of options of the solver */
 #define MOST_NEWTON      50
 #define SPARSE_TOLERANCE 1e-13 /* of linear iterations [parts of the residual] */
 #define MOST_LINEAR      200   /* round-off may keep them from either */
@@ -235,9 +236,9 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PC             pc;
 
   PetscFunctionBegin;
-  PetscCall(OptionsTextHas("-law_", &problem->asked));
+  PetscCall(OptionsTextHas("-" LAW_PREFIX, &problem->asked));
   PetscCall(CreateVecs(problem));
-  PetscCall(CreateSNES(problem, "law_", SNESNEWTONLS, MOST_NEWTON, &problem->newton));
+  PetscCall(CreateSNES(problem, LAW_PREFIX, SNESNEWTONLS, MOST_NEWTON, &problem->newton));
   PetscCall(LawProblemCreateJacobian(problem));
   PetscCall(SNESGetLineSearch(problem->newton, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));

@@ -75,7 +75,8 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
 
   PetscFunctionBegin;
   PetscCall(LawProblemHolds(problem, &problem->solved));
-  if (!problem->solved && problem->alone && !problem->softens) PetscCall(SolveAlone(problem));
+  if (problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
+  if (problem->alone && !problem->softens) PetscCall(SolveAlone(problem));
   if (problem->solved && !problem->asked) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(SNESGetTolerances(problem->newton, NULL, &rtol, NULL, NULL, NULL));
