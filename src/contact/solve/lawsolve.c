@@ -50,7 +50,7 @@ static PetscErrorCode SolveBySecants(LawProblem *problem, PetscInt iterations, S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes that do not move each other, as a single one: a sweep or two solve, which cost less than PETSc's solvers take to begin */
+/* Nodes that do not move each other: sweeps solve, and one more to round-off, for less than PETSc's solvers take to begin */
 static PetscErrorCode SolveAlone(LawProblem *problem)
 {
   PetscFunctionBegin;
@@ -59,7 +59,8 @@ static PetscErrorCode SolveAlone(LawProblem *problem)
     PetscCall(LawProblemHolds(problem, &problem->solved));
     problem->iterations++;
   }
-  if (!problem->solved) PetscCall(PetscArraycpy(problem->force, problem->centre, problem->n)); /* as it was */
+  if (problem->solved) PetscCall(LawProblemSweep(problem, problem->force));
+  else PetscCall(PetscArraycpy(problem->force, problem->centre, problem->n)); /* as it was */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
