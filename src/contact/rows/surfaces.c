@@ -23,7 +23,6 @@ PetscErrorCode ContactGetRowPlace(Contact contact, PetscInt b, Vec *u)
   PetscFunctionBegin;
   PetscCall(BodyGetSolution(contact->bodies[b], u, &v, NULL));
   if (contact->ahead[b] == 0) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!contact->ends[b]) PetscCall(VecDuplicate(*u, &contact->ends[b]));
   PetscCall(VecWAXPY(contact->ends[b], contact->ahead[b], v, *u));
   *u = contact->ends[b];
   PetscFunctionReturn(PETSC_SUCCESS);

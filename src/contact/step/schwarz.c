@@ -115,7 +115,13 @@ static PetscErrorCode LayRows(Contact contact)
   const ContactStepper *stepper = Stepper(contact);
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies && stepper->rules; b++) contact->ahead[b] = stepper->rules[b]->ahead * contact->step;
+  for (PetscInt b = 0; b < contact->n_bodies && stepper->rules; b++) {
+    Vec u;
+
+    contact->ahead[b] = stepper->rules[b]->ahead * contact->step;
+    PetscCall(BodyGetSolution(contact->bodies[b], &u, NULL, NULL));
+    if (contact->ahead[b] != 0 && !contact->ends[b]) PetscCall(VecDuplicate(u, &contact->ends[b])); /* collective: here, on all ranks */
+  }
   for (PetscInt p = 0; p < contact->n_pairs && stepper->rules; p++)
     if (contact->pairs[p].obstacle && contact->ahead[contact->pairs[p].body[0]] != 0)
       PetscCall(TransferSetBounds(contact->pairs[p].transfer, contact->options.slip_bound, PetscMin(contact->options.angle_bound, STILL)));
