@@ -230,12 +230,12 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
 static PetscErrorCode CreateSolvers(LawProblem *problem)
 {
   const PetscBool iterative = (PetscBool)(problem->sparse || LawProblemIsLagged(problem));
-
-  SNESLineSearch line_search;
-  KSP            ksp;
-  PC             pc;
+  SNESLineSearch  line_search;
+  KSP             ksp;
+  PC              pc;
 
   PetscFunctionBegin;
+  PetscCall(DestroySolvers(problem));
   PetscCall(OptionsTextHas("-" LAW_PREFIX, &problem->asked));
   PetscCall(CreateVecs(problem));
   PetscCall(CreateSNES(problem, LAW_PREFIX, SNESNEWTONLS, MOST_NEWTON, &problem->newton));
@@ -368,10 +368,7 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
   if (problem->n != problem->rows || problem->sparse == dense || other) {
     problem->sparse = (PetscBool)!dense;
     if (direct && dense && !LawProblemIsLagged(problem)) PetscCall(ResizeSolvers(problem));
-    else {
-      PetscCall(DestroySolvers(problem));
-      PetscCall(CreateSolvers(problem));
-    }
+    else PetscCall(CreateSolvers(problem));
     problem->rows = problem->n;
   } else if (another && problem->sparse) PetscCall(LawProblemCreateJacobian(problem));
   if (another) problem->jacobian_of = -1;

@@ -121,18 +121,16 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
 
 PetscErrorCode ContactStepperStep(Contact contact)
 {
-  ContactStepper  *stepper = Stepper(contact);
-  PetscBool        more    = PETSC_TRUE;
-  const PetscReal *drive = contact->friction.drive, step = contact->step;
-  PetscReal       *rate = stepper->rate;
+  ContactStepper *stepper = Stepper(contact);
+  PetscBool       more    = PETSC_TRUE;
 
   PetscFunctionBegin;
   stepper->passes = 0;
   if (stepper->has_rigid || stepper->forms) stepper->state++;
   stepper->forms = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
-  PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, rate));
-  for (PetscInt i = 0; i < contact->rows.n && drive; i++) rate[i] += drive[i] / step;
+  PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, stepper->rate));
+  for (PetscInt i = 0; i < contact->rows.n && contact->friction.drive; i++) stepper->rate[i] += contact->friction.drive[i] / contact->step;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
   ContactListActingRows(contact, stepper->touches);
