@@ -61,15 +61,25 @@ static PetscErrorCode PlaceRows(Body body, PetscReal t, Vec U, Vec force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether rows move without the elements and the end of the step: by the layer's balance alone, or, with mass, by forces at the start */
+static PetscBool IsEarly(Body body)
+{
+  if (((BodyExplicit *)body->integrator->data)->layer_alone) return PETSC_TRUE;
+  return (PetscBool)(body->rows.constant && body->time.substeps == 1 && !GetLayerBalance(body) && !body->rows.n_prescribed &&
+                     !body->rows.n_robin && !body->unloaded);
+}
+
 /* The acceleration that U brings about, being in place; the forces of the dashpots are known. known: `force` is that from outside. */
 static PetscErrorCode Accelerate(Body body, PetscReal t, PetscBool known, Vec force, Vec U, Vec A)
 {
-  const PetscReal position   = GetPosition(body);
+  const PetscReal position = GetPosition(body), one = 1;
   const PetscBool prescribed = (PetscBool)(body->rows.n_prescribed && body->rows.have_mass);
-  /* contact forces that act on massless nodes alone accelerate nothing */
-  const PetscBool contact = (PetscBool)(known || (!body->mass.inverse && !body->mass.of_nodes) ||
-                                        !((BodyExplicit *)body->integrator->data)->layer_alone);
-  PetscBool       outside = BodyHasOutsideForce(body, contact);
+  /* contact forces that act on massless nodes alone accelerate nothing, constant ones with lumped mass the nodes that they act on */
+  const PetscBool layer_alone = ((BodyExplicit *)body->integrator->data)->layer_alone;
+  const PetscBool by_nodes    = (PetscBool)(BodyAnswersByNodes(body) && IsEarly(body) && !body->rows.exchange.open && !BodyHandsOver(body));
+  const PetscBool contact     = (PetscBool)(!by_nodes && (known || (!body->mass.inverse && !body->mass.of_nodes) || !layer_alone));
+  PetscBool       outside     = BodyHasOutsideForce(body, contact);
+  PetscScalar    *constant;
 
   PetscFunctionBegin;
   if (outside && !known) PetscCall(BodyComputeOutsideForce(body, t, position, contact, U, force));
@@ -81,6 +91,8 @@ static PetscErrorCode Accelerate(Body body, PetscReal t, PetscBool known, Vec fo
   PetscCall(BodyComputeInternalForce(body, U, body->state.internal_force));
   if (body->mass.inverse) {
     PetscCall(DivideByMass(body, outside ? force : NULL, A));
+    if (by_nodes) PetscCall(TraceGetLevel(body->traces.force_in, 1, &constant));
+    if (by_nodes) PetscCall(BodyAddAnswerOfNodes(body, constant, PETSC_FALSE, 1, &one, &A));
     PetscCall(BodyPrescribeHeld(body, t, NULL, NULL, A));
     if (prescribed) PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, A));
   } else {
@@ -98,14 +110,6 @@ static PetscErrorCode Accelerate(Body body, PetscReal t, PetscBool known, Vec fo
 static PetscBool KnowsForce(Body body)
 {
   return (PetscBool)(GetLayerBalance(body) && !body->rows.n_robin);
-}
-
-/* Whether rows move without the elements and the end of the step: by the layer's balance alone, or, with mass, by forces at the start */
-static PetscBool IsEarly(Body body)
-{
-  if (((BodyExplicit *)body->integrator->data)->layer_alone) return PETSC_TRUE;
-  return (PetscBool)(body->rows.constant && body->time.substeps == 1 && !GetLayerBalance(body) && !body->rows.n_prescribed &&
-                     !body->rows.n_robin && !body->unloaded);
 }
 
 /* The displacement is all that the rows depend on: the acceleration, which is zero on massless nodes, is left to Complete() on all ranks */
