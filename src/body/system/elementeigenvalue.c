@@ -54,16 +54,15 @@ PetscErrorCode BodyGetElementEigenvalue(Body body, PetscInt e, const PetscScalar
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The Rayleigh quotient of an element with lumped mass after power iteration from the displacements `first` */
-PetscErrorCode BodyEstimateElementEigenvalue(Body body, PetscInt e, const PetscScalar u[], const PetscReal first[], PetscReal *eigenvalue)
+/* The Rayleigh quotient of an element with tangent K and lumped mass after power iteration from the displacements `first` */
+PetscErrorCode BodyEstimateElementEigenvalue(Body body, PetscInt e, const PetscScalar K[], const PetscReal first[], PetscReal *eigenvalue)
 {
   const PetscInt *nodes = body->mesh.connectivity + e * body->model.element->nodes, dim = body->mesh.dim;
   const PetscInt  n_nodes = body->model.element->nodes, n = n_nodes * dim;
-  PetscScalar     K[ELEMENT_MAX_DOFS * ELEMENT_MAX_DOFS], M[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
+  PetscScalar     M[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
   PetscReal       x[ELEMENT_MAX_DOFS], inverse[ELEMENT_MAX_DOFS], force[ELEMENT_MAX_DOFS];
 
   PetscFunctionBegin;
-  PetscCall((*body->model.element->ops->tangent)(body->model.element, e, PETSC_FALSE, u, K));
   PetscCall(BodyGetElementMass(body, e, M));
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal mass = PetscRealPart(M[i / dim * (n_nodes + 1)]);
