@@ -4,7 +4,7 @@
 
 #define VANISHES      1e-12 /* of what rows read, by themselves or by their own force */
 #define MOST_PROXIMAL 20
-#define LESS          1e-2 /* of the weights of that term, where S has no factors that need it: it vanishes one solution sooner */
+#define LESS          1e-3 /* of the weights of that term, where S has no factors that need it: it vanishes one solution sooner */
 #define FIRST_SWEEPS  5
 #define MOST_NEAR     80  /* sweeps with a matrix near S, each of which takes a product */
 #define ENOUGH        0.5 /* linear iterations leave this part of the tolerance of Newton's method, */
