@@ -33,9 +33,10 @@ def walls(run):
 @pytest.mark.long
 def test_hundred_impacts(shared_run):
     """Each contact takes 0.02 to 0.1 % of the velocity, part of which comes back from the vibration: 0.13 % are missing at the end (measured), impulses are
-    0.005 to 0.13 % too small, forces up to 0.13 %; so contact 100 begins 60 us late, 0.06 % of the time until then. Energy: -0.15 % to +0.0012 %, of
-    which central differences keep another quantity than the sum of kinetic and potential energy at one time."""
-    run = shared_run(WALLS)
+    0.005 to 0.13 % too small, forces up to 0.13 %; so contact 100 begins 60 us late, 0.06 % of the time until then. Which steps contacts begin and end in hangs on
+    round-off after some: with speed, gap or step changed by 1e-5 to 1e-4 of themselves the least energy was -0.12 to -0.18 %. None is gained: the run is not
+    allowed any. With the 0.1 % of the energy that it may gain by default the largest was 0 to +0.1 %, in this deck +0.001 or +0.04 % by round-off."""
+    run = shared_run(f"{WALLS} -contact_energy_excess 0")
     late, impulse, force = walls(run)
     assert len(late) == 100
     assert run.summary["contact"]["onsets"] == 100  # none breaks off on the way
@@ -47,7 +48,7 @@ def test_hundred_impacts(shared_run):
     assert velocity == pytest.approx(1, rel=2e-3)
     assert run.history["body/bar/potential"][-1] <= 2e-3 * MASS / 2
     system = run.summary["system"]
-    assert -2e-3 <= system["energy_error_min"] <= system["energy_error_max"] <= 2e-5
+    assert -2e-3 <= system["energy_error_min"] <= system["energy_error_max"] <= 1e-12
     assert max(pair["max_penetration"] for pair in run.summary["pairs"].values()) <= 1e-12
 
 
