@@ -5,10 +5,9 @@
 #define BODY_SUDDEN_LENGTH 512 /* of the text of BodyDescribeSuddenLoad() */
 
 PETSC_EXTERN PetscErrorCode BodyIsOutOfBalance(Body, PetscBool *);
-PETSC_EXTERN PetscErrorCode BodyMarkRows(Body, PetscBool[], PetscBool[]);
-PETSC_EXTERN PetscErrorCode BodyRelaxLayer(Body, PetscScalar[], PetscReal *);
-PETSC_EXTERN PetscErrorCode BodyMultiplyLayerCompliance(Body, const PetscScalar[], PetscScalar[]);
-PETSC_EXTERN PetscErrorCode BodyMoveLayer(Body, const PetscScalar[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodySumRows(Body, PetscBool, PetscScalar[]);
+PETSC_EXTERN PetscErrorCode BodyBalanceLayer(Body, PetscBool, PetscScalar[], PetscReal *);
+PETSC_EXTERN PetscErrorCode BodyMultiplyLayerCompliance(Body, Vec, Vec);
 PETSC_EXTERN PetscErrorCode BodyStartUnderForces(Body, const PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyDescribeSuddenLoad(Body, char[BODY_SUDDEN_LENGTH]);
 PETSC_EXTERN PetscErrorCode BodyHasForces(Body, PetscBool *);

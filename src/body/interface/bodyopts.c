@@ -283,9 +283,6 @@ PetscErrorCode BodySetInitialState(Body body, PetscErrorCode (*function)(PetscIn
   StepFailureClear(&body->failure);
   if (PetscIsInfOrNanReal(norm) && !body->model.linear) PetscCall(BodyNoteInverted(body, PETSC_FALSE));
   PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)body), &body->failure));
-  PetscCall(BodyComputeStartAcceleration(body, PETSC_FALSE, NULL));
-  PetscCall(BodyWriteTraces(body, 0));
-  PetscCall(BodySetUpWork(body));
-  PetscCall(BodySave(body));
+  PetscCall(BodyStartUnderForces(body, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -405,7 +405,6 @@ PETSC_INTERN PetscErrorCode BodyCopyHeld(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyPrescribeHeld(Body, PetscReal, Vec, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAddExternalForce(Body, PetscReal, PetscScalar, Vec);
 PETSC_INTERN PetscErrorCode BodySetUpWork(Body);
-PETSC_INTERN PetscErrorCode BodyComputeStartAcceleration(Body, PetscBool, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyAddWork(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyEliminateHeld(Body, Mat);
 PETSC_INTERN PetscErrorCode BodyFindExtrapolation(Body);

@@ -10,12 +10,12 @@
 /* Changes of the layer below this part of positions and displacements of the nodes are round-off */
 #define ROUND_OFF (16 * PETSC_MACHINE_EPSILON)
 
-/* f = forces from outside, and on the rows if it is pushed there, less the forces of dashpots and the internal force at the present
-   displacement, which must have been computed. A rank without rows has no forces, but takes part. */
-static PetscErrorCode ComputeImbalance(Body body, PetscBool pushed, const PetscScalar force[], Vec f)
+/* f = forces from outside, and on the rows, on all ranks or none (NULL), less the forces of dashpots and the internal force at the present
+   displacement, which must have been computed */
+static PetscErrorCode ComputeImbalance(Body body, const PetscScalar force[], Vec f)
 {
   PetscFunctionBegin;
-  if (pushed) PetscCall(BodySpreadRows(body, body->rows.free_matrix, force, f));
+  if (force) PetscCall(BodySpreadRows(body, body->rows.free_matrix, force, f));
   else PetscCall(VecZeroEntries(f));
   PetscCall(VecAXPY(f, -1, body->state.internal_force)); /* no -0, which PETSc would take for zeroes to leave alone later */
   if (body->state.damping) PetscCall(VecAXPY(f, -1, body->state.damping));
@@ -23,15 +23,15 @@ static PetscErrorCode ComputeImbalance(Body body, PetscBool pushed, const PetscS
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* M a = forces, those on the rows too if it is pushed there: the acceleration of the first state; needs its internal force */
-PetscErrorCode BodyComputeStartAcceleration(Body body, PetscBool pushed, const PetscScalar force[])
+/* M a = forces, those on the rows too, on all ranks or none (NULL): the acceleration of the first state; needs its internal force */
+static PetscErrorCode ComputeAcceleration(Body body, const PetscScalar force[])
 {
   Vec       f = body->work.nodes[0];
   PetscReal norm;
 
   PetscFunctionBegin;
   PetscCall(BodyNoteDamping(body));
-  PetscCall(ComputeImbalance(body, pushed, force, f));
+  PetscCall(ComputeImbalance(body, force, f));
   PetscCall(VecNorm(f, NORM_INFINITY, &norm));
   PetscCall(VecZeroEntries(body->state.a));
   PetscCall(BodySubtractHeldInertia(body, body->state.time, f, body->state.a));
@@ -56,7 +56,7 @@ PetscErrorCode BodyIsOutOfBalance(Body body, PetscBool *out)
   PetscFunctionBegin;
   *out = PETSC_FALSE;
   if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComputeImbalance(body, PETSC_FALSE, NULL, f));
+  PetscCall(ComputeImbalance(body, NULL, f));
   PetscCall(VecGetArrayRead(f, &values));
   for (PetscInt i = 0; i < body->layer.n_dofs; i++)
     if (values[body->layer.dofs[i]] != 0) *out = PETSC_TRUE;
@@ -65,103 +65,73 @@ PetscErrorCode BodyIsOutOfBalance(Body body, PetscBool *out)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether each row has entries on dofs with a positive mark */
-static PetscErrorCode FindEntries(Body body, Vec marks, PetscBool found[])
+/* Sums of the entries of this rank's rows, without signs, on the massless layer; `massive`: on nodes with mass and bodies without inertia.
+   Collective. */
+PetscErrorCode BodySumRows(Body body, PetscBool massive, PetscScalar sums[])
 {
-  const PetscScalar *sums;
+  Vec                marks = body->work.nodes[0];
+  PetscScalar       *mark;
+  const PetscScalar *sum;
   Mat                marked;
 
   PetscFunctionBegin;
+  PetscCall(VecSet(marks, massive));
+  PetscCall(VecGetArray(marks, &mark));
+  for (PetscInt i = 0; i < body->layer.n_dofs && HasLayer(body); i++) mark[body->layer.dofs[i]] = !massive;
+  PetscCall(VecRestoreArray(marks, &mark));
   PetscCall(MatDuplicate(body->rows.free_matrix, MAT_COPY_VALUES, &marked));
   PetscCall(MatDiagonalScale(marked, NULL, marks));
   PetscCall(MatGetRowSumAbs(marked, body->work.rows[0]));
-  PetscCall(VecGetArrayRead(body->work.rows[0], &sums));
-  for (PetscInt i = 0; i < body->rows.local; i++) found[i] = (PetscBool)(PetscRealPart(sums[i]) > 0);
-  PetscCall(VecRestoreArrayRead(body->work.rows[0], &sums));
+  PetscCall(VecGetArrayRead(body->work.rows[0], &sum));
+  PetscCall(PetscArraycpy(sums, sum, body->rows.local));
+  PetscCall(VecRestoreArrayRead(body->work.rows[0], &sum));
   PetscCall(MatDestroy(&marked));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks this rank's rows that move the massless layer, and those on nodes with mass or on bodies without inertia. Collective. */
-PetscErrorCode BodyMarkRows(Body body, PetscBool massless[], PetscBool mass[])
+/* How far the massless layer is from its balance without forces on the rows, by the tangent at its displacement; then, if it `moves`,
+   takes it to that with the forces `rows` [N], which a linear body reaches. rows: how far they go by it [m]; `change`: the largest
+   displacement, 0 where that is round-off [m]. BodyStartUnderForces() completes the state. Before the first step, collective. */
+PetscErrorCode BodyBalanceLayer(Body body, PetscBool moves, PetscScalar rows[], PetscReal *change)
 {
-  Vec          marks = body->work.nodes[0];
-  PetscScalar *mark;
-
-  PetscFunctionBegin;
-  for (PetscInt massive = 0; massive < 2; massive++) {
-    PetscCall(VecSet(marks, massive));
-    PetscCall(VecGetArray(marks, &mark));
-    for (PetscInt i = 0; i < body->layer.n_dofs && HasLayer(body); i++) mark[body->layer.dofs[i]] = 1 - massive;
-    PetscCall(VecRestoreArray(marks, &mark));
-    PetscCall(FindEntries(body, marks, massive ? mass : massless));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The largest component of a vector's change, or zero where that is round-off */
-static PetscErrorCode MeasureChange(Body body, Vec du, PetscReal *change)
-{
+  Vec       f = body->work.nodes[0], du = body->work.nodes[1];
   PetscReal u, x;
 
   PetscFunctionBegin;
+  PetscCheck(!body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before the first step");
+  *change = 0;
+  if (!HasLayer(body)) {
+    PetscCall(PetscArrayzero(rows, body->rows.local));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!moves) {
+    PetscCall(BodyPrepareLayer(body, body->state.u));
+    PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  }
+  PetscCall(ComputeImbalance(body, moves ? rows : NULL, f));
+  PetscCall(BodyApplyLayerCompliance(body, f, du));
+  PetscCall(BodyReadRows(body, body->rows.free_matrix, du, rows));
   PetscCall(VecNorm(du, NORM_INFINITY, change));
   PetscCall(VecNorm(body->state.u, NORM_INFINITY, &u));
   PetscCall(VecNorm(body->mesh.positions, NORM_INFINITY, &x));
   if (*change <= ROUND_OFF * (u + x)) *change = 0;
+  if (moves) PetscCall(VecAXPY(body->state.u, 1, du));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far rows would move from their present places [m] if the massless layer went into balance without contact forces (tangent at the
-   present displacement); `change`: largest displacement of the layer, 0 where that is round-off [m]. Before the first step. Collective. */
-PetscErrorCode BodyRelaxLayer(Body body, PetscScalar displacement[], PetscReal *change)
-{
-  Vec f = body->work.nodes[0], du = body->work.nodes[1];
-
-  PetscFunctionBegin;
-  *change = 0;
-  PetscCall(PetscArrayzero(displacement, body->rows.local));
-  if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyPrepareLayer(body, body->state.u));
-  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  PetscCall(ComputeImbalance(body, PETSC_FALSE, NULL, f));
-  PetscCall(BodyApplyLayerCompliance(body, f, du));
-  PetscCall(BodyReadRows(body, body->rows.free_matrix, du, displacement));
-  PetscCall(MeasureChange(body, du, change));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* displacement = B K_LL^{-1} B^T force of the massless layer alone, after BodyRelaxLayer() [m], [N]. Collective. */
-PetscErrorCode BodyMultiplyLayerCompliance(Body body, const PetscScalar force[], PetscScalar displacement[])
+/* displacement = B K_LL^{-1} B^T force of the massless layer alone, after BodyBalanceLayer() [m], [N]. Collective. */
+PetscErrorCode BodyMultiplyLayerCompliance(Body body, Vec force, Vec displacement)
 {
   Vec f = body->work.nodes[0], du = body->work.nodes[1];
 
   PetscFunctionBegin;
   if (!HasLayer(body)) {
-    PetscCall(PetscArrayzero(displacement, body->rows.local));
+    PetscCall(VecZeroEntries(displacement));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(BodySpreadRows(body, body->rows.free_matrix, force, f));
+  PetscCall(MatMultTranspose(body->rows.free_matrix, force, f));
   PetscCall(BodyApplyLayerCompliance(body, f, du));
-  PetscCall(BodyReadRows(body, body->rows.free_matrix, du, displacement));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Moves the massless layer towards its balance under forces on the rows [N], into it if the body is linear, after BodyRelaxLayer();
-   `change` as there. Displacements and their traces at the start change; BodyStartUnderForces() completes the state. Collective. */
-PetscErrorCode BodyMoveLayer(Body body, const PetscScalar force[], PetscReal *change)
-{
-  Vec f = body->work.nodes[0], du = body->work.nodes[1];
-
-  PetscFunctionBegin;
-  PetscCheck(!body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before the first step");
-  *change = 0;
-  if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComputeImbalance(body, PETSC_TRUE, force, f));
-  PetscCall(BodyApplyLayerCompliance(body, f, du));
-  PetscCall(MeasureChange(body, du, change));
-  PetscCall(VecAXPY(body->state.u, 1, du));
-  PetscCall(BodyWriteTrace(body, body->rows.matrix, body->state.u, body->traces.displacement, 0));
+  PetscCall(MatMult(body->rows.free_matrix, du, displacement));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,7 +157,8 @@ static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Makes displacement and velocity the first state, with forces on the rows [N]; acceleration, traces and work follow. Collective. */
+/* Makes displacement and velocity the first state, with forces on the rows [N]; acceleration, traces and work follow. Without forces, NULL
+   on all ranks, the internal force must have been computed. Collective. */
 PetscErrorCode BodyStartUnderForces(Body body, const PetscScalar force[])
 {
   PetscScalar *reaction;
@@ -195,15 +166,15 @@ PetscErrorCode BodyStartUnderForces(Body body, const PetscScalar force[])
   PetscFunctionBegin;
   PetscCheck(body->setup && !body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
              "Call after BodySetUp(), before the first step");
-  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  PetscCall(BodyComputeStartAcceleration(body, PETSC_TRUE, force));
+  if (force) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscCall(ComputeAcceleration(body, force));
   PetscCall(BodyWriteTraces(body, 0));
-  if (body->rows.global) {
+  if (force && body->rows.global) {
     PetscCall(TraceGetLevel(body->traces.reaction, 0, &reaction));
     PetscCall(PetscArraycpy(reaction, force, body->rows.local));
   }
   PetscCall(BodySetUpWork(body));
-  PetscCall(SubtractFromReactions(body, force));
+  if (force) PetscCall(SubtractFromReactions(body, force));
   PetscCall(BodySave(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

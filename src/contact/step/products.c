@@ -34,8 +34,10 @@ PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *ste
 }
 
 /* Adds how the rows of a body go under forces on them, of this rank */
-static PetscErrorCode AddBody(Contact contact, StepperEntries *entries, PetscInt b, const PetscReal force[], PetscReal way[])
+static PetscErrorCode AddBody(const ContactStepper *stepper, PetscInt b, const PetscReal force[], PetscReal way[])
 {
+  Contact            contact = stepper->contact;
+  StepperEntries    *entries = &stepper->assembly.of_body[b];
   const PetscScalar *moved;
   PetscScalar       *on_body;
 
@@ -47,7 +49,7 @@ static PetscErrorCode AddBody(Contact contact, StepperEntries *entries, PetscInt
   PetscCall(VecGetArrayWrite(entries->force, &on_body));
   ContactTakeRows(contact, b, force, on_body);
   PetscCall(VecRestoreArrayWrite(entries->force, &on_body));
-  PetscCall(BodyApplyCompliance(contact->bodies[b], entries->force, entries->way));
+  PetscCall((*stepper->answer)(contact->bodies[b], entries->force, entries->way));
   PetscCall(VecGetArrayRead(entries->way, &moved));
   ContactAddRows(contact, b, moved, way);
   PetscCall(VecRestoreArrayRead(entries->way, &moved));
@@ -64,8 +66,8 @@ static PetscErrorCode Multiply(Mat S, Vec x, Vec y)
   PetscScalar       *out;
 
   PetscFunctionBegin;
-  PetscCall(MatShellGetContext(S, &contact));
-  stepper = (ContactStepper *)contact->data;
+  PetscCall(MatShellGetContext(S, &stepper));
+  contact = stepper->contact;
   force   = stepper->before;
   way     = stepper->mine;
   PetscCall(PetscArrayzero(force, contact->rows.n));
@@ -78,7 +80,7 @@ static PetscErrorCode Multiply(Mat S, Vec x, Vec y)
   }
   PetscCall(VecRestoreArrayRead(x, &in));
   for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (stepper->assembly.of_body[b].n) PetscCall(AddBody(contact, &stepper->assembly.of_body[b], b, force, way));
+    if (stepper->assembly.of_body[b].n) PetscCall(AddBody(stepper, b, force, way));
   PetscCall(VecGetArrayWrite(y, &out));
   PetscCall(ContactStepperGather(contact, stepper, way, out));
   PetscCall(VecGetArrayRead(x, &in));
@@ -185,14 +187,24 @@ static PetscErrorCode AddNear(Contact contact, ContactStepper *stepper, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* ContactStepperCreateShell - S as products alone */
+PetscErrorCode ContactStepperCreateShell(ContactStepper *stepper, Mat *S)
+{
+  const PetscInt n = stepper->problem.n;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, stepper, S));
+  PetscCall(MatShellSetOperation(*S, MATOP_MULT, (void (*)(void))Multiply));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* S as products, and a sparse matrix near it. No body needs secants, as one does whose nodes answer alone. */
 PetscErrorCode ContactStepperCreateProducts(Contact contact, ContactStepper *stepper, Mat *S, Mat *near)
 {
   const PetscInt n = stepper->problem.n;
 
   PetscFunctionBegin;
-  PetscCall(MatCreateShell(PETSC_COMM_SELF, n, n, n, n, contact, S));
-  PetscCall(MatShellSetOperation(*S, MATOP_MULT, (void (*)(void))Multiply));
+  PetscCall(ContactStepperCreateShell(stepper, S));
   PetscCall(MatCreate(PETSC_COMM_SELF, near));
   PetscCall(MatSetSizes(*near, n, n, n, n));
   PetscCall(MatSetType(*near, MATSEQAIJ));

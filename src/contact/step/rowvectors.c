@@ -1,11 +1,20 @@
 /* Numbers of rows: each rank has one for each row that it owns, and all ranks, which all solve the law, get those of touching rows. */
 #include "stepimpl.h"
 
+/* Room for the rows that there are */
 PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper)
 {
-  const PetscInt n_all = PetscMax(contact->rows.n_all, 1);
+  const PetscInt n_all = PetscMax(contact->rows.n_all, 1), n = PetscMax(contact->rows.n, 1);
 
   PetscFunctionBegin;
+  stepper->contact           = contact;
+  stepper->answer            = BodyApplyCompliance;
+  stepper->assembly.n_bodies = contact->n_bodies;
+  PetscCall(PetscCalloc1(contact->n_bodies, &stepper->assembly.of_body));
+  PetscCall(PetscMalloc1(2 * contact->n_pairs, &stepper->laws));
+  PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
+  PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
+                         n, &stepper->given));
   PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)contact), contact->rows.n, PETSC_DETERMINE, &stepper->x));
   PetscCall(VecDuplicate(stepper->x, &stepper->f));
   PetscCall(PetscMalloc4(n_all, &stepper->rows, n_all, &stepper->gathered, n_all, &stepper->of_assembled, n_all, &stepper->all));
@@ -20,6 +29,11 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
   PetscCall(VecDestroy(&stepper->f));
   PetscCall(PetscFree4(stepper->rows, stepper->gathered, stepper->of_assembled, stepper->all));
   PetscCall(PetscFree2(stepper->told, stepper->ends));
+  PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
+  PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
+  PetscCall(PetscFree(stepper->laws));
+  PetscCall(ContactStepperDestroyAssembly(&stepper->assembly));
+  PetscCall(LawProblemDestroy(&stepper->problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

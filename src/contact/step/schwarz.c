@@ -43,8 +43,6 @@ static PetscErrorCode ChooseLaws(Contact contact, ContactStepper *stepper)
                                   [CONTACT_LAW_FRICTION]     = {"unilateral", "hold"}};
 
   PetscFunctionBegin;
-  PetscCall(PetscFree(stepper->laws));
-  PetscCall(PetscMalloc1(2 * contact->n_pairs, &stepper->laws));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     for (PetscInt held = 0; held < 2; held++) {
       const ContactLaw law = contact->pairs[p].law;
@@ -61,7 +59,6 @@ static PetscErrorCode ChooseLaws(Contact contact, ContactStepper *stepper)
 PetscErrorCode ContactStepperSetUp(Contact contact)
 {
   ContactStepper *stepper    = Stepper(contact);
-  const PetscInt  n          = PetscMax(contact->rows.n, 1);
   PetscBool       any_static = PETSC_FALSE, all_linear = PETSC_TRUE, floating;
 
   PetscFunctionBegin;
@@ -80,9 +77,8 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   PetscCall(PetscCalloc4(contact->n_bodies, &stepper->rules, contact->n_bodies, &stepper->group, contact->n_bodies, &stepper->moves,
                          contact->n_bodies, &stepper->rests));
   PetscCall(PetscCalloc3(contact->n_bodies, &stepper->done, contact->n_bodies, &stepper->scale, contact->n_bodies, &stepper->off));
-  PetscCall(PetscCalloc1(contact->n_bodies, &stepper->assembly.of_body));
-  stepper->assembly.n_bodies = contact->n_bodies;
   stepper->assembly.of_state = -1;
+  PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperSetUpRules(contact, stepper));
   PetscCall(ContactHasRigid(contact, &stepper->has_rigid));
   PetscCall(ChooseLaws(contact, stepper));
@@ -99,13 +95,9 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   stepper->assembled          = -1;
   stepper->problem.resolution = RESOLUTION * contact->scale.length;
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
-  PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(ContactStepperSetUpTurns(contact, stepper));
   PetscCall(ContactStepperSetUpSprings(contact, stepper));
-  PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
-  PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
-                         n, &stepper->given));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -237,16 +229,11 @@ static PetscErrorCode Reset(Contact contact)
   PetscFunctionBegin;
   PetscCall(SNESDestroy(&stepper->outer));
   PetscCall(ContactStepperDestroyVecs(stepper));
-  PetscCall(ContactStepperDestroyAssembly(&stepper->assembly));
-  PetscCall(LawProblemDestroy(&stepper->problem));
-  PetscCall(PetscFree(stepper->laws));
   PetscCall(ContactDestroyTiedEnds(contact));
   PetscCall(PetscFree2(stepper->aligns[0], stepper->aligns[1]));
   PetscCall(ContactStepperDestroyGlue(stepper));
   PetscCall(ContactStepperDestroyTurns(&stepper->turns));
   PetscCall(ContactStepperDestroySprings(&stepper->springs));
-  PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
-  PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));
   PetscCall(PetscFree3(stepper->done, stepper->scale, stepper->off));
   PetscCall(PetscMemzero((char *)stepper + offsetof(ContactStepper, outer), sizeof(*stepper) - offsetof(ContactStepper, outer)));

@@ -4,8 +4,8 @@
    are one evaluation of the outer SNES, F = lambda - (2)(lambda), and (2) is the SNES of solve/. */
 #include "stepimpl.h"
 
-/* Bounds that the law of friction has for touching nodes, on all ranks */
-static PetscErrorCode GetLimits(Contact contact, ContactStepper *stepper)
+/* ContactStepperGetLimits - bounds that the law of friction has for touching nodes, on all ranks */
+PetscErrorCode ContactStepperGetLimits(Contact contact, ContactStepper *stepper)
 {
   LawProblem *problem = &stepper->problem;
 
@@ -53,12 +53,17 @@ static PetscErrorCode FindMore(Contact contact, ContactStepper *stepper, PetscBo
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which nodes of this rank slide at the end of the step, for those who look */
-static PetscErrorCode MarkSliding(Contact contact, const ContactStepper *stepper)
+/* ContactStepperMarkRows - which rows of this rank are in contact, and which nodes slide, at the end of the step */
+PetscErrorCode ContactStepperMarkRows(Contact contact, const ContactStepper *stepper)
 {
   const LawProblem *problem = &stepper->problem;
 
   PetscFunctionBegin;
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k], first = ContactFirstRow(contact, i);
+
+    contact->end.active[i] = (PetscBool)(stepper->touches[i] && (contact->rows.tied[first] || contact->end.force[first] > 0));
+  }
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) contact->friction.slides[contact->rows.acting[k]] = PETSC_FALSE;
   for (PetscInt node = 0; problem->n && node < problem->n_nodes; node++) {
@@ -91,19 +96,12 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
   stepper->step_loss = stepper->step_force = 0;
   PetscCall(ContactStepperEndGlue(contact, stepper));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
-    const ContactRule *rule = ContactStepperRule(stepper, pair);
+    const ContactRule *rule = ContactStepperRule(stepper, &contact->pairs[p]);
 
-    for (PetscInt k = pair->acts_begin; k < pair->acts_end; k += pair->components) {
-      const PetscInt  first  = contact->rows.acting[k];
-      const PetscBool active = (PetscBool)(contact->rows.tied[first] || contact->end.force[first] > 0);
-
-      for (PetscInt i = first; i < first + pair->components; i++) contact->end.active[i] = active;
-    }
-    if (rule->end) PetscCall((*rule->end)(contact, stepper, pair));
+    if (rule->end) PetscCall((*rule->end)(contact, stepper, &contact->pairs[p]));
   }
   PetscCall(ContactStepperEndSprings(contact, stepper));
-  PetscCall(MarkSliding(contact, stepper));
+  PetscCall(ContactStepperMarkRows(contact, stepper));
   PetscCall(CheckFriction(contact, stepper));
   if (stepper->glued) PetscCall(ContactSumStored(contact));
   if (!contact->energy.takes) PetscFunctionReturn(PETSC_SUCCESS);
@@ -143,7 +141,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
       stepper->last[contact->rows.acting[k]] = contact->start.force[contact->rows.acting[k]];
     PetscCall(ContactStepperListRows(contact, stepper));
     if (stepper->problem.n) {
-      PetscCall(GetLimits(contact, stepper));
+      PetscCall(ContactStepperGetLimits(contact, stepper));
       PetscCall(ContactStepperBeginGlue(contact, stepper));
       PetscCall(ContactStepperListTurns(contact, stepper));
       PetscCall(ContactStepperListSprings(contact, stepper));

@@ -108,6 +108,7 @@ struct _ContactStepper {
   void              *method;     /* what a contact type that is made of the step keeps beside it, or NULL */
   /* set-up; what follows is for the rows that there are, see Reset() */
   SNES                outer; /* its unknowns are the forces of all rows */
+  Contact             contact;
   LawProblem          problem;
   const ContactRule **rules;      /* per body: that of its set */
   RowLaw             *laws;       /* two per pair: of nodes that may open, and of those that are held */
@@ -143,9 +144,10 @@ struct _ContactStepper {
   StepperAssembly assembly;
   PetscInt64      state, assembled;
   PetscInt        n_assembled, *of_assembled;
-  PetscBool       products; /* it is products, see products.c */
-  StepperTurns    turns;    /* what it has of turns */
-  StepperSprings  springs;  /* what it has of springs between the surfaces */
+  PetscBool       products;                 /* it is products, see products.c */
+  PetscErrorCode (*answer)(Body, Vec, Vec); /* how rows of a body go under forces on them, for these */
+  StepperTurns   turns;                     /* what it has of turns */
+  StepperSprings springs;                   /* what it has of springs between the surfaces */
   /* work space */
   Vec          x, f;
   PetscReal   *all;      /* a number per row of all ranks */
@@ -175,11 +177,14 @@ PETSC_INTERN PetscErrorCode ContactStepperDestroyGlue(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
 PETSC_INTERN PetscErrorCode ContactStepperGuess(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperGetLimits(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperMarkRows(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperPack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperUnpack(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperMakeBlock(Contact, ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperChooseProducts(Contact, ContactStepper *);
+PETSC_INTERN PetscErrorCode ContactStepperCreateShell(ContactStepper *, Mat *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateProducts(Contact, ContactStepper *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *);
 PETSC_INTERN PetscErrorCode ContactStepperGetFlatHit(Contact, PetscInt, PetscReal *);
