@@ -156,6 +156,7 @@ PETSC_INTERN PetscErrorCode ContactNumberBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderVisits(Contact);
 PETSC_INTERN PetscErrorCode ContactGatherRows(Contact, const PetscReal[], PetscReal[]);
+PETSC_INTERN void           ContactPickRows(Contact, PetscInt, const PetscInt[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactIsAtHome(Contact, PetscInt, PetscMPIInt *, PetscBool *);
 PETSC_INTERN void           ContactAffectAll(Contact);
 PETSC_INTERN void           ContactForgetMatrices(Contact);

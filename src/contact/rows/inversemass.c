@@ -39,7 +39,8 @@ static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Assemble(Contact contact, PetscBool lumped, Mat *C)
+/* InverseMassAssemble - B M^{-1} B^T of all bodies, of all rows */
+PetscErrorCode InverseMassAssemble(Contact contact, PetscBool lumped, Mat *C)
 {
   PetscFunctionBegin;
   PetscCall(ContactCreateRowMatrix(contact, C));
@@ -97,7 +98,7 @@ PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseM
   PetscCall(PetscMalloc3(n, &inverse->takes_part, n, &inverse->work[0], n, &inverse->work[1]));
   PetscCall(ContactCreateRowVec(contact, &inverse->rhs));
   PetscCall(VecDuplicate(inverse->rhs, &inverse->solution));
-  PetscCall(Assemble(contact, PETSC_TRUE, &lumped));
+  PetscCall(InverseMassAssemble(contact, PETSC_TRUE, &lumped));
   PetscCall(FindRows(contact, lumped, inverse));
   PetscCall(LeaveOutOthers(contact, inverse, lumped));
   if (type == INVERSE_MASS_ONCE) {
@@ -105,7 +106,7 @@ PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseM
     PetscCall(MatShellSetOperation(C, MATOP_MULT, (void (*)(void))MultiplyByBodies));
     PetscCall(MatSetOption(C, MAT_SYMMETRIC, PETSC_TRUE));
   } else if (type == INVERSE_MASS_ASSEMBLED) {
-    PetscCall(Assemble(contact, PETSC_FALSE, &C));
+    PetscCall(InverseMassAssemble(contact, PETSC_FALSE, &C));
     PetscCall(LeaveOutOthers(contact, inverse, C));
   } else {
     C = lumped;

@@ -16,6 +16,7 @@ typedef struct _InverseMass {
   PetscScalar *work[2];    /* per row of this rank */
 } InverseMass;
 
+PETSC_INTERN PetscErrorCode InverseMassAssemble(Contact, PetscBool, Mat *);
 PETSC_INTERN PetscErrorCode InverseMassCreate(Contact, InverseMassType, InverseMass *);
 PETSC_INTERN PetscErrorCode InverseMassSolve(Contact, InverseMass *, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode InverseMassDestroy(InverseMass *);

@@ -18,6 +18,16 @@ PetscErrorCode ContactGatherRows(Contact contact, const PetscReal mine[], PetscR
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Of numbers of n rows, by their numbers among those of all ranks, those of this rank's rows; others stay as they are */
+void ContactPickRows(Contact contact, PetscInt n, const PetscInt rows[], const PetscScalar of_rows[], PetscReal mine[])
+{
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscInt i = rows[k] - contact->rows.begin;
+
+    if (i >= 0 && i < contact->rows.n) mine[i] = PetscRealPart(of_rows[k]);
+  }
+}
+
 /* Which rank has all of a body, or a negative number; and whether all of its rows are there too. The same on every rank. */
 PetscErrorCode ContactIsAtHome(Contact contact, PetscInt b, PetscMPIInt *rank, PetscBool *at_home)
 {

@@ -158,11 +158,8 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   }
   PetscCall(VecGetArrayWrite(F, &f));
   PetscCall(PetscArrayzero(f, contact->rows.n));
-  for (PetscInt place = 0; place < n; place++) {
-    const PetscInt i = stepper->rows[place] - contact->rows.begin;
-
-    if (i >= 0 && i < contact->rows.n) f[i] = problem->base[place] - problem->force[place];
-  }
+  for (PetscInt place = 0; place < n; place++) stepper->gathered[place] = problem->base[place] - problem->force[place];
+  ContactPickRows(contact, n, stepper->rows, stepper->gathered, f);
   PetscCall(VecRestoreArrayWrite(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -291,11 +288,7 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   if (reason > 0) {
     PetscCall(LawProblemLetGo(&stepper->problem, CONTACT_POSITION_TOLERANCE * contact->scale.length));
-    for (PetscInt place = 0; place < stepper->problem.n; place++) {
-      const PetscInt i = stepper->rows[place] - contact->rows.begin;
-
-      if (i >= 0 && i < contact->rows.n && stepper->problem.force[place] == 0) contact->end.force[i] = 0;
-    }
+    ContactPickRows(contact, stepper->problem.n, stepper->rows, stepper->problem.force, contact->end.force);
     PetscCall(CheckSprings(contact, stepper));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

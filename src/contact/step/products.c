@@ -73,11 +73,7 @@ static PetscErrorCode Multiply(Mat S, Vec x, Vec y)
   PetscCall(PetscArrayzero(force, contact->rows.n));
   PetscCall(PetscArrayzero(way, contact->rows.n));
   PetscCall(VecGetArrayRead(x, &in));
-  for (PetscInt k = 0; k < stepper->problem.n; k++) {
-    const PetscInt i = stepper->rows[k] - contact->rows.begin;
-
-    if (i >= 0 && i < contact->rows.n) force[i] = PetscRealPart(in[k]);
-  }
+  ContactPickRows(contact, stepper->problem.n, stepper->rows, in, force);
   PetscCall(VecRestoreArrayRead(x, &in));
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (stepper->assembly.of_body[b].n) PetscCall(AddBody(stepper, b, force, way));

@@ -117,11 +117,7 @@ static PetscErrorCode SolveRows(Contact contact, ContactStepper *stepper)
              " iterations for %" PetscInt_FMT " rows; raise -law_snes_max_it, or set -contact_balanced_start false to start from the "
              "displacements as they are",
              problem->iterations, problem->n);
-  for (PetscInt k = 0; k < problem->n; k++) {
-    const PetscInt i = stepper->rows[k] - contact->rows.begin;
-
-    if (i >= 0 && i < contact->rows.n) contact->end.force[i] = PetscRealPart(problem->force[k]);
-  }
+  ContactPickRows(contact, problem->n, stepper->rows, problem->force, contact->end.force);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

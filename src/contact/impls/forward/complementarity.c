@@ -1,6 +1,6 @@
 /* Complementarity of gaps and forces of rows at one instant: the equations of the laws of rows, with a sparse C in place of S. */
 #include "complementarity.h"
-#include <impakt/private/bodymass.h>
+#include <contact/rows/inversemass.h>
 
 PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
 {
@@ -25,21 +25,12 @@ PetscErrorCode ComplementarityDestroy(Complementarity *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* C, with the rows as they are: B M^{-1} B^T of all bodies */
+/* C, with the rows as they are */
 PetscErrorCode ComplementaritySetCompliance(Contact contact, Complementarity *problem)
 {
   PetscFunctionBegin;
   PetscCall(MatDestroy(&problem->compliance));
-  PetscCall(ContactCreateRowMatrix(contact, &problem->compliance));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Mat matrix;
-
-    PetscCall(BodyComputeInverseMass(contact->bodies[b], PETSC_FALSE, &matrix));
-    PetscCall(ContactAddBodyMatrix(contact, b, matrix, problem->compliance));
-    PetscCall(MatDestroy(&matrix));
-  }
-  PetscCall(MatAssemblyBegin(problem->compliance, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(problem->compliance, MAT_FINAL_ASSEMBLY));
+  PetscCall(InverseMassAssemble(contact, PETSC_FALSE, &problem->compliance));
   problem->current = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -105,11 +96,7 @@ static PetscErrorCode Solve(Contact contact, Complementarity *problem)
                              problem->n, law->iterations));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  for (PetscInt k = 0; k < problem->n; k++) {
-    const PetscInt i = problem->rows[k] - contact->rows.begin;
-
-    if (i >= 0 && i < contact->rows.n) problem->forces[i] = PetscRealPart(law->force[k]);
-  }
+  ContactPickRows(contact, problem->n, problem->rows, law->force, problem->forces);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
