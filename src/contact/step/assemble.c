@@ -11,6 +11,17 @@
 #define ZERO      1e-14 /* entries of rows that are zero but for round-off; the largest are 1 or so */
 #define SMALL     1e-3  /* entries that are left out where S is approximate all the same, in parts of the largest of their row */
 
+static PetscErrorCode DestroyRows(StepperAssembly *assembly)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(assembly->begin));
+  PetscCall(PetscFree2(assembly->columns, assembly->values));
+  PetscCall(MatDestroy(&assembly->rows));
+  PetscCall(MatDestroy(&assembly->transpose));
+  PetscCall(MatDestroy(&assembly->product));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
 {
   PetscFunctionBegin;
@@ -27,11 +38,7 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
     PetscCall(VecDestroy(&entries->way));
   }
   PetscCall(PetscFree(assembly->of_body));
-  PetscCall(PetscFree2(assembly->begin, assembly->next));
-  PetscCall(PetscFree4(assembly->columns, assembly->body, assembly->places, assembly->values));
-  PetscCall(MatDestroy(&assembly->rows));
-  PetscCall(MatDestroy(&assembly->transpose));
-  PetscCall(MatDestroy(&assembly->product));
+  PetscCall(DestroyRows(assembly));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -45,73 +52,66 @@ static PetscReal Least(PetscBool small, PetscInt n, const PetscScalar values[])
   return PetscMax(ZERO, SMALL * largest);
 }
 
-/* How many entries each of the touching rows of a body has, and room for them */
-static PetscErrorCode CountEntries(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool small)
+/* Entries of the touching rows of a body, of which each rank has those of its rows, on all ranks. small: without those that are small. */
+static PetscErrorCode GetEntries(Contact contact, StepperEntries *entries, PetscInt b, PetscBool small)
 {
-  StepperEntries *entries = &stepper->assembly.of_body[b];
-  const PetscInt  first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
-  PetscInt       *begin = entries->begin, total;
+  const PetscInt first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
+  MPI_Comm       comm  = PetscObjectComm((PetscObject)contact);
+  PetscInt      *begin = entries->begin, total = 0;
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(begin, entries->n + 1));
-  for (PetscInt k = 0; k < entries->n; k++) {
-    const PetscScalar *values;
-    PetscReal          least;
-    PetscInt           n;
+  for (PetscInt fills = 0; fills < 2; fills++) {
+    for (PetscInt k = 0; k < entries->n; k++) {
+      const PetscInt     row = entries->rows[k], *columns;
+      const PetscScalar *values;
+      PetscReal          least;
+      PetscInt           n, at = begin[k];
 
-    if (entries->rows[k] < first || entries->rows[k] >= end) continue;
-    PetscCall(MatGetRow(contact->interfaces[b], entries->rows[k], &n, NULL, &values));
-    least = Least(small, n, values);
-    for (PetscInt e = 0; e < n; e++) begin[k + 1] += PetscAbsScalar(values[e]) > least;
-    PetscCall(MatRestoreRow(contact->interfaces[b], entries->rows[k], &n, NULL, &values));
-  }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, begin + 1, (PetscMPIInt)entries->n, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt k = 0; k < entries->n; k++) begin[k + 1] += begin[k];
-  total = begin[entries->n];
-  if (total <= entries->room) PetscFunctionReturn(PETSC_SUCCESS);
-  entries->room = 2 * total;
-  PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
-  PetscCall(PetscMalloc4(entries->room, &entries->columns, entries->room, &entries->dofs, entries->room, &entries->values, entries->room,
-                         &entries->answers));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Brings the entries of the touching rows of a body to all ranks; each rank has those of its rows. small: without those that are small. */
-static PetscErrorCode GetEntries(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool small)
-{
-  StepperEntries *entries = &stepper->assembly.of_body[b];
-  const PetscInt  first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
-  PetscMPIInt     total;
-
-  PetscFunctionBegin;
-  PetscCall(CountEntries(contact, stepper, b, small));
-  PetscCall(PetscMPIIntCast(entries->begin[entries->n], &total));
-  PetscCall(PetscArrayzero(entries->columns, total));
-  PetscCall(PetscArrayzero(entries->values, total));
-  for (PetscInt k = 0; k < entries->n; k++) {
-    const PetscInt     row = entries->rows[k], *columns;
-    const PetscScalar *values;
-    PetscReal          least;
-    PetscInt           n, at = entries->begin[k];
-
-    if (row < first || row >= end) continue;
-    PetscCall(MatGetRow(contact->interfaces[b], row, &n, &columns, &values));
-    least = Least(small, n, values);
-    for (PetscInt e = 0; e < n; e++) {
-      if (PetscAbsScalar(values[e]) <= least) continue;
-      entries->columns[at]  = columns[e];
-      entries->values[at++] = values[e];
+      if (row < first || row >= end) continue;
+      PetscCall(MatGetRow(contact->interfaces[b], row, &n, &columns, &values));
+      least = Least(small, n, values);
+      for (PetscInt e = 0; e < n; e++) {
+        if (PetscAbsScalar(values[e]) <= least) continue;
+        if (fills) entries->columns[at] = columns[e];
+        if (fills) entries->values[at++] = values[e];
+        else begin[k + 1]++;
+      }
+      PetscCall(MatRestoreRow(contact->interfaces[b], row, &n, &columns, &values));
     }
-    PetscCall(MatRestoreRow(contact->interfaces[b], row, &n, &columns, &values));
+    if (fills) break;
+    if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, begin + 1, (PetscMPIInt)entries->n, MPIU_INT, MPI_SUM, comm));
+    for (PetscInt k = 0; k < entries->n; k++) begin[k + 1] += begin[k];
+    total = begin[entries->n];
+    if (total > entries->room) {
+      entries->room = 2 * total;
+      PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
+      PetscCall(PetscMalloc4(entries->room, &entries->columns, entries->room, &entries->dofs, entries->room, &entries->values,
+                             entries->room, &entries->answers));
+    }
+    PetscCall(PetscArrayzero(entries->columns, total));
+    PetscCall(PetscArrayzero(entries->values, total));
   }
   if (contact->ranks.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->columns, total, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->values, total, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->columns, (PetscMPIInt)total, MPIU_INT, MPI_SUM, comm));
+  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->values, (PetscMPIInt)total, MPIU_SCALAR, MPIU_SUM, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for the block of a body whose nodes answer to each other, and the displacements that it is of */
+/* The displacements in which the touching rows of a body have entries, and the place of each entry among these */
+static PetscErrorCode ListDofs(StepperEntries *entries)
+{
+  const PetscInt total = entries->begin[entries->n];
+
+  PetscFunctionBegin;
+  entries->n_dofs = total;
+  PetscCall(PetscArraycpy(entries->dofs, entries->columns, total));
+  PetscCall(PetscSortRemoveDupsInt(&entries->n_dofs, entries->dofs));
+  for (PetscInt e = 0; e < total; e++) PetscCall(PetscFindInt(entries->columns[e], entries->n_dofs, entries->dofs, &entries->columns[e]));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Room for the block of a body whose nodes answer to each other */
 static PetscErrorCode BeginBlock(Contact contact, ContactStepper *stepper, PetscInt b)
 {
   StepperEntries *entries = &stepper->assembly.of_body[b];
@@ -125,11 +125,6 @@ static PetscErrorCode BeginBlock(Contact contact, ContactStepper *stepper, Petsc
     PetscCall(PetscMalloc1(entries->block_room, &entries->block));
     PetscCall(PetscMalloc1(entries->block_room, &entries->own));
   }
-  entries->n_dofs = entries->begin[n];
-  PetscCall(PetscArraycpy(entries->dofs, entries->columns, entries->n_dofs));
-  PetscCall(PetscSortRemoveDupsInt(&entries->n_dofs, entries->dofs));
-  for (PetscInt e = 0; e < entries->begin[n]; e++)
-    PetscCall(PetscFindInt(entries->columns[e], entries->n_dofs, entries->dofs, &entries->columns[e]));
   entries->corrected = PETSC_FALSE;
   PetscCall(PetscArrayzero(entries->own, n * n));
   PetscCall(BodyNodalComplianceFollows(contact->bodies[b], entries->n_dofs, &entries->follows));
@@ -165,134 +160,73 @@ PetscErrorCode ContactStepperMakeBlock(Contact contact, ContactStepper *stepper,
 }
 
 /* The entries that a body whose nodes answer to the forces on them alone has in R */
-static PetscErrorCode ScaleEntries(Contact contact, ContactStepper *stepper, PetscInt b, Vec diagonal)
+static PetscErrorCode ScaleEntries(Contact contact, StepperEntries *entries, Vec diagonal)
 {
-  StepperEntries    *entries = &stepper->assembly.of_body[b];
   const PetscScalar *values;
-  PetscInt           begin, end, total;
+  PetscScalar       *roots = entries->answers;
+  PetscInt           begin, end;
 
   PetscFunctionBegin;
-  if (!entries->n) PetscFunctionReturn(PETSC_SUCCESS);
-  total = entries->begin[entries->n];
   PetscCall(VecGetOwnershipRange(diagonal, &begin, &end));
   PetscCall(VecGetArrayRead(diagonal, &values));
-  for (PetscInt e = 0; e < total; e++)
-    entries->answers[e] = entries->columns[e] >= begin && entries->columns[e] < end ? values[entries->columns[e] - begin] : 0;
+  for (PetscInt d = 0; d < entries->n_dofs; d++)
+    roots[d] = entries->dofs[d] >= begin && entries->dofs[d] < end ? PetscSqrtScalar(values[entries->dofs[d] - begin]) : 0;
   PetscCall(VecRestoreArrayRead(diagonal, &values));
   if (contact->ranks.size > 1)
     PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, entries->answers, (PetscMPIInt)total, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  for (PetscInt e = 0; e < total; e++) entries->values[e] *= PetscSqrtScalar(entries->answers[e]);
+        MPI_Allreduce(MPI_IN_PLACE, roots, (PetscMPIInt)entries->n_dofs, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  for (PetscInt e = 0; e < entries->begin[entries->n]; e++) entries->values[e] *= roots[entries->columns[e]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for the rows of R, and where each begins; `same`: where they did */
-static PetscErrorCode CountRows(const ContactStepper *stepper, StepperAssembly *assembly, PetscBool *same)
+/* R R^T. Columns of R are the displacements in which rows have entries, those of one body behind those of another. */
+static PetscErrorCode MultiplyRows(PetscInt n, StepperAssembly *assembly)
 {
-  const PetscInt n = stepper->problem.n;
+  PetscInt    *begin, *columns, total, n_columns = 0;
+  PetscScalar *values;
+  PetscBool    same = (PetscBool)(assembly->rows && assembly->n == n);
 
   PetscFunctionBegin;
-  *same = (PetscBool)(assembly->product && assembly->n == n);
-  if (n > assembly->row_room) {
-    assembly->row_room = 2 * n;
-    PetscCall(PetscFree2(assembly->begin, assembly->next));
-    PetscCall(PetscMalloc2(assembly->row_room + 1, &assembly->begin, assembly->row_room + 1, &assembly->next));
-  }
-  PetscCall(PetscArrayzero(assembly->next, n + 1));
+  PetscCall(PetscCalloc1(n + 2, &begin));
   for (PetscInt b = 0; b < assembly->n_bodies; b++) {
     const StepperEntries *entries = &assembly->of_body[b];
 
-    for (PetscInt k = 0; entries->alone && k < entries->n; k++)
-      assembly->next[entries->places[k] + 1] += entries->begin[k + 1] - entries->begin[k];
+    for (PetscInt k = 0; k < entries->n && entries->alone; k++) begin[entries->places[k] + 2] += entries->begin[k + 1] - entries->begin[k];
   }
-  for (PetscInt k = 0; k < n; k++) assembly->next[k + 1] += assembly->next[k];
-  if (*same) PetscCall(PetscArraycmp(assembly->next, assembly->begin, n + 1, same));
-  PetscCall(PetscArraycpy(assembly->begin, assembly->next, n + 1));
-  assembly->n = n;
-  if (assembly->begin[n] <= assembly->room) PetscFunctionReturn(PETSC_SUCCESS);
-  assembly->room = 2 * assembly->begin[n];
-  PetscCall(PetscFree4(assembly->columns, assembly->body, assembly->places, assembly->values));
-  PetscCall(PetscMalloc4(assembly->room, &assembly->columns, assembly->room, &assembly->body, assembly->room, &assembly->places,
-                         assembly->room, &assembly->values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Columns of R are the displacements in which rows have entries, those of one body behind those of another */
-static PetscErrorCode NumberColumns(StepperAssembly *assembly, PetscInt *n)
-{
-  PetscFunctionBegin;
-  *n = 0;
-  PetscCall(PetscArraycpy(assembly->next, assembly->begin, assembly->n + 1));
+  for (PetscInt k = 0; k <= n; k++) begin[k + 1] += begin[k];
+  total = begin[n + 1];
+  PetscCall(PetscMalloc2(total, &columns, total, &values));
   for (PetscInt b = 0; b < assembly->n_bodies; b++) {
     const StepperEntries *entries = &assembly->of_body[b];
-    PetscInt              count   = entries->alone && entries->n ? entries->begin[entries->n] : 0;
 
-    if (!count) continue;
-    PetscCall(PetscArraycpy(entries->dofs, entries->columns, count));
-    PetscCall(PetscSortRemoveDupsInt(&count, entries->dofs));
+    if (!entries->n || !entries->alone) continue;
     for (PetscInt k = 0; k < entries->n; k++)
       for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) {
-        PetscInt *place = &assembly->places[assembly->next[entries->places[k]]++];
+        const PetscInt at = begin[entries->places[k] + 1]++; /* so that it becomes where the next row begins */
 
-        PetscCall(PetscFindInt(entries->columns[e], count, entries->dofs, place));
-        *place += *n;
+        columns[at] = n_columns + entries->columns[e];
+        values[at]  = entries->values[e];
       }
-    *n += count;
+    n_columns += entries->n_dofs;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode MultiplyRows(const ContactStepper *stepper, StepperAssembly *assembly)
-{
-  PetscBool same;
-
-  PetscFunctionBegin;
-  PetscCall(CountRows(stepper, assembly, &same));
-  PetscCall(PetscArraycpy(assembly->next, assembly->begin, assembly->n + 1));
-  for (PetscInt b = 0; b < assembly->n_bodies; b++) {
-    const StepperEntries *entries = &assembly->of_body[b];
-
-    for (PetscInt k = 0; entries->alone && k < entries->n; k++)
-      for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) {
-        const PetscInt at = assembly->next[entries->places[k]]++;
-
-        same                  = (PetscBool)(same && assembly->columns[at] == entries->columns[e] && assembly->body[at] == b);
-        assembly->columns[at] = entries->columns[e];
-        assembly->body[at]    = b;
-        assembly->values[at]  = entries->values[e];
-      }
-  }
-  if (!same) {
-    PetscInt columns;
-
-    PetscCall(MatDestroy(&assembly->rows));
-    PetscCall(MatDestroy(&assembly->transpose));
-    PetscCall(MatDestroy(&assembly->product));
-    PetscCall(NumberColumns(assembly, &columns));
-    PetscCall(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, assembly->n, columns, assembly->begin, assembly->places, assembly->values,
-                                        &assembly->rows));
-    PetscCall(MatTranspose(assembly->rows, MAT_INITIAL_MATRIX, &assembly->transpose));
-    PetscCall(MatMatMult(assembly->rows, assembly->transpose, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &assembly->product));
-  } else {
+  if (same) PetscCall(PetscArraycmp(begin, assembly->begin, n + 1, &same));
+  if (same) PetscCall(PetscArraycmp(columns, assembly->columns, total, &same));
+  if (same) {
+    PetscCall(PetscArraycpy(assembly->values, values, total));
+    PetscCall(PetscFree(begin));
+    PetscCall(PetscFree2(columns, values));
     PetscCall(PetscObjectStateIncrease((PetscObject)assembly->rows));
-    PetscCall(MatTranspose(assembly->rows, MAT_REUSE_MATRIX, &assembly->transpose));
-    PetscCall(MatProductNumeric(assembly->product));
+  } else {
+    PetscCall(DestroyRows(assembly));
+    assembly->n       = n;
+    assembly->begin   = begin;
+    assembly->columns = columns;
+    assembly->values  = values;
+    PetscCall(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n_columns, begin, columns, values, &assembly->rows));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode AddProduct(const StepperAssembly *assembly, PetscScalar S[])
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < assembly->n; i++) {
-    const PetscInt    *columns;
-    const PetscScalar *values;
-    PetscInt           n;
-
-    PetscCall(MatGetRow(assembly->product, i, &n, &columns, &values));
-    for (PetscInt e = 0; e < n; e++) S[columns[e] * assembly->n + i] += values[e];
-    PetscCall(MatRestoreRow(assembly->product, i, &n, &columns, &values));
-  }
+  PetscCall(MatTranspose(assembly->rows, same ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &assembly->transpose));
+  PetscCall(
+      MatMatMult(assembly->rows, assembly->transpose, same ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, PETSC_DETERMINE, &assembly->product));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -304,31 +238,6 @@ static PetscBool AnyBody(const StepperAssembly *assembly, PetscBool alone)
   for (PetscInt b = 0; b < assembly->n_bodies; b++)
     any = (PetscBool)(any || (assembly->of_body[b].n && assembly->of_body[b].alone == alone));
   return any;
-}
-
-/* A dense S: the one there is, where it has the size */
-static PetscErrorCode AssembleDense(ContactStepper *stepper, Mat *S)
-{
-  const PetscInt n = stepper->problem.n;
-  PetscScalar   *values;
-  PetscInt       size = -1;
-
-  PetscFunctionBegin;
-  if (!stepper->problem.sparse) PetscCall(MatGetSize(stepper->problem.S, &size, NULL));
-  *S = stepper->problem.S;
-  if (size == n) PetscCall(PetscObjectReference((PetscObject)*S));
-  else PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
-  PetscCall(MatDenseGetArrayWrite(*S, &values));
-  PetscCall(PetscArrayzero(values, n * n));
-  if (AnyBody(&stepper->assembly, PETSC_TRUE)) PetscCall(AddProduct(&stepper->assembly, values));
-  for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) {
-    const StepperEntries *entries = &stepper->assembly.of_body[b];
-
-    for (PetscInt l = 0; l < entries->n && !entries->alone; l++)
-      for (PetscInt k = 0; k < entries->n; k++) values[entries->places[l] * n + entries->places[k]] += entries->block[l * entries->n + k];
-  }
-  PetscCall(MatDenseRestoreArrayWrite(*S, &values));
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Of how many entries the blocks of bodies are, in parts of those of S */
@@ -344,22 +253,28 @@ static PetscReal BlockPart(const ContactStepper *stepper)
   return sum / ((PetscReal)stepper->problem.n * stepper->problem.n);
 }
 
-/* A sparse S that has the blocks of bodies, and R R^T where bodies answer node by node */
-static PetscErrorCode AssembleSparse(ContactStepper *stepper, Mat *S)
+/* S as a sum of R R^T and blocks. A dense one is that which there is, where it has the size. */
+static PetscErrorCode SumParts(ContactStepper *stepper, PetscBool sparse, Mat *S)
 {
   const PetscInt         n        = stepper->problem.n;
   const StepperAssembly *assembly = &stepper->assembly;
-  PetscInt              *counts; /* more than there are: two rows may share both of their bodies */
+  PetscInt              *counts, size = -1; /* more than there are: two rows may share both of their bodies */
 
   PetscFunctionBegin;
+  if (!sparse && !stepper->problem.sparse) PetscCall(MatGetSize(stepper->problem.S, &size, NULL));
   PetscCall(PetscCalloc1(n, &counts));
   for (PetscInt b = 0; b < assembly->n_bodies; b++) {
     const StepperEntries *entries = &assembly->of_body[b];
 
     for (PetscInt k = 0; k < entries->n && !entries->alone; k++) counts[entries->places[k]] += entries->n;
   }
-  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 0, counts, S));
+  *S = stepper->problem.S;
+  if (sparse) PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 0, counts, S));
+  else if (size != n) PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
+  else PetscCall(PetscObjectReference((PetscObject)*S));
   PetscCall(PetscFree(counts));
+  PetscCall(MatZeroEntries(*S));
+  PetscCall(MatSetOption(*S, MAT_ROW_ORIENTED, PETSC_FALSE));
   for (PetscInt b = 0; b < assembly->n_bodies; b++) {
     const StepperEntries *entries = &assembly->of_body[b];
 
@@ -368,7 +283,8 @@ static PetscErrorCode AssembleSparse(ContactStepper *stepper, Mat *S)
   }
   PetscCall(MatAssemblyBegin(*S, MAT_FINAL_ASSEMBLY));
   PetscCall(MatAssemblyEnd(*S, MAT_FINAL_ASSEMBLY));
-  if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MatAXPY(*S, 1, assembly->product, DIFFERENT_NONZERO_PATTERN));
+  if (AnyBody(assembly, PETSC_TRUE))
+    PetscCall(MatAXPY(*S, 1, assembly->product, sparse ? DIFFERENT_NONZERO_PATTERN : SUBSET_NONZERO_PATTERN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -386,12 +302,13 @@ static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
     PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
     PetscCall(BodyIsLinear(contact->bodies[b], &linear));
     PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
-    PetscCall(GetEntries(contact, stepper, b, (PetscBool)(is_explicit && !linear && !diagonal)));
+    PetscCall(GetEntries(contact, &assembly->of_body[b], b, (PetscBool)(is_explicit && !linear && !diagonal)));
+    PetscCall(ListDofs(&assembly->of_body[b]));
     assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
-    if (diagonal) PetscCall(ScaleEntries(contact, stepper, b, diagonal));
+    if (diagonal) PetscCall(ScaleEntries(contact, &assembly->of_body[b], diagonal));
     else PetscCall(BeginBlock(contact, stepper, b));
   }
-  if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MultiplyRows(stepper, assembly));
+  if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MultiplyRows(stepper->problem.n, assembly));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -418,8 +335,7 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
     S = assembly->product;
     if (stepper->penalty.any) PetscCall(MatDuplicate(assembly->product, MAT_COPY_VALUES, &S));
     else PetscCall(PetscObjectReference((PetscObject)S));
-  } else if (n > MANY_ROWS && BlockPart(stepper) <= SPARSE) PetscCall(AssembleSparse(stepper, &S));
-  else PetscCall(AssembleDense(stepper, &S));
+  } else PetscCall(SumParts(stepper, (PetscBool)(n > MANY_ROWS && BlockPart(stepper) <= SPARSE), &S));
   PetscCall(ContactStepperAddTurns(contact, stepper, S));
   if (!near) PetscCall(ContactStepperAddSprings(stepper, S));
   PetscCall(LawProblemTakeS(&stepper->problem, &S, near ? &near : NULL));

@@ -42,7 +42,7 @@ typedef struct {
   PetscInt      *begin;             /* per row: its first entry; n + 1 */
   PetscScalar   *product;           /* work space: two per row */
   PetscInt       n_dofs, *dofs;     /* displacements in which rows have entries, ascending */
-  PetscInt      *columns;           /* per entry: the displacement; of a body with a block, its place in `dofs` */
+  PetscInt      *columns;           /* per entry: the place of the displacement in `dofs` */
   PetscScalar   *values, *answers;  /* per entry, with the sign by which the row's gap goes with the body; work space */
   PetscInt       block_room;        /* room for the block */
   PetscScalar   *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
@@ -58,10 +58,8 @@ typedef struct {
   PetscInt        n_bodies;
   PetscInt64      of_state; /* of rows, of which bodies have been asked last */
   StepperEntries *of_body;
-  /* R, the rows of bodies whose nodes answer alone */
-  PetscInt     n, row_room, room;       /* rows; room for rows, and for entries */
-  PetscInt    *begin, *next;            /* per row: its first entry; n + 1; work space */
-  PetscInt    *columns, *body, *places; /* per entry: the displacement, of which body, and the column of R */
+  /* R, the rows of bodies whose nodes answer alone: where each of n begins, and per entry */
+  PetscInt     n, *begin, *columns;
   PetscScalar *values;
   Mat          rows, transpose, product; /* R, R^T, R R^T */
 } StepperAssembly;
