@@ -155,6 +155,7 @@ PETSC_INTERN PetscErrorCode ContactCreateTransfer(Contact, ContactPair *);
 PETSC_INTERN PetscErrorCode ContactNumberBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyBodyRows(Contact);
 PETSC_INTERN PetscErrorCode ContactOrderVisits(Contact);
+PETSC_INTERN PetscErrorCode ContactReduce(Contact, PetscInt, MPI_Datatype, MPI_Op, void *);
 PETSC_INTERN PetscErrorCode ContactGatherRows(Contact, const PetscReal[], PetscReal[]);
 PETSC_INTERN void           ContactPickRows(Contact, PetscInt, const PetscInt[], const PetscScalar[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactIsAtHome(Contact, PetscInt, PetscMPIInt *, PetscBool *);

@@ -126,7 +126,7 @@ PetscErrorCode ContactAgree(Contact contact)
   if (!contact->attempt.local) PetscFunctionReturn(PETSC_SUCCESS);
   contact->attempt.local  = PETSC_FALSE;
   contact->attempt.failed = PETSC_INT_MAX;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &failed, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_INT, MPI_MIN, &failed));
   if (failed == PETSC_INT_MAX) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetMeshRank(contact->bodies[failed], &rank));
   PetscCall(BodyGetStepProperties(contact->bodies[failed], &properties));

@@ -19,8 +19,7 @@ PetscErrorCode ContactSumStored(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++) energy += (*contact->ops->stored)(contact, i, contact->end.gap[i]);
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &energy, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_SUM, &energy));
   contact->resultants.penalty_energy = energy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,9 +91,7 @@ static PetscErrorCode AddUp(Contact contact, PetscReal sums[])
   PetscFunctionBegin;
   for (PetscInt i = 0; i < contact->rows.n; i++)
     sums[2 * contact->rows.pair[i] + 1] += PetscMax(PetscAbsReal(contact->end.force[i]), PetscAbsReal(contact->energy.accepted_force[i]));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(2 * contact->n_pairs), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 2 * contact->n_pairs, MPIU_REAL, MPIU_SUM, sums));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -31,17 +31,16 @@ struct _n_ContactFields {
 static PetscErrorCode MakeRoom(ContactFields f)
 {
   Contact   contact = f->contact;
-  MPI_Comm  comm    = PetscObjectComm((PetscObject)contact);
   PetscReal largest = 0;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(VecDestroy(&f->rows[b]));
-    PetscCall(VecCreateMPI(comm, contact->body_rows[b].n, PETSC_DETERMINE, &f->rows[b]));
+    PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)contact), contact->body_rows[b].n, PETSC_DETERMINE, &f->rows[b]));
   }
   for (PetscInt i = 0; i < contact->rows.n; i++)
     largest = PetscMax(largest, contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &largest, 1, MPIU_REAL, MPIU_MAX, comm));
+  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_MAX, &largest));
   f->smallest = NO_AREA * largest;
   f->layouts  = contact->neighbours.layouts;
   PetscFunctionReturn(PETSC_SUCCESS);

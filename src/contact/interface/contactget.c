@@ -214,8 +214,7 @@ PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], Pets
   PetscAssertPointer(positions, 2);
   PetscAssertPointer(velocities, 3);
   for (PetscInt b = 0; b < n; b++) PetscCall(SumBodyTrace(contact, b, sums + 6 * b));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(6 * n), MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 6 * n, MPIU_REAL, MPIU_SUM, sums));
   for (PetscInt b = 0; b < n; b++)
     for (PetscInt d = 0; d < 3; d++) {
       const PetscInt nodes = contact->nodes.n_all[b];

@@ -12,7 +12,7 @@ static PetscErrorCode CountNodes(Contact contact, PetscInt *n)
   PetscFunctionBegin;
   *n = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) *n += (contact->pairs[p].end - contact->pairs[p].begin) / contact->pairs[p].components;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, n, 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_INT, MPI_SUM, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

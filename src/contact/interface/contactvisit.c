@@ -130,7 +130,7 @@ PetscErrorCode ContactRepeatsBits(Contact contact, PetscBool *sums)
   int with_rows = contact->rows.n > 0;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &with_rows, 1, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPI_INT, MPI_SUM, &with_rows));
   *sums = (PetscBool)(with_rows < 3);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,7 +22,7 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
     for (PetscInt i = pair->begin; i < pair->end; i++)
       if (contact->start.active[i] != contact->end.active[i]) found[other ? 1 : 0] = 1;
   }
-  if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, found, 2, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 2, MPI_INT, MPI_MAX, found));
   *any      = (PetscBool)(found[0] > 0);
   *left_out = (PetscBool)(found[1] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,7 +36,7 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
    ContactGetUnresolvedEnergy() tells. Collective. */
 PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
 {
-  PetscBool any, left_out;
+  PetscBool any = PETSC_FALSE, left_out = PETSC_FALSE;
   PetscReal unresolved;
 
   PetscFunctionBegin;

@@ -124,9 +124,7 @@ static PetscErrorCode FindLargestForce(Contact contact, PetscReal *largest)
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) forces[pair->body[side]] += PetscAbsReal(contact->end.force[i]);
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, forces, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, contact->n_bodies, MPIU_REAL, MPIU_SUM, forces));
   *largest = 0;
   for (PetscInt b = 0; b < contact->n_bodies; b++) *largest = PetscMax(*largest, forces[b]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -288,7 +286,7 @@ static PetscErrorCode MakeStepOfFloating(Contact contact)
     PetscCall(BodyResetSprings(contact->bodies[f->bodies[k].body]));
   }
   for (PetscInt times = 0; times < MAX_TIMES && !rest; times++) {
-    PetscReal force;
+    PetscReal force = 0;
 
     PetscCall(MakeStep(contact, (PetscBool)(times == 0)));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);

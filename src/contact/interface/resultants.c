@@ -232,9 +232,7 @@ static PetscErrorCode FindFarGaps(Contact contact, PetscInt begin, PetscInt end,
 
     for (PetscInt i = pair->begin; i < pair->end; i++) *deepest = PetscMax(*deepest, -contact->end.gap[i]);
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX,
-                               PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, N_MAXIMA * (end - begin), MPIU_REAL, MPIU_MAX, maxima));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -245,12 +243,8 @@ PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscIn
 
   PetscFunctionBegin;
   for (PetscInt p = begin; p < end; p++) PetscCall(SumPair(contact, p, sums + N_SUMS * (p - begin), maxima + N_MAXIMA * (p - begin)));
-  if (contact->ranks.size > 1 && end > begin) {
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)(N_SUMS * (end - begin)), MPIU_REAL, MPIU_SUM,
-                               PetscObjectComm((PetscObject)contact)));
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, maxima, (PetscMPIInt)(N_MAXIMA * (end - begin)), MPIU_REAL, MPIU_MAX,
-                               PetscObjectComm((PetscObject)contact)));
-  }
+  PetscCall(ContactReduce(contact, N_SUMS * (end - begin), MPIU_REAL, MPIU_SUM, sums));
+  PetscCall(ContactReduce(contact, N_MAXIMA * (end - begin), MPIU_REAL, MPIU_MAX, maxima));
   PetscCall(FindFarGaps(contact, begin, end, maxima));
   for (PetscInt p = begin; p < end; p++, sums += N_SUMS, maxima += N_MAXIMA) {
     ContactPairState *state = &states[p - begin];

@@ -129,9 +129,7 @@ static PetscErrorCode TellStates(Contact contact, ContactPairState states[])
   }
   PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, told->states));
   PetscCall(PetscArraycpy(told->sums, told->gone, CONTACT_IMPULSES * told->n));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, told->sums, (PetscMPIInt)(CONTACT_IMPULSES * told->n), MPIU_REAL, MPIU_SUM,
-                               PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, CONTACT_IMPULSES * told->n, MPIU_REAL, MPIU_SUM, told->sums));
   for (PetscInt p = 0; p < told->n; p++) BeginState(told->sums + CONTACT_IMPULSES * p, told->gone_friction + 2 * p, &states[p]);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];

@@ -260,12 +260,8 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
     friction->pair_work[contact->rows.pair[i]] += work;
     friction->pair_step[contact->rows.pair[i]] += friction->step_loss[i];
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, friction->pair_work, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_SUM,
-                               PetscObjectComm((PetscObject)contact)));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, friction->pair_step, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_SUM,
-                               PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, contact->n_pairs, MPIU_REAL, MPIU_SUM, friction->pair_work));
+  PetscCall(ContactReduce(contact, contact->n_pairs, MPIU_REAL, MPIU_SUM, friction->pair_step));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     if (friction->pair_step[p] != 0)
       PetscCall(PetscInfo(contact, "friction of %s takes %g J in the step\n", contact->pairs[p].name, (double)friction->pair_step[p]));
@@ -302,8 +298,7 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
       if (contact->end.active[first]) friction->distance[first] += way;
     }
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_MIN, &least));
   contact->counts.friction_least = least;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

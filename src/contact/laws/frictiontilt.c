@@ -52,8 +52,7 @@ PetscErrorCode ContactNoteTilt(Contact contact)
     PetscCall(TransferGetTilts(pair->transfer, contact->work.tilts));
     PetscCall(GetLinearTurn(contact, pair, &turn));
     AddTilts(contact, pair, turn, contact->work.tilts, sums);
-    if (contact->ranks.size > 1)
-      PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+    PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_SUM, sums));
     if (sums[1] > 0) contact->counts.friction_tilt = PetscMax(contact->counts.friction_tilt, sums[0] / sums[1]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);

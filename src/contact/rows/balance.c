@@ -39,7 +39,7 @@ static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt
       for (PetscInt d = 0; d < contact->dim; d++) square += PetscSqr(a[d] - b[d]);
       if (square < PetscSqr(edge)) *bend = PetscMax(*bend, PetscSqrtReal(square));
     }
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, bend, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_MAX, bend));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -62,9 +62,7 @@ static PetscErrorCode MeasurePairs(Contact contact, PetscReal off[])
     if (ahead) PetscCall(MeasureOff(contact, &contact->pairs[p], &off[p]));
     any = (PetscBool)(any || ahead);
   }
-  if (any && contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, off, (PetscMPIInt)contact->n_pairs, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  if (any) PetscCall(ContactReduce(contact, contact->n_pairs, MPIU_REAL, MPIU_MAX, off));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -193,8 +193,7 @@ PetscErrorCode ContactListNearRows(Contact contact, PetscReal reach)
     PetscFunctionReturn(PETSC_SUCCESS);
   contact->rows.n_near = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(ListPair(contact, &contact->pairs[p], &smallest));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &smallest, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_MIN, &smallest));
   if (reach > smallest) {
     PetscCall(ContactListAllRows(contact));
     PetscFunctionReturn(PETSC_SUCCESS);

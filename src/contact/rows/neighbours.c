@@ -68,7 +68,7 @@ PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
     PetscCall(FindUnsuitedBody(contact->bodies[b], &of_body));
     if (of_body) first = b;
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &first, 1, MPIU_INT, MPI_MIN, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_INT, MPI_MIN, &first));
   *suits = (PetscBool)(!why && first == contact->n_bodies);
   if (why) PetscCall(PetscStrncpy(neighbours->stay, why, sizeof(neighbours->stay)));
   else if (!*suits) {

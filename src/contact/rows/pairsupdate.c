@@ -62,9 +62,7 @@ static PetscErrorCode MeasureMotion(Contact contact)
         least[MOTION_CLOSES] = -1;
     }
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, contact->work.motion, (PetscMPIInt)(CONTACT_MOTION * contact->n_pairs), MPIU_REAL, MPIU_MIN,
-                               PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, CONTACT_MOTION * contact->n_pairs, MPIU_REAL, MPIU_MIN, contact->work.motion));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,8 +120,6 @@ PetscErrorCode ContactUpdatePairs(Contact contact)
     for (PetscInt p = 0; p < contact->n_pairs; p++)
       if (contact->pairs[p].owned == (PetscBool)pass) PetscCall(RenewPair(contact, p, &updated[p]));
   /* of its own rows, and of a pair that it has to itself, each rank alone knows */
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, updated, (PetscMPIInt)contact->n_pairs, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, contact->n_pairs, MPI_INT, MPI_MAX, updated));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -46,7 +46,6 @@ PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
 /* Mean normal of the rows that have a partner opposite */
 static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
 {
-  MPI_Comm     comm    = PetscObjectComm((PetscObject)contact);
   PetscReal    sums[4] = {0};
   TransferRows rows;
 
@@ -57,7 +56,7 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
     for (PetscInt d = 0; d < contact->dim; d++) sums[d] += rows.normals[contact->dim * i + d];
     sums[3] += 1;
   }
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 4, MPIU_REAL, MPIU_SUM, comm));
+  PetscCall(ContactReduce(contact, 4, MPIU_REAL, MPIU_SUM, sums));
   for (PetscInt d = 0; d < 3; d++) pair->normal[d] = sums[3] > 0 ? sums[d] / sums[3] : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -5,7 +5,16 @@
 PetscErrorCode ContactOr(Contact contact, int *flag)
 {
   PetscFunctionBegin;
-  if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, flag, 1, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPI_INT, MPI_MAX, flag));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Of each of n numbers the sum over ranks, the least or the largest, in its place. Collective. */
+PetscErrorCode ContactReduce(Contact contact, PetscInt n, MPI_Datatype type, MPI_Op op, void *numbers)
+{
+  PetscFunctionBegin;
+  if (contact->ranks.size > 1 && n)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, numbers, (PetscMPIInt)n, type, op, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

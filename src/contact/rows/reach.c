@@ -65,7 +65,6 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
   const PetscBool gains = contact->neighbours.come_and_go;
   const PetscInt  n     = contact->n_bodies;
   PetscReal      *mean = contact->reach.mean, *spread = contact->reach.spread;
-  const MPI_Comm  comm    = PetscObjectComm((PetscObject)contact);
   const PetscReal none[3] = {0, 0, 0};
 
   PetscFunctionBegin;
@@ -84,11 +83,11 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
       if (pass) PetscCall(LookAtNodes(data, velocity, NULL, mean + 4 * b, &spread[b]));
       if (pass && gains) PetscCall(LookAtNodes(data, acceleration, NULL, none, &contact->reach.acceleration[b]));
     }
-    if (contact->ranks.size > 1 && !pass) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, mean, (PetscMPIInt)(4 * n), MPIU_REAL, MPIU_SUM, comm));
+    if (!pass) PetscCall(ContactReduce(contact, 4 * n, MPIU_REAL, MPIU_SUM, mean));
     for (PetscInt i = 0; i < 4 * n && !pass; i++)
       if (i % 4 < 3) mean[i] /= PetscMax(mean[i - i % 4 + 3], 1);
   }
-  if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, spread, (PetscMPIInt)(2 * n), MPIU_REAL, MPIU_MAX, comm));
+  PetscCall(ContactReduce(contact, 2 * n, MPIU_REAL, MPIU_MAX, spread));
   *reach = contact->reach.all = AHEAD * contact->step * TwoFastest(contact, gains);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

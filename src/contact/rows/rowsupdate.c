@@ -107,9 +107,7 @@ static PetscErrorCode FindHandingOver(Contact contact, const PetscReal before[])
     hands_over[b] = of->affected || contact->attempt.again; /* what a failed attempt has handed over counts no more */
     for (PetscInt k = 0; k < of->n && !hands_over[b]; k++) hands_over[b] = before[of->rows[k]] != contact->start.force[of->rows[k]];
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, hands_over, (PetscMPIInt)contact->n_bodies, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, contact->n_bodies, MPI_INT, MPI_MAX, hands_over));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

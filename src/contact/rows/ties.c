@@ -103,10 +103,10 @@ static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSum
       summary->worst.size = size;
       for (PetscInt d = 0; d < contact->dim; d++) summary->worst.x[d] = PetscRealPart(x[contact->rows.dof[i] + d]);
     }
-    if (!pass) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, summary->n, 4, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+    if (!pass) PetscCall(ContactReduce(contact, 4, MPIU_INT, MPI_SUM, summary->n));
   }
   PetscCall(VecRestoreArrayRead(positions, &x));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPI_DOUBLE_INT, MPI_MAXLOC, &worst));
   PetscCallMPI(MPI_Bcast(&summary->worst, sizeof(summary->worst), MPI_BYTE, worst.rank, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -56,7 +56,6 @@ static PetscReal Least(PetscBool small, PetscInt n, const PetscScalar values[])
 static PetscErrorCode GetEntries(Contact contact, StepperEntries *entries, PetscInt b, PetscBool small)
 {
   const PetscInt first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
-  MPI_Comm       comm  = PetscObjectComm((PetscObject)contact);
   PetscInt      *begin = entries->begin, total = 0;
 
   PetscFunctionBegin;
@@ -80,7 +79,7 @@ static PetscErrorCode GetEntries(Contact contact, StepperEntries *entries, Petsc
       PetscCall(MatRestoreRow(contact->interfaces[b], row, &n, &columns, &values));
     }
     if (fills) break;
-    if (contact->ranks.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, begin + 1, (PetscMPIInt)entries->n, MPIU_INT, MPI_SUM, comm));
+    PetscCall(ContactReduce(contact, entries->n, MPIU_INT, MPI_SUM, begin + 1));
     for (PetscInt k = 0; k < entries->n; k++) begin[k + 1] += begin[k];
     total = begin[entries->n];
     if (total > entries->room) {
@@ -92,9 +91,8 @@ static PetscErrorCode GetEntries(Contact contact, StepperEntries *entries, Petsc
     PetscCall(PetscArrayzero(entries->columns, total));
     PetscCall(PetscArrayzero(entries->values, total));
   }
-  if (contact->ranks.size == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->columns, (PetscMPIInt)total, MPIU_INT, MPI_SUM, comm));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, entries->values, (PetscMPIInt)total, MPIU_SCALAR, MPIU_SUM, comm));
+  PetscCall(ContactReduce(contact, total, MPIU_INT, MPI_SUM, entries->columns));
+  PetscCall(ContactReduce(contact, total, MPIU_SCALAR, MPIU_SUM, entries->values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -172,9 +170,7 @@ static PetscErrorCode ScaleEntries(Contact contact, StepperEntries *entries, Vec
   for (PetscInt d = 0; d < entries->n_dofs; d++)
     roots[d] = entries->dofs[d] >= begin && entries->dofs[d] < end ? PetscSqrtScalar(values[entries->dofs[d] - begin]) : 0;
   PetscCall(VecRestoreArrayRead(diagonal, &values));
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, roots, (PetscMPIInt)entries->n_dofs, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, entries->n_dofs, MPIU_SCALAR, MPIU_SUM, roots));
   for (PetscInt e = 0; e < entries->begin[entries->n]; e++) entries->values[e] *= roots[entries->columns[e]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -26,7 +26,7 @@ PetscErrorCode ContactStepperGetFlatHit(Contact contact, PetscInt b, PetscReal *
       for (PetscInt i = 0; i < 9; i++) sums[4 + i] += area * normal[i / 3] * normal[i % 3];
     }
   }
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 13, MPIU_REAL, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 13, MPIU_REAL, MPI_SUM, sums));
   if (sums[0] == 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt d = 0; d < 3; d++) way += PetscSqr(sums[1 + d]);
   PetscCallBLAS("LAPACKsyev", LAPACKsyev_("N", "L", &three, sums + 4, &three, values, work, &room, &info));

@@ -174,8 +174,7 @@ PetscErrorCode ContactStepperAcceptGlue(Contact contact, ContactStepper *stepper
   if (!ContactGlueBreaks(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArraycpy(stepper->history, stepper->grown, ROW_LAW_HISTORY * contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) sum += contact->energy.broken[i];
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_SUM, &sum));
   contact->counts.glue_loss += sum;
   if (sum != 0) PetscCall(PetscInfo(contact, "damage of glue takes %g J in the step\n", (double)sum));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -92,9 +92,7 @@ PetscErrorCode ContactStepperAdvance(Contact contact, ContactStepper *stepper)
       moves[b] = contact->end.force[i] != stepper->given[i];
     }
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(
-        MPI_Allreduce(MPI_IN_PLACE, moves, (PetscMPIInt)contact->n_bodies, MPI_INT, MPI_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, contact->n_bodies, MPI_INT, MPI_MAX, moves));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     stepper->rests[b] = (PetscBool)!moves[b];
     if (moves[b]) PetscCall((*stepper->rules[b]->load)(contact, stepper, b));

@@ -85,8 +85,7 @@ PetscErrorCode ContactMonitorStep(Contact contact, const ContactStepper *stepper
     counts[0] += stepper->joins[i] && contact->end.force[i] > 0;
     counts[1] += contact->start.active[i] && !(contact->end.force[i] > 0) && !contact->rows.tied[i];
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, counts, 2, MPI_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 2, MPI_INT, MPI_SUM, counts));
   PetscCall(ContactGetTime(contact, &time));
   StatusLineBreak();
   PetscCall(PetscViewerASCIIPrintf(viewer, "step that ends at %.9g%s: %s in %" PetscInt_FMT " passes; %d rows joined, %d left\n",

@@ -239,9 +239,7 @@ static PetscErrorCode FindScales(Contact contact, ContactStepper *stepper)
 
     if (stepper->touches[i]) *scale = PetscMax(*scale, PetscAbsReal(contact->step * stepper->rate[i]));
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, stepper->scale, (PetscMPIInt)contact->n_bodies, MPIU_REAL, MPIU_MAX,
-                               PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, contact->n_bodies, MPIU_REAL, MPIU_MAX, stepper->scale));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

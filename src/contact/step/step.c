@@ -107,8 +107,7 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
   if (!contact->energy.takes) PetscFunctionReturn(PETSC_SUCCESS);
   sums[0] = stepper->step_loss;
   sums[1] = stepper->step_force;
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_SUM, sums));
   stepper->step_loss  = sums[0];
   stepper->step_force = sums[1];
   PetscCall(PetscInfo(contact, "closed rows take %g J in the step\n", (double)stepper->step_loss));

@@ -302,8 +302,7 @@ static PetscErrorCode JoinNext(Contact contact, ContactStepper *stepper, PetscIn
     row     = i;
   }
   least = nearest;
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &least, 1, MPIU_REAL, MPIU_MIN, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_MIN, &least));
   *joined = (PetscBool)(least < largest);
   if (row >= 0 && nearest == least) stepper->touches[row] = stepper->joins[row] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -75,8 +75,7 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
     PetscCall(TraceGetLevel(contact->traces[DirichletBody(pair)].displacement, 0, &start));
     sums[1] += PetscSqr(start[i - DirichletShift(pair)]);
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_SUM, sums));
   *change   = PetscSqrtReal(sums[0]);
   *position = PetscSqrtReal(sums[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -98,8 +97,7 @@ static PetscErrorCode FindStall(Contact contact)
     sums[1] += PetscSqr(now[i]);
     last[i] = now[i];
   }
-  if (contact->ranks.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, 2, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_SUM, sums));
   part = sums[1] > 0 ? PetscSqrtReal(sums[0] / sums[1]) : PETSC_INFINITY;
   if (alternation->stall.sweeps > STALL_FROM && alternation->change >= alternation->stall.least && part <= STEADY_FORCE)
     alternation->stall.steady++;

@@ -94,7 +94,7 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
     worst[1] = PetscMax(worst[1], compliance[1][i] * damper);
   }
   PetscCall(PetscFree3(compliance[0], compliance[1], bound));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, worst, 2, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_MAX, worst));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
