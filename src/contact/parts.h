@@ -62,6 +62,15 @@ static inline PetscInt ContactNumberPair(Contact contact, PetscInt first, PetscI
   return first * (contact->n_bodies + contact->n_obstacles) + second;
 }
 
+/* What a body says of itself, without an error: by BodyIsStatic(), BodyIsRigid(), BodyIsLinear(), ... */
+static inline PetscBool BodyDoes(Body body, PetscErrorCode (*say)(Body, PetscBool *))
+{
+  PetscBool does = PETSC_FALSE;
+
+  PetscCallAbort(PETSC_COMM_SELF, (*say)(body, &does));
+  return does;
+}
+
 PETSC_INTERN PetscErrorCode    ContactWarnOfStages(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode    ContactGetStage(Body, PetscReal[2]);
 PETSC_INTERN PetscErrorCode    ContactGetTransit(Body, PetscReal, PetscReal *, PetscReal *);

@@ -32,12 +32,8 @@ PetscErrorCode ContactLeaveOutStatic(Contact contact)
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool is_static;
-
-    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
-    if (is_static) energy->group_work[energy->group[b]] = 0;
-  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    if (BodyDoes(contact->bodies[b], BodyIsStatic)) energy->group_work[energy->group[b]] = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,13 +12,8 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
 
 PetscErrorCode ContactBodyHasMass(Body body, PetscBool *has)
 {
-  PetscBool massless, without_inertia, rigid;
-
   PetscFunctionBegin;
-  PetscCall(BodyIsRigid(body, &rigid));
-  PetscCall(BodyIsRedistributed(body, &massless));
-  PetscCall(BodyIsStatic(body, &without_inertia));
-  *has = (PetscBool)(!massless && !without_inertia && !rigid);
+  *has = (PetscBool)(!BodyDoes(body, BodyIsRedistributed) && !BodyDoes(body, BodyIsStatic) && !BodyDoes(body, BodyIsRigid));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -13,11 +13,9 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
     PetscBool          other = PETSC_FALSE;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-      PetscBool massless, is_static;
+      const Body body = contact->bodies[pair->body[side]];
 
-      PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
-      PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-      if (!massless || is_static) other = PETSC_TRUE;
+      if (!BodyDoes(body, BodyIsRedistributed) || BodyDoes(body, BodyIsStatic)) other = PETSC_TRUE;
     }
     for (PetscInt i = pair->begin; i < pair->end; i++)
       if (contact->start.active[i] != contact->end.active[i]) found[other ? 1 : 0] = 1;

@@ -48,12 +48,9 @@ PetscErrorCode ContactSetUpSprings(Contact contact)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const Body body = contact->bodies[b];
-    PetscBool  is_static, rigid;
     PetscReal  stiffness;
 
-    PetscCall(BodyIsStatic(body, &is_static));
-    PetscCall(BodyIsRigid(body, &rigid));
-    if (!is_static || rigid) continue;
+    if (!BodyDoes(body, BodyIsStatic) || BodyDoes(body, BodyIsRigid)) continue;
     PetscCall(BodyGetLeastStiffness(body, &stiffness));
     least = PetscMin(least, stiffness);
   }

@@ -118,12 +118,8 @@ PetscErrorCode ContactGetResolvedStep(Contact contact, PetscReal *step, size_t s
     PetscReal          of_pair = 0;
     char               why[256];
 
-    for (PetscInt s = 0; s < (pair->obstacle ? 1 : 2); s++) {
-      PetscBool is_static;
-
-      PetscCall(BodyIsStatic(contact->bodies[pair->body[s]], &is_static));
-      if (is_static) inertia = PETSC_FALSE;
-    }
+    for (PetscInt s = 0; s < (pair->obstacle ? 1 : 2); s++)
+      if (BodyDoes(contact->bodies[pair->body[s]], BodyIsStatic)) inertia = PETSC_FALSE;
     if (!inertia || ContactPairTies(pair)) continue;
     PetscCall(GetPairStep(contact, pair, &of_pair, sizeof(why), why));
     if (of_pair >= *step) continue;

@@ -68,11 +68,9 @@ PetscErrorCode ContactSetUpScales(Contact contact)
   contact->scale.length = contact->scale.force = PETSC_MAX_REAL;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal extent = 0, force = PETSC_MAX_REAL;
-    PetscBool rigid;
 
     PetscCall(GetExtent(contact->bodies[b], &extent));
-    PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
-    if (!rigid || contact->n_bodies == 1) PetscCall(GetElementForce(contact->bodies[b], &force));
+    if (!BodyDoes(contact->bodies[b], BodyIsRigid) || contact->n_bodies == 1) PetscCall(GetElementForce(contact->bodies[b], &force));
     if (extent < contact->scale.length) small = ((PetscObject)contact->bodies[b])->name;
     if (extent > largest) large = ((PetscObject)contact->bodies[b])->name;
     largest               = PetscMax(largest, extent);

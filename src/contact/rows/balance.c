@@ -76,16 +76,14 @@ static PetscErrorCode Judge(Contact contact, const ContactPair *pair, PetscBool 
   for (PetscInt side = 0; side < 2 && !why[0]; side++) {
     const char *name = ((PetscObject)contact->bodies[pair->body[side]])->name;
     PetscReal   bend;
-    PetscBool   is_static, is_linear;
     int         held;
 
-    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
     PetscCall(GetBend(contact, pair, side, unasked ? PETSC_MAX_REAL : EDGE, &bend));
     PetscCall(IsHeld(contact, pair->body[side], &held));
-    linear    = (PetscBool)(linear && is_linear);
+    linear    = (PetscBool)(linear && BodyDoes(contact->bodies[pair->body[side]], BodyIsLinear));
     both_held = (PetscBool)(both_held && held);
-    if (is_static) PetscCall(PetscSNPrintf(why, size, "has a body without inertia, '%s'", name));
+    if (BodyDoes(contact->bodies[pair->body[side]], BodyIsStatic))
+      PetscCall(PetscSNPrintf(why, size, "has a body without inertia, '%s'", name));
     else if (bend > COARSE)
       PetscCall(PetscSNPrintf(why, size,
                               "has faces of body '%s' that bend by up to %.3g degrees; refine its surface until that is 11.5 or less", name,
@@ -144,14 +142,13 @@ static PetscErrorCode GetStiffness(Contact contact, const ContactPair *pair, Pet
   PetscFunctionBegin;
   for (PetscInt side = 0; side < 2; side++) {
     PetscReal of_element, size, thickness;
-    PetscBool rigid;
 
-    PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &rigid));
     PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_ELEMENT_STIFFNESS, &of_element));
     PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_ELEMENT_SIZE, &size));
     PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_CROSS_SECTION, &thickness));
     *edge = PetscMax(*edge, size);
-    if (!rigid) softness += 1 / (of_element * size * (contact->dim == 2 ? thickness : size));
+    if (!BodyDoes(contact->bodies[pair->body[side]], BodyIsRigid))
+      softness += 1 / (of_element * size * (contact->dim == 2 ? thickness : size));
   }
   *stiffness = 1 / softness;
   PetscFunctionReturn(PETSC_SUCCESS);

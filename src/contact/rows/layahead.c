@@ -18,11 +18,8 @@ static PetscErrorCode LaysAhead(Contact contact, const ContactPair *pair, PetscB
   if (pair->bonded || contact->ahead[pair->body[0]] != 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < 2 && !pair->obstacle && !*ahead; side++) {
     const Body body = contact->bodies[pair->body[side]];
-    PetscBool  is_linear, is_rigid;
 
-    PetscCall(BodyIsLinear(body, &is_linear));
-    PetscCall(BodyIsRigid(body, &is_rigid));
-    if (!is_linear && !is_rigid) PetscCall(ContactPairStartsAnew(contact, pair, ahead));
+    if (!BodyDoes(body, BodyIsLinear) && !BodyDoes(body, BodyIsRigid)) PetscCall(ContactPairStartsAnew(contact, pair, ahead));
   }
   if (!pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ObstacleGetType(pair->obstacle, &type));

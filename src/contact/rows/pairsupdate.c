@@ -19,12 +19,8 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   *any = PETSC_FALSE;
   if (pair->obstacle || contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < 2; side++) {
-    PetscBool is_static, is_linear;
-
-    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    if (is_static) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
-    linear = (PetscBool)(linear && is_linear);
+    if (BodyDoes(contact->bodies[pair->body[side]], BodyIsStatic)) PetscFunctionReturn(PETSC_SUCCESS);
+    linear = (PetscBool)(linear && BodyDoes(contact->bodies[pair->body[side]], BodyIsLinear));
   }
   for (PetscInt i = pair->begin; i < pair->end; i += pair->components)
     touches[(i - pair->begin) / pair->components] = contact->start.active[i];

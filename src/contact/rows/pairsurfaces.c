@@ -187,13 +187,12 @@ static PetscErrorCode CheckSelf(Contact contact, const ContactPair *pair)
   const SurfaceData *data[2];
   PetscInt          *first, place;
   int                common = 0;
-  PetscBool          rigid;
 
   PetscFunctionBegin;
   if (pair->obstacle || pair->body[0] != pair->body[1]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyIsRigid(contact->bodies[pair->body[0]], &rigid));
   PetscCheck(
-      !rigid && !contact->prescribes && contact->dim > 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      !BodyDoes(contact->bodies[pair->body[0]], BodyIsRigid) && !contact->prescribes && contact->dim > 1,
+      PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
       "-contact_pairs %s: a body touches itself where it deforms, in two or three dimensions, and by forces on its surfaces: leave the "
       "pair out for rigid bodies and bars, and choose -contact_type schwarz in place of alternation",
       pair->name);
@@ -272,14 +271,12 @@ static PetscBool IsCurved(Contact contact, const ContactPair *pair, PetscBool in
 /* The modulus E / (1 - nu^2) by which a body gives way where another one is pressed on it [Pa]; infinite, if it is rigid */
 static PetscErrorCode GetContactModulus(Body body, PetscReal *modulus)
 {
-  PetscBool rigid;
   PetscReal poisson;
   Material  material;
 
   PetscFunctionBegin;
-  PetscCall(BodyIsRigid(body, &rigid));
   *modulus = PETSC_INFINITY;
-  if (rigid) PetscFunctionReturn(PETSC_SUCCESS);
+  if (BodyDoes(body, BodyIsRigid)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetSurfaceMaterial(body, &material));
   PetscCall(MaterialGetYoungsModulus(material, modulus));
   PetscCall(MaterialGetPoissonsRatio(material, &poisson));
@@ -314,12 +311,8 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    PetscBool is_static, is_linear;
-
-    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    inertia = (PetscBool)(inertia && !is_static);
-    PetscCall(BodyIsLinear(contact->bodies[pair->body[side]], &is_linear));
-    linear = (PetscBool)(linear && is_linear);
+    inertia = (PetscBool)(inertia && !BodyDoes(contact->bodies[pair->body[side]], BodyIsStatic));
+    linear  = (PetscBool)(linear && BodyDoes(contact->bodies[pair->body[side]], BodyIsLinear));
     if (!pair->obstacle && contact->dim > 1) PetscCall(ContactGetBoundary(contact, pair->body[side], &options.boundaries[side]));
     if (contact->setup) PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
   }

@@ -23,11 +23,9 @@ PetscErrorCode ContactPairStartsAnew(Contact contact, const ContactPair *pair, P
   PetscFunctionBegin;
   *anew = (PetscBool)(pair->obstacle || pair->rests);
   for (PetscInt side = 0; side < 2 && *anew && !pair->obstacle; side++) {
-    PetscBool is_static, is_rigid;
+    const Body body = contact->bodies[pair->body[side]];
 
-    PetscCall(BodyIsStatic(contact->bodies[pair->body[side]], &is_static));
-    PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &is_rigid));
-    *anew = (PetscBool)(is_static || is_rigid);
+    *anew = (PetscBool)(BodyDoes(body, BodyIsStatic) || BodyDoes(body, BodyIsRigid));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

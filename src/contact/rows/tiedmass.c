@@ -62,21 +62,16 @@ static PetscErrorCode LeaveOutMixed(Contact contact)
 /* The forces of explicit bodies act in the step that follows: methods that find forces solve their ties at once, or nodes are massless */
 static PetscErrorCode LeaveOutExplicit(Contact contact)
 {
-  PetscBool suits = contact->sideless, is_explicit;
+  PetscBool suits = contact->sideless;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs && suits; p++) {
     const Body body = contact->bodies[contact->pairs[p].body[0]];
-    PetscBool  single;
 
-    PetscCall(BodyIsExplicit(body, &is_explicit));
-    PetscCall(BodyRequestsControllerStep(body, &single));
-    suits = (PetscBool)(contact->pairs[p].keeps_mass && is_explicit && single);
+    suits = (PetscBool)(contact->pairs[p].keeps_mass && BodyDoes(body, BodyIsExplicit) && BodyDoes(body, BodyRequestsControllerStep));
   }
-  for (PetscInt p = 0; p < contact->n_pairs && !suits; p++) {
-    PetscCall(BodyIsExplicit(contact->bodies[contact->pairs[p].body[0]], &is_explicit));
-    if (is_explicit) contact->pairs[p].keeps_mass = PETSC_FALSE;
-  }
+  for (PetscInt p = 0; p < contact->n_pairs && !suits; p++)
+    if (BodyDoes(contact->bodies[contact->pairs[p].body[0]], BodyIsExplicit)) contact->pairs[p].keeps_mass = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

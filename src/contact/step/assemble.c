@@ -291,14 +291,13 @@ static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool is_explicit, linear;
-    Vec       diagonal;
+    const Body body = contact->bodies[b];
+    Vec        diagonal;
 
     if (!assembly->of_body[b].n) continue;
-    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
-    PetscCall(BodyIsLinear(contact->bodies[b], &linear));
-    PetscCall(BodyGetNodalDiagonal(contact->bodies[b], stepper->rules[b]->shape, &diagonal));
-    PetscCall(GetEntries(contact, &assembly->of_body[b], b, (PetscBool)(is_explicit && !linear && !diagonal)));
+    PetscCall(BodyGetNodalDiagonal(body, stepper->rules[b]->shape, &diagonal));
+    PetscCall(GetEntries(contact, &assembly->of_body[b], b,
+                         (PetscBool)(BodyDoes(body, BodyIsExplicit) && !BodyDoes(body, BodyIsLinear) && !diagonal)));
     PetscCall(ListDofs(&assembly->of_body[b]));
     assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
     if (diagonal) PetscCall(ScaleEntries(contact, &assembly->of_body[b], diagonal));

@@ -103,8 +103,7 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(BodyIsLinear(contact->bodies[b], &one));
-  one = (PetscBool)(one && StepperSecantHolds(n, force, product, problem->resolution));
+  one = (PetscBool)(BodyDoes(contact->bodies[b], BodyIsLinear) && StepperSecantHolds(n, force, product, problem->resolution));
   PetscCall(StepperSecantCorrect(entries, force, product, one, problem));
   stepper->assembled = -1;
   if (!one && off <= SURE * problem->resolution) { /* for this step alone: the next one makes the block anew */

@@ -23,15 +23,10 @@ PetscErrorCode ContactStepperSetUpRules(Contact contact, ContactStepper *stepper
     impulse[s] = (PetscBool)(impulse[s] || needs);
     mass[s]    = (PetscBool)(mass[s] || has);
   }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool is_static;
-
-    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
-    if (is_static && !mass[set[b]]) impulse[set[b]] = PETSC_FALSE; /* rigid bodies among those without inertia */
-  }
+  for (PetscInt b = 0; b < contact->n_bodies; b++) /* rigid bodies among those without inertia */
+    if (BodyDoes(contact->bodies[b], BodyIsStatic) && !mass[set[b]]) impulse[set[b]] = PETSC_FALSE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const char *name = ((PetscObject)contact->bodies[b])->name;
-    PetscBool   is_static;
 
     stepper->rules[b] = stepper->asked ? stepper->asked : impulse[set[b]] ? &ContactRuleImpulse : &ContactRuleLinear;
     if (!contact->neighbours.come_and_go && !contact->body_rows[b].n_all) continue;
@@ -39,8 +34,8 @@ PetscErrorCode ContactStepperSetUpRules(Contact contact, ContactStepper *stepper
                                     (PetscBool)(mass[set[b]] && contact->impulses && stepper->rules[b]->shape == BODY_FORCE_LINEAR),
                                     "-contact_rule linear: contact nodes with mass whose gaps are closed at the ends of steps swing and "
                                     "gain energy; choose impulse, or set -<body>_mass_redistribute true"));
-    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
-    PetscCheck(!is_static || stepper->rules[b]->shape == BODY_FORCE_LINEAR, PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
+    PetscCheck(!BodyDoes(contact->bodies[b], BodyIsStatic) || stepper->rules[b]->shape == BODY_FORCE_LINEAR,
+               PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP,
                "-contact_rule impulse is about velocities, and body '%s' is static; set -<body>_mass_redistribute true for the bodies that "
                "it may touch, or give '%s' inertia (-%s_ts_type alpha2)",
                name, name, name);

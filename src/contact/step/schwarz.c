@@ -67,12 +67,8 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   floating = (PetscBool)(contact->floating.n > 0);
   for (PetscInt k = 0; k < contact->floating.n; k++) floating = (PetscBool)(floating && contact->floating.bodies[k].state.linear);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool is_static, linear;
-
-    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
-    PetscCall(BodyIsLinear(contact->bodies[b], &linear));
-    any_static = (PetscBool)(any_static || is_static);
-    all_linear = (PetscBool)(all_linear && linear);
+    any_static = (PetscBool)(any_static || BodyDoes(contact->bodies[b], BodyIsStatic));
+    all_linear = (PetscBool)(all_linear && BodyDoes(contact->bodies[b], BodyIsLinear));
   }
   PetscCall(PetscCalloc4(contact->n_bodies, &stepper->rules, contact->n_bodies, &stepper->group, contact->n_bodies, &stepper->moves,
                          contact->n_bodies, &stepper->rests));

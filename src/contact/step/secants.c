@@ -179,7 +179,7 @@ PetscErrorCode ContactStepperCorrectBlock(Contact contact, ContactStepper *stepp
   StepperEntries *entries = &stepper->assembly.of_body[b];
   const PetscInt  n       = entries->n;
   StepperSecants *secants = &entries->secants;
-  PetscBool       same    = (PetscBool)(secants->n == n), linear;
+  PetscBool       same    = (PetscBool)(secants->n == n);
 
   PetscFunctionBegin;
   if (same) PetscCall(PetscArraycmp(secants->rows, entries->rows, n, &same));
@@ -188,7 +188,6 @@ PetscErrorCode ContactStepperCorrectBlock(Contact contact, ContactStepper *stepp
     PetscCall(PetscArraycpy(secants->rows, entries->rows, n));
   }
   if (same && entries->corrected) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyIsLinear(contact->bodies[b], &linear));
   PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
   for (PetscInt j = 0; j < secants->n_pairs; j++) {
     const PetscScalar *force   = secants->values + 2 * n * j;
@@ -196,7 +195,7 @@ PetscErrorCode ContactStepperCorrectBlock(Contact contact, ContactStepper *stepp
     PetscBool          one;
 
     if (!(StepperSecantMultiply(n, entries->block, force, product) > 0)) continue;
-    one = (PetscBool)(linear && StepperSecantHolds(n, force, product, stepper->problem.resolution));
+    one = (PetscBool)(BodyDoes(contact->bodies[b], BodyIsLinear) && StepperSecantHolds(n, force, product, stepper->problem.resolution));
     PetscCall(StepperSecantCorrect(entries, force, product, one, NULL));
   }
   entries->corrected = PETSC_TRUE;

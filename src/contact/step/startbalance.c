@@ -152,12 +152,8 @@ static PetscErrorCode IsNeeded(Contact contact, PetscBool *needed, PetscBool *li
   *linear = PETSC_TRUE;
   if (!contact->options.balanced_start || !(contact->n_pairs || contact->neighbours.come_and_go)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool is_static, is_linear;
-
-    PetscCall(BodyIsStatic(contact->bodies[b], &is_static));
-    if (is_static) PetscFunctionReturn(PETSC_SUCCESS);
-    PetscCall(BodyIsLinear(contact->bodies[b], &is_linear));
-    *linear = (PetscBool)(*linear && is_linear);
+    if (BodyDoes(contact->bodies[b], BodyIsStatic)) PetscFunctionReturn(PETSC_SUCCESS);
+    *linear = (PetscBool)(*linear && BodyDoes(contact->bodies[b], BodyIsLinear));
   }
   for (PetscInt b = 0; b < contact->n_bodies && !*needed; b++) PetscCall(BodyIsOutOfBalance(contact->bodies[b], needed));
   PetscFunctionReturn(PETSC_SUCCESS);

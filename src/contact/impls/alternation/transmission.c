@@ -90,18 +90,16 @@ static PetscErrorCode CheckBodies(Contact contact)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const char *name = ((PetscObject)contact->bodies[b])->name;
-    PetscBool   is_explicit, massless, rigid;
+    const Body  body = contact->bodies[b];
+    const char *name = ((PetscObject)body)->name;
 
-    PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
     PetscCheck(
-        !rigid, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+        !BodyDoes(body, BodyIsRigid), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
         "-schwarz_transmission robin and impedance put springs on the contact nodes of both bodies, and body '%s' is rigid: it takes "
         "forces; choose -schwarz_transmission dirichlet_neumann",
         name);
-    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
-    PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
-    PetscCheck(!is_explicit || massless, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+    PetscCheck(!BodyDoes(body, BodyIsExplicit) || BodyDoes(body, BodyIsRedistributed), PetscObjectComm((PetscObject)contact),
+               PETSC_ERR_USER_INPUT,
                "-schwarz_transmission robin and impedance put springs on the contact nodes, and those of the explicit body '%s' have mass, "
                "so that they do not feel them in the step in which they act; give it -%s_mass_redistribute true, or choose "
                "-schwarz_transmission dirichlet_neumann",

@@ -108,18 +108,15 @@ static PetscErrorCode CheckStabilized(Contact contact)
       ContactConstraints[contact->options.constraint]);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const char *name = ((PetscObject)contact->bodies[b])->name;
-    PetscBool   is_explicit, massless;
     PetscReal   alpha_m, alpha_f, gamma, beta;
     PetscInt    substeps;
     TS          ts;
 
-    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
     PetscCheck(
-        !is_explicit, comm, PETSC_ERR_USER_INPUT,
+        !BodyDoes(contact->bodies[b], BodyIsExplicit), comm, PETSC_ERR_USER_INPUT,
         "-contact_stabilization contact_stabilized works with implicit bodies only, and body '%s' is explicit; give it -%s_ts_type alpha2",
         name, name);
-    PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
-    PetscCheck(!massless, comm, PETSC_ERR_USER_INPUT,
+    PetscCheck(!BodyDoes(contact->bodies[b], BodyIsRedistributed), comm, PETSC_ERR_USER_INPUT,
                "-contact_stabilization contact_stabilized projects in the norm of the mass, and the contact nodes of body '%s' have none, "
                "so that they do not chatter either; set -%s_mass_redistribute false, or leave the stabilization at none",
                name, name);

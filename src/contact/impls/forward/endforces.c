@@ -12,11 +12,9 @@ PetscErrorCode StepperCheckBodies(Contact contact)
     const char        *name    = ((PetscObject)contact->bodies[pair->body[0]])->name;
 
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-      PetscBool is_explicit, massless;
+      const Body body = contact->bodies[pair->body[side]];
 
-      PetscCall(BodyIsExplicit(contact->bodies[pair->body[side]], &is_explicit));
-      PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
-      answers = (PetscBool)(answers || !is_explicit || massless);
+      answers = (PetscBool)(answers || !BodyDoes(body, BodyIsExplicit) || BodyDoes(body, BodyIsRedistributed));
     }
     PetscCheck(
         answers, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,

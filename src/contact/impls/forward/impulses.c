@@ -9,11 +9,9 @@ PetscErrorCode LagrangeSetUpImpulses(Contact contact, const char option[], Compl
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair  = &contact->pairs[p];
     const Body         first = contact->bodies[pair->body[0]], second = contact->bodies[pair->obstacle ? pair->body[0] : pair->body[1]];
-    PetscBool          massless[2];
 
-    PetscCall(BodyIsRedistributed(first, &massless[0]));
-    PetscCall(BodyIsRedistributed(second, &massless[1]));
-    PetscCheck(!massless[0] || !massless[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+    PetscCheck(!BodyDoes(first, BodyIsRedistributed) || !BodyDoes(second, BodyIsRedistributed), PetscObjectComm((PetscObject)contact),
+               PETSC_ERR_USER_INPUT,
                "%s changes velocities through the mass of the contact nodes, and those of '%s' and '%s' have none: their velocity is the "
                "change of position over the step, so that a closed gap that stays closed has no rate already. Leave the option out, or set "
                "-%s_mass_redistribute false",

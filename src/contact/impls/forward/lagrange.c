@@ -7,13 +7,11 @@ static PetscErrorCode SuitsForward(Contact contact, PetscBool *suits)
   PetscFunctionBegin;
   *suits = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool is_explicit, massless;
-    PetscInt  substeps;
+    const Body body = contact->bodies[b];
+    PetscInt   substeps;
 
-    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
-    PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
-    PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    if (!is_explicit || massless || substeps > 1) *suits = PETSC_FALSE;
+    PetscCall(BodyGetSubsteps(body, &substeps));
+    if (!BodyDoes(body, BodyIsExplicit) || BodyDoes(body, BodyIsRedistributed) || substeps > 1) *suits = PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -14,12 +14,8 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
   PetscFunctionBegin;
   if (contact->options.stabilization == CONTACT_STABILIZATION_NONE) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++) {
-      PetscBool massless;
-
-      PetscCall(BodyIsRedistributed(contact->bodies[contact->pairs[p].body[side]], &massless));
-      if (!massless) all_massless = PETSC_FALSE;
-    }
+    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++)
+      if (!BodyDoes(contact->bodies[contact->pairs[p].body[side]], BodyIsRedistributed)) all_massless = PETSC_FALSE;
   PetscCheck(!all_massless, comm, PETSC_ERR_USER_INPUT,
              "-contact_stabilization %s acts on contact nodes with mass, and all are massless here, which do not chatter; leave it at "
              "none, or set -<body>_mass_redistribute false",

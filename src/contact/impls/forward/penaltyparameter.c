@@ -46,14 +46,13 @@ static PetscErrorCode GetPairParameter(Contact contact, const ContactPair *pair,
   *scale     = penalty->scale;
   if (contact->options.constraint == CONTACT_CONSTRAINT_GAP_RATE || penalty->parameter > 0) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    PetscReal stiffness = 0;
-    PetscBool massless, rigid;
+    const Body body      = contact->bodies[pair->body[side]];
+    PetscReal  stiffness = 0;
 
-    PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_ELEMENT_STIFFNESS, &stiffness));
-    PetscCall(BodyIsRedistributed(contact->bodies[pair->body[side]], &massless));
-    PetscCall(BodyIsRigid(contact->bodies[pair->body[side]], &rigid));
-    if (!massless && !rigid) all_massless = PETSC_FALSE;
-    if (!rigid) flexibility += 1 / stiffness;
+    if (BodyDoes(body, BodyIsRigid)) continue;
+    PetscCall(BodyGetScale(body, BODY_ELEMENT_STIFFNESS, &stiffness));
+    if (!BodyDoes(body, BodyIsRedistributed)) all_massless = PETSC_FALSE;
+    flexibility += 1 / stiffness;
   }
   if (!(*scale > 0)) *scale = all_massless ? MASSLESS_SCALE : MASS_SCALE;
   *parameter = *scale / flexibility;
@@ -70,12 +69,9 @@ static PetscErrorCode GetForwardCompliance(Contact contact, PetscReal worst[2])
   PetscFunctionBegin;
   PetscCall(PetscCalloc3(contact->rows.n, &compliance[0], contact->rows.n, &compliance[1], contact->rows.n, &bound));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool is_explicit, massless;
-    PetscInt  substeps;
+    PetscInt substeps;
 
-    PetscCall(BodyIsExplicit(contact->bodies[b], &is_explicit));
-    PetscCall(BodyIsRedistributed(contact->bodies[b], &massless));
-    if (!is_explicit || massless) continue;
+    if (!BodyDoes(contact->bodies[b], BodyIsExplicit) || BodyDoes(contact->bodies[b], BodyIsRedistributed)) continue;
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
     PetscCall(BodyBoundInverseMass(contact->bodies[b], bound));
     for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
