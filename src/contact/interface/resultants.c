@@ -72,6 +72,7 @@ static PetscErrorCode SumForces(Contact contact, const ContactPair *pair, const 
   for (PetscInt j = pair->acts_begin; j < pair->acts_end; j++) {
     const PetscInt i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
 
+    if (row[i] == 0) continue; /* as most are */
     for (PetscInt d = 0; d < 3; d++) sums[d] += row[i] * contact->rows.normal[3 * i + d];
     sums[OF_NORMAL] += (ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0) * row[i];
     if (k == 0 && rows.beyond[node]) sums[OF_BEYOND] += row[i];
@@ -93,14 +94,6 @@ PetscErrorCode ContactStartImpulses(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row of this rank has a force at the start of the step or at its end */
-static PetscBool HasForce(Contact contact, const ContactPair *pair)
-{
-  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++)
-    if (contact->start.force[contact->rows.acting[k]] != 0 || contact->end.force[contact->rows.acting[k]] != 0) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
-
 /* Adds the controller step that has been accepted to the impulses */
 PetscErrorCode ContactAddImpulses(Contact contact)
 {
@@ -109,8 +102,6 @@ PetscErrorCode ContactAddImpulses(Contact contact)
     PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, *last = impulse + 3, *normal = impulse + 6, first[N_FORCES],
               end[N_FORCES];
 
-    /* nothing is added */
-    if (last[0] == 0 && last[1] == 0 && last[2] == 0 && normal[1] == 0 && !HasForce(contact, &contact->pairs[p])) continue;
     PetscCall(PetscArraycpy(first, last, 3));
     first[OF_NORMAL] = normal[1];
     if (contact->energy.changed) PetscCall(SumForces(contact, &contact->pairs[p], contact->start.force, first));
@@ -162,17 +153,6 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row of this rank touches, or has a force */
-static PetscBool IsLoaded(Contact contact, const ContactPair *pair)
-{
-  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
-    const PetscInt i = contact->rows.acting[k];
-
-    if (contact->end.active[i] || contact->end.force[i] != 0) return PETSC_TRUE;
-  }
-  return PETSC_FALSE;
-}
-
 /* This rank's sums and largest values over the rows of pair p */
 static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
 {
@@ -191,8 +171,6 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   maxima[MAX_TENSION]      = 0;
   for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactGapStride(pair))
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[contact->rows.near[k]]);
-  if (!contact->held.merger && !IsLoaded(contact, pair))
-    PetscFunctionReturn(PETSC_SUCCESS); /* moments of merged rows take a word of all ranks */
   PetscCall(TransferGetRows(pair->transfer, &rows));
   for (PetscInt j = pair->acts_begin; j < pair->acts_end; j++) {
     const PetscInt  i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
