@@ -139,18 +139,12 @@ PetscBool StepperSecantHolds(PetscInt n, const PetscScalar force[], const PetscS
 PetscErrorCode StepperSecantCorrect(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool one,
                                     LawProblem *problem)
 {
-  const PetscInt     n       = entries->n;
-  const PetscScalar *gone    = force + n;
-  PetscScalar       *change  = product + n; /* of a column */
-  PetscScalar       *S       = NULL;
-  PetscInt           leading = 0;
+  const PetscInt     n      = entries->n;
+  const PetscScalar *gone   = force + n;
+  PetscScalar       *change = product + n; /* of a column */
   PetscReal          work = 0, told_work = 0;
 
   PetscFunctionBegin;
-  if (problem && !problem->sparse) {
-    PetscCall(MatDenseGetLDA(problem->S, &leading));
-    PetscCall(MatDenseGetArray(problem->S, &S));
-  }
   for (PetscInt k = 0; k < n; k++) {
     if (one) product[k] -= gone[k];
     work += PetscRealPart(force[k] * gone[k]);
@@ -165,11 +159,9 @@ PetscErrorCode StepperSecantCorrect(StepperEntries *entries, const PetscScalar f
       entries->block[l * n + k] += change[k];
     }
     if (!problem) continue;
-    if (problem->sparse) PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
-    for (PetscInt k = 0; k < n && !problem->sparse; k++) S[j * leading + entries->places[k]] += change[k];
+    PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
     problem->diagonal[j] += PetscRealPart(change[l]);
   }
-  if (S) PetscCall(MatDenseRestoreArray(problem->S, &S));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

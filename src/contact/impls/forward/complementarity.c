@@ -49,11 +49,10 @@ static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
   PetscCall(ContactGatherRows(contact, problem->mine, problem->all));
   for (PetscInt i = 0; i < contact->rows.n_all; i++) {
     if (kind[i] == 0) continue;
-    same               = (PetscBool)(same && n < problem->n && problem->rows[n] == i);
+    same               = (PetscBool)(same && n < law->n && problem->rows[n] == i);
     problem->rows[n++] = i;
   }
-  same       = (PetscBool)(same && n == problem->n);
-  problem->n = n;
+  same = (PetscBool)(same && n == law->n);
   PetscCall(LawProblemResize(law, n));
   law->n_nodes  = n;
   law->begin[n] = n;
@@ -74,49 +73,30 @@ static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces of the rows of the problem, zero for the others; ContactFailed() tells where there are none */
-static PetscErrorCode Solve(Contact contact, Complementarity *problem)
+/* Forces of all rows, of which those that are tied pull as well; or of the active rows alone, which close gaps whatever their signs. Others
+   have none; ContactFailed() tells where there are none at all. */
+PetscErrorCode ComplementaritySolve(Contact contact, PetscBool active_alone, Complementarity *problem)
 {
   LawProblem *law = &problem->problem;
 
   PetscFunctionBegin;
+  for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = active_alone ? (problem->active[i] ? 2 : 0) : 1 + contact->rows.tied[i];
+  PetscCall(TakeRows(contact, problem));
   PetscCall(PetscArrayzero(problem->forces, contact->rows.n));
-  if (!problem->n) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!law->n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactGatherRows(contact, problem->gaps, problem->all));
-  for (PetscInt k = 0; k < problem->n; k++) {
+  for (PetscInt k = 0; k < law->n; k++) {
     law->read[k] = problem->all[problem->rows[k]];
     law->base[k] = law->force[k] = 0;
   }
   PetscCall(LawProblemSolve(law));
   contact->counts.inner_iterations += law->iterations;
-  if (!law->solved) {
+  if (law->solved) ContactPickRows(contact, law->n, problem->rows, law->force, problem->forces);
+  else
     PetscCall(StepFailureSet(&contact->attempt.failure, STEP_DIVERGED_ACTIVE_SET, PETSC_ERR_NOT_CONVERGED,
                              "The contact forces of %" PetscInt_FMT " rows that close gaps or their rates at once were not found in "
                              "%" PetscInt_FMT " iterations; choose a smaller -time_step, or raise -law_snes_max_it",
-                             problem->n, law->iterations));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  ContactPickRows(contact, problem->n, problem->rows, law->force, problem->forces);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Forces that close the gaps of the active rows, whatever their signs */
-PetscErrorCode ComplementaritySolveActive(Contact contact, Complementarity *problem)
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = problem->active[i] ? 2 : 0;
-  PetscCall(TakeRows(contact, problem));
-  PetscCall(Solve(contact, problem));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Forces of all rows, of which those that are tied pull as well */
-PetscErrorCode ComplementaritySolve(Contact contact, Complementarity *problem)
-{
-  PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) problem->mine[i] = 1 + contact->rows.tied[i];
-  PetscCall(TakeRows(contact, problem));
-  PetscCall(Solve(contact, problem));
+                             law->n, law->iterations));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

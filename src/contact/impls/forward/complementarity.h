@@ -8,7 +8,7 @@ typedef struct {
   Mat        compliance; /* C, of all rows */
   LawProblem problem;    /* the same on every rank */
   RowLaw     open, held; /* of rows that push, and of those that pull as well */
-  PetscInt   n, *rows;   /* of the problem, by their numbers among those of all ranks, ascending */
+  PetscInt  *rows;       /* of the problem, by their numbers among those of all ranks, ascending */
   PetscBool  current;    /* the problem has the C that there is, of these rows */
   PetscReal *gaps;       /* per row of this rank: what comes in [m, or m/s] */
   PetscReal *forces;     /* per row of this rank: what goes out [N, or N s] */
@@ -19,7 +19,6 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode ComplementarityCreate(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementaritySetCompliance(Contact, Complementarity *);
-PETSC_INTERN PetscErrorCode ComplementaritySolve(Contact, Complementarity *);
-PETSC_INTERN PetscErrorCode ComplementaritySolveActive(Contact, Complementarity *);
+PETSC_INTERN PetscErrorCode ComplementaritySolve(Contact, PetscBool, Complementarity *);
 PETSC_INTERN PetscErrorCode ComplementarityApply(Contact, Complementarity *, BodyStepSide, const PetscReal[3]);
 PETSC_INTERN PetscErrorCode ComplementarityDestroy(Complementarity *);

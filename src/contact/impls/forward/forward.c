@@ -43,7 +43,7 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscTime(&begin));
-  PetscCall(ComplementaritySolve(contact, problem));
+  PetscCall(ComplementaritySolve(contact, PETSC_FALSE, problem));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ComplementarityApply(contact, problem, BODY_AT_START, parts));
   PetscCall(ContactIntegrateBodies(contact));

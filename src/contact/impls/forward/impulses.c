@@ -35,7 +35,7 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
   PetscCall(ContactComputeRates(contact, 1, PETSC_TRUE, impulses->gaps));
   for (PetscInt i = 0; i < contact->rows.n; i++)
     impulses->active[i] = (PetscBool)(contact->end.active[i] && (contact->rows.tied[i] || !pushing_only || impulses->gaps[i] < 0));
-  PetscCall(ComplementaritySolveActive(contact, impulses));
+  PetscCall(ComplementaritySolve(contact, PETSC_TRUE, impulses));
   PetscCall(ComplementarityApply(contact, impulses, BODY_AT_END, parts));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -55,7 +55,7 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
   }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComplementaritySolve(contact, impulses));
+  PetscCall(ComplementaritySolve(contact, PETSC_FALSE, impulses));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ComplementarityApply(contact, impulses, BODY_AT_START, parts));
   PetscFunctionReturn(PETSC_SUCCESS);
