@@ -32,7 +32,6 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
   PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree(stepper->laws));
-  PetscCall(ContactStepperDestroyAssembly(&stepper->assembly));
   PetscCall(LawProblemDestroy(&stepper->problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -224,6 +224,7 @@ static PetscErrorCode Reset(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(SNESDestroy(&stepper->outer));
+  PetscCall(ContactStepperDestroyAssembly(&stepper->assembly));
   PetscCall(ContactStepperDestroyVecs(stepper));
   PetscCall(ContactDestroyTiedEnds(contact));
   PetscCall(PetscFree2(stepper->aligns[0], stepper->aligns[1]));

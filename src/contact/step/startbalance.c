@@ -200,6 +200,7 @@ PetscErrorCode ContactBalanceStart(Contact contact)
     if (linear || change <= SMALL * first) break;
   }
   if (out) PetscCall(Finish(contact, &stepper)); /* also where forces put all nodes back, as with the state of a run that goes on */
+  PetscCall(ContactStepperDestroyAssembly(&stepper.assembly));
   PetscCall(ContactStepperDestroyVecs(&stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
