@@ -93,7 +93,7 @@ ELEMENT = 2.5e-3  # m, of the contact faces of block and bars, but for 5e-3 of t
 
 def free_flight(v, impakt):
     """The same bodies, from the same start, that do not touch."""
-    return impakt(" ".join(re.sub(r"-contact_(type|pairs|law|friction|balanced_start) \S+", "", v.options).split()) + " -contact_pairs none", v.ranks, timeout=60)
+    return impakt(" ".join(re.sub(r"-contact_(type|pairs|law|friction|balanced_start) \S+", "", v.options).split()) + " -contact_pairs none", timeout=60)
 
 
 def free_flight_error(v, impakt):
@@ -107,10 +107,7 @@ def check_energy(v, run, impakt):
     if v.rule == "linear":
         if change.max() > GAIN["cap"]:  # steps too large for it: then no more than the same step of the alternation, which has no friction. Seed 171 (J2): 0.40 %, without friction 0.52 % both; at a half and a quarter of the step 0.14, 0.009 %
             bare = re.sub(r"-contact_(law|friction) \S+", "", v.options.replace("-contact_type force", "-contact_type alternation"))
-            # or it is said: what a layer that yields makes of steps 4 to 60 times as long as contact is resolved by. Seeds 56 and, thin, 93, 152 (J2 under friction): 26, 0.31, 2.5 %, of alternation without
-            # friction 16, 0.03, 0 %; at an eighth, a quarter of the step 0.42, 0 % of the first two. Pressed bars in steps three times as long, from a state out of balance (131): 0.19 %, at half the step 0
-            said = "accepted although contact took or brought more energy" in run.stderr
-            assert said or change.max() <= 1.2 * energy(impakt(" ".join(bare.split()), timeout=60)).max()
+            assert change.max() <= 1.2 * energy(impakt(" ".join(bare.split()), timeout=60)).max()
     elif "E" in v.kinds:
         assert change.max() <= GAIN["explicit"]
     elif change.max() > GAIN["linear"]:
