@@ -258,17 +258,19 @@ static PetscErrorCode SumParts(ContactStepper *stepper, PetscBool sparse, Mat *S
 
   PetscFunctionBegin;
   if (!sparse && !stepper->problem.sparse) PetscCall(MatGetSize(stepper->problem.S, &size, NULL));
-  PetscCall(PetscCalloc1(n, &counts));
-  for (PetscInt b = 0; b < assembly->n_bodies; b++) {
-    const StepperEntries *entries = &assembly->of_body[b];
-
-    for (PetscInt k = 0; k < entries->n && !entries->alone; k++) counts[entries->places[k]] += entries->n;
-  }
   *S = stepper->problem.S;
-  if (sparse) PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 0, counts, S));
-  else if (size != n) PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
-  else PetscCall(PetscObjectReference((PetscObject)*S));
-  PetscCall(PetscFree(counts));
+  if (size == n) PetscCall(PetscObjectReference((PetscObject)*S));
+  else if (!sparse) PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
+  else {
+    PetscCall(PetscCalloc1(n, &counts));
+    for (PetscInt b = 0; b < assembly->n_bodies; b++) {
+      const StepperEntries *entries = &assembly->of_body[b];
+
+      for (PetscInt k = 0; k < entries->n && !entries->alone; k++) counts[entries->places[k]] += entries->n;
+    }
+    PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n, 0, counts, S));
+    PetscCall(PetscFree(counts));
+  }
   PetscCall(MatZeroEntries(*S));
   PetscCall(MatSetOption(*S, MAT_ROW_ORIENTED, PETSC_FALSE));
   for (PetscInt b = 0; b < assembly->n_bodies; b++) {
