@@ -20,6 +20,7 @@
 #define SPARSE_TOLERANCE 1e-13 /* of linear iterations [parts of the residual] */
 #define MOST_LINEAR      200   /* round-off may keep them from either */
 #define MOST_SWEEPS      5120
+#define BY_PREDICTION    1 /* choice of Eisenstat and Walker: after a residual that the linear model foretold, the iteration is the last */
 #define FORCING          1e-2 /* that linear iterations leave of a residual, at most: less as Newton's method gets faster */
 #define NODE_ITERATIONS  10   /* for the rows of one node in a sweep */
 
@@ -259,7 +260,7 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   }
   if (LawProblemIsLagged(problem)) { /* each iteration takes a product with a large S: no more of them than Newton's method is good for */
     PetscCall(SNESKSPSetUseEW(problem->newton, PETSC_TRUE));
-    PetscCall(SNESKSPSetParametersEW(problem->newton, PETSC_CURRENT, FORCING, FORCING, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT,
+    PetscCall(SNESKSPSetParametersEW(problem->newton, BY_PREDICTION, FORCING, FORCING, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT,
                                      PETSC_CURRENT));
   }
   if (LawProblemHasProducts(problem)) PetscCall(KSPSetMinimumIterations(ksp, 1)); /* one row alone may miss its tolerance */
