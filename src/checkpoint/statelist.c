@@ -49,6 +49,7 @@ void StateListCopyOne(const StateList *list, PetscInt i, PetscBool back, PetscRe
     const StateArray *own = &list->arrays[k];
 
     if (own->reals) TablesCopyReals(back, own->per, own->reals + own->per * i, &packed);
+    else if (!own->bools) packed += own->per;
     for (PetscInt d = 0; own->bools && d < own->per; d++) TablesCopyBool(back, &own->bools[own->per * i + d], &packed);
   }
 }
@@ -67,16 +68,17 @@ PetscErrorCode StateListVisit(const StateList *list, const char name[], Checkpoi
 }
 
 /* The numbers of n nodes with `each` rows, from row `begin` on, to a table with a line per node, or back. `keys`: the nodes' places */
-PetscErrorCode StateListCopyNodes(const StateList *list, PetscInt begin, PetscInt n, PetscInt each, const PetscReal keys[],
-                                  const char name[], PetscBool back, Tables tables)
+PetscErrorCode StateListVisitNodes(const StateList *list, PetscInt begin, PetscInt n, PetscInt each, const PetscReal keys[],
+                                   const char name[], Tables tables)
 {
   const PetscInt   own = StateListGetWidth(list), width = TABLES_KEY + each * own;
+  const PetscBool  back   = TablesLoads(tables);
   const PetscReal *values = NULL;
   PetscReal       *packed;
   PetscInt         n_all, row;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(width * PetscMax(n, 1), &packed));
+  PetscCall(PetscCalloc1(width * PetscMax(n, 1), &packed));
   if (back) PetscCall(TablesGet(tables, name, width, &n_all, &values));
   for (PetscInt i = 0; i < n; i++) {
     PetscReal *line = packed + (back ? 0 : width * i);

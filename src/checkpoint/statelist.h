@@ -7,8 +7,8 @@
 #define STATE_ARRAYS 28 /* at most */
 
 typedef struct {
-  PetscInt   per; /* numbers of each node or row; 0: there is no such array */
-  PetscReal *reals;
+  PetscInt   per;   /* numbers of each node or row; 0: there is no such array */
+  PetscReal *reals; /* NULL without `bools`: there are none now, and their place in a packed line stays as it is */
   PetscBool *bools; /* in place of `reals` */
 } StateArray;
 
@@ -22,5 +22,4 @@ PETSC_INTERN PetscErrorCode StateListAllocate(const StateList *, PetscReal *[]);
 PETSC_INTERN PetscErrorCode StateListCopy(const StateList *, PetscBool, PetscReal[]);
 PETSC_INTERN void           StateListCopyOne(const StateList *, PetscInt, PetscBool, PetscReal[]);
 PETSC_INTERN PetscErrorCode StateListVisit(const StateList *, const char[], Checkpoint);
-PETSC_INTERN PetscErrorCode StateListCopyNodes(const StateList *, PetscInt, PetscInt, PetscInt, const PetscReal[], const char[], PetscBool,
-                                               Tables);
+PETSC_INTERN PetscErrorCode StateListVisitNodes(const StateList *, PetscInt, PetscInt, PetscInt, const PetscReal[], const char[], Tables);

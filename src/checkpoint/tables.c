@@ -12,16 +12,19 @@ typedef struct {
 } Table;
 
 struct _n_Tables {
-  MPI_Comm comm;
-  PetscInt n;
-  Table   *tables;
+  MPI_Comm  comm;
+  PetscBool loads;
+  PetscInt  n;
+  Table    *tables;
 };
 
-PetscErrorCode TablesCreate(MPI_Comm comm, Tables *tables)
+/* TablesCreate - none yet; `loads`: visits overwrite what they visit with what TablesShare() will have given, else they add tables */
+PetscErrorCode TablesCreate(MPI_Comm comm, PetscBool loads, Tables *tables)
 {
   PetscFunctionBegin;
   PetscCall(PetscNew(tables));
-  (*tables)->comm = comm;
+  (*tables)->comm  = comm;
+  (*tables)->loads = loads;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -36,6 +39,11 @@ PetscErrorCode TablesDestroy(Tables *tables)
   PetscCall(PetscFree((*tables)->tables));
   PetscCall(PetscFree(*tables));
   PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+PetscBool TablesLoads(Tables tables)
+{
+  return tables->loads;
 }
 
 /* TablesShare - takes over a table that every rank has; values from PetscMalloc() */
@@ -71,17 +79,6 @@ PetscErrorCode TablesAdd(Tables tables, const char name[], PetscInt n, PetscInt 
   PetscCallMPI(MPI_Gatherv(values, mine, MPIU_REAL, all, counts, offsets, MPIU_REAL, 0, tables->comm));
   PetscCall(PetscFree2(counts, offsets));
   PetscCall(TablesShare(tables, name, total / width, width, all));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* TablesAddNumbers - a table of one row, of what all ranks have alike; Collective */
-PetscErrorCode TablesAddNumbers(Tables tables, const char name[], PetscInt n, const PetscReal values[])
-{
-  PetscMPIInt rank;
-
-  PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(tables->comm, &rank));
-  PetscCall(TablesAdd(tables, name, rank ? 0 : 1, n, values));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,17 +139,23 @@ PetscErrorCode TablesGet(Tables tables, const char name[], PetscInt width, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* TablesGetNumbers - those of TablesAddNumbers(), and how many they are */
-PetscErrorCode TablesGetNumbers(Tables tables, const char name[], PetscInt *n, const PetscReal *values[])
+/* TablesVisitNumbers - a table of one row, of what all ranks have alike; Collective */
+PetscErrorCode TablesVisitNumbers(Tables tables, const char name[], PetscInt n, PetscReal values[])
 {
-  Table *table;
+  const PetscReal *there;
+  PetscInt         lines;
+  PetscMPIInt      rank;
 
   PetscFunctionBegin;
-  PetscCall(FindTable(tables, name, &table));
-  PetscCheck(table->n == 1, tables->comm, PETSC_ERR_FILE_UNEXPECTED,
-             "The checkpoint has %" PetscInt_FMT " rows in '%s' where there is to be one: it is of another problem", table->n, name);
-  *n      = table->width;
-  *values = table->values;
+  PetscCallMPI(MPI_Comm_rank(tables->comm, &rank));
+  if (!tables->loads) {
+    PetscCall(TablesAdd(tables, name, rank ? 0 : 1, n, values));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(TablesGet(tables, name, n, &lines, &there));
+  PetscCheck(lines == 1, tables->comm, PETSC_ERR_FILE_UNEXPECTED,
+             "The checkpoint has %" PetscInt_FMT " rows in '%s' where there is to be one: it is of another problem", lines, name);
+  PetscCall(PetscArraycpy(values, there, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,16 +6,16 @@ typedef struct _n_Tables *Tables;
 
 #define TABLES_KEY 3 /* the first columns of each row: the reference position of a node, zeros beyond the dimension of space [m] */
 
-PETSC_INTERN PetscErrorCode TablesCreate(MPI_Comm, Tables *);
+PETSC_INTERN PetscErrorCode TablesCreate(MPI_Comm, PetscBool, Tables *);
 PETSC_INTERN PetscErrorCode TablesDestroy(Tables *);
+PETSC_INTERN PetscBool      TablesLoads(Tables);
 PETSC_INTERN PetscErrorCode TablesAdd(Tables, const char[], PetscInt, PetscInt, const PetscReal[]);
-PETSC_INTERN PetscErrorCode TablesAddNumbers(Tables, const char[], PetscInt, const PetscReal[]);
+PETSC_INTERN PetscErrorCode TablesVisitNumbers(Tables, const char[], PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TablesShare(Tables, const char[], PetscInt, PetscInt, PetscReal[]);
 PETSC_INTERN void           TablesGetNumber(Tables, PetscInt *);
 PETSC_INTERN PetscInt       TablesGetWidth(Tables, const char[]);
 PETSC_INTERN PetscErrorCode TablesGetTable(Tables, PetscInt, const char *[], PetscInt *, PetscInt *, const PetscReal *[]);
 PETSC_INTERN PetscErrorCode TablesGet(Tables, const char[], PetscInt, PetscInt *, const PetscReal *[]);
-PETSC_INTERN PetscErrorCode TablesGetNumbers(Tables, const char[], PetscInt *, const PetscReal *[]);
 PETSC_INTERN PetscErrorCode TablesFind(Tables, const char[], const PetscReal[], PetscInt *);
 PETSC_INTERN PetscErrorCode TablesLookFor(Tables, const char[], const PetscReal[], PetscInt *);
 

@@ -100,6 +100,7 @@ PETSC_INTERN PetscErrorCode ContactLayOutRows(Contact);
 PETSC_INTERN PetscErrorCode ContactReplacePairs(Contact, PetscInt, const PetscInt[]);
 PETSC_INTERN PetscErrorCode ContactRenewNeighbours(Contact, PetscReal, PetscBool, PetscBool *);
 PETSC_INTERN void           ContactListRowState(Contact, StateList *);
+PETSC_INTERN PetscErrorCode ContactVisitPairNodes(const ContactPair *, const StateList *, const char[], Tables);
 PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTold(Contact);
 PETSC_INTERN PetscErrorCode ContactTakeLeave(Contact, const ContactPair *, const PetscReal[], const PetscReal[]);

@@ -37,7 +37,7 @@ static PetscErrorCode PackShares(Transfer transfer, const char pair[], Tables ta
 }
 
 /* What the nodes of both sides have, to tables or back; obstacles have none */
-static PetscErrorCode CopySides(Transfer transfer, const char pair[], PetscBool back, Tables tables)
+static PetscErrorCode VisitSides(Transfer transfer, const char pair[], Tables tables)
 {
   static const char *const names[]     = {"rows", "partners"};
   const Surface            surfaces[2] = {transfer->dirichlet, transfer->neumann};
@@ -48,17 +48,8 @@ static PetscErrorCode CopySides(Transfer transfer, const char pair[], PetscBool 
   TransferListState(transfer, lists);
   for (PetscInt side = 0; side < 2 && surfaces[side]; side++) {
     PetscCall(Name(pair, names[side], name, sizeof(name)));
-    PetscCall(StateListCopyNodes(&lists[side], 0, lists[side].n, 1, surfaces[side]->data.reference, name, back, tables));
+    PetscCall(StateListVisitNodes(&lists[side], 0, lists[side].n, 1, surfaces[side]->data.reference, name, tables));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Adds the tables of a transfer, whose names begin with that of the pair */
-PetscErrorCode TransferPack(Transfer transfer, const char pair[], Tables tables)
-{
-  PetscFunctionBegin;
-  PetscCall(CopySides(transfer, pair, PETSC_FALSE, tables));
-  PetscCall(PackShares(transfer, pair, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,7 +76,7 @@ static PetscErrorCode ShareOwners(Transfer transfer, Tables *owners)
   PetscCall(PetscMalloc1(total, &all));
   PetscCallMPI(MPI_Allgatherv(packed, mine, MPIU_REAL, all, counts, offsets, MPIU_REAL, transfer->comm));
   PetscCall(PetscFree3(packed, counts, offsets));
-  PetscCall(TablesCreate(transfer->comm, owners));
+  PetscCall(TablesCreate(transfer->comm, PETSC_TRUE, owners));
   PetscCall(TablesShare(*owners, "owners", total / 6, 6, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -106,7 +97,7 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
   PetscCall(TablesGet(tables, name, N_SHARE, &n, &packed));
   PetscCall(PetscMalloc1(n, &shares));
   /* the rows of this rank by their keys, with those of other ranks left out */
-  PetscCall(TablesCreate(PETSC_COMM_SELF, &own));
+  PetscCall(TablesCreate(PETSC_COMM_SELF, PETSC_TRUE, &own));
   PetscCall(PetscMalloc1(4 * transfer->n, &keys));
   for (PetscInt i = 0; i < transfer->n; i++) {
     PetscCall(PetscArraycpy(keys + 4 * i, data->reference + 3 * i, 3));
@@ -144,12 +135,13 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The state of a transfer from the tables of a run with any number of ranks, after TransferVisitShared() */
-PetscErrorCode TransferUnpack(Transfer transfer, const char pair[], Tables tables)
+/* The tables of a transfer, whose names begin with that of the pair; loading, of any number of ranks, after TransferVisitShared() */
+PetscErrorCode TransferVisitTables(Transfer transfer, const char pair[], Tables tables)
 {
   PetscFunctionBegin;
-  PetscCall(UnpackShares(transfer, pair, tables));
-  PetscCall(CopySides(transfer, pair, PETSC_TRUE, tables));
-  transfer->saved.builds = 0;
+  if (TablesLoads(tables)) PetscCall(UnpackShares(transfer, pair, tables));
+  else PetscCall(PackShares(transfer, pair, tables));
+  PetscCall(VisitSides(transfer, pair, tables));
+  if (TablesLoads(tables)) transfer->saved.builds = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

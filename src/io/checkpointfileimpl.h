@@ -5,7 +5,7 @@
 #include <stdint.h>
 #include <string.h>
 
-#define CHECKPOINT_FORMAT 12 /* of what a checkpoint has in it; to be raised with each change that older programs cannot read */
+#define CHECKPOINT_FORMAT 13 /* of what a checkpoint has in it; to be raised with each change that older programs cannot read */
 /* Bytes that are sent, written or summed at a time; a multiple of 8 */
 #define CHECKPOINT_BLOCK ((size_t)1 << 26)
 

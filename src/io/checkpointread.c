@@ -273,7 +273,7 @@ PetscErrorCode CheckpointFileReadTables(MPI_Comm comm, const CheckpointFile *fil
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
-  PetscCall(TablesCreate(comm, tables));
+  PetscCall(TablesCreate(comm, PETSC_TRUE, tables));
   if (!rank) {
     const hid_t group = H5Gopen2(file->file, "tables", H5P_DEFAULT);
 

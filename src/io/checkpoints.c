@@ -71,8 +71,8 @@ static PetscErrorCode Write(Output output, PetscInt step)
   PetscCall(OutputVisitShared(output, PETSC_TRUE, contents.shared));
   PetscCall(CheckpointCreate(comm, &contents.state));
   PetscCall(ContactVisit(contact, contents.state));
-  PetscCall(TablesCreate(comm, &contents.tables));
-  PetscCall(ContactPack(contact, contents.tables));
+  PetscCall(TablesCreate(comm, PETSC_FALSE, &contents.tables));
+  PetscCall(ContactVisitTables(contact, contents.tables));
   PetscCall(ControllerGetBodies(output->controller, &contents.n_bodies, &contents.bodies));
   PetscCall(CheckpointFileWrite(comm, c->path, &info, &contents));
   PetscCall(CheckpointDestroy(&contents.shared));

@@ -119,7 +119,7 @@ static PetscErrorCode LoadState(Output output, const CheckpointFile *file, Petsc
   PetscCall(CheckpointDestroy(&shared));
   if (!same_ranks) {
     PetscCall(CheckpointFileReadTables(comm, file, &tables));
-    PetscCall(ContactUnpack(contact, tables));
+    PetscCall(ContactVisitTables(contact, tables));
     PetscCall(TablesDestroy(&tables));
     PetscCall(PetscFPrintf(comm, stderr, "impakt: the checkpoint is of %d ranks: on another number of them the run goes on to round-off\n",
                            file->info.ranks));

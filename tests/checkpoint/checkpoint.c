@@ -202,7 +202,7 @@ static void gathered(void **state)
   (void)state;
   assert_int_equal(MPI_Comm_rank(PETSC_COMM_WORLD, &rank), 0);
   assert_int_equal(MPI_Comm_size(PETSC_COMM_WORLD, &size), 0);
-  ok(TablesCreate(PETSC_COMM_WORLD, &tables));
+  ok(TablesCreate(PETSC_COMM_WORLD, PETSC_FALSE, &tables));
   ok(TablesAdd(tables, "nodes", 2, WIDTH, (PetscReal[]){rank, 0, 0, 10 * rank, rank, 1, 0, 10 * rank + 1}));
   TablesGetNumber(tables, &n);
   assert_int_equal(n, 1);
@@ -224,7 +224,7 @@ static Tables make_tables(PetscInt n)
   Tables     tables;
   PetscReal *values;
 
-  ok(TablesCreate(PETSC_COMM_WORLD, &tables));
+  ok(TablesCreate(PETSC_COMM_WORLD, PETSC_TRUE, &tables));
   ok(PetscCalloc1(n * WIDTH, &values));
   for (PetscInt k = 0; k < n; k++) {
     const PetscInt i = n - 1 - k;
@@ -265,29 +265,39 @@ static void found_by_their_places(void **state)
 static void of_all_ranks(void **state)
 {
   PetscMPIInt      rank;
-  Tables           tables;
+  Tables           fills, loads;
   PetscInt         n, width;
   const char      *name;
   const PetscReal *values;
+  PetscReal       *shared, numbers[3] = {3, -1, 0.5};
 
   (void)state;
   assert_int_equal(MPI_Comm_rank(PETSC_COMM_WORLD, &rank), 0);
-  ok(TablesCreate(PETSC_COMM_WORLD, &tables));
-  ok(TablesAddNumbers(tables, "numbers", 3, (PetscReal[]){3, -1, 0.5}));
-  ok(TablesGetTable(tables, 0, &name, &n, &width, &values));
+  ok(TablesCreate(PETSC_COMM_WORLD, PETSC_FALSE, &fills));
+  assert_false(TablesLoads(fills));
+  ok(TablesVisitNumbers(fills, "numbers", 3, numbers));
+  ok(TablesGetTable(fills, 0, &name, &n, &width, &values));
   assert_string_equal(name, "numbers");
   assert_int_equal(n, !rank);
-  if (!rank) {
-    ok(TablesGetNumbers(tables, "numbers", &n, &values));
-    assert_int_equal(n, 3);
-    near(values[0], 3, 0);
-    near(values[1], -1, 0);
-    near(values[2], 0.5, 0);
-  }
-  ok(TablesDestroy(&tables));
-  tables = make_tables(4);
-  refused(PETSC_ERR_FILE_UNEXPECTED, "4 rows in 'nodes'|to be one", TablesGetNumbers(tables, "nodes", &n, &values));
-  ok(TablesDestroy(&tables));
+  assert_int_equal(width, 3);
+  ok(PetscMalloc1(3, &shared));
+  if (!rank) ok(PetscArraycpy(shared, values, 3));
+  assert_int_equal(MPI_Bcast(shared, 3, MPIU_REAL, 0, PETSC_COMM_WORLD), 0);
+  ok(TablesDestroy(&fills));
+  ok(TablesCreate(PETSC_COMM_WORLD, PETSC_TRUE, &loads));
+  assert_true(TablesLoads(loads));
+  ok(TablesShare(loads, "numbers", 1, 3, shared));
+  ok(PetscArrayzero(numbers, 3));
+  ok(TablesVisitNumbers(loads, "numbers", 3, numbers));
+  near(numbers[0], 3, 0);
+  near(numbers[1], -1, 0);
+  near(numbers[2], 0.5, 0);
+  refused(PETSC_ERR_FILE_UNEXPECTED, "3 numbers for each row of 'numbers'|this run has 2",
+          TablesVisitNumbers(loads, "numbers", 2, numbers));
+  ok(TablesDestroy(&loads));
+  loads = make_tables(4);
+  refused(PETSC_ERR_FILE_UNEXPECTED, "4 rows in 'nodes'|to be one", TablesVisitNumbers(loads, "nodes", WIDTH, numbers));
+  ok(TablesDestroy(&loads));
 }
 
 static void of_another_problem(void **state)
@@ -312,7 +322,7 @@ static void two_at_one_place(void **state)
   PetscInt   row;
 
   (void)state;
-  ok(TablesCreate(PETSC_COMM_WORLD, &tables));
+  ok(TablesCreate(PETSC_COMM_WORLD, PETSC_TRUE, &tables));
   ok(PetscCalloc1(2 * WIDTH, &values));
   values[2 * WIDTH - 1] = 1;
   ok(TablesShare(tables, "crack", 2, WIDTH, values));

@@ -27,10 +27,10 @@ struct _ContactOps {
   PetscErrorCode (*accept)(Contact);    /* corrects the states at the end of a step, before the next step starts from them */
   /* what the method remembers from step to step, to or from a checkpoint; NULL: runs with it have no checkpoints */
   PetscErrorCode (*visit)(Contact, Checkpoint);
-  /* (NULL) what the method remembers from step to step that no solver finds anew to round-off, to tables by which a run is continued on
-     another number of ranks; and back, after rowschanged() */
-  PetscErrorCode (*pack)(Contact, Tables);
-  PetscErrorCode (*unpack)(Contact, Tables);
+  PetscErrorCode (*visitshared)(Contact, Checkpoint); /* (NULL) the same, what all ranks have */
+  /* (NULL) the same, what no solver finds anew to round-off, to or from tables by which a run is continued on another number of ranks;
+     loading, after visitshared() and rowschanged() */
+  PetscErrorCode (*visittables)(Contact, Tables);
   PetscErrorCode (*maybalance)(Contact, PetscBool *); /* (NULL: not) whether gaps may be turned, see src/contact/rows/balance.c */
   /* (NULL) whether pairs may come and go in the course of a run; then `reset` undoes `setup`, which follows if there are rows */
   PetscBool (*mayreplacerows)(Contact);

@@ -1,6 +1,7 @@
 /* The state of a body as tables, by which a run is continued on another number of ranks. What solvers know is found anew, to round-off.
    Factors of a nonlinear body, which depend on displacements of earlier steps, are made again where they were made. */
 #include <body/rows/complianceimpl.h>
+#include <checkpoint/statelist.h>
 #include "bodyvisit.h"
 
 /* The vectors of the state that are packed; a state without loads has no applied forces, one without dashpots none of theirs */
@@ -9,20 +10,6 @@ enum { N_VECS = 5 };
 /* What is beside the nodes: two numbers of the factors */
 enum { N_FACTORS = 2 };
 
-static void GetVecs(BodyState *state, Vec vecs[N_VECS])
-{
-  vecs[0] = state->u;
-  vecs[1] = state->v;
-  vecs[2] = state->a;
-  vecs[3] = state->applied;
-  vecs[4] = state->damping;
-}
-
-static void GetKey(Body body, PetscInt node, PetscReal key[TABLES_KEY])
-{
-  for (PetscInt d = 0; d < TABLES_KEY; d++) key[d] = d < body->mesh.dim ? body->mesh.coordinates[node * body->mesh.dim + d] : 0;
-}
-
 static PetscErrorCode Name(Body body, const char what[], char name[], size_t size)
 {
   PetscFunctionBegin;
@@ -30,34 +17,27 @@ static PetscErrorCode Name(Body body, const char what[], char name[], size_t siz
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where the factors of a nonlinear body have been made */
-static PetscErrorCode PackPoint(Body body, Tables tables)
+/* Vectors of a body, a line for each node; any of them may be NULL */
+static PetscErrorCode VisitVecs(Body body, const char name[], PetscInt n_vecs, const Vec vecs[], Tables tables)
 {
-  const PetscInt     dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + dim;
-  PetscReal          numbers[N_FACTORS] = {0, 0}, *packed;
-  const PetscScalar *values;
-  Vec                point;
-  char               name[256];
+  const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes;
+  StateList      list = {.n = n};
+  PetscReal     *keys;
 
   PetscFunctionBegin;
-  if (body->model.linear || !body->integrator->ops.copypoint) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecDuplicate(body->state.u, &point));
-  PetscCall(VecZeroEntries(point));
-  PetscCall((*body->integrator->ops.copypoint)(body, PETSC_FALSE, point, numbers));
-  if (body->local) PetscCallMPI(MPI_Bcast(numbers, N_FACTORS, MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
-  PetscCall(PetscMalloc1(n * width, &packed));
-  PetscCall(VecGetArrayRead(point, &values));
-  for (PetscInt i = 0; i < n; i++) {
-    GetKey(body, i, packed + i * width);
-    for (PetscInt d = 0; d < dim; d++) packed[i * width + TABLES_KEY + d] = PetscRealPart(values[i * dim + d]);
+  PetscCall(PetscCalloc1(TABLES_KEY * n, &keys));
+  for (PetscInt i = 0; i < n; i++) PetscCall(PetscArraycpy(keys + TABLES_KEY * i, body->mesh.coordinates + i * dim, dim));
+  for (PetscInt k = 0; k < n_vecs; k++) {
+    list.arrays[k].per = dim;
+    if (vecs[k] && TablesLoads(tables)) PetscCall(VecGetArrayWrite(vecs[k], &list.arrays[k].reals));
+    else if (vecs[k]) PetscCall(VecGetArrayRead(vecs[k], (const PetscScalar **)&list.arrays[k].reals));
   }
-  PetscCall(VecRestoreArrayRead(point, &values));
-  PetscCall(Name(body, "linearised at", name, sizeof(name)));
-  PetscCall(TablesAdd(tables, name, n, width, packed));
-  PetscCall(Name(body, "factors", name, sizeof(name)));
-  PetscCall(TablesAddNumbers(tables, name, N_FACTORS, numbers));
-  PetscCall(PetscFree(packed));
-  PetscCall(VecDestroy(&point));
+  PetscCall(StateListVisitNodes(&list, 0, n, 1, keys, name, tables));
+  for (PetscInt k = 0; k < n_vecs; k++) {
+    if (vecs[k] && TablesLoads(tables)) PetscCall(VecRestoreArrayWrite(vecs[k], &list.arrays[k].reals));
+    else if (vecs[k]) PetscCall(VecRestoreArrayRead(vecs[k], (const PetscScalar **)&list.arrays[k].reals));
+  }
+  PetscCall(PetscFree(keys));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -67,105 +47,62 @@ static PetscBool GoesOn(Body body)
   return (PetscBool)(!body->model.linear && body->time.accepted_level == 0);
 }
 
-/* The factors of the saved run, or, where it would make them anew, new ones */
-static PetscErrorCode UnpackPoint(Body body, const PetscInt rows[], Tables tables)
+/* Where the factors of a nonlinear body have been made; loading, where they are made again, unless the saved run would make new ones */
+static PetscErrorCode VisitPoint(Body body, Tables tables)
 {
-  const PetscInt   dim = body->mesh.dim, width = TABLES_KEY + dim;
-  PetscReal        numbers[N_FACTORS];
-  const PetscReal *packed;
-  PetscScalar     *values;
-  PetscInt         n;
-  Vec              point;
-  char             name[256];
+  const PetscBool loads              = TablesLoads(tables);
+  PetscReal       numbers[N_FACTORS] = {0, 0};
+  Vec             point;
+  char            name[256];
 
   PetscFunctionBegin;
   if (body->model.linear || !body->integrator->ops.copypoint) PetscFunctionReturn(PETSC_SUCCESS);
   /* factors that are not made anew where steps change their length go on: those of a massless layer */
-  if (!GoesOn(body) && body->integrator->ops.renew) {
+  if (loads && !GoesOn(body) && body->integrator->ops.renew) {
     PetscCall((*body->integrator->ops.renew)(body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Name(body, "linearised at", name, sizeof(name)));
-  PetscCall(TablesGet(tables, name, width, &n, &packed));
   PetscCall(VecDuplicate(body->state.u, &point));
-  PetscCall(VecGetArrayWrite(point, &values));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes; i++)
-    for (PetscInt d = 0; d < dim; d++) values[i * dim + d] = packed[rows[i] * width + TABLES_KEY + d];
-  PetscCall(VecRestoreArrayWrite(point, &values));
+  PetscCall(VecZeroEntries(point));
+  if (!loads) PetscCall((*body->integrator->ops.copypoint)(body, PETSC_FALSE, point, numbers));
+  if (!loads && body->local) PetscCallMPI(MPI_Bcast(numbers, N_FACTORS, MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  PetscCall(Name(body, "linearised at", name, sizeof(name)));
+  PetscCall(VisitVecs(body, name, 1, &point, tables));
   PetscCall(Name(body, "factors", name, sizeof(name)));
-  PetscCall(TablesGetNumbers(tables, name, &n, &packed));
-  PetscCheck(n == N_FACTORS, PetscObjectComm((PetscObject)body), PETSC_ERR_FILE_UNEXPECTED,
-             "The checkpoint has %" PetscInt_FMT " numbers in '%s' where there are to be %d: it is of another problem", n, name, N_FACTORS);
-  PetscCall(PetscArraycpy(numbers, packed, N_FACTORS));
-  PetscCall((*body->integrator->ops.copypoint)(body, PETSC_TRUE, point, numbers));
+  PetscCall(TablesVisitNumbers(tables, name, N_FACTORS, numbers));
+  if (loads) PetscCall((*body->integrator->ops.copypoint)(body, PETSC_TRUE, point, numbers));
   PetscCall(VecDestroy(&point));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the tables of a body after an accepted step. Collective. */
-PetscErrorCode BodyPack(Body body, Tables tables)
+static PetscErrorCode VisitInertia(Body body, PetscReal *moves, Tables tables)
 {
-  const PetscInt dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + N_VECS * dim;
-  PetscReal     *packed, moves = body->integrator->has_inertia;
-  Vec            vecs[N_VECS];
-  char           name[256];
+  char name[256];
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(n * width, &packed));
-  GetVecs(&body->state, vecs);
-  for (PetscInt i = 0; i < n; i++) GetKey(body, i, packed + i * width);
-  for (PetscInt k = 0; k < N_VECS; k++) {
-    const PetscScalar *values;
-
-    if (!vecs[k]) continue;
-    PetscCall(VecGetArrayRead(vecs[k], &values));
-    for (PetscInt i = 0; i < n; i++)
-      for (PetscInt d = 0; d < dim; d++) packed[i * width + TABLES_KEY + k * dim + d] = PetscRealPart(values[i * dim + d]);
-    PetscCall(VecRestoreArrayRead(vecs[k], &values));
-  }
-  PetscCall(TablesAdd(tables, body->hdr.name, n, width, packed));
-  PetscCall(PetscFree(packed));
   PetscCall(Name(body, "inertia", name, sizeof(name)));
-  PetscCall(TablesAddNumbers(tables, name, 1, &moves));
-  PetscCall(BodyPackHistory(body, tables));
-  PetscCall(PackPoint(body, tables));
+  PetscCall(TablesVisitNumbers(tables, name, 1, moves));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The first state of a body from the tables of another run, after BodyVisitShared() has loaded what all ranks have. Collective. */
-PetscErrorCode BodyUnpack(Body body, Tables tables)
+/* The tables of a body after an accepted step; loading, its first state, after BodyVisitShared(). Collective. */
+PetscErrorCode BodyVisitTables(Body body, Tables tables)
 {
-  const PetscInt   dim = body->mesh.dim, n = body->mesh.owned_nodes, width = TABLES_KEY + N_VECS * dim;
-  const PetscReal *packed;
-  PetscInt         n_all, *rows;
-  Vec              vecs[N_VECS];
+  const BodyState *state        = &body->state;
+  const Vec        vecs[N_VECS] = {state->u, state->v, state->a, state->applied, state->damping};
+  PetscReal        moves        = body->integrator->has_inertia;
 
   PetscFunctionBegin;
-  PetscCall(TablesGet(tables, body->hdr.name, width, &n_all, &packed));
-  PetscCall(PetscMalloc1(n, &rows));
-  for (PetscInt i = 0; i < n; i++) {
-    PetscReal key[TABLES_KEY];
-
-    GetKey(body, i, key);
-    PetscCall(TablesFind(tables, body->hdr.name, key, &rows[i]));
+  PetscCall(VisitVecs(body, body->hdr.name, N_VECS, vecs, tables));
+  PetscCall(VisitInertia(body, &moves, tables));
+  PetscCall(BodyVisitHistory(body, tables));
+  if (TablesLoads(tables)) {
+    PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+    PetscCall(BodyStateCopy(body, &body->state, &body->saved));
+    PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   }
-  GetVecs(&body->state, vecs);
-  for (PetscInt k = 0; k < N_VECS; k++) {
-    PetscScalar *values;
-
-    if (!vecs[k]) continue;
-    PetscCall(VecGetArrayWrite(vecs[k], &values));
-    for (PetscInt i = 0; i < n; i++)
-      for (PetscInt d = 0; d < dim; d++) values[i * dim + d] = packed[rows[i] * width + TABLES_KEY + k * dim + d];
-    PetscCall(VecRestoreArrayWrite(vecs[k], &values));
-  }
-  PetscCall(BodyUnpackHistory(body, tables));
-  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  PetscCall(BodyStateCopy(body, &body->state, &body->saved));
-  PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  PetscCall(UnpackPoint(body, rows, tables));
-  PetscCall(PetscFree(rows));
-  if (body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
+  PetscCall(VisitPoint(body, tables));
+  if (TablesLoads(tables) && body->integrator->ops.save) PetscCall((*body->integrator->ops.save)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,11 +138,9 @@ static PetscErrorCode FindState(PetscInt dim, const PetscReal x[], PetscScalar u
    through, and velocities unless it had no inertia. Collective. */
 PetscErrorCode BodyTakeState(Body body, Tables tables, PetscBool *found)
 {
-  const PetscInt   width = TablesGetWidth(tables, body->hdr.name), dim = body->mesh.dim;
-  const PetscReal *moves;
-  Start            start = {.body = body, .tables = tables};
-  PetscInt         n;
-  char             name[256];
+  const PetscInt width = TablesGetWidth(tables, body->hdr.name), dim = body->mesh.dim;
+  PetscReal      moves;
+  Start          start = {.body = body, .tables = tables};
 
   PetscFunctionBegin;
   *found = (PetscBool)(width > 0);
@@ -213,16 +148,15 @@ PetscErrorCode BodyTakeState(Body body, Tables tables, PetscBool *found)
   PetscCheck(width == TABLES_KEY + N_VECS * dim, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-restart_state: body '%s' has %" PetscInt_FMT " dimensions there, and %" PetscInt_FMT " here", body->hdr.name,
              (width - TABLES_KEY) / N_VECS, dim);
-  PetscCall(Name(body, "inertia", name, sizeof(name)));
-  PetscCall(TablesGetNumbers(tables, name, &n, &moves));
-  start.moves = (PetscBool)(moves[0] != 0);
+  PetscCall(VisitInertia(body, &moves, tables));
+  start.moves = (PetscBool)(moves != 0);
   PetscCall(BodyTakeHistory(body, tables)); /* first: stresses of the displacements follow from it */
   PetscCall(BodySetInitialState(body, FindState, &start));
   PetscCall(BodyNotePlasticBefore(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of BodyUpdateInterface() are those of the last accepted step; after BodyUnpack(). Collective. */
+/* The rows of BodyUpdateInterface() are those of the last accepted step; after BodyVisitTables(). Collective. */
 PetscErrorCode BodyTakeRows(Body body)
 {
   PetscFunctionBegin;

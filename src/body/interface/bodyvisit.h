@@ -7,10 +7,8 @@
 PETSC_INTERN PetscErrorCode BodyVisit(Body, Checkpoint);
 PETSC_INTERN PetscErrorCode BodyVisitMesh(Body, Checkpoint);
 PETSC_INTERN PetscErrorCode BodyVisitShared(Body, Checkpoint);
-PETSC_INTERN PetscErrorCode BodyPack(Body, Tables);
-PETSC_INTERN PetscErrorCode BodyUnpack(Body, Tables);
-PETSC_INTERN PetscErrorCode BodyPackHistory(Body, Tables);
-PETSC_INTERN PetscErrorCode BodyUnpackHistory(Body, Tables);
+PETSC_INTERN PetscErrorCode BodyVisitTables(Body, Tables);
+PETSC_INTERN PetscErrorCode BodyVisitHistory(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyTakeState(Body, Tables, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyTakeHistory(Body, Tables);
 PETSC_INTERN PetscErrorCode BodyNotePlasticBefore(Body);

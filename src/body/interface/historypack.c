@@ -53,44 +53,15 @@ static PetscErrorCode NameHistory(Body body, const char material[], char name[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyPackHistory - adds the table of the history of the material, element by element */
-PetscErrorCode BodyPackHistory(Body body, Tables tables)
+/* BodyVisitHistory - the table of the history of the material, element by element */
+PetscErrorCode BodyVisitHistory(Body body, Tables tables)
 {
   const Element    element = body->model.element;
-  const PetscInt   nodes = element->nodes, dim = body->mesh.dim, width = HistoryWidth(body), count = element->count;
-  const PetscInt   of_element = element->history.points * element->history.n;
-  PetscReal       *packed;
-  const PetscReal *saved;
-  size_t           size;
-  char             name[256];
-
-  PetscFunctionBegin;
-  saved = BodyHistoryGetSaved(body, &size);
-  if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc1(count * width, &packed));
-  for (PetscInt e = 0; e < count; e++) {
-    const PetscInt slot = ElementHistorySlot(element, e);
-    PetscReal     *row  = packed + e * width;
-
-    GetElementKey(body, e, row);
-    row += TABLES_KEY;
-    for (PetscInt a = 0; a < nodes; a++)
-      for (PetscInt d = 0; d < dim; d++) *row++ = body->mesh.coordinates[body->mesh.connectivity[e * nodes + a] * dim + d];
-    for (PetscInt k = 0; k < of_element; k++) row[k] = saved[(slot / 8 * of_element + k) * 8 + slot % 8];
-  }
-  PetscCall(NameHistory(body, BodyGetMaterialName(body), name, sizeof(name)));
-  PetscCall(TablesAdd(tables, name, count, width, packed));
-  PetscCall(PetscFree(packed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* BodyUnpackHistory - from the tables of the same run */
-PetscErrorCode BodyUnpackHistory(Body body, Tables tables)
-{
-  const Element    element = body->model.element;
-  const PetscInt   points = element->history.points, n_history = element->history.n, of_element = points * n_history;
-  PetscReal       *saved;
-  const PetscReal *packed;
+  const PetscBool  loads   = TablesLoads(tables);
+  const PetscInt   nodes = element->nodes, dim = body->mesh.dim, points = element->history.points, n_history = element->history.n;
+  const PetscInt   width = HistoryWidth(body);
+  const PetscReal *there = NULL;
+  PetscReal       *saved, *packed;
   PetscInt         n, row;
   size_t           size;
   char             name[256];
@@ -99,22 +70,29 @@ PetscErrorCode BodyUnpackHistory(Body body, Tables tables)
   saved = BodyHistoryGetSaved(body, &size);
   if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(NameHistory(body, BodyGetMaterialName(body), name, sizeof(name)));
-  PetscCall(TablesGet(tables, name, HistoryWidth(body), &n, &packed));
+  if (loads) PetscCall(TablesGet(tables, name, width, &n, &there));
+  PetscCall(PetscMalloc1(element->count * width, &packed));
   for (PetscInt e = 0; e < element->count; e++) {
-    const PetscInt   slot = ElementHistorySlot(element, e);
-    const PetscReal *places;
-    PetscReal        key[TABLES_KEY];
+    const PetscInt slot = ElementHistorySlot(element, e);
+    PetscReal     *line = packed + e * width, *places = line + TABLES_KEY;
 
-    GetElementKey(body, e, key);
-    PetscCall(TablesFind(tables, name, key, &row));
-    places = packed + row * HistoryWidth(body) + TABLES_KEY;
+    GetElementKey(body, e, line);
+    for (PetscInt a = 0; a < nodes; a++)
+      PetscCall(PetscArraycpy(places + a * dim, body->mesh.coordinates + body->mesh.connectivity[e * nodes + a] * dim, dim));
+    if (loads) {
+      PetscCall(TablesFind(tables, name, line, &row));
+      PetscCall(PetscArraycpy(line, there + row * width, width));
+    }
     for (PetscInt g = 0; g < points; g++) {
-      const PetscReal *from = places + element->nodes * body->mesh.dim + FindPoint(body, e, g, places) * n_history;
+      PetscReal *values = places + nodes * dim + (loads ? FindPoint(body, e, g, places) : g) * n_history;
 
-      for (PetscInt c = 0; c < n_history; c++) saved[(slot / 8 * of_element + g * n_history + c) * 8 + slot % 8] = from[c];
+      for (PetscInt c = 0; c < n_history; c++)
+        TablesCopyReals(loads, 1, &saved[(slot / 8 * points * n_history + g * n_history + c) * 8 + slot % 8], &values);
     }
   }
-  BodyHistoryRestore(body);
+  if (loads) BodyHistoryRestore(body);
+  else PetscCall(TablesAdd(tables, name, element->count, width, packed));
+  PetscCall(PetscFree(packed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -158,7 +136,7 @@ PetscErrorCode BodyTakeHistory(Body body, Tables tables)
              "-restart_state: the checkpoint has the history of body '%s' for the material %s, which means nothing for %s; give "
              "-%s_material_type, or those of its blocks, as it was: %s",
              body->hdr.name, before, now, body->hdr.name, before);
-  PetscCall(BodyUnpackHistory(body, tables));
+  PetscCall(BodyVisitHistory(body, tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

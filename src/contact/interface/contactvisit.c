@@ -184,6 +184,7 @@ PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
     PetscCall(TransferVisitShared(pair->transfer, checkpoint));
   }
   PetscCall(CheckpointVisitReals(checkpoint, "turns", contact->turns.n, contact->turns.change));
+  if (contact->rows.n_all) PetscTryTypeMethod(contact, visitshared, checkpoint);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisitShared(contact->bodies[b], checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -8,6 +8,5 @@ PETSC_INTERN PetscErrorCode ContactHasVisit(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactRepeatsBits(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactVisit(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactVisitShared(Contact, Checkpoint);
-PETSC_INTERN PetscErrorCode ContactPack(Contact, Tables);
-PETSC_INTERN PetscErrorCode ContactUnpack(Contact, Tables);
+PETSC_INTERN PetscErrorCode ContactVisitTables(Contact, Tables);
 PETSC_INTERN PetscErrorCode ContactTakeState(Contact);

@@ -179,12 +179,3 @@ PetscErrorCode ContactStepperAcceptGlue(Contact contact, ContactStepper *stepper
   if (sum != 0) PetscCall(PetscInfo(contact, "damage of glue takes %g J in the step\n", (double)sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-PetscErrorCode ContactStepperVisitGlue(Contact contact, ContactStepper *stepper, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  if (!stepper->glued) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CheckpointVisitReals(checkpoint, "history of glue", ROW_LAW_HISTORY * contact->rows.n, stepper->history));
-  if (CheckpointLoads(checkpoint)) PetscCall(PetscArraycpy(stepper->grown, stepper->history, ROW_LAW_HISTORY * contact->rows.n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

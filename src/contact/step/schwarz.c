@@ -148,18 +148,6 @@ PetscErrorCode ContactStepperAccept(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContactStepperVisit(Contact contact, Checkpoint checkpoint)
-{
-  ContactStepper *stepper = Stepper(contact);
-
-  PetscFunctionBegin;
-  PetscCall(CheckpointVisitBools(checkpoint, "joined", contact->rows.n, stepper->joined));
-  PetscCall(ContactStepperVisitGlue(contact, stepper, checkpoint));
-  PetscCall(ContactStepperVisitSecants(contact, stepper, checkpoint));
-  if (CheckpointLoads(checkpoint)) stepper->state++;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Which body is why contact nodes have mass, and what a hit may take then */
 static PetscErrorCode ViewMass(Contact contact, PetscViewer viewer)
 {
@@ -284,8 +272,8 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->steplevel               = SetStepLevel;
   contact->ops->accept                  = ContactStepperAccept;
   contact->ops->visit                   = ContactStepperVisit;
-  contact->ops->pack                    = ContactStepperPack;
-  contact->ops->unpack                  = ContactStepperUnpack;
+  contact->ops->visitshared             = ContactStepperVisitShared;
+  contact->ops->visittables             = ContactStepperVisitTables;
   contact->ops->maybalance              = ContactStepperMayTurn;
   contact->ops->mayreplacerows          = MayReplaceRows;
   contact->ops->reset                   = Reset;

@@ -90,12 +90,12 @@ PetscErrorCode ContactStepperAcceptSecants(ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Those that are kept, for a checkpoint */
-PetscErrorCode ContactStepperVisitSecants(Contact contact, ContactStepper *stepper, Checkpoint checkpoint)
+/* Those that are kept, which all ranks have, to or from a checkpoint */
+PetscErrorCode ContactStepperVisitShared(Contact contact, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    StepperSecants *kept    = &stepper->assembly.of_body[b].kept;
+    StepperSecants *kept    = &Stepper(contact)->assembly.of_body[b].kept;
     PetscInt        size[2] = {kept->n, kept->n_pairs};
     char            name[32];
 

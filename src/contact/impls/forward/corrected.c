@@ -161,8 +161,6 @@ static PetscErrorCode SetUpCorrected(Contact contact, PetscBool stabilized)
   contact->ops->accept      = Accept;
   contact->ops->rowschanged = RowsChanged;
   contact->ops->visit       = Visit;
-  contact->ops->pack        = NULL;
-  contact->ops->unpack      = NULL;
   PetscCall(LagrangeSetUpImpulses(contact, stabilized ? "-contact_stabilization contact_stabilized" : "-contact_constraint both",
                                   &corrections->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);
