@@ -133,17 +133,14 @@ static PetscErrorCode Advance(TS ts, PetscReal t, PetscReal dt, Vec U, Vec V, vo
   const PetscReal from  = (PetscReal)body->time.substep / body->time.substeps;
   const PetscReal to    = (PetscReal)(body->time.substep + 1) / body->time.substeps;
   RigidMotion     begin, end;
-  Momentum        motion, impulse;
+  Momentum        impulse;
   Resultant       forces[2];
   PetscReal       torque[3];
 
   PetscFunctionBegin;
   (void)ts;
-  PetscCall(PetscMemzero(&begin, sizeof(begin)));
-  PetscCall(BodyRigidFindPlace(body, U, &begin));
-  PetscCall(BodyRigidFindMomentum(body, &begin, V, body->work.nodes[0], &motion));
-  PetscCall(BodyRigidFindMomentum(body, &begin, body->state.a, body->work.nodes[0], &impulse));
-  BodyRigidFindVelocity(body, &motion, &begin);
+  PetscCall(BodyRigidFindMotion(body, U, V, &begin));
+  PetscCall(BodyRigidFindMomentum(body, &begin, body->state.a, &impulse));
   PetscCall(FindForces(body, t, from, U, &forces[0]));
   PetscCall(FindForces(body, t + dt, to, U, &forces[1]));
   end = begin;
@@ -188,17 +185,13 @@ static PetscErrorCode CheckStart(Body body, const char what[], Vec given, Vec ri
 static PetscErrorCode Start(Body body)
 {
   RigidMotion motion;
-  Momentum    momentum;
   Vec         u = body->work.nodes[1], v = body->work.nodes[2];
   PetscReal   box[6] = {0}, size = 0, largest;
 
   PetscFunctionBegin;
-  PetscCall(PetscMemzero(&motion, sizeof(motion)));
   PetscCall(DMGetBoundingBox(body->mesh.dm, box, box + 3));
   for (PetscInt d = 0; d < body->mesh.dim; d++) size = PetscMax(size, box[3 + d] - box[d]);
-  PetscCall(BodyRigidFindPlace(body, body->state.u, &motion));
-  PetscCall(BodyRigidFindMomentum(body, &motion, body->state.v, body->work.nodes[0], &momentum));
-  BodyRigidFindVelocity(body, &momentum, &motion);
+  PetscCall(BodyRigidFindMotion(body, body->state.u, body->state.v, &motion));
   PetscCall(BodyRigidWriteMotion(body, &motion, u, v, NULL));
   PetscCall(CheckStart(body, "displacement", body->state.u, u, size));
   PetscCall(VecNorm(body->state.v, NORM_INFINITY, &largest));
@@ -212,14 +205,11 @@ static PetscErrorCode Start(Body body)
 static PetscErrorCode CompleteStartAcceleration(Body body)
 {
   RigidMotion motion;
-  Momentum    velocity, acceleration;
+  Momentum    acceleration;
 
   PetscFunctionBegin;
-  PetscCall(PetscMemzero(&motion, sizeof(motion)));
-  PetscCall(BodyRigidFindPlace(body, body->state.u, &motion));
-  PetscCall(BodyRigidFindMomentum(body, &motion, body->state.v, body->work.nodes[0], &velocity));
-  PetscCall(BodyRigidFindMomentum(body, &motion, body->state.a, body->work.nodes[0], &acceleration));
-  BodyRigidFindVelocity(body, &velocity, &motion);
+  PetscCall(BodyRigidFindMotion(body, body->state.u, body->state.v, &motion));
+  PetscCall(BodyRigidFindMomentum(body, &motion, body->state.a, &acceleration));
   BodyRigidFindAcceleration(body, acceleration.linear, acceleration.angular, &motion);
   if (BodyIsLed(body)) PetscCall(BodyLead(body, body->state.time, &motion));
   PetscCall(BodyRigidWriteMotion(body, &motion, NULL, NULL, body->state.a));

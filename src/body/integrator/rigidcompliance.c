@@ -34,14 +34,10 @@ PetscErrorCode BodyRigidSolveMass(Body body, Vec f, Vec a)
 static PetscErrorCode FindMiddle(Body body, PetscReal half, RigidMotion *middle)
 {
   RigidMotion begin;
-  Momentum    momentum;
   PetscReal   way[3], turn[9];
 
   PetscFunctionBegin;
-  PetscCall(PetscMemzero(&begin, sizeof(begin)));
-  PetscCall(BodyRigidFindPlace(body, body->saved.u, &begin));
-  PetscCall(BodyRigidFindMomentum(body, &begin, body->saved.v, body->work.nodes[0], &momentum));
-  BodyRigidFindVelocity(body, &momentum, &begin);
+  PetscCall(BodyRigidFindMotion(body, body->saved.u, body->saved.v, &begin));
   for (PetscInt d = 0; d < 3; d++) way[d] = half * begin.angular_velocity[d];
   RigidCayley(way, turn);
   *middle = begin;
@@ -63,9 +59,7 @@ static PetscErrorCode FindUnitResultant(Body body, PetscInt dof, Resultant *resu
     resultant->force[d] = 1;
     for (PetscInt b = 0; b < dim; b++) resultant->dyad[3 * d + b] = Y[b];
   }
-  if (body->rows.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, resultant, sizeof(*resultant) / sizeof(PetscReal), MPIU_REAL, MPIU_SUM,
-                               PetscObjectComm((PetscObject)body)));
+  PetscCall(BodyRigidSum(body, sizeof(*resultant) / sizeof(PetscReal), (PetscReal *)resultant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

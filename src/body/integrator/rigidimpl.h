@@ -22,11 +22,12 @@ typedef struct {
 PETSC_INTERN BodyRigid     *BodyGetRigid(Body);
 PETSC_INTERN void           BodyRigidGetArm(const struct _p_Body *, PetscInt, PetscReal[3]);
 PETSC_INTERN PetscErrorCode BodyRigidFindPlace(Body, Vec, RigidMotion *);
-PETSC_INTERN PetscErrorCode BodyRigidFindMomentum(Body, const RigidMotion *, Vec, Vec, Momentum *);
+PETSC_INTERN PetscErrorCode BodyRigidFindMotion(Body, Vec, Vec, RigidMotion *);
+PETSC_INTERN PetscErrorCode BodyRigidFindMomentum(Body, const RigidMotion *, Vec, Momentum *);
 PETSC_INTERN PetscErrorCode BodyRigidFindResultant(Body, Vec, Resultant *);
+PETSC_INTERN PetscErrorCode BodyRigidSum(Body, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyRigidWriteMotion(Body, const RigidMotion *, Vec, Vec, Vec);
 PETSC_INTERN PetscBool      BodyRigidIsFixed(const struct _p_Body *, PetscInt);
-PETSC_INTERN void           BodyRigidFindVelocity(Body, const Momentum *, RigidMotion *);
 PETSC_INTERN void           BodyRigidFindAcceleration(Body, const PetscReal[3], const PetscReal[3], RigidMotion *);
 PETSC_INTERN PetscErrorCode BodyRigidFindInertia(Body);
 PETSC_INTERN PetscErrorCode BodyRigidMeasure(Body, BodyMeasures *);

@@ -15,7 +15,8 @@ void BodyRigidGetArm(const struct _p_Body *body, PetscInt node, PetscReal Y[3])
   for (PetscInt d = 0; d < 3; d++) Y[d] = d < dim ? body->mesh.coordinates[node * dim + d] - body->mass.centre[d] : 0;
 }
 
-static PetscErrorCode Sum(Body body, PetscInt n, PetscReal sums[])
+/* Sums over all ranks */
+PetscErrorCode BodyRigidSum(Body body, PetscInt n, PetscReal sums[])
 {
   PetscFunctionBegin;
   if (body->rows.size > 1)
@@ -47,7 +48,7 @@ PetscErrorCode BodyRigidFindPlace(Body body, Vec u, RigidMotion *motion)
   }
   PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
   PetscCall(VecRestoreArrayRead(u, &way));
-  PetscCall(Sum(body, 12, sums));
+  PetscCall(BodyRigidSum(body, 12, sums));
   for (PetscInt d = 0; d < 3; d++) motion->centre[d] = body->mass.centre[d] + sums[d] / body->mass.total;
   if (rigid->turns) {
     for (PetscInt k = 0; k < 9; k++) A[k] = rigid->spread[k] + sums[3 + k];
@@ -60,10 +61,11 @@ PetscErrorCode BodyRigidFindPlace(Body body, Vec u, RigidMotion *motion)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Of velocities or accelerations of the nodes. `work` is overwritten. */
-PetscErrorCode BodyRigidFindMomentum(Body body, const RigidMotion *motion, Vec v, Vec work, Momentum *momentum)
+/* Of velocities or accelerations of the nodes */
+PetscErrorCode BodyRigidFindMomentum(Body body, const RigidMotion *motion, Vec v, Momentum *momentum)
 {
   const PetscInt     dim     = body->mesh.dim;
+  const Vec          work    = body->work.nodes[0];
   PetscReal          sums[6] = {0};
   const PetscScalar *p;
 
@@ -83,7 +85,7 @@ PetscErrorCode BodyRigidFindMomentum(Body body, const RigidMotion *motion, Vec v
     }
   }
   PetscCall(VecRestoreArrayRead(work, &p));
-  PetscCall(Sum(body, 6, sums));
+  PetscCall(BodyRigidSum(body, 6, sums));
   PetscCall(PetscArraycpy(momentum->linear, sums, 3));
   PetscCall(PetscArraycpy(momentum->angular, sums + 3, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -109,7 +111,7 @@ PetscErrorCode BodyRigidFindResultant(Body body, Vec f, Resultant *resultant)
     }
   }
   PetscCall(VecRestoreArrayRead(f, &force));
-  PetscCall(Sum(body, 12, sums));
+  PetscCall(BodyRigidSum(body, 12, sums));
   PetscCall(PetscArraycpy(resultant->force, sums, 3));
   PetscCall(PetscArraycpy(resultant->dyad, sums + 3, 9));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -162,15 +164,19 @@ static void MultiplyTurned(const PetscReal R[9], const PetscReal A[9], const Pet
   RigidMultiply(R, product, y);
 }
 
-/* Velocities of the centre and about it, from momenta */
-void BodyRigidFindVelocity(Body body, const Momentum *momentum, RigidMotion *motion)
+/* Centre, rotation, and velocities of the centre and about it, of the displacement u and the velocity v */
+PetscErrorCode BodyRigidFindMotion(Body body, Vec u, Vec v, RigidMotion *motion)
 {
   const BodyRigid *rigid = BodyGetRigid(body);
+  Momentum         momentum;
 
-  for (PetscInt d = 0; d < 3; d++) motion->velocity[d] = BodyRigidIsFixed(body, d) ? 0 : momentum->linear[d] / body->mass.total;
-  if (rigid->turns) MultiplyTurned(motion->rotation, rigid->inverse, momentum->angular, motion->angular_velocity);
-  else
-    for (PetscInt d = 0; d < 3; d++) motion->angular_velocity[d] = 0;
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(motion, sizeof(*motion)));
+  PetscCall(BodyRigidFindPlace(body, u, motion));
+  PetscCall(BodyRigidFindMomentum(body, motion, v, &momentum));
+  for (PetscInt d = 0; d < 3; d++) motion->velocity[d] = BodyRigidIsFixed(body, d) ? 0 : momentum.linear[d] / body->mass.total;
+  if (rigid->turns) MultiplyTurned(motion->rotation, rigid->inverse, momentum.angular, motion->angular_velocity);
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Accelerations from forces and torques; the angular velocity is there: T = J alpha + omega x J omega */
@@ -224,7 +230,7 @@ PetscErrorCode BodyRigidFindInertia(Body body)
   }
   PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
   PetscCall(VecRestoreArrayRead(MY, &moment));
-  PetscCall(Sum(body, 18, sums));
+  PetscCall(BodyRigidSum(body, 18, sums));
   PetscCall(PetscArraycpy(rigid->spread, sums + 9, 9));
   if (!rigid->turns) PetscFunctionReturn(PETSC_SUCCESS);
   trace = sums[0] + sums[4] + sums[8];
@@ -246,12 +252,9 @@ PetscErrorCode BodyRigidFindInertia(Body body)
 PetscErrorCode BodyRigidMeasure(Body body, BodyMeasures *measures)
 {
   RigidMotion motion;
-  Momentum    momentum;
 
   PetscFunctionBegin;
-  PetscCall(BodyRigidFindPlace(body, body->state.u, &motion));
-  PetscCall(BodyRigidFindMomentum(body, &motion, body->state.v, body->work.nodes[1], &momentum));
-  BodyRigidFindVelocity(body, &momentum, &motion);
+  PetscCall(BodyRigidFindMotion(body, body->state.u, body->state.v, &motion));
   PetscCall(PetscArraycpy(measures->place, motion.centre, 3));
   PetscCall(PetscArraycpy(measures->angular_velocity, motion.angular_velocity, 3));
   RigidFindVector(motion.rotation, measures->orientation);
