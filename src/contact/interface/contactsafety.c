@@ -20,12 +20,9 @@ PetscErrorCode ContactBodyHasMass(Body body, PetscBool *has)
 /* Whether a set needs the rule `impulse`: contact nodes that have mass, be it that of a rigid body which meets what cannot yield */
 PetscErrorCode ContactNeedsImpulse(Contact contact, PetscInt b, PetscBool *needs)
 {
-  PetscBool rigid;
-
   PetscFunctionBegin;
   PetscCall(ContactBodyHasMass(contact->bodies[b], needs));
-  PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
-  for (PetscInt p = 0; p < contact->n_pairs && rigid && !*needs; p++) {
+  for (PetscInt p = 0; p < contact->n_pairs && BodyDoes(contact->bodies[b], BodyIsRigid) && !*needs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     if (pair->body[0] != b && pair->body[1] != b) continue;

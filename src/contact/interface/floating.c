@@ -66,10 +66,7 @@ PetscErrorCode ContactSetUpFloating(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc2(n, &f->bodies, n, &f->forces));
   for (PetscInt b = 0; b < n; b++) {
-    PetscBool floating;
-
-    PetscCall(BodyIsFloating(contact->bodies[b], &floating));
-    if (!floating) continue;
+    if (!BodyDoes(contact->bodies[b], BodyIsFloating)) continue;
     PetscCall(BodyMeasureSprings(contact->bodies[b], &f->bodies[f->n].state));
     f->bodies[f->n].body  = b;
     f->bodies[f->n].begin = f->n_springs;

@@ -128,11 +128,9 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   const PetscScalar *reference, *displacement;
   Vec                positions, u;
   PetscInt           dim;
-  PetscBool          axisymmetric;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetAxisymmetric(body, &axisymmetric));
-  if (axisymmetric) PetscFunctionReturn(PETSC_SUCCESS); /* around a ring moments are in balance */
+  if (BodyDoes(body, BodyGetAxisymmetric)) PetscFunctionReturn(PETSC_SUCCESS); /* around a ring moments are in balance */
   PetscCall(BodyGetDimension(body, &dim));
   PetscCall(BodyGetReferencePositions(body, &positions));
   PetscCall(BodyGetSolution(body, &u, NULL, NULL));

@@ -37,11 +37,9 @@ PetscErrorCode ContactCheckNear(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool near;
     PetscReal on_mass, largest;
 
-    PetscCall(BodyGetMassRedistributeNear(contact->bodies[b], &near));
-    if (!near) continue;
+    if (!BodyDoes(contact->bodies[b], BodyGetMassRedistributeNear)) continue;
     PetscCall(BodyGetForceOnMass(contact->bodies[b], contact->end.force, &on_mass, &largest));
     PetscCheck(on_mass <= FORCE_ROUND_OFF * largest, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "Contact has come to nodes of body '%s' that faced nothing at the start, where -%s_mass_redistribute near leaves mass (%g "

@@ -43,15 +43,15 @@ static const char *FindUnsuited(Contact contact)
 /* The same of one body, as this rank knows it: of held displacements those with the nodes do */
 static PetscErrorCode FindUnsuitedBody(Body body, const char **why)
 {
-  PetscBool       is_static, near;
   const PetscInt *held;
   PetscInt        n;
 
   PetscFunctionBegin;
-  PetscCall(BodyIsStatic(body, &is_static));
-  PetscCall(BodyGetMassRedistributeNear(body, &near));
   PetscCall(BodyGetHeldDofs(body, &n, &held));
-  *why = is_static ? "is static" : near ? "has -mass_redistribute near" : n ? HELD : NULL;
+  *why = BodyDoes(body, BodyIsStatic)                  ? "is static"
+         : BodyDoes(body, BodyGetMassRedistributeNear) ? "has -mass_redistribute near"
+         : n                                           ? HELD
+                                                       : NULL;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -30,12 +30,10 @@ PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     const PetscInt *vertices;
     PetscInt        n, body = pair->body[side];
-    PetscBool       near;
 
     PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
-    PetscCall(BodyGetMassRedistributeNear(contact->bodies[body], &near));
     if (!pair->keeps_mass || contact->sideless) {
-      if (near) PetscCall(ContactMarkNearNodes(contact, pair, side));
+      if (BodyDoes(contact->bodies[body], BodyGetMassRedistributeNear)) PetscCall(ContactMarkNearNodes(contact, pair, side));
       else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
     }
     PetscCall(NoteNodes(contact, body, pair->surfaces[side]));
@@ -128,6 +126,20 @@ static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* `extent` grows to the largest coordinate of a mesh, without sign [m]. `dim`: how many these are */
+static PetscErrorCode GrowExtent(Body body, PetscInt *dim, PetscReal *extent)
+{
+  PetscReal lower[3], upper[3];
+  DM        dm;
+
+  PetscFunctionBegin;
+  PetscCall(BodyGetDM(body, &dm));
+  PetscCall(DMGetCoordinateDim(dm, dim));
+  PetscCall(DMGetBoundingBox(dm, lower, upper));
+  for (PetscInt d = 0; d < *dim; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Where pairs come and go: the surfaces of all bodies, whose nodes may all touch; then the pairs that are near. `extent` becomes the
    largest coordinate of the meshes, without sign, if it was smaller [m]. */
 PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
@@ -140,20 +152,15 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     ContactSurface *entry = &contact->surfaces[b];
     const PetscInt *vertices;
-    PetscReal       lower[3], upper[3];
     PetscInt        n, dim;
-    DM              dm;
 
     *entry = (ContactSurface){.body = b, .shared = PETSC_TRUE};
-    PetscCall(BodyGetDM(contact->bodies[b], &dm));
     PetscCall(ContactCreateSurface(contact, b, NULL, &entry->surface));
     PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
     PetscCall(SurfaceGetVertices(entry->surface, &n, &vertices));
     PetscCall(BodySetContactNodes(contact->bodies[b], n, vertices));
     PetscCall(NoteNodes(contact, b, entry->surface));
-    PetscCall(DMGetCoordinateDim(dm, &dim));
-    PetscCall(DMGetBoundingBox(dm, lower, upper));
-    for (PetscInt d = 0; d < dim; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
+    PetscCall(GrowExtent(contact->bodies[b], &dim, extent));
   }
   PetscCall(ContactMeasureNeighbours(contact));
   PetscCall(ContactFindNeighbours(contact, 0, &n_found));
@@ -220,16 +227,9 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    PetscReal lower[3], upper[3];
-    DM        dm;
-
     faces[side] = (PetscBool)(contact->options.facing && !pair->surface[side]);
-    PetscCall(BodyGetDM(contact->bodies[pair->body[side]], &dm));
-    PetscCall(DMGetCoordinateDim(dm, &dims[side]));
     PetscCall(TakeSurface(contact, pair, side, (PetscBool)!faces[side]));
-    if (contact->neighbours.come_and_go) continue;
-    PetscCall(DMGetBoundingBox(dm, lower, upper));
-    for (PetscInt d = 0; d < dims[side]; d++) *extent = PetscMax(*extent, PetscMax(PetscAbsReal(lower[d]), PetscAbsReal(upper[d])));
+    if (!contact->neighbours.come_and_go) PetscCall(GrowExtent(contact->bodies[pair->body[side]], &dims[side], extent));
   }
   PetscCheck(dims[0] == dims[1] && dims[0] == contact->dim, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs %s: the bodies of a contact problem must have one dimension; these have %" PetscInt_FMT " and %" PetscInt_FMT

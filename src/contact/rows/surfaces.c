@@ -4,14 +4,12 @@
 /* A surface of a body; `name` NULL: the whole of it */
 PetscErrorCode ContactCreateSurface(Contact contact, PetscInt body, const char name[], Surface *surface)
 {
-  PetscBool axisymmetric;
-  DM        dm;
+  DM dm;
 
   PetscFunctionBegin;
   PetscCall(BodyGetDM(contact->bodies[body], &dm));
   PetscCall(SurfaceCreate(dm, name, surface));
-  PetscCall(BodyGetAxisymmetric(contact->bodies[body], &axisymmetric));
-  if (axisymmetric) PetscCall(SurfaceSetAxisymmetric(*surface));
+  if (BodyDoes(contact->bodies[body], BodyGetAxisymmetric)) PetscCall(SurfaceSetAxisymmetric(*surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

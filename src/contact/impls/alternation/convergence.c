@@ -38,12 +38,10 @@ static PetscErrorCode MeasureLag(Contact contact, PetscInt i, PetscReal *lag)
   const Trace        given = contact->traces[DirichletBody(pair)].velocity_in, has = contact->traces[NeumannBody(pair)].velocity;
   PetscInt           given_levels, has_levels;
   PetscScalar       *from, *to;
-  PetscBool          mass;
 
   PetscFunctionBegin;
   *lag = 0;
-  PetscCall(BodyPrescribesMass(body, &mass));
-  if (!mass || alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ||
+  if (!BodyDoes(body, BodyPrescribesMass) || alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ||
       alternation->kinematic[SideIndex(contact, contact->rows.pair[i])])
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(TraceGetSizes(given, NULL, &given_levels));

@@ -24,11 +24,9 @@ static PetscErrorCode CountLevels(Contact contact, PetscInt p, PetscInt dirichle
 static PetscErrorCode CheckSwappable(Contact contact, PetscInt b)
 {
   const ContactBodyRows *of = &contact->body_rows[b];
-  PetscBool              rigid;
 
   PetscFunctionBegin;
-  PetscCall(BodyIsRigid(contact->bodies[b], &rigid));
-  PetscCheck(!rigid, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(!BodyDoes(contact->bodies[b], BodyIsRigid), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_swap_sides: body '%s' is rigid, and takes forces alone; leave the option out",
              ((PetscObject)contact->bodies[b])->name);
   for (PetscInt k = 0; k < of->n; k++) {
@@ -55,15 +53,13 @@ static PetscErrorCode CheckSwappable(Contact contact, PetscInt b)
 static PetscErrorCode CheckReactionSubsteps(Contact contact, Body dirichlet)
 {
   const char *name = ((PetscObject)dirichlet)->name;
-  PetscBool   is_explicit;
   PetscInt    substeps;
 
   PetscFunctionBegin;
   PetscCall(BodyGetSubsteps(dirichlet, &substeps));
   if (substeps == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyIsExplicit(dirichlet, &is_explicit));
   PetscCheck(
-      !is_explicit, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+      !BodyDoes(dirichlet, BodyIsExplicit), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
       "-schwarz_traction reaction: body '%s' is explicit, takes displacements, and its contact nodes have mass: what they feel at the "
       "end of a substep moves nothing in it; choose -schwarz_traction internal, or -%s_mass_redistribute true",
       name, name);
@@ -81,18 +77,14 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
   Alternation       *alternation = (Alternation *)contact->data;
   const ContactPair *pair        = &contact->pairs[p];
   const Body         dirichlet = contact->bodies[pair->body[side]], neumann = pair->obstacle ? NULL : contact->bodies[pair->body[1 - side]];
-  PetscBool          mass, is_explicit;
   PetscInt           substeps;
 
   PetscFunctionBegin;
   if (pair->obstacle || alternation->traction != BODY_TRACTION_REACTION ||
-      alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
+      alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN || !BodyDoes(dirichlet, BodyPrescribesMass))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyPrescribesMass(dirichlet, &mass));
-  if (!mass) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyIsExplicit(neumann, &is_explicit));
   PetscCall(BodyGetSubsteps(neumann, &substeps));
-  PetscCheck(!is_explicit && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(!BodyDoes(neumann, BodyIsExplicit) && substeps == 1, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-schwarz_traction reaction: the contact nodes of body '%s' have mass, and then its partner '%s' must be implicit with the "
              "controller step as its step; choose -schwarz_traction internal, or -%s_mass_redistribute true",
              ((PetscObject)dirichlet)->name, ((PetscObject)neumann)->name, ((PetscObject)dirichlet)->name);
@@ -112,12 +104,8 @@ static PetscErrorCode PrescribesMass(Contact contact, PetscBool *prescribes)
   *prescribes = PETSC_FALSE;
   if (alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt side = 0; side <= (alternation->swap && !contact->pairs[p].obstacle ? 1 : 0); side++) {
-      PetscBool has;
-
-      PetscCall(BodyPrescribesMass(contact->bodies[contact->pairs[p].body[side]], &has));
-      *prescribes = (PetscBool)(*prescribes || has);
-    }
+    for (PetscInt side = 0; side <= (alternation->swap && !contact->pairs[p].obstacle ? 1 : 0); side++)
+      *prescribes = (PetscBool)(*prescribes || BodyDoes(contact->bodies[contact->pairs[p].body[side]], BodyPrescribesMass));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
