@@ -149,14 +149,10 @@ PetscErrorCode BodyBoundInverseMass(Body body, PetscReal bound[])
 PetscErrorCode BodyGetForceOnMass(Body body, const PetscReal force[], PetscReal *on_mass, PetscReal *largest)
 {
   const PetscScalar *nodal;
-  PetscScalar       *row;
   PetscReal          most[2] = {0, 0};
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(body->work.rows[0], &row));
-  for (PetscInt i = 0; i < body->rows.local; i++) row[i] = force[i];
-  PetscCall(VecRestoreArrayWrite(body->work.rows[0], &row));
-  PetscCall(MatMultTranspose(body->rows.matrix, body->work.rows[0], body->work.nodes[0]));
+  PetscCall(BodySpreadRows(body, body->rows.matrix, force, body->work.nodes[0]));
   PetscCall(VecGetArrayRead(body->work.nodes[0], &nodal));
   for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) {
     most[1] = PetscMax(most[1], PetscAbsReal(nodal[i]));
