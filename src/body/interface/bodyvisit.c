@@ -168,10 +168,10 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
   PetscCall(CheckpointCheckInts(checkpoint, "nodes, dimensions, rows and substeps", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
-  PetscCall(VisitState(&body->saved, checkpoint));
+  PetscCall(VisitState(&body->state, checkpoint));
+  if (CheckpointLoads(checkpoint)) PetscCall(BodyStateCopy(body, &body->state, &body->saved));
   PetscCall(VisitHistory(body, checkpoint));
   PetscCall(VisitLevels(body, checkpoint));
-  PetscCall(VisitState(&body->state, checkpoint));
   PetscCall(VisitTraces(body, checkpoint));
   PetscCall(VisitConditions(body, checkpoint));
   PetscCall(VisitMassSolver(body, checkpoint));
