@@ -60,7 +60,7 @@ PetscErrorCode BodySetControllerStep(Body body, PetscReal start, PetscReal step)
 PetscErrorCode BodySetContactNodes(Body body, PetscInt n, const PetscInt vertices[])
 {
   PetscFunctionBegin;
-  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
+  BodyCheckNotSetUp(body);
   PetscCheck(!body->mass.decided, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodyChooseMass()");
   PetscCall(BodySetUpDiscretization(body));
   PetscCall(BodyMarkNodes(body, n, vertices, body->layer.contains));

@@ -36,8 +36,7 @@ PetscErrorCode BodySetTSType(Body body, TSType type)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscAssertPointer(type, 2);
-  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call before BodySetUp()",
-             body->hdr.name);
+  BodyCheckNotSetUp(body);
   if (body->time.ts) PetscCall(PetscObjectTypeCompare((PetscObject)body->time.ts, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyIntegratorCreate(body, type));
@@ -100,8 +99,7 @@ PetscErrorCode BodySetTimeStep(Body body, PetscReal step)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(body, BODY_CLASSID, 1);
   PetscValidLogicalCollectiveReal(body, step, 2);
-  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Body '%s': call before BodySetUp()",
-             body->hdr.name);
+  BodyCheckNotSetUp(body);
   PetscCheck(step >= 0 || step == (PetscReal)PETSC_DETERMINE, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
              "Body '%s': a time step of %g s must not be negative", body->hdr.name, (double)step);
   body->time.requested_step = step;

@@ -58,7 +58,7 @@ PetscErrorCode BodyPrescribesMass(Body body, PetscBool *prescribes)
 PetscErrorCode BodySetTiedMass(Body body, PetscBool tied)
 {
   PetscFunctionBegin;
-  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
+  BodyCheckNotSetUp(body);
   body->rows.tied_mass = tied;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -11,7 +11,7 @@ PetscErrorCode BodySetInterface(Body body, Mat B)
   BodyRows *rows = &body->rows;
 
   PetscFunctionBegin;
-  PetscCheck(!body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call before BodySetUp()");
+  BodyCheckNotSetUp(body);
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&body->rows.matrix));
   body->rows.matrix = B;

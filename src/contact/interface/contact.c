@@ -116,8 +116,7 @@ PetscErrorCode ContactSetType(Contact contact, ContactType type)
   if (same) type = CONTACT_SCHWARZ;
   PetscCall(PetscObjectTypeCompare((PetscObject)contact, type, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE,
-             "The method cannot be changed after ContactSetUp()");
+  ContactCheckNotSetUp(contact);
   PetscCall(PetscFunctionListFind(ContactList, type, &create));
   if (!create) {
     char known[1024];

@@ -114,7 +114,7 @@ PetscErrorCode ContactAddPair(Contact contact, const char pair[])
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(pair, 2);
-  PetscCheck(!contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call before ContactSetUp()");
+  ContactCheckNotSetUp(contact);
   PetscCall(PetscStrncpy(text, pair, sizeof(text)));
   PetscCall(PetscStrchr(text, ':', &colon));
   PetscCall(PetscStrchr(text, '~', &tilde));
