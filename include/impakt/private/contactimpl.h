@@ -17,15 +17,16 @@ typedef struct _n_ContactNamedLaw ContactNamedLaw; /* src/contact/laws/pairlaws.
 struct _ContactOps {
   PetscErrorCode (*setfromoptions)(Contact);
   PetscErrorCode (*setup)(Contact);
-  PetscErrorCode (*layrows)(Contact);     /* (NULL) before rows are laid again, as a step begins: where */
-  PetscErrorCode (*step)(Contact);        /* advances all bodies from their saved states through one controller step */
-  PetscErrorCode (*rowschanged)(Contact); /* called after rows have been built again: those marked as changed have new entries */
+  PetscErrorCode (*layrows)(Contact); /* (NULL) before rows are laid again, as a step begins: where */
+  PetscErrorCode (*step)(Contact);    /* advances all bodies from their saved states through one controller step */
+  /* called after rows have been built again, or loaded: those marked as changed have new entries; NULL: runs with it have no checkpoints */
+  PetscErrorCode (*rowschanged)(Contact);
   /* (NULL) energy that the method's springs store on a row at a gap [J]; without it nobody knows what contact gains, and it is not limited
    */
   PetscReal (*stored)(Contact, PetscInt, PetscReal);
   PetscErrorCode (*steplevel)(Contact); /* the controller step is contact->step from now on, and so is the bodies' compliance another */
   PetscErrorCode (*accept)(Contact);    /* corrects the states at the end of a step, before the next step starts from them */
-  /* what the method remembers from step to step, to or from a checkpoint; NULL: runs with it have no checkpoints */
+  /* (NULL) what the method remembers from step to step, to or from a checkpoint; loading, after rowschanged() */
   PetscErrorCode (*visit)(Contact, Checkpoint);
   PetscErrorCode (*visitshared)(Contact, Checkpoint); /* (NULL) the same, what all ranks have */
   /* (NULL) the same, what no solver finds anew to round-off, to or from tables by which a run is continued on another number of ranks;

@@ -119,7 +119,7 @@ static PetscErrorCode VisitObstacleTraces(Contact contact, Checkpoint checkpoint
 PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
 {
   PetscFunctionBegin;
-  *has = (PetscBool)(contact->ops->visit || (!contact->rows.n_all && !contact->neighbours.come_and_go));
+  *has = (PetscBool)(contact->ops->rowschanged || (!contact->rows.n_all && !contact->neighbours.come_and_go));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -206,6 +206,7 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   /* before the method, which notes the matrices of their layers as they are */
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisit(contact->bodies[b], checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "contact method"));
+  if (contact->rows.n_all && CheckpointLoads(checkpoint)) PetscUseTypeMethod(contact, rowschanged);
   if (contact->rows.n_all) PetscTryTypeMethod(contact, visit, checkpoint);
   PetscCall(CheckpointBegin(checkpoint, "contact states"));
   if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;

@@ -12,19 +12,9 @@ static StateList ListRows(Contact contact, PetscReal *const numbers[2])
   return (StateList){.n      = contact->rows.n,
                      .arrays = {{1, .bools = stepper->joined},
                                 {stepper->glued ? ROW_LAW_HISTORY : 0, stepper->history},
+                                {stepper->glued ? ROW_LAW_HISTORY : 0, stepper->grown},
                                 {others, numbers ? numbers[0] : NULL},
                                 {others, numbers ? numbers[1] : NULL}}};
-}
-
-/* What follows from rows that have been loaded */
-static PetscErrorCode TakeRows(Contact contact)
-{
-  ContactStepper *stepper = Stepper(contact);
-
-  PetscFunctionBegin;
-  if (stepper->glued) PetscCall(PetscArraycpy(stepper->grown, stepper->history, ROW_LAW_HISTORY * contact->rows.n));
-  stepper->state++;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* ContactStepperVisit - what a rank has, to or from a checkpoint */
@@ -34,7 +24,6 @@ PetscErrorCode ContactStepperVisit(Contact contact, Checkpoint checkpoint)
 
   PetscFunctionBegin;
   PetscCall(StateListVisit(&list, "step", checkpoint));
-  if (CheckpointLoads(checkpoint)) PetscCall(TakeRows(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -99,8 +88,6 @@ PetscErrorCode ContactStepperVisitTables(Contact contact, Tables tables)
                                                           : -1;
     PetscCall(ContactVisitPairNodes(pair, &list, "step", tables));
   }
-  if (!TablesLoads(tables)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(RenumberAllSecants(contact, numbers));
-  PetscCall(TakeRows(contact));
+  if (TablesLoads(tables)) PetscCall(RenumberAllSecants(contact, numbers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

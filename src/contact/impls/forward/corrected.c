@@ -78,14 +78,6 @@ static PetscErrorCode RowsChanged(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Visit(Contact contact, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  PetscCall(ContactStepperVisit(contact, checkpoint));
-  if (CheckpointLoads(checkpoint)) PetscCall(ComplementaritySetCompliance(contact, &CorrectionsOf(contact)->impulses));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode Destroy(Contact contact)
 {
   Corrections *corrections = CorrectionsOf(contact);
@@ -160,7 +152,6 @@ static PetscErrorCode SetUpCorrected(Contact contact, PetscBool stabilized)
   contact->ops->step        = Step;
   contact->ops->accept      = Accept;
   contact->ops->rowschanged = RowsChanged;
-  contact->ops->visit       = Visit;
   PetscCall(LagrangeSetUpImpulses(contact, stabilized ? "-contact_stabilization contact_stabilized" : "-contact_constraint both",
                                   &corrections->impulses));
   PetscFunctionReturn(PETSC_SUCCESS);

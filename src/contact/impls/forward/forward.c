@@ -77,14 +77,6 @@ static PetscErrorCode ContactRowsChanged_ForwardLagrange(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nothing is remembered from step to step but what contact itself has in a checkpoint */
-static PetscErrorCode ContactVisit_ForwardLagrange(Contact contact, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  if (CheckpointLoads(checkpoint)) PetscCall(ContactRowsChanged_ForwardLagrange(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode ContactDestroy_ForwardLagrange(Contact contact)
 {
   Complementarity *problem = (Complementarity *)contact->data;
@@ -107,7 +99,6 @@ PetscErrorCode LagrangeSetUpForward(Contact contact)
   contact->attempt.moves_start = PETSC_TRUE;
   contact->ops->step           = ContactStep_ForwardLagrange;
   contact->ops->rowschanged    = ContactRowsChanged_ForwardLagrange;
-  contact->ops->visit          = ContactVisit_ForwardLagrange;
   contact->ops->destroy        = ContactDestroy_ForwardLagrange;
   if (contact->options.constraint == CONTACT_CONSTRAINT_BOTH) contact->ops->accept = ContactAccept_ForwardLagrange;
   PetscCall(LagrangeSetUpImpulses(contact, "-contact_constraint both", problem));
