@@ -14,6 +14,7 @@ typedef struct {
 struct _n_Tables {
   MPI_Comm  comm;
   PetscBool loads;
+  char      of[MOST_NAME]; /* with which names begin, for all but TablesShare() and TablesGetTable() */
   PetscInt  n;
   Table    *tables;
 };
@@ -46,6 +47,14 @@ PetscBool TablesLoads(Tables tables)
   return tables->loads;
 }
 
+/* TablesBegin - names are those of tables of this from now on: `nodes` is `block/nodes` */
+PetscErrorCode TablesBegin(Tables tables, const char of[])
+{
+  PetscFunctionBegin;
+  PetscCall(PetscSNPrintf(tables->of, sizeof(tables->of), "%s/", of));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* TablesShare - takes over a table that every rank has; values from PetscMalloc() */
 PetscErrorCode TablesShare(Tables tables, const char name[], PetscInt n, PetscInt width, PetscReal values[])
 {
@@ -62,23 +71,26 @@ PetscErrorCode TablesShare(Tables tables, const char name[], PetscInt n, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* TablesAdd - gathers the rows of all ranks on the first one; Collective */
+/* TablesAdd - gathers the rows of all ranks on the first one, or, where visits load, on each; Collective */
 PetscErrorCode TablesAdd(Tables tables, const char name[], PetscInt n, PetscInt width, const PetscReal values[])
 {
   PetscMPIInt rank, size, mine, *counts, *offsets, total = 0;
   PetscReal  *all = NULL;
+  char        full[MOST_NAME];
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(tables->comm, &rank));
   PetscCallMPI(MPI_Comm_size(tables->comm, &size));
   PetscCall(PetscMPIIntCast(n * width, &mine));
   PetscCall(PetscMalloc2(size, &counts, size, &offsets));
-  PetscCallMPI(MPI_Gather(&mine, 1, MPI_INT, counts, 1, MPI_INT, 0, tables->comm));
-  for (PetscMPIInt r = 0; r < size && !rank; total += counts[r++]) offsets[r] = total;
+  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, tables->comm));
+  for (PetscMPIInt r = 0; r < size && (tables->loads || !rank); total += counts[r++]) offsets[r] = total;
   PetscCall(PetscMalloc1(total, &all));
-  PetscCallMPI(MPI_Gatherv(values, mine, MPIU_REAL, all, counts, offsets, MPIU_REAL, 0, tables->comm));
+  if (tables->loads) PetscCallMPI(MPI_Allgatherv(values, mine, MPIU_REAL, all, counts, offsets, MPIU_REAL, tables->comm));
+  else PetscCallMPI(MPI_Gatherv(values, mine, MPIU_REAL, all, counts, offsets, MPIU_REAL, 0, tables->comm));
   PetscCall(PetscFree2(counts, offsets));
-  PetscCall(TablesShare(tables, name, total / width, width, all));
+  PetscCall(PetscSNPrintf(full, sizeof(full), "%s%s", tables->of, name));
+  PetscCall(TablesShare(tables, full, total / width, width, all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -102,8 +114,10 @@ PetscErrorCode TablesGetTable(Tables tables, PetscInt i, const char *name[], Pet
 
 static Table *LookForTable(Tables tables, const char name[])
 {
+  const size_t begin = strlen(tables->of);
+
   for (PetscInt i = 0; i < tables->n; i++)
-    if (!strcmp(tables->tables[i].name, name)) return &tables->tables[i];
+    if (!strncmp(tables->tables[i].name, tables->of, begin) && !strcmp(tables->tables[i].name + begin, name)) return &tables->tables[i];
   return NULL;
 }
 
@@ -119,7 +133,8 @@ static PetscErrorCode FindTable(Tables tables, const char name[], Table **table)
 {
   PetscFunctionBegin;
   *table = LookForTable(tables, name);
-  PetscCheck(*table, tables->comm, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has no table '%s': it is of another problem", name);
+  PetscCheck(*table, tables->comm, PETSC_ERR_FILE_UNEXPECTED, "The checkpoint has no table '%s%s': it is of another problem", tables->of,
+             name);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -133,7 +148,7 @@ PetscErrorCode TablesGet(Tables tables, const char name[], PetscInt width, Petsc
   PetscCheck(table->width == width, tables->comm, PETSC_ERR_FILE_UNEXPECTED,
              "The checkpoint has %" PetscInt_FMT " numbers for each row of '%s' where this run has %" PetscInt_FMT
              ": it is of another problem",
-             table->width, name, width);
+             table->width, table->name, width);
   *n      = table->n;
   *values = table->values;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -154,7 +169,8 @@ PetscErrorCode TablesVisitNumbers(Tables tables, const char name[], PetscInt n, 
   }
   PetscCall(TablesGet(tables, name, n, &lines, &there));
   PetscCheck(lines == 1, tables->comm, PETSC_ERR_FILE_UNEXPECTED,
-             "The checkpoint has %" PetscInt_FMT " rows in '%s' where there is to be one: it is of another problem", lines, name);
+             "The checkpoint has %" PetscInt_FMT " rows in '%s%s' where there is to be one: it is of another problem", lines, tables->of,
+             name);
   PetscCall(PetscArraycpy(values, there, n));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -190,7 +206,7 @@ PetscErrorCode TablesLookFor(Tables tables, const char name[], const PetscReal k
       PetscCheck(CompareRows(table->order + i - 1, table->order + i, table), tables->comm, PETSC_ERR_SUP,
                  "Two nodes of '%s' lie at one place, and cannot be told from each other: the run can be continued on as many ranks as "
                  "before alone",
-                 name);
+                 table->name);
   }
   while (high - low > 1) {
     const PetscInt middle = (low + high) / 2;
@@ -208,7 +224,7 @@ PetscErrorCode TablesFind(Tables tables, const char name[], const PetscReal key[
   PetscFunctionBegin;
   PetscCall(TablesLookFor(tables, name, key, row));
   PetscCheck(*row >= 0, PETSC_COMM_SELF, PETSC_ERR_FILE_UNEXPECTED,
-             "The checkpoint has no node of '%s' at (%.9g, %.9g, %.9g) m: it is of another mesh", name, (double)key[0], (double)key[1],
-             (double)key[2]);
+             "The checkpoint has no node of '%s%s' at (%.9g, %.9g, %.9g) m: it is of another mesh", tables->of, name, (double)key[0],
+             (double)key[1], (double)key[2]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

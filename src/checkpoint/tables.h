@@ -9,6 +9,7 @@ typedef struct _n_Tables *Tables;
 PETSC_INTERN PetscErrorCode TablesCreate(MPI_Comm, PetscBool, Tables *);
 PETSC_INTERN PetscErrorCode TablesDestroy(Tables *);
 PETSC_INTERN PetscBool      TablesLoads(Tables);
+PETSC_INTERN PetscErrorCode TablesBegin(Tables, const char[]);
 PETSC_INTERN PetscErrorCode TablesAdd(Tables, const char[], PetscInt, PetscInt, const PetscReal[]);
 PETSC_INTERN PetscErrorCode TablesVisitNumbers(Tables, const char[], PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode TablesShare(Tables, const char[], PetscInt, PetscInt, PetscReal[]);

@@ -5,20 +5,12 @@
 
 #define N_SHARE 11 /* key of its row, position of the partner's node, weight, goal and slope */
 
-static PetscErrorCode Name(const char pair[], const char what[], char name[], size_t size)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(name, size, "%s/%s", pair, what));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode PackShares(Transfer transfer, const char pair[], Tables tables)
+static PetscErrorCode PackShares(Transfer transfer, Tables tables)
 {
   const RowSet    *rows      = &transfer->rows;
   const PetscInt   n         = rows->offsets[transfer->n];
   const PetscReal *reference = transfer->dirichlet->data.reference;
   PetscReal       *packed;
-  char             name[256];
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(n * N_SHARE, &packed));
@@ -30,26 +22,22 @@ static PetscErrorCode PackShares(Transfer transfer, const char pair[], Tables ta
       packed[N_SHARE * j + 7] = rows->shares[j].goal;
       PetscCall(PetscArraycpy(packed + N_SHARE * j + 8, rows->shares[j].slope, 3));
     }
-  PetscCall(Name(pair, "shares", name, sizeof(name)));
-  PetscCall(TablesAdd(tables, name, n, N_SHARE, packed));
+  PetscCall(TablesAdd(tables, "shares", n, N_SHARE, packed));
   PetscCall(PetscFree(packed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* What the nodes of both sides have, to tables or back; obstacles have none */
-static PetscErrorCode VisitSides(Transfer transfer, const char pair[], Tables tables)
+static PetscErrorCode VisitSides(Transfer transfer, Tables tables)
 {
   static const char *const names[]     = {"rows", "partners"};
   const Surface            surfaces[2] = {transfer->dirichlet, transfer->neumann};
   StateList                lists[2];
-  char                     name[256];
 
   PetscFunctionBegin;
   TransferListState(transfer, lists);
-  for (PetscInt side = 0; side < 2 && surfaces[side]; side++) {
-    PetscCall(Name(pair, names[side], name, sizeof(name)));
-    PetscCall(StateListVisitNodes(&lists[side], 0, lists[side].n, 1, surfaces[side]->data.reference, name, tables));
-  }
+  for (PetscInt side = 0; side < 2 && surfaces[side]; side++)
+    PetscCall(StateListVisitNodes(&lists[side], 0, lists[side].n, 1, surfaces[side]->data.reference, names[side], tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -57,32 +45,26 @@ static PetscErrorCode VisitSides(Transfer transfer, const char pair[], Tables ta
 static PetscErrorCode ShareOwners(Transfer transfer, Tables *owners)
 {
   const SurfaceData *data = &transfer->neumann->data;
-  PetscMPIInt        rank, size, mine, *counts, *offsets, total = 0;
-  PetscReal         *packed, *all;
+  PetscReal         *packed;
+  PetscMPIInt        rank;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(transfer->comm, &rank));
-  PetscCallMPI(MPI_Comm_size(transfer->comm, &size));
-  PetscCall(PetscMalloc3(6 * data->n_owned, &packed, size, &counts, size, &offsets));
+  PetscCall(PetscMalloc1(6 * data->n_owned, &packed));
   for (PetscInt i = 0; i < data->n_owned; i++) {
     PetscCall(PetscArraycpy(packed + 6 * i, data->reference + 3 * i, 3));
     packed[6 * i + 3] = rank;
     packed[6 * i + 4] = (PetscReal)i;
     packed[6 * i + 5] = (PetscReal)data->dofs[i];
   }
-  PetscCall(PetscMPIIntCast(6 * data->n_owned, &mine));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, counts, 1, MPI_INT, transfer->comm));
-  for (PetscMPIInt r = 0; r < size; total += counts[r++]) offsets[r] = total;
-  PetscCall(PetscMalloc1(total, &all));
-  PetscCallMPI(MPI_Allgatherv(packed, mine, MPIU_REAL, all, counts, offsets, MPIU_REAL, transfer->comm));
-  PetscCall(PetscFree3(packed, counts, offsets));
   PetscCall(TablesCreate(transfer->comm, PETSC_TRUE, owners));
-  PetscCall(TablesShare(*owners, "owners", total / 6, 6, all));
+  PetscCall(TablesAdd(*owners, "owners", data->n_owned, 6, packed));
+  PetscCall(PetscFree(packed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The shares of the rows of this rank, and room for its rows */
-static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables tables)
+static PetscErrorCode UnpackShares(Transfer transfer, Tables tables)
 {
   const SurfaceData *data = &transfer->dirichlet->data;
   PetscInt           n, count = 0, n_owners;
@@ -90,11 +72,9 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
   Share             *shares;
   Tables             own, owners = NULL;
   PetscReal         *keys;
-  char               name[256];
 
   PetscFunctionBegin;
-  PetscCall(Name(pair, "shares", name, sizeof(name)));
-  PetscCall(TablesGet(tables, name, N_SHARE, &n, &packed));
+  PetscCall(TablesGet(tables, "shares", N_SHARE, &n, &packed));
   PetscCall(PetscMalloc1(n, &shares));
   /* the rows of this rank by their keys, with those of other ranks left out */
   PetscCall(TablesCreate(PETSC_COMM_SELF, PETSC_TRUE, &own));
@@ -135,13 +115,13 @@ static PetscErrorCode UnpackShares(Transfer transfer, const char pair[], Tables 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The tables of a transfer, whose names begin with that of the pair; loading, of any number of ranks, after TransferVisitShared() */
-PetscErrorCode TransferVisitTables(Transfer transfer, const char pair[], Tables tables)
+/* The tables of a transfer, after TablesBegin() with the name of its pair; loading, of any number of ranks, after TransferVisitShared() */
+PetscErrorCode TransferVisitTables(Transfer transfer, Tables tables)
 {
   PetscFunctionBegin;
-  if (TablesLoads(tables)) PetscCall(UnpackShares(transfer, pair, tables));
-  else PetscCall(PackShares(transfer, pair, tables));
-  PetscCall(VisitSides(transfer, pair, tables));
+  if (TablesLoads(tables)) PetscCall(UnpackShares(transfer, tables));
+  else PetscCall(PackShares(transfer, tables));
+  PetscCall(VisitSides(transfer, tables));
   if (TablesLoads(tables)) transfer->saved.builds = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

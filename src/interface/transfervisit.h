@@ -6,4 +6,4 @@
 
 PETSC_INTERN PetscErrorCode TransferVisit(Transfer, Checkpoint);
 PETSC_INTERN PetscErrorCode TransferVisitShared(Transfer, Checkpoint);
-PETSC_INTERN PetscErrorCode TransferVisitTables(Transfer, const char[], Tables);
+PETSC_INTERN PetscErrorCode TransferVisitTables(Transfer, Tables);

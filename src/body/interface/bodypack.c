@@ -10,13 +10,6 @@ enum { N_VECS = 5 };
 /* What is beside the nodes: two numbers of the factors */
 enum { N_FACTORS = 2 };
 
-static PetscErrorCode Name(Body body, const char what[], char name[], size_t size)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(name, size, "%s/%s", body->hdr.name, what));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Vectors of a body, a line for each node; any of them may be NULL */
 static PetscErrorCode VisitVecs(Body body, const char name[], PetscInt n_vecs, const Vec vecs[], Tables tables)
 {
@@ -53,7 +46,6 @@ static PetscErrorCode VisitPoint(Body body, Tables tables)
   const PetscBool loads              = TablesLoads(tables);
   PetscReal       numbers[N_FACTORS] = {0, 0};
   Vec             point;
-  char            name[256];
 
   PetscFunctionBegin;
   if (body->model.linear || !body->integrator->ops.copypoint) PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,22 +58,10 @@ static PetscErrorCode VisitPoint(Body body, Tables tables)
   PetscCall(VecZeroEntries(point));
   if (!loads) PetscCall((*body->integrator->ops.copypoint)(body, PETSC_FALSE, point, numbers));
   if (!loads && body->local) PetscCallMPI(MPI_Bcast(numbers, N_FACTORS, MPIU_REAL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
-  PetscCall(Name(body, "linearised at", name, sizeof(name)));
-  PetscCall(VisitVecs(body, name, 1, &point, tables));
-  PetscCall(Name(body, "factors", name, sizeof(name)));
-  PetscCall(TablesVisitNumbers(tables, name, N_FACTORS, numbers));
+  PetscCall(VisitVecs(body, "linearised at", 1, &point, tables));
+  PetscCall(TablesVisitNumbers(tables, "factors", N_FACTORS, numbers));
   if (loads) PetscCall((*body->integrator->ops.copypoint)(body, PETSC_TRUE, point, numbers));
   PetscCall(VecDestroy(&point));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode VisitInertia(Body body, PetscReal *moves, Tables tables)
-{
-  char name[256];
-
-  PetscFunctionBegin;
-  PetscCall(Name(body, "inertia", name, sizeof(name)));
-  PetscCall(TablesVisitNumbers(tables, name, 1, moves));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,8 +73,9 @@ PetscErrorCode BodyVisitTables(Body body, Tables tables)
   PetscReal        moves        = body->integrator->has_inertia;
 
   PetscFunctionBegin;
-  PetscCall(VisitVecs(body, body->hdr.name, N_VECS, vecs, tables));
-  PetscCall(VisitInertia(body, &moves, tables));
+  PetscCall(TablesBegin(tables, body->hdr.name));
+  PetscCall(VisitVecs(body, "nodes", N_VECS, vecs, tables));
+  PetscCall(TablesVisitNumbers(tables, "inertia", 1, &moves));
   PetscCall(BodyVisitHistory(body, tables));
   if (TablesLoads(tables)) {
     PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
@@ -108,7 +89,6 @@ PetscErrorCode BodyVisitTables(Body body, Tables tables)
 
 /* Where a body is to find the state that it begins with */
 typedef struct {
-  Body      body;
   Tables    tables;
   PetscBool moves; /* the body had inertia there: else its velocities mean nothing */
 } Start;
@@ -123,8 +103,8 @@ static PetscErrorCode FindState(PetscInt dim, const PetscReal x[], PetscScalar u
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(key, x, dim));
-  PetscCall(TablesGet(start->tables, start->body->hdr.name, TABLES_KEY + N_VECS * dim, &n, &packed));
-  PetscCall(TablesLookFor(start->tables, start->body->hdr.name, key, &row));
+  PetscCall(TablesGet(start->tables, "nodes", TABLES_KEY + N_VECS * dim, &n, &packed));
+  PetscCall(TablesLookFor(start->tables, "nodes", key, &row));
   PetscCheck(row >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "-restart_state: the checkpoint has no node at (%.9g, %.9g, %.9g) m; the meshes must be the same", (double)key[0],
              (double)key[1], (double)key[2]);
@@ -138,17 +118,20 @@ static PetscErrorCode FindState(PetscInt dim, const PetscReal x[], PetscScalar u
    through, and velocities unless it had no inertia. Collective. */
 PetscErrorCode BodyTakeState(Body body, Tables tables, PetscBool *found)
 {
-  const PetscInt width = TablesGetWidth(tables, body->hdr.name), dim = body->mesh.dim;
+  const PetscInt dim = body->mesh.dim;
+  PetscInt       width;
   PetscReal      moves;
-  Start          start = {.body = body, .tables = tables};
+  Start          start = {.tables = tables};
 
   PetscFunctionBegin;
+  PetscCall(TablesBegin(tables, body->hdr.name));
+  width  = TablesGetWidth(tables, "nodes");
   *found = (PetscBool)(width > 0);
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCheck(width == TABLES_KEY + N_VECS * dim, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-restart_state: body '%s' has %" PetscInt_FMT " dimensions there, and %" PetscInt_FMT " here", body->hdr.name,
              (width - TABLES_KEY) / N_VECS, dim);
-  PetscCall(VisitInertia(body, &moves, tables));
+  PetscCall(TablesVisitNumbers(tables, "inertia", 1, &moves));
   start.moves = (PetscBool)(moves != 0);
   PetscCall(BodyTakeHistory(body, tables)); /* first: stresses of the displacements follow from it */
   PetscCall(BodySetInitialState(body, FindState, &start));

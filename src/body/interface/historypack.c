@@ -45,14 +45,6 @@ static PetscInt HistoryWidth(Body body)
   return TABLES_KEY + element->nodes * body->mesh.dim + element->history.points * element->history.n;
 }
 
-/* The table of the history: that of another material means something else */
-static PetscErrorCode NameHistory(Body body, const char material[], char name[], size_t size)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(name, size, "%s/history of %s", body->hdr.name, material));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* BodyVisitHistory - the table of the history of the material, element by element */
 PetscErrorCode BodyVisitHistory(Body body, Tables tables)
 {
@@ -69,7 +61,8 @@ PetscErrorCode BodyVisitHistory(Body body, Tables tables)
   PetscFunctionBegin;
   saved = BodyHistoryGetSaved(body, &size);
   if (!saved) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(NameHistory(body, BodyGetMaterialName(body), name, sizeof(name)));
+  /* that of another material means something else */
+  PetscCall(PetscSNPrintf(name, sizeof(name), "history of %s", BodyGetMaterialName(body)));
   if (loads) PetscCall(TablesGet(tables, name, width, &n, &there));
   PetscCall(PetscMalloc1(element->count * width, &packed));
   for (PetscInt e = 0; e < element->count; e++) {
@@ -105,7 +98,7 @@ static PetscErrorCode FindHistory(Body body, Tables tables, const char *material
 
   PetscFunctionBegin;
   *material = NULL;
-  PetscCall(NameHistory(body, "", begin, sizeof(begin)));
+  PetscCall(PetscSNPrintf(begin, sizeof(begin), "%s/history of ", body->hdr.name));
   PetscCall(PetscStrlen(begin, &length));
   TablesGetNumber(tables, &n);
   for (PetscInt i = 0; i < n && !*material; i++) {

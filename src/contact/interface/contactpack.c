@@ -35,12 +35,11 @@ static PetscErrorCode VisitRows(Contact contact, Tables tables)
 PetscErrorCode ContactVisitPairNodes(const ContactPair *pair, const StateList *list, const char what[], Tables tables)
 {
   const SurfaceData *data;
-  char               name[256];
 
   PetscFunctionBegin;
-  PetscCall(PetscSNPrintf(name, sizeof(name), "%s/%s", pair->name, what));
+  PetscCall(TablesBegin(tables, pair->name));
   PetscCall(SurfaceGetData(pair->surfaces[0], &data));
-  PetscCall(StateListVisitNodes(list, pair->begin, (pair->end - pair->begin) / pair->components, pair->components, data->reference, name,
+  PetscCall(StateListVisitNodes(list, pair->begin, (pair->end - pair->begin) / pair->components, pair->components, data->reference, what,
                                 tables));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -75,14 +74,17 @@ PetscErrorCode ContactVisitTables(Contact contact, Tables tables)
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisitTables(contact->bodies[b], tables));
   if (contact->rows.n_all) {
-    for (PetscInt p = 0; p < contact->n_pairs; p++)
-      PetscCall(TransferVisitTables(contact->pairs[p].transfer, contact->pairs[p].name, tables));
+    for (PetscInt p = 0; p < contact->n_pairs; p++) {
+      PetscCall(TablesBegin(tables, contact->pairs[p].name));
+      PetscCall(TransferVisitTables(contact->pairs[p].transfer, tables));
+    }
     PetscCall(VisitRows(contact, tables));
     if (loads) PetscCall(TakeRows(contact, tables));
     PetscTryTypeMethod(contact, visittables, tables);
     if (loads) PetscCall(VisitRows(contact, tables));
   }
   /* what pairs have done so far, those that have gone too */
+  PetscCall(TablesBegin(tables, "contact"));
   PetscCall(VisitSums(contact, "impulses", CONTACT_IMPULSES * contact->n_pairs, contact->resultants.impulse, tables));
   PetscCall(VisitSums(contact, "gone", CONTACT_IMPULSES * contact->neighbours.told.n, contact->neighbours.told.gone, tables));
   if (!loads) PetscFunctionReturn(PETSC_SUCCESS);
