@@ -182,7 +182,7 @@ static PetscErrorCode Store(hid_t file, const char path[])
   PetscCall(HDF5Check(size, "finish a file", path));
   memcpy(trailer.magic, CHECKPOINT_MAGIC, sizeof(trailer.magic));
   trailer.size = (uint64_t)size;
-  trailer.sum  = CheckpointSum(CHECKPOINT_SUM_BEGIN, (size_t)size, image);
+  trailer.sum  = ByteSum(BYTE_SUM_BEGIN, (size_t)size, image);
   PetscCall(OutputFileMakeParents(part));
   error = WriteBytes(part, (size_t)size, image, &trailer);
   PetscCall(PetscFree(image));

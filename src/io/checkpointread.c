@@ -45,7 +45,7 @@ static PetscErrorCode CheckWhole(const char path[], const char **why)
 {
   CheckpointTrailer trailer = {.size = 0};
   struct stat       status;
-  uint64_t          sum  = CHECKPOINT_SUM_BEGIN, size;
+  uint64_t          sum  = BYTE_SUM_BEGIN, size;
   int               file = open(path, O_RDONLY | O_CLOEXEC | O_NONBLOCK);
   char             *bytes;
 
@@ -65,7 +65,7 @@ static PetscErrorCode CheckWhole(const char path[], const char **why)
     const size_t now = (size_t)PetscMin(CHECKPOINT_BLOCK, size - done);
 
     if (ReadBytes(file, now, bytes) != (ssize_t)now) *why = "it cannot be read";
-    else sum = CheckpointSum(sum, now, bytes);
+    else sum = ByteSum(sum, now, bytes);
   }
   PetscCall(PetscFree(bytes));
   if (!*why && sum != trailer.sum) *why = "its bytes are not those that were written";

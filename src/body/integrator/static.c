@@ -113,14 +113,6 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The springs of a floating body are at rest where it starts from */
-static PetscErrorCode Save(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyResetSprings(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
 {
   PetscFunctionBegin;
@@ -138,7 +130,7 @@ PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator integrator)
   integrator->ops.setup         = SetUp;
   integrator->ops.finishsubstep = FinishSubstep;
   integrator->ops.repeat        = Repeat;
-  integrator->ops.save          = Save;
+  integrator->ops.save          = BodyResetSprings; /* they are at rest where the body starts from */
   integrator->ops.rates         = GetRates;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

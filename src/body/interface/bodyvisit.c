@@ -3,8 +3,8 @@
    known, level by level of cut steps. The rows themselves are loaded before, by those who own their matrices. */
 #include <petscsf.h>
 #include <body/rows/complianceimpl.h>
+#include <sys/bytesum.h>
 #include "bodyvisit.h"
-#include <string.h>
 
 static PetscErrorCode VisitState(BodyState *state, Checkpoint checkpoint)
 {
@@ -140,34 +140,23 @@ PetscErrorCode BodyVisitMesh(Body body, Checkpoint checkpoint)
 {
   const PetscInt     sizes[] = {body->mesh.dim, body->mesh.owned_nodes, body->mesh.local_nodes};
   const PetscScalar *positions;
-  PetscInt           sums[2] = {0, 0};
+  PetscInt           sum;
 
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
   PetscCall(CheckpointCheckInts(checkpoint, "dimensions, nodes and nodes with ghosts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
   PetscCall(VecGetArrayRead(body->mesh.positions, &positions));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) {
-    PetscInt words[sizeof(PetscScalar) / sizeof(PetscInt)];
-
-    memcpy(words, &positions[i], sizeof(words));
-    for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(words); k++) {
-      sums[0] = (PetscInt)(((unsigned long long)sums[0] + (unsigned long long)words[k]) & 0x7fffffff);
-      sums[1] = (PetscInt)(((unsigned long long)sums[1] + (unsigned long long)sums[0]) & 0x7fffffff);
-    }
-  }
+  sum = (PetscInt)(ByteSum(BYTE_SUM_BEGIN, (size_t)(body->mesh.owned_nodes * body->mesh.dim) * sizeof(*positions), positions) & 0x7fffffff);
   PetscCall(VecRestoreArrayRead(body->mesh.positions, &positions));
-  PetscCall(CheckpointCheckInts(checkpoint, "sum over the positions of nodes", 2, sums));
+  PetscCall(CheckpointCheckInts(checkpoint, "sum over the positions of nodes", 1, &sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The state of a body after an accepted controller step, to or from a checkpoint; loading: in its first state, with rows. Collective. */
 PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
 {
-  const PetscInt sizes[] = {body->mesh.owned_nodes, body->mesh.dim, body->rows.local, body->rows.global, body->time.substeps};
-
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
-  PetscCall(CheckpointCheckInts(checkpoint, "nodes, dimensions, rows and substeps", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
   PetscCall(VisitState(&body->state, checkpoint));
   if (CheckpointLoads(checkpoint)) PetscCall(BodyStateCopy(body, &body->state, &body->saved));
   PetscCall(VisitHistory(body, checkpoint));
@@ -175,10 +164,8 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
   PetscCall(VisitTraces(body, checkpoint));
   PetscCall(VisitConditions(body, checkpoint));
   PetscCall(VisitMassSolver(body, checkpoint));
-  PetscCall(CheckpointVisitReals(checkpoint, "springs start", BODY_MAX_RIGID, body->springs.start));
-  PetscCall(CheckpointVisitReals(checkpoint, "springs place", BODY_MAX_RIGID, body->springs.place));
-  PetscCall(CheckpointVisitReals(checkpoint, "springs reached", BODY_MAX_RIGID, body->springs.reached));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyResetSprings(body));
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   PetscCall(BodyHandoverEnd(body));
   body->start.changed = body->iterate.known = body->repeats = PETSC_FALSE;

@@ -175,7 +175,7 @@ typedef struct {
 typedef struct {
   Mat              matrix;       /* B: rows of all ranks x displacements */
   Mat              free_matrix;  /* without held dofs; the same matrix where none is held */
-  unsigned long    pattern;      /* hash of where the rows of this rank have entries; 0: there were none */
+  uint64_t         pattern;      /* hash of where the rows of this rank have entries; 0: there were none */
   PetscBool        same_pattern; /* the last new rows have entries where those before had them; on this rank, if its body is local */
   PetscInt64       laid_out;     /* how often there have been other rows */
   Vec              free_dofs;    /* 1, 0 on held dofs; NULL until needed */

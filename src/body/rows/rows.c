@@ -1,5 +1,6 @@
 /* The rows of the interface, B u, as one body sees them: prescribing them, loading them, reporting them. */
 #include <body/layout/bodyimpl.h>
+#include <sys/bytesum.h>
 
 const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
 
@@ -40,21 +41,12 @@ static PetscErrorCode FillFreeRows(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* FNV-1a (G. Fowler, L. C. Noll, P. Vo), of whole numbers in place of bytes */
-static void Hash(PetscInt n, const PetscInt numbers[], unsigned long *hash)
-{
-  for (PetscInt k = -1; k < n; k++) {
-    *hash = (*hash ^ (unsigned long)(k < 0 ? n : numbers[k])) * 0x100000001b3UL;
-    *hash ^= *hash >> 32;
-  }
-}
-
 /* Whether new rows have entries where those before had them: then what has been made of their matrix (that without held dofs, that of the
    massless layer) gets new values in the same places, and nothing is allocated. `agree`: on every rank, collective */
 static PetscErrorCode NotePattern(Body body, PetscBool agree)
 {
   BodyRows       *rows = &body->rows;
-  unsigned long   hash = 0xcbf29ce484222325UL;
+  uint64_t        hash = BYTE_SUM_BEGIN;
   PetscInt        begin, end, n;
   const PetscInt *columns;
   PetscBool       many, differs;
@@ -64,7 +56,7 @@ static PetscErrorCode NotePattern(Body body, PetscBool agree)
   PetscCall(MatGetOwnershipRange(rows->matrix, &begin, &end));
   for (PetscInt row = begin; row < end; row++) {
     PetscCall(MatGetRow(rows->matrix, row, &n, &columns, NULL));
-    Hash(n, columns, &hash);
+    hash = ByteSum(ByteSum(hash, sizeof(n), &n), (size_t)n * sizeof(*columns), columns);
     PetscCall(MatRestoreRow(rows->matrix, row, &n, &columns, NULL));
   }
   /* entries in columns of other ranks are stored by their places among those that there is room for, which may be more */
@@ -72,7 +64,7 @@ static PetscErrorCode NotePattern(Body body, PetscBool agree)
   if (many) {
     PetscCall(MatMPIAIJGetSeqAIJ(rows->matrix, NULL, &block, &columns));
     PetscCall(MatGetSize(block, NULL, &n));
-    Hash(n, columns, &hash);
+    hash = ByteSum(ByteSum(hash, sizeof(n), &n), (size_t)n * sizeof(*columns), columns);
   }
   differs       = (PetscBool)(hash != rows->pattern);
   rows->pattern = hash;
