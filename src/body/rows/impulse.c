@@ -19,8 +19,8 @@ PetscErrorCode BodySolveMassOfRows(Body body, const PetscScalar force[], Vec cha
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* B D B^T with a diagonal D that is not negative, without held dofs: sparse */
-static PetscErrorCode MultiplyRows(Body body, Vec diagonal, Mat *matrix)
+/* B D B^T, or B D^{-1} B^T, with a diagonal D that is not negative, without held dofs: sparse */
+static PetscErrorCode MultiplyRows(Body body, Vec diagonal, PetscBool inverse, Mat *matrix)
 {
   Mat scaled;
   Vec root;
@@ -28,6 +28,7 @@ static PetscErrorCode MultiplyRows(Body body, Vec diagonal, Mat *matrix)
   PetscFunctionBegin;
   PetscCall(VecDuplicate(diagonal, &root));
   PetscCall(VecCopy(diagonal, root));
+  if (inverse) PetscCall(VecReciprocal(root)); /* leaves zeros */
   PetscCall(VecSqrtAbs(root));
   PetscCall(MatDuplicate(body->rows.free_matrix, MAT_COPY_VALUES, &scaled));
   PetscCall(MatDiagonalScale(scaled, NULL, root));
@@ -62,15 +63,6 @@ static PetscErrorCode ProbeRows(Body body, Mat matrix)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CreateInverseRowSum(Body body, Vec *inverse)
-{
-  PetscFunctionBegin;
-  PetscCall(VecDuplicate(body->mass.row_sum, inverse));
-  PetscCall(VecCopy(body->mass.row_sum, *inverse));
-  PetscCall(VecReciprocal(*inverse)); /* leaves zeros */
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* B M^{-1} B^T of all rows [1/kg], without prescribed rows; zero for massless nodes and static bodies. The caller destroys the matrix.
    Sparse with a lumped mass, where rows couple that share a node; else at most 2000 rows, all coupled. Collective. */
 PetscErrorCode BodyComputeInverseMass(Body body, PetscBool lumped, Mat *matrix)
@@ -81,11 +73,7 @@ PetscErrorCode BodyComputeInverseMass(Body body, PetscBool lumped, Mat *matrix)
 
   PetscFunctionBegin;
   if (inertia && (lumped || body->mass.inverse)) {
-    Vec inverse;
-
-    if (lumped) PetscCall(CreateInverseRowSum(body, &inverse));
-    PetscCall(MultiplyRows(body, lumped ? inverse : body->mass.inverse, matrix));
-    if (lumped) PetscCall(VecDestroy(&inverse));
+    PetscCall(MultiplyRows(body, lumped ? body->mass.row_sum : body->mass.inverse, lumped, matrix));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCheck(!inertia || rows->global <= MAX_PROBED_ROWS, comm, PETSC_ERR_SUP,
