@@ -13,11 +13,15 @@
 typedef enum { BODY_FREE, BODY_PRESCRIBED, BODY_FORCED, BODY_ROBIN } BodyCondition;
 
 /* What goes into the rows of a body and comes out of them in a controller step, at the ends of its substeps */
-typedef struct {
-  Trace displacement_in, velocity_in, acceleration_in; /* of prescribed rows: read by BodyIntegrate() [m, m/s, m/s^2] */
-  Trace force_in;                                      /* on forced and Robin rows: read by BodyIntegrate() [N] */
-  Trace displacement, velocity, acceleration;          /* of all rows: written by BodyIntegrate() */
-  Trace reaction;                                      /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
+enum { BODY_FIRST_FORCE = 3, BODY_TRACES = 8 }; /* where that is which obstacles have too, and the end, of: */
+typedef union {
+  struct {
+    Trace displacement_in, velocity_in, acceleration_in; /* of prescribed rows: read by BodyIntegrate() [m, m/s, m/s^2] */
+    Trace force_in;                                      /* on forced and Robin rows: read by BodyIntegrate() [N] */
+    Trace displacement, velocity, acceleration;          /* of all rows: written by BodyIntegrate() */
+    Trace reaction; /* force that acts along prescribed and Robin rows: written by BodyIntegrate() [N] */
+  };
+  Trace all[BODY_TRACES];
 } BodyTraces;
 
 /* How the steps of a body answer to contact; pointers are owned by the body */

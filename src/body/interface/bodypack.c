@@ -4,9 +4,6 @@
 #include <checkpoint/statelist.h>
 #include "bodyvisit.h"
 
-/* The vectors of the state that are packed; a state without loads has no applied forces, one without dashpots none of theirs */
-enum { N_VECS = 5 };
-
 /* What is beside the nodes: two numbers of the factors */
 enum { N_FACTORS = 2 };
 
@@ -68,13 +65,11 @@ static PetscErrorCode VisitPoint(Body body, Tables tables)
 /* The tables of a body after an accepted step; loading, its first state, after BodyVisitShared(). Collective. */
 PetscErrorCode BodyVisitTables(Body body, Tables tables)
 {
-  const BodyState *state        = &body->state;
-  const Vec        vecs[N_VECS] = {state->u, state->v, state->a, state->applied, state->damping};
-  PetscReal        moves        = body->integrator->has_inertia;
+  PetscReal moves = body->integrator->has_inertia;
 
   PetscFunctionBegin;
   PetscCall(TablesBegin(tables, body->hdr.name));
-  PetscCall(VisitVecs(body, "nodes", N_VECS, vecs, tables));
+  PetscCall(VisitVecs(body, "nodes", STATE_TABLE, body->state.vecs, tables));
   PetscCall(TablesVisitNumbers(tables, "inertia", 1, &moves));
   PetscCall(BodyVisitHistory(body, tables));
   if (TablesLoads(tables)) {
@@ -103,12 +98,12 @@ static PetscErrorCode FindState(PetscInt dim, const PetscReal x[], PetscScalar u
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(key, x, dim));
-  PetscCall(TablesGet(start->tables, "nodes", TABLES_KEY + N_VECS * dim, &n, &packed));
+  PetscCall(TablesGet(start->tables, "nodes", TABLES_KEY + STATE_TABLE * dim, &n, &packed));
   PetscCall(TablesLookFor(start->tables, "nodes", key, &row));
   PetscCheck(row >= 0, PETSC_COMM_SELF, PETSC_ERR_USER_INPUT,
              "-restart_state: the checkpoint has no node at (%.9g, %.9g, %.9g) m; the meshes must be the same", (double)key[0],
              (double)key[1], (double)key[2]);
-  packed += row * (TABLES_KEY + N_VECS * dim) + TABLES_KEY;
+  packed += row * (TABLES_KEY + STATE_TABLE * dim) + TABLES_KEY;
   PetscCall(PetscArraycpy(u, packed, dim));
   if (start->moves) PetscCall(PetscArraycpy(v, packed + dim, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -128,9 +123,9 @@ PetscErrorCode BodyTakeState(Body body, Tables tables, PetscBool *found)
   width  = TablesGetWidth(tables, "nodes");
   *found = (PetscBool)(width > 0);
   if (!*found) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCheck(width == TABLES_KEY + N_VECS * dim, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
+  PetscCheck(width == TABLES_KEY + STATE_TABLE * dim, PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-restart_state: body '%s' has %" PetscInt_FMT " dimensions there, and %" PetscInt_FMT " here", body->hdr.name,
-             (width - TABLES_KEY) / N_VECS, dim);
+             (width - TABLES_KEY) / STATE_TABLE, dim);
   PetscCall(TablesVisitNumbers(tables, "inertia", 1, &moves));
   start.moves = (PetscBool)(moves != 0);
   PetscCall(BodyTakeHistory(body, tables)); /* first: stresses of the displacements follow from it */

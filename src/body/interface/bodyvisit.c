@@ -6,18 +6,6 @@
 #include <sys/bytesum.h>
 #include "bodyvisit.h"
 
-static PetscErrorCode VisitState(BodyState *state, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  PetscCall(CheckpointVisitVec(checkpoint, "displacement", state->u));
-  PetscCall(CheckpointVisitVec(checkpoint, "velocity", state->v));
-  PetscCall(CheckpointVisitVec(checkpoint, "acceleration", state->a));
-  PetscCall(CheckpointVisitVec(checkpoint, "internal force", state->internal_force));
-  PetscCall(CheckpointVisitVec(checkpoint, "applied force", state->applied));
-  PetscCall(CheckpointVisitVec(checkpoint, "damping force", state->damping));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The saved state is the present one too */
 static PetscErrorCode VisitHistory(Body body, Checkpoint checkpoint)
 {
@@ -27,17 +15,6 @@ static PetscErrorCode VisitHistory(Body body, Checkpoint checkpoint)
   PetscFunctionBegin;
   if (saved) PetscCall(CheckpointVisitReals(checkpoint, "history", (PetscInt)size, saved));
   if (CheckpointLoads(checkpoint)) BodyHistoryRestore(body);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode VisitTraces(Body body, Checkpoint checkpoint)
-{
-  const BodyTraces *t        = &body->traces;
-  const Trace       traces[] = {t->displacement_in, t->velocity_in, t->acceleration_in, t->force_in,
-                                t->displacement,    t->velocity,    t->acceleration,    t->reaction};
-
-  PetscFunctionBegin;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(traces); i++) PetscCall(CheckpointVisitTrace(checkpoint, "trace", traces[i]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -157,11 +134,11 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
-  PetscCall(VisitState(&body->state, checkpoint));
+  for (PetscInt k = 0; k < STATE_VECS; k++) PetscCall(CheckpointVisitVec(checkpoint, "state", body->state.vecs[k]));
   if (CheckpointLoads(checkpoint)) PetscCall(BodyStateCopy(body, &body->state, &body->saved));
   PetscCall(VisitHistory(body, checkpoint));
   PetscCall(VisitLevels(body, checkpoint));
-  PetscCall(VisitTraces(body, checkpoint));
+  for (PetscInt t = 0; t < BODY_TRACES; t++) PetscCall(CheckpointVisitTrace(checkpoint, "trace", body->traces.all[t]));
   PetscCall(VisitConditions(body, checkpoint));
   PetscCall(VisitMassSolver(body, checkpoint));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);

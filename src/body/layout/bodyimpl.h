@@ -136,13 +136,19 @@ typedef struct {
 } BodyTime;
 
 /* What a step starts from and ends with. A member that is NULL in one of two states is left out where one is copied to the other. */
+enum { STATE_TABLE = 5, STATE_VECS = 6 }; /* how many of the vectors are in tables of a checkpoint; all */
 typedef struct {
-  Vec       u, v, a;
-  Vec       internal_force; /* at u [N]; not of the saved state, since the next step computes it */
-  Vec       applied;        /* forces from outside and reactions of held dofs; NULL without loads [N] */
-  Vec       damping;        /* forces of the dashpots, against the velocity; NULL without any [N] */
-  PetscReal external_work;  /* done by the applied forces since the start [J] */
-  PetscReal damping_work;   /* taken by the dashpots since the start [J] */
+  union {
+    struct {
+      Vec u, v, a;
+      Vec applied;        /* forces from outside and reactions of held dofs; NULL without loads [N] */
+      Vec damping;        /* forces of the dashpots, against the velocity; NULL without any [N] */
+      Vec internal_force; /* at u [N]; not of the saved state, since the next step computes it */
+    };
+    Vec vecs[STATE_VECS];
+  };
+  PetscReal external_work; /* done by the applied forces since the start [J] */
+  PetscReal damping_work;  /* taken by the dashpots since the start [J] */
   PetscReal time;
   PetscInt  step;        /* substeps since the start */
   PetscBool incomplete;  /* displacements, and internal forces on massless nodes, are there; the rest waits for BodyCompleteStep() */

@@ -1,40 +1,18 @@
 /* Room for the rows of the interface of a body, and rows that take the place of others while a run goes on. */
 #include <body/layout/bodyimpl.h>
 
-enum { N_TRACES = 8 };
-
-static void ListTraces(Body body, Trace *traces[N_TRACES])
-{
-  BodyTraces *t = &body->traces;
-
-  traces[0] = &t->displacement_in;
-  traces[1] = &t->velocity_in;
-  traces[2] = &t->acceleration_in;
-  traces[3] = &t->force_in;
-  traces[4] = &t->displacement;
-  traces[5] = &t->velocity;
-  traces[6] = &t->acceleration;
-  traces[7] = &t->reaction;
-}
-
 /* Waveforms of all rows, once the substeps are known */
 PetscErrorCode BodyCreateTraces(Body body)
 {
-  Trace *traces[N_TRACES];
-
   PetscFunctionBegin;
-  ListTraces(body, traces);
-  for (PetscInt t = 0; t < N_TRACES; t++) PetscCall(TraceCreate(body->rows.local, body->time.substeps, traces[t]));
+  for (PetscInt t = 0; t < BODY_TRACES; t++) PetscCall(TraceCreate(body->rows.local, body->time.substeps, &body->traces.all[t]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BodyDestroyTraces(Body body)
 {
-  Trace *traces[N_TRACES];
-
   PetscFunctionBegin;
-  ListTraces(body, traces);
-  for (PetscInt t = 0; t < N_TRACES; t++) PetscCall(TraceDestroy(traces[t]));
+  for (PetscInt t = 0; t < BODY_TRACES; t++) PetscCall(TraceDestroy(&body->traces.all[t]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,24 +61,19 @@ PetscErrorCode BodyDestroyRowArrays(Body body)
 /* The traces of the rows there are now, from those of the rows that there were; zeros for rows that are new */
 static PetscErrorCode MoveTraces(Body body, const PetscInt from[])
 {
-  Trace *traces[N_TRACES], old[N_TRACES];
+  BodyTraces old = body->traces;
 
   PetscFunctionBegin;
-  ListTraces(body, traces);
-  for (PetscInt t = 0; t < N_TRACES; t++) {
-    old[t]     = *traces[t];
-    *traces[t] = NULL;
-  }
   PetscCall(BodyCreateTraces(body));
-  for (PetscInt t = 0; t < N_TRACES; t++) {
+  for (PetscInt t = 0; t < BODY_TRACES; t++) {
     for (PetscInt level = 0; level <= body->time.substeps; level++) {
       PetscScalar *before, *now;
 
-      PetscCall(TraceGetLevel(old[t], level, &before));
-      PetscCall(TraceGetLevel(*traces[t], level, &now));
+      PetscCall(TraceGetLevel(old.all[t], level, &before));
+      PetscCall(TraceGetLevel(body->traces.all[t], level, &now));
       for (PetscInt i = 0; i < body->rows.local; i++) now[i] = from[i] < 0 ? 0 : before[from[i]];
     }
-    PetscCall(TraceDestroy(&old[t]));
+    PetscCall(TraceDestroy(&old.all[t]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -25,24 +25,15 @@ PetscErrorCode BodyStateCopy(Body body, const BodyState *from, BodyState *to)
   to->incomplete    = from->incomplete;
   to->force_known   = (PetscBool)(from->force_known && from->internal_force && to->internal_force);
   if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(from->u, to->u));
-  PetscCall(VecCopy(from->v, to->v));
-  PetscCall(VecCopy(from->a, to->a));
-  if (from->internal_force && to->internal_force) PetscCall(VecCopy(from->internal_force, to->internal_force));
-  if (from->applied && to->applied) PetscCall(VecCopy(from->applied, to->applied));
-  if (from->damping && to->damping) PetscCall(VecCopy(from->damping, to->damping));
+  for (PetscInt k = 0; k < STATE_VECS; k++)
+    if (from->vecs[k] && to->vecs[k]) PetscCall(VecCopy(from->vecs[k], to->vecs[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BodyStateDestroy(BodyState *state)
 {
   PetscFunctionBegin;
-  PetscCall(VecDestroy(&state->u));
-  PetscCall(VecDestroy(&state->v));
-  PetscCall(VecDestroy(&state->a));
-  PetscCall(VecDestroy(&state->internal_force));
-  PetscCall(VecDestroy(&state->applied));
-  PetscCall(VecDestroy(&state->damping));
+  for (PetscInt k = 0; k < STATE_VECS; k++) PetscCall(VecDestroy(&state->vecs[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -105,16 +105,6 @@ static PetscErrorCode VisitNumbers(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode VisitObstacleTraces(Contact contact, Checkpoint checkpoint)
-{
-  const BodyTraces *traces = &contact->traces[contact->n_bodies];
-  const Trace       all[]  = {traces->displacement, traces->velocity, traces->acceleration, traces->reaction, traces->force_in};
-
-  PetscFunctionBegin;
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(all); i++) PetscCall(CheckpointVisitTrace(checkpoint, "obstacle", all[i]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ContactHasVisit - whether runs with the method can have checkpoints */
 PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
 {
@@ -212,7 +202,8 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;
   PetscCall(CheckpointVisitReals(checkpoint, "impulses", CONTACT_IMPULSES * contact->n_pairs, contact->resultants.impulse));
   PetscCall(CheckpointVisitReals(checkpoint, "gone", CONTACT_IMPULSES * contact->neighbours.told.n, contact->neighbours.told.gone));
-  PetscCall(VisitObstacleTraces(contact, checkpoint));
+  for (PetscInt t = BODY_FIRST_FORCE; t < BODY_TRACES; t++)
+    PetscCall(CheckpointVisitTrace(checkpoint, "obstacle", contact->traces[contact->n_bodies].all[t]));
   if (contact->turns.n) PetscCall(CheckpointVisitReals(checkpoint, "turned", contact->rows.n, contact->turns.turned));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

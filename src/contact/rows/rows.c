@@ -232,26 +232,14 @@ PetscErrorCode ContactSetUpObstacleTraces(Contact contact)
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
     levels = PetscMax(levels, substeps);
   }
-  PetscCall(TraceCreate(contact->rows.n, levels, &traces->displacement));
-  PetscCall(TraceCreate(contact->rows.n, levels, &traces->velocity));
-  PetscCall(TraceCreate(contact->rows.n, levels, &traces->acceleration));
-  PetscCall(TraceCreate(contact->rows.n, levels, &traces->reaction));
-  PetscCall(TraceCreate(contact->rows.n, levels, &traces->force_in));
+  for (PetscInt t = BODY_FIRST_FORCE; t < BODY_TRACES; t++) PetscCall(TraceCreate(contact->rows.n, levels, &traces->all[t]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode ContactDestroyRows(Contact contact)
 {
   PetscFunctionBegin;
-  if (contact->traces) {
-    BodyTraces *traces = &contact->traces[contact->n_bodies];
-
-    PetscCall(TraceDestroy(&traces->displacement));
-    PetscCall(TraceDestroy(&traces->velocity));
-    PetscCall(TraceDestroy(&traces->acceleration));
-    PetscCall(TraceDestroy(&traces->reaction));
-    PetscCall(TraceDestroy(&traces->force_in));
-  }
+  for (PetscInt t = 0; t < BODY_TRACES && contact->traces; t++) PetscCall(TraceDestroy(&contact->traces[contact->n_bodies].all[t]));
   PetscCall(ContactDestroyMerger(contact));
   PetscCall(PetscFree7(contact->rows.pair, contact->rows.initial_gap, contact->rows.area, contact->rows.dof, contact->rows.normal,
                        contact->rows.opposite, contact->rows.tied));
