@@ -152,8 +152,7 @@ static PetscErrorCode FinishSubstep(Body body)
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
   }
-  if (body->model.linear) PetscCall(BodyImplicitNoteForce(body));
-  else if (implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  if (!body->model.linear && implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
   PetscCall(BodyNoteDamping(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -40,7 +40,6 @@ PETSC_INTERN PetscErrorCode BodyImplicitSetUpOwnStep(Body, BodyResidualFn *, Bod
 PETSC_INTERN PetscErrorCode BodyImplicitGetSNES(Body, SNES *);
 PETSC_INTERN PetscErrorCode BodyImplicitLinearize(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitDestroyOwnStep(Body);
-PETSC_INTERN PetscErrorCode BodyImplicitNoteForce(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitCreateSolver(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitComputeUnitStrainForce(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetLevel(Body);

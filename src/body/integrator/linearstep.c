@@ -103,15 +103,6 @@ static PetscErrorCode Correct(Body body, Vec du, Vec U, Vec V)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The internal force at the end of the substep, from which the next one starts unless the state is another by then */
-PetscErrorCode BodyImplicitNoteForce(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  body->state.force_known = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* u, v and a += du times these parts */
 SIMD_CLONES static void AddChange(PetscInt n, PetscReal part, PetscReal to_velocity, PetscReal to_acceleration, const PetscScalar du[],
                                   PetscScalar u[], PetscScalar v[], PetscScalar a[])
@@ -125,7 +116,7 @@ SIMD_CLONES static void AddChange(PetscInt n, PetscReal part, PetscReal to_veloc
 }
 
 /* Moves the displacement at the end of the one substep of a linear body: A du = part B^T df with prescribed rows at B du = dx, A being the
-   effective matrix; and velocity, acceleration and internal force with it. With a part other than 1 no row is prescribed. */
+   effective matrix; and velocity and acceleration with it. With a part other than 1 no row is prescribed. */
 PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar displacement[], PetscReal part, PetscReal to_velocity,
                                    PetscReal to_acceleration, Vec du)
 {
@@ -143,7 +134,28 @@ PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar displacement[], 
   PetscCall(VecRestoreArray(body->state.v, &v));
   PetscCall(VecRestoreArray(body->state.u, &u));
   PetscCall(VecRestoreArrayRead(du, &change));
-  PetscCall(BodyImplicitNoteForce(body));
+  body->state.force_known = PETSC_FALSE;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Held dofs and prescribed rows of U, where these are not there yet: then its internal force is another. Rows that are prescribed move. */
+static PetscErrorCode Prescribe(Body body, Vec U)
+{
+  const Vec          before = body->work.nodes[0];
+  const PetscScalar *old, *now;
+  PetscBool          moved = (PetscBool)(body->rows.n_prescribed != 0);
+
+  PetscFunctionBegin;
+  PetscCall(BodyCopyHeld(body, U, before));
+  PetscCall(BodyImplicitPrescribe(body, U));
+  PetscCall(VecGetArrayRead(before, &old));
+  PetscCall(VecGetArrayRead(U, &now));
+  for (PetscInt i = 0; i < body->held.n && !moved; i++) moved = (PetscBool)(old[body->held.dofs[i]] != now[body->held.dofs[i]]);
+  PetscCall(VecRestoreArrayRead(U, &now));
+  PetscCall(VecRestoreArrayRead(before, &old));
+  if (body->mesh.ghosted && body->held.any) PetscCall(BodyAnyRank(body, &moved));
+  if (moved) body->state.force_known = body->saved.force_known = PETSC_FALSE;
+  else PetscCall(BodyFindInternalForce(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -162,8 +174,7 @@ static PetscErrorCode MakeStep(TS ts)
   dt       = body->time.step;
   U        = body->state.u;
   du       = body->work.nodes[0];
-  PetscCall(BodyImplicitPrescribe(body, U));
-  if (body->held.any || body->rows.n_prescribed) body->state.force_known = PETSC_FALSE;
+  PetscCall(Prescribe(body, U));
   PetscCall(ComputeStage(body, U));
   PetscCall((*compute_residual)(ts, t + implicit->alpha_f * dt, implicit->stage_u ? implicit->stage_u : U, implicit->stage_v,
                                 implicit->stage_a, F, body));
@@ -180,6 +191,7 @@ PetscErrorCode BodyImplicitSetUpLinear(Body body)
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
+  body->integrator->leaves_force = PETSC_TRUE;
   if (body->integrator->has_inertia) PetscCall(BodyCreateVec(body, &implicit->stage_a));
   if (BodyIsDamped(body)) PetscCall(BodyCreateVec(body, &implicit->stage_v));
   if (implicit->alpha_f != 1) PetscCall(BodyCreateVec(body, &implicit->stage_u));

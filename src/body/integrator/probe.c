@@ -53,6 +53,7 @@ PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const
   PetscCall(VecZeroEntries(body->saved.u));
   PetscCall(VecZeroEntries(body->saved.v));
   PetscCall(VecZeroEntries(body->saved.a));
+  body->saved.force_known = PETSC_FALSE;
   PetscCall(PetscMalloc1(body->rows.local, &kept));
   PetscCall(PetscArraycpy(kept, body->rows.conditions, body->rows.local));
   PetscCall(PetscArrayzero(body->rows.conditions, body->rows.local));

@@ -85,7 +85,7 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The velocity is the mean of the substep. That of a linear body has no residual at its end, to leave the internal force behind. */
+/* The velocity is the mean of the substep */
 static PetscErrorCode FinishSubstep(Body body)
 {
   const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
@@ -101,7 +101,6 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscCall(VecRestoreArrayRead(body->state.u, &u1));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
   PetscCall(VecZeroEntries(body->state.a));
-  if (body->model.linear) PetscCall(BodyImplicitNoteForce(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -134,6 +134,7 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   PetscCall(CheckpointBegin(checkpoint, body->hdr.name));
+  PetscCall(BodyFindInternalForce(body));
   for (PetscInt k = 0; k < STATE_VECS; k++) PetscCall(CheckpointVisitVec(checkpoint, "state", body->state.vecs[k]));
   if (CheckpointLoads(checkpoint)) PetscCall(BodyStateCopy(body, &body->state, &body->saved));
   PetscCall(VisitHistory(body, checkpoint));
@@ -146,6 +147,7 @@ PetscErrorCode BodyVisit(Body body, Checkpoint checkpoint)
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
   PetscCall(BodyHandoverEnd(body));
   body->start.changed = body->iterate.known = body->repeats = PETSC_FALSE;
+  body->state.force_known = body->saved.force_known = body->integrator->leaves_force;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -133,6 +133,7 @@ static PetscErrorCode GetSums(Body body, PetscReal sums[BODY_MEASURE_SUMS])
     PetscCall(PetscArrayzero(sums, BODY_MEASURE_SUMS));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
+  PetscCall(BodyFindInternalForce(body));
   PetscCall(IsMeasured(body, &measured));
   if (!measured) PetscCall(SumMeasures(body, body->measured.sums));
   PetscCall(PetscArraycpy(sums, body->measured.sums, N_SUMS));
@@ -202,7 +203,7 @@ PetscErrorCode BodyComputeEnergies(PetscInt n, const Body bodies[], PetscReal su
     const Body body = bodies[b];
 
     /* where a step has been undone, the internal force is still that of its end */
-    if (body->state.step == body->saved.step && !BodyIsElsewhere(body))
+    if (body->state.step == body->saved.step && !BodyIsElsewhere(body) && !body->integrator->leaves_force)
       PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
     PetscCall(GetSums(body, sums + BODY_MEASURE_SUMS * b));
     if (!BodyIsElsewhere(body)) PetscCall(BodyAddPendingWork(body, sums + BODY_MEASURE_SUMS * b + N_SUMS + 2));

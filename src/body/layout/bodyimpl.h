@@ -143,7 +143,7 @@ typedef struct {
       Vec u, v, a;
       Vec applied;        /* forces from outside and reactions of held dofs; NULL without loads [N] */
       Vec damping;        /* forces of the dashpots, against the velocity; NULL without any [N] */
-      Vec internal_force; /* at u [N]; not of the saved state, since the next step computes it */
+      Vec internal_force; /* at u [N]; the saved state has none of its own */
     };
     Vec vecs[STATE_VECS];
   };
@@ -152,7 +152,7 @@ typedef struct {
   PetscReal time;
   PetscInt  step;        /* substeps since the start */
   PetscBool incomplete;  /* displacements, and internal forces on massless nodes, are there; the rest waits for BodyCompleteStep() */
-  PetscBool force_known; /* the internal force is known to be that of u: a linear implicit body needs it for its next step */
+  PetscBool force_known; /* the internal force of the body is known to be that of this u, see BodyFindInternalForce() */
 } BodyState;
 
 /* Contact forces that go over from the rows of the last accepted step to those of this one, see handover.c */
@@ -422,6 +422,7 @@ PETSC_INTERN PetscErrorCode BodyCheckStableStep(Body);
 PETSC_INTERN PetscErrorCode BodySetUpSubsteps(Body);
 PETSC_INTERN PetscErrorCode BodySetUpTime(Body);
 PETSC_INTERN PetscErrorCode BodyComputeInternalForce(Body, Vec, Vec);
+PETSC_INTERN PetscErrorCode BodyFindInternalForce(Body);
 PETSC_INTERN PetscErrorCode BodySetUpHistory(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyHistory(Body);
 PETSC_INTERN PetscErrorCode BodyHistoryBegin(Body);

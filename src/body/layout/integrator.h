@@ -64,6 +64,7 @@ struct _n_BodyIntegrator {
   PetscBool is_local;           /* substeps need no word of other ranks but what rows that are prescribed take: see `local` in bodyimpl.h */
   PetscBool uses_newton;        /* the SNES of the TS solves the equations of each substep */
   PetscBool depends_on_step;    /* displacements of the rows under forces on them depend on the length of the substep */
+  PetscBool leaves_force;       /* substeps leave the internal force to BodyFindInternalForce() */
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */
   PetscBool repeats_prescribed; /* repeat() can do it with prescribed rows */
   PetscBool repeats_constant;   /* repeat() can do it with forces that are the same throughout the step */

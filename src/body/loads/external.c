@@ -41,6 +41,7 @@ static PetscErrorCode ComputeApplied(Body body, Vec applied)
   PetscCall(VecZeroEntries(applied));
   PetscCall(BodyAddExternalForce(body, body->state.time, 1, applied));
   if (!body->held.any && !BodyIsLed(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyFindInternalForce(body));
   if (!body->integrator->has_inertia) PetscCall(VecCopy(body->state.internal_force, body->work.nodes[0]));
   else {
     PetscCall(BodyMultiplyMass(body, body->state.a, body->work.nodes[0]));

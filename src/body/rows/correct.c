@@ -37,6 +37,7 @@ PetscErrorCode BodyAddImpulses(Body body, BodyStepSide side, PetscBool lumped, c
     else PetscCall(BodyWriteTrace(body, body->rows.matrix, vecs[k], traces[k], body->time.substeps));
   }
   body->repeats = PETSC_FALSE;
+  if (parts[0] != 0) body->state.force_known = body->saved.force_known = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

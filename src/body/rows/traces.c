@@ -79,6 +79,7 @@ static PetscErrorCode WriteRates(Body body, PetscInt level)
     Vec             force   = body->state.internal_force;
     const PetscBool inertia = (PetscBool)(body->rows.traction == BODY_TRACTION_REACTION || body->rows.tied_mass);
 
+    PetscCall(BodyFindInternalForce(body));
     if (at_stage) force = body->rows.stage_balance;
     else if (inertia || body->loads || body->state.damping || body->rows.n_forced || BodyHandsOver(body)) {
       force = body->work.nodes[0];

@@ -23,7 +23,7 @@ PetscErrorCode BodyStateCopy(Body body, const BodyState *from, BodyState *to)
   to->time          = from->time;
   to->step          = from->step;
   to->incomplete    = from->incomplete;
-  to->force_known   = (PetscBool)(from->force_known && from->internal_force && to->internal_force);
+  to->force_known   = from->force_known;
   if (BodyIsElsewhere(body)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt k = 0; k < STATE_VECS; k++)
     if (from->vecs[k] && to->vecs[k]) PetscCall(VecCopy(from->vecs[k], to->vecs[k]));

@@ -38,6 +38,18 @@ PetscErrorCode BodyComputeInternalForce(Body body, Vec u, Vec f)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* BodyFindInternalForce - that of the present state, of a body whose integrator leaves it until it is needed. That of the saved state stays
+   known until another one is found, so that the next step begins with it. */
+PetscErrorCode BodyFindInternalForce(Body body)
+{
+  PetscFunctionBegin;
+  if (body->state.force_known || !body->integrator->leaves_force) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  body->state.force_known = PETSC_TRUE;
+  body->saved.force_known = (PetscBool)(body->state.step == body->saved.step);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* BodyEndHistory - the history of the material at the end of the substep, by another look at the elements where that is not known */
 PetscErrorCode BodyEndHistory(Body body)
 {
