@@ -1,6 +1,6 @@
-/* The file of a checkpoint: HDF5 with the stream of each rank, to continue on as many ranks bit for bit, and, for any number of ranks and
-   to begin other runs, what all ranks have alike and tables of nodes. Behind the HDF5 file stand its length and a sum over all its bytes,
-   so that a file which is not whole, or was changed, is found out before HDF5 looks into it.
+/* The file of a checkpoint: HDF5 with the stream of each rank, to continue on as many ranks bit for bit, and, to begin a run on any number
+   of ranks, the nodes of each body with their state. Behind the HDF5 file stand its length and a sum over all its bytes, so that a file
+   which is not whole, or was changed, is found out before HDF5 looks into it.
 
    The first rank makes the file in memory, writes it beside the last one, has it written through to the disk, and renames it. The
    checkpoint before stays as <path>.prev.h5: at every moment there is one that is whole. */
@@ -99,6 +99,55 @@ static PetscErrorCode WriteStreams(MPI_Comm comm, hid_t file, Checkpoint checkpo
     PetscCall(PetscSNPrintf(name, sizeof(name), "state/%d", (int)r));
     PetscCall(WriteDataset(file, name, H5T_NATIVE_UCHAR, 1, length, r ? bytes : mine, path));
     PetscCall(PetscFree(bytes));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A vector of a body, nodes by dimensions, on the first rank */
+static PetscErrorCode WriteVec(hid_t file, const char body[], const char name[], PetscInt dim, Vec vec, const char path[])
+{
+  const PetscScalar *values;
+  hsize_t            size[2];
+  PetscInt           n;
+  char               full[PETSC_MAX_PATH_LEN];
+  VecScatter         scatter;
+  Vec                all;
+
+  PetscFunctionBegin;
+  PetscCall(VecScatterCreateToZero(vec, &scatter, &all));
+  PetscCall(VecScatterBegin(scatter, vec, all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterEnd(scatter, vec, all, INSERT_VALUES, SCATTER_FORWARD));
+  PetscCall(VecScatterDestroy(&scatter));
+  PetscCall(VecGetLocalSize(all, &n));
+  PetscCall(VecGetArrayRead(all, &values));
+  size[0] = (hsize_t)(n / dim);
+  size[1] = (hsize_t)dim;
+  PetscCall(PetscSNPrintf(full, sizeof(full), "bodies/%s/%s", body, name));
+  if (file >= 0) PetscCall(WriteDataset(file, full, H5T_NATIVE_DOUBLE, 2, size, values, path));
+  PetscCall(VecRestoreArrayRead(all, &values));
+  PetscCall(VecDestroy(&all));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode WriteBodies(hid_t file, PetscInt n, const Body bodies[], const char path[])
+{
+  PetscFunctionBegin;
+  for (PetscInt b = 0; b < n; b++) {
+    const char *name;
+    PetscInt    dim;
+    PetscBool   without_inertia;
+    Vec         positions, u, v, a;
+
+    PetscCall(PetscObjectGetName((PetscObject)bodies[b], &name));
+    PetscCall(BodyGetDimension(bodies[b], &dim));
+    PetscCall(BodyGetReferencePositions(bodies[b], &positions));
+    PetscCall(BodyGetSolution(bodies[b], &u, &v, &a));
+    PetscCall(WriteVec(file, name, "position", dim, positions, path));
+    PetscCall(WriteVec(file, name, "displacement", dim, u, path));
+    PetscCall(BodyIsStatic(bodies[b], &without_inertia));
+    if (without_inertia) continue;
+    PetscCall(WriteVec(file, name, "velocity", dim, v, path));
+    PetscCall(WriteVec(file, name, "acceleration", dim, a, path));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -238,6 +287,7 @@ PetscErrorCode CheckpointFileWrite(MPI_Comm comm, const char path[], const Check
   if (!rank) PetscCall(CreateInMemory(path, info, &file));
   if (!rank) PetscCall(WriteShared(file, contents, path));
   PetscCall(WriteStreams(comm, file, contents->state, path));
+  PetscCall(WriteBodies(file, contents->n_bodies, contents->bodies, path));
   if (!rank) {
     error = Store(file, path);
     H5Fclose(file);

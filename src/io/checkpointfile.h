@@ -12,8 +12,10 @@ typedef struct {
 } CheckpointInfo;
 
 typedef struct {
-  Checkpoint shared, state; /* of all ranks alike, that of the first is written; of each rank */
-  Tables     tables;
+  Checkpoint  shared, state; /* of all ranks alike, that of the first is written; of each rank */
+  Tables      tables;
+  PetscInt    n_bodies;
+  const Body *bodies; /* borrowed */
 } CheckpointContents;
 
 /* A checkpoint that is being read, on rank 0 */

@@ -73,6 +73,7 @@ static PetscErrorCode Write(Output output, PetscInt step)
   PetscCall(ContactVisit(contact, contents.state));
   PetscCall(TablesCreate(comm, PETSC_FALSE, &contents.tables));
   PetscCall(ContactVisitTables(contact, contents.tables));
+  PetscCall(ControllerGetBodies(output->controller, &contents.n_bodies, &contents.bodies));
   PetscCall(CheckpointFileWrite(comm, c->path, &info, &contents));
   PetscCall(CheckpointDestroy(&contents.shared));
   PetscCall(CheckpointDestroy(&contents.state));
