@@ -81,19 +81,21 @@ def closing(run, parts=(0.25, 0.5, 0.75, 1.0)):
     return np.array([force[int((part - 0.1) * n) : int(part * n)].mean() for part in parts])
 
 
-FINE = 14906, 53315, 95431, 129818  # N/m, of 4 elements in the wall and 300 round
+FINE = 15211, 53652, 95664, 129919  # N/m, of 4 elements in the wall and 300 round, in steps of 5 us
 
 
 @pytest.mark.parametrize(("kind", "layers", "faces"), [("E", 1, 60), *long(("I", 1, 60)), *validate(("I", 4, 300))])
 def test_crushed_tube(kind, layers, faces, impakt, tmp_path):
-    """Between a plane and a plate that comes down by 0.3 of its diameter, elastic, to 5 % of a fine mesh: measured 0.6 % (I), 3 % at first and 1 % then (E). At first as a thin ring
+    """Between a plane and a plate that comes down by 0.3 of its diameter, elastic, to 5 % of a fine mesh: measured 1.6 % at first and 0.4 % then (I), 1 % (E). The fine mesh in steps
+    of 10 us, twice those of what it is compared with: 0.7 % at first and 0.2 % then. At first as a thin ring
     bends, E' I / (0.1488 R^3): 36.8 kN/m where it has 37.3."""
     run = impakt(crushed(tmp_path / "a.msh", layers, faces, kind=kind, step=1e-6 if kind == "E" else 1e-5), timeout=1000)
-    np.testing.assert_allclose(closing(run), FINE, rtol=0.05 if layers == 1 else 1e-3)
+    np.testing.assert_allclose(closing(run), FINE, rtol=0.05 if layers == 1 else 0.01)
     ring = E / (1 - NU**2) * WALL**3 / 12 / (0.1488 * TUBE**3)
     assert closing(run, (0.4,)) == pytest.approx(ring * 0.012 * 0.35**2 * (2 - 0.35), rel=0.05)
     assert run.summary["contact"]["max_penetration"] <= 1e-2 * WALL
-    assert -1e-5 <= energy(run)[-1] <= energy(run).max() <= 1e-8  # with the work of the plate, whose force is constant in a step
+    most = 1e-8 if layers == 1 else 1e-6  # four layers have inner nodes, and the rule linear: 2.5e-7
+    assert -1e-5 <= energy(run)[-1] <= energy(run).max() <= most  # with the work of the plate, whose force is constant in a step
 
 
 FLOWS = 13390, 20451, 21416, 21491  # N/m, of 4 elements in the wall and 120 round, implicit in steps of 20 us
