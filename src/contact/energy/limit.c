@@ -40,8 +40,7 @@ static PetscBool GainsTooMuch(Contact contact, PetscInt g)
 {
   const ContactEnergy *energy = &contact->energy;
 
-  return (PetscBool)(energy->group_work[g] > ROUND_OFF * energy->scale &&
-                     energy->group_work[g] > ContactGroupRoom(contact, g) + ROUND_OFF * energy->scale);
+  return (PetscBool)(energy->group_work[g] > ContactGroupRoom(contact, g) + ROUND_OFF * energy->scale);
 }
 
 /* Unmarked rows of a group that have left in the step, on all ranks. Those that end without force, not open, gain nothing. */
@@ -197,8 +196,14 @@ static PetscErrorCode SearchOn(Contact contact, PetscInt g)
 
 static PetscBool AnyGainsTooMuch(Contact contact)
 {
+  const ContactEnergy *energy = &contact->energy;
+  PetscReal           *room   = energy->of_group;
+  const PetscReal      more   = ContactMoreRoom(contact);
+
+  for (PetscInt g = 0; g < contact->n_bodies; g++) room[g] = 0;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) room[energy->group[b]] += energy->room[b] - energy->change[b] + more;
   for (PetscInt g = 0; g < contact->n_bodies; g++)
-    if (contact->energy.group[g] == g && GainsTooMuch(contact, g)) return PETSC_TRUE;
+    if (energy->group[g] == g && energy->group_work[g] > PetscMax(room[g], 0) + ROUND_OFF * energy->scale) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
