@@ -13,7 +13,7 @@
 typedef enum { BODY_FREE, BODY_PRESCRIBED, BODY_FORCED, BODY_ROBIN } BodyCondition;
 
 /* What goes into the rows of a body and comes out of them in a controller step, at the ends of its substeps */
-enum { BODY_FIRST_FORCE = 3, BODY_TRACES = 8 }; /* where that is which obstacles have too, and the end, of: */
+enum { BODY_FIRST_FORCE = 3, BODY_TRACES = 8 }; /* the first of the traces that obstacles have too, and how many there are */
 typedef union {
   struct {
     Trace displacement_in, velocity_in, acceleration_in; /* of prescribed rows: read by BodyIntegrate() [m, m/s, m/s^2] */

@@ -254,7 +254,7 @@ static PetscErrorCode SumParts(ContactStepper *stepper, PetscBool sparse, Mat *S
 {
   const PetscInt         n        = stepper->problem.n;
   const StepperAssembly *assembly = &stepper->assembly;
-  PetscInt              *counts, size = -1; /* more than there are: two rows may share both of their bodies */
+  PetscInt               size     = -1;
 
   PetscFunctionBegin;
   if (!sparse && !stepper->problem.sparse) PetscCall(MatGetSize(stepper->problem.S, &size, NULL));
@@ -262,6 +262,8 @@ static PetscErrorCode SumParts(ContactStepper *stepper, PetscBool sparse, Mat *S
   if (size == n) PetscCall(PetscObjectReference((PetscObject)*S));
   else if (!sparse) PetscCall(MatCreateSeqDense(PETSC_COMM_SELF, n, n, NULL, S));
   else {
+    PetscInt *counts; /* more than there are: two rows may share both of their bodies */
+
     PetscCall(PetscCalloc1(n, &counts));
     for (PetscInt b = 0; b < assembly->n_bodies; b++) {
       const StepperEntries *entries = &assembly->of_body[b];
