@@ -50,7 +50,8 @@ typedef struct {
   PetscReal hourglass_energy;    /* part of the potential that holds what elements with one point do not see, J */
   PetscReal external_work;       /* done since the start by forces from outside and by held displacements, J */
   PetscReal damping_work;        /* taken since the start by Rayleigh damping, J */
-  PetscReal plastic_work;        /* taken since the start by plastic flow, with what hardening stores of it, J */
+  PetscReal plastic_work;        /* taken since the start by plastic flow, with what hardening stores of it, by the mean stress of each step
+                                    where the body has inertia, J */
   PetscReal momentum[3];         /* kg m/s */
   PetscReal angular_momentum[3]; /* about the origin, kg m^2/s */
   PetscReal mean_velocity[3];    /* mass-averaged, m/s */

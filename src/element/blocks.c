@@ -56,9 +56,10 @@ static Element OpenPart(Element element, PetscInt k)
   const size_t          at      = (size_t)blocks->first_slot[k] * (size_t)(history->points * history->n);
 
   if (!part->count) return NULL;
-  part->history.start = part->history.n && history->start ? history->start + at : NULL;
-  part->history.end   = part->history.n && history->end ? history->end + at : NULL;
-  part->history.step  = history->step;
+  part->history.start   = part->history.n && history->start ? history->start + at : NULL;
+  part->history.end     = part->history.n && history->end ? history->end + at : NULL;
+  part->history.step    = history->step;
+  part->history.by_ends = history->by_ends;
   return part;
 }
 

@@ -80,7 +80,7 @@ PetscErrorCode ElementPlastic_Solid(Element element, PetscReal *work, PetscReal 
       const PetscReal *point  = history->start + SolidHistoryOffset(history, e, g) + e % SIMD_WIDTH;
       const PetscReal  weight = (*solid->point)(element, e, g, gradient, hoop);
 
-      *work += weight * point[SIMD_WIDTH * solid->kernels.plastic_work];
+      *work += weight * point[SIMD_WIDTH * SolidPlasticWork(solid)];
       sum += weight * point[SIMD_WIDTH * solid->kernels.plastic_strain];
       volume += weight;
     }

@@ -46,9 +46,9 @@ SIMD_INLINE Symmetric ExponentialLess1(Symmetric d, PetscInt halves)
   return sum;
 }
 
-/* Fp^-1 exp(-D), equivalent strain, work and centre at the end of the step; `ratio`: of D to the stress relative to the centre */
-SIMD_INLINE void Flow(const Plastic *plastic, PetscInt part, PetscInt halves, Symmetric relative, SimdVector ratio, SimdVector work,
-                      const PetscReal start[][8], PetscReal end[][8])
+/* Fp^-1 exp(-D), works, stress and centre at the end of the step; `ratio`: of D to the stress relative to the centre; m: that stress */
+SIMD_INLINE void Flow(const Plastic *plastic, PetscInt part, PetscInt halves, Symmetric m, Symmetric relative, SimdVector ratio,
+                      SimdVector work, const PetscReal start[][8], PetscReal end[][8])
 {
   const Symmetric d = {ratio * relative.xx, ratio * relative.yy, ratio * relative.zz,
                        ratio * relative.xy, ratio * relative.yz, ratio * relative.zx};
@@ -72,6 +72,7 @@ SIMD_INLINE void Flow(const Plastic *plastic, PetscInt part, PetscInt halves, Sy
     work += SymmetricContract(SymmetricAdd(centre, SymmetricAll(0.5 * modulus), d), d);
   }
   SimdGetParts(end[PLASTIC_WORK])[part] = SymmetricLoad(start[PLASTIC_WORK], part) + work;
+  PlasticStoreStress(m, relative, ratio, start, end, part);
 }
 
 SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal H[9][8], const PetscReal start[][8], PetscReal end[][8],
@@ -113,11 +114,13 @@ SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal 
   if (!end) return;
   if (largest == 0) {
     for (PetscInt i = 0; i < size; i++)
-      for (int p = 0; p < SIMD_WIDTH; p++) end[i][p] = start[i][p];
+      for (int p = 0; p < SIMD_WIDTH; p++)
+        end[i][p] = i >= PLASTIC_STRESS && i < PLASTIC_STRESS + 6 ? M[i - PLASTIC_STRESS][p] : start[i][p];
     return;
   }
   for (PetscInt part = 0; part < SIMD_PARTS; part++)
-    Flow(plastic, part, halves, SymmetricGet(relative, part), SimdGetParts(ratio)[part], SimdGetParts(flow.work)[part], start, end);
+    Flow(plastic, part, halves, SymmetricGet(M, part), SymmetricGet(relative, part), SimdGetParts(ratio)[part],
+         SimdGetParts(flow.work)[part], start, end);
   for (int p = 0; p < SIMD_WIDTH; p++) {
     end[PLASTIC_STRAIN][p]   = start[PLASTIC_STRAIN][p] + flow.strain[p];
     end[PLASTIC_STRENGTH][p] = flow.strength[p];

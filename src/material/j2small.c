@@ -41,9 +41,9 @@ SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal 
   for (int p = 0; p < SIMD_WIDTH; p++) ratio[p] = flow.strain[p] != 0 ? 1.5 * flow.strain[p] / q[p] : 0;
   for (PetscInt part = 0; part < SIMD_PARTS; part++) {
     const SimdVector r = SimdGetParts(ratio)[part];
-    const Symmetric  s = SymmetricGet(relative, part);
+    const Symmetric  s = SymmetricGet(relative, part), m = SymmetricAdd(SymmetricGet(M, part), -2 * plastic->elastic.mu * r, s);
 
-    StoreStress(SymmetricAdd(SymmetricGet(M, part), -2 * plastic->elastic.mu * r, s), part, P);
+    StoreStress(m, part, P);
     if (!end) continue;
     SymmetricStore(SymmetricAdd(SymmetricGet(start + PLASTIC_DEFORMATION, part), r, s), end + PLASTIC_DEFORMATION, part);
     for (PetscInt i = 6; i < 9; i++) SimdGetParts(end[i])[part] = SymmetricLoad(start[i], part);
@@ -57,6 +57,7 @@ SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal 
       SymmetricStore(SymmetricAdd(centre, moved, s), end + PLASTIC_CENTRE, part);
       SimdGetParts(end[PLASTIC_WORK])[part] += r * SymmetricContract(SymmetricAdd(centre, 0.5 * moved, s), s);
     }
+    PlasticStoreStress(m, s, r, start, end, part);
   }
 }
 

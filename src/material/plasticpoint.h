@@ -20,3 +20,13 @@ SIMD_INLINE Symmetric PlasticRelative(const Plastic *plastic, Symmetric m, const
 
   return plastic->kinematic > 0 ? SymmetricAdd(s, SymmetricAll(-1), SymmetricGet(history + PLASTIC_CENTRE, part)) : s;
 }
+
+/* Stress at the end of a step, and what it has taken of the energy where the plastic strain grows by a ratio times `relative` */
+SIMD_INLINE void PlasticStoreStress(Symmetric m, Symmetric relative, SimdVector ratio, const PetscReal start[][8], PetscReal end[][8],
+                                    PetscInt part)
+{
+  const Symmetric twice = SymmetricAdd(SymmetricGet(start + PLASTIC_STRESS, part), SymmetricAll(1), m);
+
+  SimdGetParts(end[PLASTIC_TAKEN])[part] = SymmetricLoad(start[PLASTIC_TAKEN], part) + 0.5 * ratio * SymmetricContract(twice, relative);
+  SymmetricStore(m, end + PLASTIC_STRESS, part);
+}

@@ -57,6 +57,7 @@ PetscErrorCode PlasticCompleteKernels(Material material, PetscBool plane_stress,
   kernels->n_history      = PlasticGetSize((const Plastic *)material->data);
   kernels->plastic_strain = PLASTIC_STRAIN;
   kernels->plastic_work   = PLASTIC_WORK;
+  kernels->taken          = PLASTIC_TAKEN;
 
   ((Plastic *)material->data)->kernels = *kernels;
   PetscFunctionReturn(PETSC_SUCCESS);

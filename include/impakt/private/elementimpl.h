@@ -59,6 +59,7 @@ typedef struct {
   const PetscReal *start;   /* at the start of the step; NULL: as if the material were virgin, and nothing irreversible happened */
   PetscReal       *end;     /* becomes that at the end of the step with each internal force; NULL: it is not wanted */
   PetscReal        step;    /* [s]; negative: nothing flows */
+  PetscBool        by_ends; /* forces at both ends of a step do the work of their mean: so plastic work is that of the mean stress */
 } ElementHistory;
 
 struct _p_Element {

@@ -24,16 +24,18 @@ typedef struct {
   MaterialKernels kernels;                           /* of the finite or the small strain */
 } Plastic;
 
-/* History of a point, 12 numbers or 18. Zero: the virgin material */
+/* History of a point, 19 numbers or 25. Zero: the virgin material */
 enum {
   PLASTIC_DEFORMATION = 0,   /* finite strain: inverse of the plastic deformation gradient less 1, row by row; small: the plastic strain in
                                 xx yy zz xy yz xz */
   PLASTIC_STRAIN       = 9,  /* the equivalent one */
-  PLASTIC_WORK         = 10, /* with what hardening stores of it [J/m^3] */
+  PLASTIC_WORK         = 10, /* with what hardening stores of it: the area under the curve of hardening [J/m^3] */
   PLASTIC_STRENGTH     = 11, /* less that of the virgin material, at rest and at room temperature [Pa] */
-  PLASTIC_CENTRE       = 12, /* of the yield surface, with kinematic hardening: xx yy zz xy yz xz [Pa] */
-  PLASTIC_SIZE         = 12,
-  PLASTIC_SIZE_CENTRED = 18
+  PLASTIC_STRESS       = 12, /* that works on the elastic strain: xx yy zz xy yz xz [Pa] */
+  PLASTIC_TAKEN        = 18, /* the work again, of the mean of the stresses at both ends of each step [J/m^3] */
+  PLASTIC_CENTRE       = 19, /* of the yield surface, with kinematic hardening: xx yy zz xy yz xz [Pa] */
+  PLASTIC_SIZE         = 19,
+  PLASTIC_SIZE_CENTRED = 25
 };
 
 /* What flow does in a step */

@@ -67,6 +67,12 @@ SIMD_INLINE void SolidStress(const Solid *solid, PetscInt first, PetscInt g, con
   } else (*solid->kernels.stress)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, P);
 }
 
+/* Which number of the history of a point is plastic work */
+SIMD_INLINE PetscInt SolidPlasticWork(const Solid *solid)
+{
+  return solid->history->by_ends ? solid->kernels.taken : solid->kernels.plastic_work;
+}
+
 /* And for the stored energy, with the plastic work of materials with history */
 SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, const SimdReal H[9], SimdReal W, SimdReal work)
 {
@@ -76,7 +82,7 @@ SIMD_INLINE void SolidEnergy(const Solid *solid, PetscInt first, PetscInt g, con
     const PetscReal *now = history->start + SolidHistoryOffset(history, first, g);
 
     (*solid->kernels.hold)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, (const PetscReal(*)[SIMD_WIDTH])now, W, NULL);
-    for (PetscInt p = 0; p < SIMD_WIDTH; p++) work[p] = now[solid->kernels.plastic_work * SIMD_WIDTH + p];
+    for (PetscInt p = 0; p < SIMD_WIDTH; p++) work[p] = now[SolidPlasticWork(solid) * SIMD_WIDTH + p];
   } else {
     (*solid->kernels.energy)(solid->kernels.data, (const PetscReal(*)[SIMD_WIDTH])H, W);
     for (PetscInt p = 0; p < SIMD_WIDTH; p++) work[p] = 0;

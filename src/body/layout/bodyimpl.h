@@ -426,6 +426,7 @@ PETSC_INTERN PetscErrorCode BodyFindInternalForce(Body);
 PETSC_INTERN PetscErrorCode BodySetUpHistory(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyHistory(Body);
 PETSC_INTERN PetscErrorCode BodyHistoryBegin(Body);
+PETSC_INTERN PetscErrorCode BodyHistoryBeginHeld(Body);
 PETSC_INTERN PetscErrorCode BodyHistoryNote(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyHistoryTakeEnd(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyEndHistory(Body);

@@ -166,7 +166,9 @@ PetscErrorCode BodyStartUnderForces(Body body, const PetscScalar force[])
   PetscFunctionBegin;
   PetscCheck(body->setup && !body->state.step, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE,
              "Call after BodySetUp(), before the first step");
-  if (force) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscCall(BodyHistoryBeginHeld(body));
+  if (force || body->history) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
+  PetscCall(BodyEndHistory(body));
   PetscCall(ComputeAcceleration(body, force));
   PetscCall(BodyWriteTraces(body, 0));
   if (force && body->rows.global) {

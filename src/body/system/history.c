@@ -76,6 +76,8 @@ PetscErrorCode BodySetUpHistory(Body body)
   PetscCall(PetscCalloc1(N_BUFFERS * room * sizeof(PetscReal) + ALIGNMENT, &history->memory));
   first = history->memory + (ALIGNMENT - (size_t)history->memory % ALIGNMENT) % ALIGNMENT;
   for (size_t k = 0; k < N_BUFFERS; k++) history->buffers[k] = (PetscReal *)(void *)first + k * room;
+  body->model.element->history.by_ends = body->integrator->has_inertia; /* as loads and contact forces do their work in a step, too */
+
   history->saved = history->start = history->now = history->buffers[0];
   history->end                                   = FindFree(history);
   Hold(body, history->now);
@@ -103,6 +105,15 @@ PetscErrorCode BodyHistoryBegin(Body body)
   history->id    = 0;
   history->epoch++;
   Open(body);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyHistoryBeginHeld - the internal force of the first state writes its stress to the history, and nothing flows */
+PetscErrorCode BodyHistoryBeginHeld(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyHistoryBegin(body));
+  body->model.element->history.step = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
