@@ -25,6 +25,7 @@ PetscErrorCode BodySave(Body body)
   if (here && body->time.substeps == 1 && stepped) PetscCall(BodyAddDampingWork(body));
   /* TSStep() fires no monitors, and should not in sweeps: a step is shown once, when it is accepted */
   if (stepped) PetscCall(TSMonitor(body->time.ts, body->state.step, body->state.time, body->state.u));
+  if (stepped) PetscCall(BodyNoteStartEnergy(body));
   PetscCall(BodyStateCopy(body, &body->state, &body->saved));
   BodyHistorySave(body);
   if (stepped) PetscCall(BodyUpdateStableStep(body));

@@ -277,6 +277,7 @@ struct _p_Body {
     Vec       a;       /* the saved acceleration as it was [m/s^2]; NULL until needed */
     Vec       change;  /* work space of BodyTurnToMeanForce() [m/s^2]; NULL until BodySetMeanForces() */
     PetscBool changed; /* the saved acceleration is not that of the last step's end */
+    PetscReal energy;  /* that these forces bring to the first state, see BodyNoteStartEnergy() [J] */
   } start;
   /* of a body whose contact nodes answer by themselves, see contactnodes.c; empty until needed */
   struct {
@@ -518,6 +519,8 @@ PETSC_INTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_INTERN PetscErrorCode BodyProbeNodes(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode BodyAnswerAtStart(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyNoteStart(Body);
+PETSC_INTERN PetscErrorCode BodyNoteStartEnergy(Body);
+PETSC_INTERN PetscErrorCode BodySumStaggering(Body, Vec, PetscReal *);
 PETSC_INTERN PetscErrorCode BodyComputeForceChange(Body, PetscBool *, Vec);
 PETSC_INTERN PetscErrorCode BodyCreateTraces(Body);
 PETSC_INTERN PetscErrorCode BodyDestroyTraces(Body);

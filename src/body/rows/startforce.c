@@ -100,6 +100,28 @@ PetscErrorCode BodyDropStartForce(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Before the first step is accepted: by how much the first state has more energy with the contact forces of that step's start than its
+   record tells, which is made before anybody knows them [J]: not 0 for central differences alone. Collective. */
+PetscErrorCode BodyNoteStartEnergy(Body body)
+{
+  PetscReal with, without;
+
+  PetscFunctionBegin;
+  if (body->integrator->staggered == 0 || body->saved.step) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(BodySumStaggering(body, body->saved.a, &with));
+  PetscCall(VecCopy(body->saved.a, body->work.nodes[1]));
+  if (body->start.changed) PetscCall(CopyAnswering(body, body->start.a, body->work.nodes[1]));
+  PetscCall(BodySumStaggering(body, body->work.nodes[1], &without));
+  body->start.energy = 0.5 * body->integrator->staggered * PetscSqr(body->time.step) * (without - with);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* BodyGetStartEnergy - this, from the first step on */
+PetscReal BodyGetStartEnergy(Body body)
+{
+  return body->start.energy;
+}
+
 /* Rows of this rank on which forces act on nodes with mass by their mean over the controller step, for forces that go linearly from l_0 to
    l_1 over m substeps. The massless layer is in balance with the force at the end of each substep. The trapezoidal rule would have the
    force l_k do the work (l_{k-1} + l_k) / 2 dw_k in substep k, and the sum of these is not that of a partner with other substeps, (l_0 +
