@@ -26,10 +26,10 @@ def plastic_work(run):
 
 @pytest.mark.parametrize(("law", "simplex"), [("frictionless", "false"), ("coulomb", "true"), *long(("frictionless", "true"), ("coulomb", "false"))])
 def test_in_the_plane(law, simplex, shared_run):
-    """At three steps. What the bodies gain goes with the step: measured 1.2 to 3.5 parts in 1000, 2.5 in 10 000, 8 in 100 000."""
+    """At three steps. What the bodies lose by contact goes with the step: measured 0.3 to 1.1 parts in 1000, 0.4 to 1.2 in 10 000, 0.3 to 9 in 100 000."""
     case = blocks(2, simplex, LAWS[law])
     runs = [shared_run(f"{case} -time_step {step}") for step in (0.1, 0.02, 0.005)]
-    for run, bound in zip(runs, (5e-3, 5e-4, 1.5e-4), strict=True):
+    for run, bound in zip(runs, (1.5e-3, 1.5e-4, 1.2e-4), strict=True):
         system = run.summary["system"]
         assert -bound <= system["energy_error_min"] <= system["energy_error_max"] <= bound
         assert system["momentum_error_max"] <= 1e-12

@@ -101,12 +101,12 @@ FLOW = (
 
 
 def test_flow(impakt):
-    """A block that bends until it flows: kinetic, elastic and plastic energy are together what it came with. Measured: 3e-4."""
+    """A block that bends until it flows: kinetic, elastic and plastic energy are together what it came with. Measured: 7e-7."""
     run = impakt(FLOW)
     body = run.history["body/b"]
     total = body["kinetic"][:] + body["potential"][:] + body["plastic_work"][:]
     assert body["plastic_work"][-1] > 0.1 * total[0]
-    assert np.abs(total / total[0] - 1).max() < 1e-3
+    assert np.abs(total / total[0] - 1).max() < 3e-6
 
 
 @pytest.mark.parametrize("ranks", [1, 3])
