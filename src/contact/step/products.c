@@ -11,7 +11,6 @@
 
 #define FEW_PRODUCTS 500 /* rows up to which S is dense, whose factors take little then */
 #define SPREAD       6   /* eigenvalues of D^{-1} K that count: from the largest down to that part of it; 4 and 10 take 5 % more products */
-#define POWERS       10  /* iterations of the power method */
 #define SMALL        0.03 /* entries of a matrix near S left out, in parts of the diagonal; 0.002 saves 2 % of the products */
 
 /* Whether S is products: of many rows, whose bodies tell them exactly and cheaply */
@@ -86,34 +85,15 @@ static PetscErrorCode Multiply(Mat S, Vec x, Vec y)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The largest eigenvalue of D^{-1} K, D the diagonal of K, by the power method: as many digits as a bound needs */
-static PetscErrorCode FindLargest(Mat K, Vec inverse, PetscReal *largest)
-{
-  Vec x, y;
-
-  PetscFunctionBegin;
-  PetscCall(VecDuplicate(inverse, &x));
-  PetscCall(VecDuplicate(inverse, &y));
-  PetscCall(VecCopy(inverse, x));
-  for (PetscInt k = 0; k < POWERS; k++) {
-    PetscCall(VecNormalize(x, NULL));
-    PetscCall(MatMult(K, x, y));
-    PetscCall(VecPointwiseMult(x, inverse, y));
-  }
-  PetscCall(VecNorm(x, NORM_2, largest));
-  PetscCall(VecDestroy(&x));
-  PetscCall(VecDestroy(&y));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* B M B^T, M = s D^{-1} (2 c D - K) D^{-1} near K^{-1}: 1 - M K is the Chebyshev polynomial of degree two in D^{-1} K on the interval of
-   eigenvalues, with the middle c and half of the width w, where it is one at zero: s = 2 / (2 c^2 - w^2) */
+   eigenvalues, with the middle c and half of the width w, where it is one at zero: s = 2 / (2 c^2 - w^2). The largest eigenvalue is at most
+   the largest sum of a row of |D^{-1} K|. */
 static PetscErrorCode MultiplyNear(Body body, Mat *product)
 {
   const PetscReal spread = 1 / (PetscReal)SPREAD;
   PetscReal       largest, middle, width, scale;
   Mat             K, B, near, transpose;
-  Vec             diagonal, inverse;
+  Vec             diagonal, inverse, sums;
 
   PetscFunctionBegin;
   PetscCall(BodyGetLayerMatrices(body, &K, &B));
@@ -121,7 +101,10 @@ static PetscErrorCode MultiplyNear(Body body, Mat *product)
   PetscCall(MatGetDiagonal(K, diagonal));
   PetscCall(VecCopy(diagonal, inverse));
   PetscCall(VecReciprocal(inverse));
-  PetscCall(FindLargest(K, inverse, &largest));
+  PetscCall(VecDuplicate(inverse, &sums));
+  PetscCall(MatGetRowSumAbs(K, sums));
+  PetscCall(VecPointwiseMult(sums, sums, inverse));
+  PetscCall(VecMax(sums, NULL, &largest));
   middle = largest * (1 + spread) / 2;
   width  = largest * (1 - spread) / 2;
   scale  = 2 / (2 * middle * middle - width * width);
@@ -134,6 +117,7 @@ static PetscErrorCode MultiplyNear(Body body, Mat *product)
   PetscCall(MatPtAP(near, transpose, MAT_INITIAL_MATRIX, PETSC_DETERMINE, product));
   PetscCall(VecDestroy(&diagonal));
   PetscCall(VecDestroy(&inverse));
+  PetscCall(VecDestroy(&sums));
   PetscCall(MatDestroy(&near));
   PetscCall(MatDestroy(&transpose));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,7 +128,6 @@ static PetscErrorCode AddNear(Contact contact, ContactStepper *stepper, PetscInt
 {
   const StepperEntries *entries = &stepper->assembly.of_body[b];
   PetscInt             *places;
-  PetscScalar          *kept;
   const PetscScalar    *diagonal;
   Mat                   product, *rows;
   Vec                   d;
@@ -157,24 +140,22 @@ static PetscErrorCode AddNear(Contact contact, ContactStepper *stepper, PetscInt
   PetscCall(MatCreateVecs(rows[0], &d, NULL));
   PetscCall(MatGetDiagonal(rows[0], d));
   PetscCall(VecGetArrayRead(d, &diagonal));
-  PetscCall(PetscMalloc2(entries->n, &places, entries->n, &kept));
+  PetscCall(PetscMalloc1(entries->n, &places));
   for (PetscInt k = 0; k < entries->n; k++) {
     const PetscInt     place = entries->places[k], *columns;
     const PetscScalar *values;
-    PetscInt           n, count = 0;
+    PetscInt           n;
 
     PetscCall(MatGetRow(rows[0], k, &n, &columns, &values));
     for (PetscInt e = 0; e < n; e++) {
-      const PetscInt other = entries->places[columns[e]];
+      const PetscReal least = SMALL * PetscSqrtReal(PetscRealPart(diagonal[k] * diagonal[columns[e]]));
 
-      if (PetscAbsScalar(values[e]) <= SMALL * PetscSqrtReal(PetscRealPart(diagonal[k] * diagonal[columns[e]]))) continue;
-      places[count] = other;
-      kept[count++] = values[e];
+      places[e] = PetscAbsScalar(values[e]) > least ? entries->places[columns[e]] : -1; /* PETSc leaves those out */
     }
-    PetscCall(MatSetValues(near, 1, &place, count, places, kept, ADD_VALUES));
+    PetscCall(MatSetValues(near, 1, &place, n, places, values, ADD_VALUES));
     PetscCall(MatRestoreRow(rows[0], k, &n, &columns, &values));
   }
-  PetscCall(PetscFree2(places, kept));
+  PetscCall(PetscFree(places));
   PetscCall(VecRestoreArrayRead(d, &diagonal));
   PetscCall(VecDestroy(&d));
   PetscCall(MatDestroySubMatrices(1, &rows));
