@@ -266,46 +266,45 @@ typedef struct {
 
 /* Energy that contact brings and takes, see src/contact/energy/README.md. Work on bodies is positive. */
 typedef struct {
-  const char    *unlimited;               /* why the method cannot have that, or NULL */
-  const char    *not_always;              /* why it cannot in every step, or NULL */
-  const char    *takes;                   /* what contact takes by its rule, which brings none, and what makes that less; or NULL */
-  const char    *asked;                   /* an option that limits what contact brings or takes, as the user has given it, or NULL */
-  PetscReal      scale;                   /* that energy [J] */
-  PetscBool      begun;                   /* it is known */
-  PetscBool      at_rest;                 /* there is none at the start */
-  PetscBool      known;                   /* the work of the present step has been computed */
-  PetscBool      rebuilt;                 /* rows have got new entries at the start of the present step */
-  PetscBool      start_known;             /* the energies at its start have been told, see ContactSetStartEnergies() */
-  PetscBool      changed;                 /* the step has begun with other forces than those that the last one ended with */
-  PetscBool      again;                   /* the step is made again, with other contact forces at its start */
-  PetscReal      largest_force;           /* sum over all rows, of the accepted step in which it was largest [N] */
-  PetscReal      work;                    /* of all accepted steps [J] */
-  PetscReal      step_work;               /* of the present step [J] */
-  PetscReal     *room;                    /* per body: what contact may bring it [J] */
-  PetscReal     *change;                  /* per body: what its energy has changed by at the start, since this step has another size [J] */
-  PetscBool      stays_whole;             /* halves of the step would have more energy from the start than there is room for */
-  PetscInt      *group;                   /* per body: the first body of the group that touches in this step */
-  PetscReal     *group_work;              /* per group, by its first body: work of contact in the step [J] */
-  PetscReal     *first_work;              /* the same in the step as made first, by the first bodies of the groups then [J] */
-  PetscReal     *pair_sums;               /* per pair, of all ranks: work in the step as made first [J]; sum of all rows' forces [N] */
-  PetscReal     *start_energy;            /* per body: at the start of the step, where rows have been built again [J] */
-  PetscReal     *first_energy;            /* per body: at the end of the step as made first [J] */
-  PetscReal     *energies;                /* the same, of the last attempt [J] */
-  PetscReal     *first_springs, *springs; /* per pair, of all ranks: gain of the springs in the step [J]; sum of all rows' forces [N] */
-  PetscReal     *last_force;              /* per row: at the end of the last step [N] */
-  PetscReal     *accepted_force;          /* the same, also of rows that have been let go since, with their surfaces [N] */
-  PetscReal     *last_stored;             /* per row: what springs had stored then [J] */
-  PetscReal     *broken;                  /* per row: what damage of glue takes in the present step [J] */
-  PetscReal     *start_force;             /* per row: that with which the step begins instead [N] */
-  PetscReal     *rest;                    /* per row: the part that remains of what goes over from it as it was before it changed */
-  PetscReal     *half_force, *half_rest;  /* per row: the same in the last attempt by halves that is within the room */
-  PetscReal     *gain_force, *gain_rest;  /* per row: the same in the one before, which has gained too much */
-  PetscReal     *last, *now;              /* work space, per row */
-  PetscBool     *leaves;                  /* per row: it has left in this step, or in an attempt at it */
-  ContactSearch *search;                  /* per group, by its first body */
-  PetscReal     *of_group;                /* work space: three numbers per group, by its first body */
-  PetscReal     *sums;                    /* work space: `BODY_MEASURE_SUMS` per body */
-  BodyMeasures  *measures;                /* work space, per body */
+  const char    *unlimited;              /* why the method cannot have that, or NULL */
+  const char    *not_always;             /* why it cannot in every step, or NULL */
+  const char    *takes;                  /* what contact takes by its rule, which brings none, and what makes that less; or NULL */
+  const char    *asked;                  /* an option that limits what contact brings or takes, as the user has given it, or NULL */
+  PetscReal      scale;                  /* that energy [J] */
+  PetscBool      begun;                  /* it is known */
+  PetscBool      at_rest;                /* there is none at the start */
+  PetscBool      known;                  /* the work of the present step has been computed */
+  PetscBool      rebuilt;                /* rows have got new entries at the start of the present step */
+  PetscBool      start_known;            /* the energies at its start have been told, see ContactSetStartEnergies() */
+  PetscBool      changed;                /* the step has begun with other forces than those that the last one ended with */
+  PetscBool      again;                  /* the step is made again, with other contact forces at its start */
+  PetscReal      largest_force;          /* sum over all rows, of the accepted step in which it was largest [N] */
+  PetscReal      work;                   /* of all accepted steps [J] */
+  PetscReal      step_work;              /* of the present step [J] */
+  PetscReal     *room;                   /* per body: what contact may bring it [J] */
+  PetscReal     *change;                 /* per body: what its energy has changed by at the start, since this step has another size [J] */
+  PetscBool      stays_whole;            /* halves of the step would have more energy from the start than there is room for */
+  PetscInt      *group;                  /* per body: the first body of the group that touches in this step */
+  PetscReal     *group_work;             /* per group, by its first body: work of contact in the step [J] */
+  PetscReal     *first_work;             /* the same in the step as made first, less energies of bodies and springs then [J] */
+  PetscReal     *pair_sums;              /* per pair, of all ranks: work in the step as made first [J]; sum of all rows' forces [N] */
+  PetscReal     *start_energy;           /* per body: at the start of the step, where rows have been built again [J] */
+  PetscReal     *energies;               /* per body: at the end of the step as made last [J] */
+  PetscReal     *springs;                /* per pair, of all ranks: gain of the springs in the step [J]; sum of all rows' forces [N] */
+  PetscReal     *last_force;             /* per row: at the end of the last step [N] */
+  PetscReal     *accepted_force;         /* the same, also of rows that have been let go since, with their surfaces [N] */
+  PetscReal     *last_stored;            /* per row: what springs had stored then [J] */
+  PetscReal     *broken;                 /* per row: what damage of glue takes in the present step [J] */
+  PetscReal     *start_force;            /* per row: that with which the step begins instead [N] */
+  PetscReal     *rest;                   /* per row: the part that remains of what goes over from it as it was before it changed */
+  PetscReal     *half_force, *half_rest; /* per row: the same in the last attempt by halves that is within the room */
+  PetscReal     *gain_force;             /* per row: the same in the one before, which has gained too much */
+  PetscReal     *last, *now;             /* work space, per row */
+  PetscBool     *leaves;                 /* per row: it has left in this step, or in an attempt at it */
+  ContactSearch *search;                 /* per group, by its first body */
+  PetscReal     *of_group;               /* work space: three numbers per group, by its first body */
+  PetscReal     *sums;                   /* work space: `BODY_MEASURE_SUMS` per body */
+  BodyMeasures  *measures;               /* work space, per body */
 } ContactEnergy;
 
 /* Friction, see src/contact/laws/README.md. Arrays have a number for each row: what concerns a node is at its first one. */

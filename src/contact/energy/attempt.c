@@ -8,8 +8,9 @@ PetscErrorCode ContactBeginAttempts(Contact contact)
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
-  PetscCall(ContactComputeEnergies(contact, energy->first_energy, energy->first_springs));
-  PetscCall(PetscArraycpy(energy->first_work, energy->group_work, contact->n_bodies));
+  PetscCall(ContactComputeEnergies(contact, energy->energies, energy->springs));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->first_work[b] = energy->group_work[b] - energy->energies[b];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) energy->first_work[contact->pairs[p].body[0]] -= energy->springs[2 * p];
   PetscCall(PetscArraycpy(energy->start_force, energy->last_force, contact->rows.n));
   for (PetscInt i = 0; i < contact->rows.n; i++) energy->rest[i] = 1;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -52,10 +53,8 @@ static PetscErrorCode ComputeGroupWork(Contact contact)
     energy->pair_sums[2 * p + 1] = PetscMax(energy->pair_sums[2 * p + 1], energy->springs[2 * p + 1]);
   ContactFindGroups(contact);
   PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    energy->group_work[energy->group[b]] += energy->first_work[b] + energy->energies[b] - energy->first_energy[b];
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->springs[2 * p] - energy->first_springs[2 * p];
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group_work[energy->group[b]] += energy->first_work[b] + energy->energies[b];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->springs[2 * p];
   PetscCall(ContactLeaveOutStatic(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

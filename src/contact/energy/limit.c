@@ -89,7 +89,7 @@ static void StartOnWayBack(Contact contact, PetscInt g, PetscReal part)
   for (PetscInt i = 0; i < contact->rows.n; i++)
     if (energy->group[contact->pairs[contact->rows.pair[i]].body[0]] == g) {
       energy->start_force[i] = energy->half_force[i] + part * (energy->gain_force[i] - energy->half_force[i]);
-      energy->rest[i]        = energy->half_rest[i] + part * (energy->gain_rest[i] - energy->half_rest[i]);
+      energy->rest[i]        = energy->half_rest[i] * (1 + part); /* the one before had twice as much */
     }
 }
 
@@ -105,7 +105,6 @@ static void StartHalfWay(Contact contact, PetscInt g)
                                                                                 : PetscMax(contact->end.force[i], 0);
 
       energy->gain_force[i] = energy->start_force[i];
-      energy->gain_rest[i]  = energy->rest[i];
       energy->start_force[i] += 0.5 * (end - energy->start_force[i]);
       energy->rest[i] *= 0.5;
       energy->half_force[i] = energy->start_force[i];

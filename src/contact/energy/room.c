@@ -216,8 +216,8 @@ static PetscErrorCode DestroyRowEnergy(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscFree5(energy->last_stored, energy->broken, energy->accepted_force, energy->last_force, energy->start_force));
   PetscCall(PetscFree4(energy->last, energy->now, energy->leaves, energy->rest));
-  PetscCall(PetscFree4(energy->half_force, energy->half_rest, energy->gain_force, energy->gain_rest));
-  PetscCall(PetscFree3(energy->pair_sums, energy->first_springs, energy->springs));
+  PetscCall(PetscFree3(energy->half_force, energy->half_rest, energy->gain_force));
+  PetscCall(PetscFree2(energy->pair_sums, energy->springs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -231,8 +231,8 @@ PetscErrorCode ContactSetUpRowEnergy(Contact contact)
   PetscCall(PetscCalloc5(rows, &energy->last_stored, rows, &energy->broken, rows, &energy->accepted_force, rows, &energy->last_force, rows,
                          &energy->start_force));
   PetscCall(PetscCalloc4(rows, &energy->last, rows, &energy->now, rows, &energy->leaves, rows, &energy->rest));
-  PetscCall(PetscCalloc4(rows, &energy->half_force, rows, &energy->half_rest, rows, &energy->gain_force, rows, &energy->gain_rest));
-  PetscCall(PetscCalloc3(2 * pairs, &energy->pair_sums, 2 * pairs, &energy->first_springs, 2 * pairs, &energy->springs));
+  PetscCall(PetscCalloc3(rows, &energy->half_force, rows, &energy->half_rest, rows, &energy->gain_force));
+  PetscCall(PetscCalloc2(2 * pairs, &energy->pair_sums, 2 * pairs, &energy->springs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -244,8 +244,7 @@ PetscErrorCode ContactSetUpEnergy(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc2(BODY_MEASURE_SUMS * n, &energy->sums, n, &energy->measures));
   PetscCall(PetscCalloc5(n, &energy->change, n, &energy->start_energy, n, &energy->first_work, n, &energy->room, n, &energy->group));
-  PetscCall(
-      PetscCalloc5(n, &energy->group_work, n, &energy->first_energy, n, &energy->energies, n, &energy->search, 3 * n, &energy->of_group));
+  PetscCall(PetscCalloc4(n, &energy->group_work, n, &energy->energies, n, &energy->search, 3 * n, &energy->of_group));
   PetscCall(ContactSetUpRowEnergy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -273,6 +272,6 @@ PetscErrorCode ContactDestroyEnergy(Contact contact)
   PetscCall(DestroyRowEnergy(contact));
   PetscCall(PetscFree2(energy->sums, energy->measures));
   PetscCall(PetscFree5(energy->change, energy->start_energy, energy->first_work, energy->room, energy->group));
-  PetscCall(PetscFree5(energy->group_work, energy->first_energy, energy->energies, energy->search, energy->of_group));
+  PetscCall(PetscFree4(energy->group_work, energy->energies, energy->search, energy->of_group));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
