@@ -221,7 +221,7 @@ PETSC_INTERN PetscErrorCode ContactAcceptFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactNoteTilt(Contact);
 PETSC_INTERN PetscErrorCode ContactRefuseFriction(Contact, const char[]);
 PETSC_INTERN PetscErrorCode ContactDestroyFriction(Contact);
-PETSC_INTERN void           ContactGetFrictionLimit(Contact, PetscInt, PetscReal, PetscReal[2]);
+PETSC_INTERN void           ContactGetFrictionLimit(Contact, const ContactPair *, PetscReal, PetscReal[2]);
 PETSC_INTERN PetscErrorCode ContactComputeSlips(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);

@@ -11,11 +11,10 @@
 /* Round-off of normals that a velocity may have a part along */
 #define ACROSS 1e-6
 
-/* Bound of the force across the normal at row i's node, by its last step's sliding speed: a force [N], and a part of the normal force */
-void ContactGetFrictionLimit(Contact contact, PetscInt i, PetscReal speed, PetscReal limit[2])
+/* Bound of the force across the normal of a node that has slid at this speed: a force [N], and a part of the normal force */
+void ContactGetFrictionLimit(Contact contact, const ContactPair *pair, PetscReal speed, PetscReal limit[2])
 {
-  const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
-  PetscReal          parameters[ROW_LAW_PARAMETERS];
+  PetscReal parameters[ROW_LAW_PARAMETERS];
 
   ContactGetLawParameters(contact, pair, parameters);
   (*contact->laws[pair->named].law.bound)(parameters, speed, limit);

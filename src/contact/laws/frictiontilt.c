@@ -28,7 +28,7 @@ static void AddTilts(Contact contact, const ContactPair *pair, PetscReal turn, c
     PetscReal limit[2];
 
     if (!(contact->end.force[first] > 0) || !contact->rows.opposite[first]) continue;
-    ContactGetFrictionLimit(contact, first, 0, limit);
+    ContactGetFrictionLimit(contact, pair, 0, limit);
     sums[0] += (turn + tilts[k]) * contact->end.force[first];
     sums[1] += limit[0] + limit[1] * contact->end.force[first];
   }

@@ -63,20 +63,10 @@ PetscErrorCode ContactStepperDestroyGlue(ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The gap along the normal below which contact holds a node of glue. A force that is constant in the step keeps it from going deeper, or,
-   of a node that was apart, keeps the mean gap of the step from being one of overlap: its work on the bodies is never positive. */
-static PetscReal GetLeast(Contact contact, const ContactStepper *stepper, PetscInt first, const PetscReal normal[])
-{
-  PetscReal start = 0;
+/* Numbers of the nodes of glue, in the order in which they are gathered: normals and gaps have one for each row */
+enum { GLUE_AREA, GLUE_NORMAL, GLUE_GAP, GLUE_HISTORY };
 
-  if (ContactStepperTimes(contact, stepper, first) == 1) return 0;
-  for (PetscInt d = 0; d < contact->dim; d++) start += normal[d] * contact->start.gap[first + d];
-  return PetscMin(start, 0);
-}
-
-/* Numbers of the nodes of this rank: one of glue, in the order of the enumeration. Each row of a node has a component of its normal. */
-enum { GLUE_AREA, GLUE_NORMAL, GLUE_LEAST, GLUE_HISTORY };
-
+/* Normals of nodes of this rank, whose rows lie along the axes, or a number that the law has kept of them */
 static PetscErrorCode FillNumbers(Contact contact, ContactStepper *stepper, PetscInt which)
 {
   PetscFunctionBegin;
@@ -86,42 +76,41 @@ static PetscErrorCode FillNumbers(Contact contact, ContactStepper *stepper, Pets
 
     if (pair->law != CONTACT_LAW_GLUE) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-      const PetscInt   i = contact->rows.near[k], first = ContactFirstRow(contact, i);
-      const PetscReal *normal = rows.normals + contact->dim * ((i - pair->begin) / pair->components);
-      PetscReal       *mine   = &stepper->mine[i];
-
-      if (which == GLUE_AREA) *mine = GetArea(contact, i);
-      else if (which == GLUE_NORMAL) *mine = normal[i - first];
-      else if (which == GLUE_LEAST) *mine = GetLeast(contact, stepper, first, normal);
-      else *mine = stepper->history[ROW_LAW_HISTORY * first + which - GLUE_HISTORY];
-    }
+    for (PetscInt i = pair->begin; i < pair->end; i++)
+      stepper->mine[i] = which == GLUE_NORMAL ? rows.normals[i - pair->begin]
+                                              : stepper->history[ROW_LAW_HISTORY * i + which - GLUE_HISTORY];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As a step begins, once its touching rows are listed: what the law of each node of glue is told, on all ranks */
+/* As a step begins, once its touching rows are listed: what the law of each node of glue is told, on all ranks. Contact keeps a node from a
+   gap below `least`. A force that is constant in the step keeps it from going deeper, or, of a node that was apart, keeps the mean gap of
+   the step from being one of overlap: its work on the bodies is never positive. */
 PetscErrorCode ContactStepperBeginGlue(Contact contact, ContactStepper *stepper)
 {
   LawProblem *problem = &stepper->problem;
 
   PetscFunctionBegin;
   for (PetscInt which = 0; which < GLUE_HISTORY + ROW_LAW_HISTORY && stepper->glued; which++) {
-    PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
-    PetscCall(FillNumbers(contact, stepper, which));
-    PetscCall(ContactStepperGather(contact, stepper, stepper->mine, stepper->gathered));
+    if (which == GLUE_NORMAL || which >= GLUE_HISTORY) PetscCall(FillNumbers(contact, stepper, which));
+    PetscCall(ContactStepperGather(contact, stepper,
+                                   which == GLUE_AREA  ? contact->rows.area
+                                   : which == GLUE_GAP ? contact->start.gap
+                                                       : stepper->mine,
+                                   stepper->gathered));
     for (PetscInt node = 0; node < problem->n_nodes; node++) {
-      const PetscInt     first = problem->begin[node], p = contact->ranks.row_pair[stepper->rows[first]];
+      const PetscInt first = problem->begin[node], n = problem->begin[node + 1] - first, p = contact->ranks.row_pair[stepper->rows[first]];
       const PetscScalar *value = stepper->gathered + first;
       RowLawGlue        *glue  = &problem->glue[node];
+      PetscReal          along = 0;
 
       glue->parameters = stepper->parameters + ROW_LAW_PARAMETERS * p;
       glue->times      = ContactStepperRule(stepper, &contact->pairs[p])->shape == BODY_FORCE_CONSTANT ? 2 : 1;
-      if (which == GLUE_AREA) glue->area = PetscRealPart(value[0]);
-      else if (which == GLUE_LEAST) glue->least = PetscRealPart(value[0]);
-      else if (which >= GLUE_HISTORY) glue->history[which - GLUE_HISTORY] = PetscRealPart(value[0]);
-      for (PetscInt i = first; which == GLUE_NORMAL && i < problem->begin[node + 1]; i++)
-        glue->normal[i - first] = PetscRealPart(value[i - first]);
+      if (which == GLUE_AREA) glue->area = PetscRealPart(value[0]) * contact->resultants.cross_section[p];
+      if (which >= GLUE_HISTORY) glue->history[which - GLUE_HISTORY] = PetscRealPart(value[0]);
+      for (PetscInt k = 0; k < n && which == GLUE_NORMAL; k++) glue->normal[k] = PetscRealPart(value[k]);
+      for (PetscInt k = 0; k < n && which == GLUE_GAP; k++) along += glue->normal[k] * PetscRealPart(value[k]);
+      if (which == GLUE_GAP) glue->least = glue->times == 1 ? 0 : PetscMin(along, 0);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

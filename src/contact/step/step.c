@@ -4,7 +4,7 @@
    are one evaluation of the outer SNES, F = lambda - (2)(lambda), and (2) is the SNES of solve/. */
 #include "stepimpl.h"
 
-/* ContactStepperGetLimits - bounds that the law of friction has for touching nodes, on all ranks */
+/* ContactStepperGetLimits - bounds that the law of friction has for touching nodes, on all ranks, by how fast they have slid */
 PetscErrorCode ContactStepperGetLimits(Contact contact, ContactStepper *stepper)
 {
   LawProblem *problem = &stepper->problem;
@@ -12,24 +12,13 @@ PetscErrorCode ContactStepperGetLimits(Contact contact, ContactStepper *stepper)
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(problem->limit, 2 * problem->n_nodes));
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_acting; k++)
-    stepper->mine[contact->rows.acting[k]] = stepper->before[contact->rows.acting[k]] = 0;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+  PetscCall(ContactStepperGather(contact, stepper, contact->friction.speed, stepper->gathered));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt     first = problem->begin[node];
+    const ContactPair *pair  = &contact->pairs[contact->ranks.row_pair[stepper->rows[first]]];
 
-    for (PetscInt k = pair->acts_begin; k < pair->acts_end && pair->law == CONTACT_LAW_FRICTION; k += contact->dim) {
-      const PetscInt i = contact->rows.acting[k];
-      PetscReal      limit[2];
-
-      ContactGetFrictionLimit(contact, i, contact->friction.speed[i], limit);
-      stepper->mine[i]   = limit[0];
-      stepper->before[i] = limit[1];
-    }
-  }
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscCall(ContactStepperGather(contact, stepper, k ? stepper->before : stepper->mine, stepper->gathered));
-    for (PetscInt node = 0; node < problem->n_nodes; node++)
-      problem->limit[2 * node + k] = PetscRealPart(stepper->gathered[problem->begin[node]]);
+    if (pair->law == CONTACT_LAW_FRICTION)
+      ContactGetFrictionLimit(contact, pair, PetscRealPart(stepper->gathered[first]), problem->limit + 2 * node);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
