@@ -217,6 +217,8 @@ PETSC_INTERN void           ContactAlignRubbingRows(Contact);
 PETSC_INTERN void           ContactCarryFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactDriveFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeFrictionLoss(Contact, const PetscReal[]);
+PETSC_INTERN PetscBool      ContactHasForce(Contact, PetscInt, const PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactAddWork(Contact, PetscInt, const PetscReal[], PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode ContactAcceptFriction(Contact);
 PETSC_INTERN PetscErrorCode ContactNoteTilt(Contact);
 PETSC_INTERN PetscErrorCode ContactRefuseFriction(Contact, const char[]);

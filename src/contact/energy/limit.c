@@ -329,6 +329,7 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   if (energy->unlimited) PetscFunctionReturn(PETSC_SUCCESS);
   energy->changed = PETSC_FALSE;
   PetscCall(PetscArraycpy(energy->last_force, contact->start.force, contact->rows.n));
+  PetscCall(ContactComputeFrictionLoss(contact, energy->last_force));
   PetscCall(ContactComputeWork(contact));
   PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));
   for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group[b] = b;

@@ -24,52 +24,49 @@ PetscErrorCode ContactSumStored(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscBool IsLoaded(Contact contact, PetscInt b)
+/* ContactHasForce - whether a row has a force in the step, which it begins with this one */
+PetscBool ContactHasForce(Contact contact, PetscInt i, const PetscReal start_force[])
 {
-  const ContactBodyRows *of    = &contact->body_rows[b];
-  const PetscReal       *force = contact->end.force, *last = contact->energy.last_force;
-  PetscBool              any = PETSC_FALSE;
-
-  for (PetscInt k = 0; k < of->n && !any; k++) {
-    const PetscInt i = of->rows[k];
-
-    any = (PetscBool)(contact->end.active[i] || force[i] != 0 || last[i] != 0);
-  }
-  return any;
+  return (PetscBool)(contact->end.active[i] || contact->end.force[i] != 0 || start_force[i] != 0);
 }
 
-static PetscErrorCode AddWorkOn(Contact contact, PetscInt b)
+/* Work of the forces on a body's rows along their displacements [J], which begin the step with `start_force`. That of rows across normals
+   is taken from `loss`, of each row, that of others is added to `sums`, two numbers of each pair; NULL: it is not asked for. */
+PetscErrorCode ContactAddWork(Contact contact, PetscInt b, const PetscReal start_force[], PetscReal loss[], PetscReal sums[])
 {
-  const ContactBodyRows *of     = &contact->body_rows[b];
-  ContactEnergy         *energy = &contact->energy;
-  const BodyTraces      *traces = &contact->traces[b];
-  PetscReal             *last = energy->last, *now = energy->now;
+  const ContactBodyRows *of   = &contact->body_rows[b];
+  const Trace            u    = contact->traces[b].displacement;
+  PetscReal             *last = contact->energy.last, *now = contact->energy.now;
+  PetscBool              any = PETSC_FALSE;
   BodyStepProperties     properties;
   PetscScalar           *first;
   PetscInt               substeps;
 
   PetscFunctionBegin;
-  if (!IsLoaded(contact, b)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < of->n_acting; j++) {
+    last[of->acting[j]] = start_force[of->rows[of->acting[j]]];
+    any                 = (PetscBool)(any || ContactHasForce(contact, of->rows[of->acting[j]], start_force));
+  }
+  if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
   PetscCall(BodyGetStepProperties(contact->bodies[b], &properties));
-  PetscCall(TraceGetLevel(traces->displacement, 0, &first));
-  ContactTakeRows(contact, b, energy->last_force, last);
+  PetscCall(TraceGetLevel(u, 0, &first));
   for (PetscInt level = 1; level <= substeps; level++) {
     PetscScalar *before, *after;
 
-    PetscCall(TraceGetLevel(traces->displacement, level - 1, &before));
-    PetscCall(TraceGetLevel(traces->displacement, level, &after));
+    PetscCall(TraceGetLevel(u, level - 1, &before));
+    PetscCall(TraceGetLevel(u, level, &after));
     PetscCall(BodyGetRowForces(contact->bodies[b], level, now));
-    for (PetscInt k = 0; k < of->n; k++) {
-      PetscReal *sum = &energy->pair_sums[2 * contact->rows.pair[of->rows[k]]];
+    for (PetscInt j = 0; j < of->n_acting; j++) {
+      const PetscInt  k = of->acting[j], i = of->rows[k];
+      const PetscBool across  = ContactRowRubs(contact, i);
+      const PetscBool by_mean = (PetscBool)(properties.by_mean && properties.by_mean[k]); /* one force in all substeps */
+      const PetscReal work    = 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - (by_mean ? first : before)[k]);
 
-      if (ContactRowRubs(contact, of->rows[k])) continue; /* what friction takes is no room for gains */
-      if (properties.by_mean && properties.by_mean[k]) {  /* one force in all substeps */
-        if (level == substeps) *sum += 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - first[k]);
-        continue;
-      }
-      *sum += 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - before[k]);
+      if ((by_mean && level < substeps) || !(across ? loss : sums) || !ContactHasForce(contact, i, start_force)) continue;
       last[k] = now[k];
+      if (across) loss[i] -= work;
+      else sums[2 * contact->rows.pair[i]] += work;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -102,8 +99,8 @@ PetscErrorCode ContactComputeWork(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(energy->pair_sums, 2 * contact->n_pairs));
-  PetscCall(ContactComputeFrictionLoss(contact, energy->last_force));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddWorkOn(contact, b));
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    PetscCall(ContactAddWork(contact, b, energy->last_force, NULL, energy->pair_sums)); /* what friction takes is no room */
   AddSprings(contact, PETSC_FALSE, energy->pair_sums);
   PetscCall(AddUp(contact, energy->pair_sums));
   PetscFunctionReturn(PETSC_SUCCESS);

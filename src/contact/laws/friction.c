@@ -200,42 +200,6 @@ PetscErrorCode ContactComputeSlips(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a row has neither a force at the start of the step nor one in it: where rows are listed forces stay as they are in a step */
-static PetscBool HasNone(Contact contact, PetscInt i, const PetscReal start_force[])
-{
-  return (PetscBool)(contact->rows.listed && start_force[i] == 0 && contact->end.force[i] == 0);
-}
-
-/* What friction takes on the rows of a body that lie across normals */
-static PetscErrorCode AddLossOn(Contact contact, PetscInt b, const PetscReal start_force[])
-{
-  const ContactBodyRows *of     = &contact->body_rows[b];
-  const BodyTraces      *traces = &contact->traces[b];
-  PetscReal             *last = contact->energy.last, *now = contact->energy.now;
-  PetscInt               substeps;
-
-  PetscFunctionBegin;
-  if (!of->n_acting) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-  for (PetscInt j = 0; j < of->n_acting; j++) last[of->acting[j]] = start_force[of->rows[of->acting[j]]];
-  for (PetscInt level = 1; level <= substeps; level++) {
-    PetscScalar *before, *after;
-
-    PetscCall(TraceGetLevel(traces->displacement, level - 1, &before));
-    PetscCall(TraceGetLevel(traces->displacement, level, &after));
-    PetscCall(BodyGetRowForces(contact->bodies[b], level, now));
-    for (PetscInt j = 0; j < of->n_acting; j++) {
-      const PetscInt k = of->acting[j];
-
-      if (HasNone(contact, of->rows[k], start_force)) continue;
-      if (ContactRowRubs(contact, of->rows[k]))
-        contact->friction.step_loss[of->rows[k]] -= 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - before[k]);
-      last[k] = now[k];
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What friction takes in the step with these forces at its start: of rows across normals, and of each pair on all ranks. Collective. */
 PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start_force[])
 {
@@ -246,12 +210,12 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) friction->step_loss[contact->rows.acting[k]] = 0;
   PetscCall(PetscArrayzero(friction->pair_step, contact->n_pairs));
   PetscCall(PetscArrayzero(friction->pair_work, contact->n_pairs));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(AddLossOn(contact, b, start_force));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactAddWork(contact, b, start_force, friction->step_loss, NULL));
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
     const PetscInt  i    = contact->rows.acting[k];
     const PetscReal work = -0.5 * (start_force[i] + contact->end.force[i]) * friction->drive[i];
 
-    if (HasNone(contact, i, start_force)) continue;
+    if (!ContactHasForce(contact, i, start_force)) continue;
     /* what friction takes is the work of the surfaces on each other; the obstacle brings its part */
     friction->step_loss[i] += work;
     if (ContactRowRubs(contact, i))
