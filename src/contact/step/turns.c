@@ -9,7 +9,7 @@
 
    A set of rows whose c have all one sign cannot have a force: the turn grows until another row joins. Where that would take it beyond the
    edge of an element, since forces press nodes deep into the partner that would spring back without them, the step is made without turns
-   of the pair, and again with the row that a turn would close first. Where there is no such row, it stays without turns. */
+   of the pair, and again with the rows that a turn could close. Where there is no such row, it stays without turns. */
 #include "stepimpl.h"
 
 /* The stiffness of a turn, in parts of that of the pair's bodies against it: each solution of the law leaves this part of C^T lambda */
@@ -276,53 +276,33 @@ PetscErrorCode ContactStepperImproveTurns(Contact contact, ContactStepper *stepp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Lets this rank's open row touch that a turn of a pair would close first, as its forces drive it; `joined`: there is one on any rank */
-static PetscErrorCode JoinNext(Contact contact, ContactStepper *stepper, PetscInt p, PetscBool *joined)
-{
-  const ContactPair *pair = &contact->pairs[p];
-  const PetscReal   *uneven;
-  const PetscInt     n           = CountTurns(contact, p);
-  const PetscReal    largest     = 2 * LARGEST * contact->turns.edge[p]; /* from one end to the other */
-  PetscReal          drive[AXES] = {0}, length = 0, nearest = largest, least;
-  PetscInt           row = -1;
-
-  PetscFunctionBegin;
-  PetscCall(TransferGetTurns(pair->transfer, NULL, &uneven, NULL, NULL, NULL));
-  for (PetscInt i = 0; i < stepper->problem.n; i++)
-    for (PetscInt k = 0; k < n && contact->ranks.row_pair[stepper->rows[i]] == p; k++)
-      drive[k] += stepper->turns.uneven[AXES * i + k] * PetscRealPart(stepper->problem.base[i]);
-  for (PetscInt k = 0; k < n; k++) length += PetscSqr(drive[k]);
-  length = PetscSqrtReal(length);
-  for (PetscInt i = pair->begin; i < pair->end && length > 0; i++) {
-    PetscReal closes = 0;
-
-    for (PetscInt k = 0; k < n; k++) closes -= uneven[n * (i - pair->begin) + k] * drive[k] / length;
-    if (stepper->touches[i] || !contact->rows.opposite[i] || !(closes * nearest > contact->end.gap[i])) continue;
-    nearest = contact->end.gap[i] / closes;
-    row     = i;
-  }
-  least = nearest;
-  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_MIN, &least));
-  *joined = (PetscBool)(least < largest);
-  if (row >= 0 && nearest == least) stepper->touches[row] = stepper->joins[row] = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Pairs that are not turned in this step: it is made again, once, with the row that a turn would close first */
+/* Pairs that are not turned in this step: it is made again, once, with all rows that a turn could close, from one end to the other */
 PetscErrorCode ContactStepperJoinTurned(Contact contact, ContactStepper *stepper, PetscBool *more)
 {
   StepperTurns *turns = &stepper->turns;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs && contact->turns.n; p++) {
-    PetscBool joined;
+    const ContactPair *pair = &contact->pairs[p];
+    const PetscReal   *uneven;
+    int                joined = 0;
 
     if (!turns->fixed[p] || turns->joined[p]) continue;
-    PetscCall(JoinNext(contact, stepper, p, &joined));
+    PetscCall(TransferGetTurns(pair->transfer, NULL, &uneven, NULL, NULL, NULL));
+    for (PetscInt i = pair->begin; i < pair->end; i++) {
+      PetscReal square = 0;
+
+      for (PetscInt k = 0; k < CountTurns(contact, p); k++) square += PetscSqr(uneven[CountTurns(contact, p) * (i - pair->begin) + k]);
+      if (stepper->touches[i] || !contact->rows.opposite[i]) continue;
+      if (2 * LARGEST * contact->turns.edge[p] * PetscSqrtReal(square) <= contact->end.gap[i]) continue;
+      stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
+      joined                                  = 1;
+    }
+    PetscCall(ContactOr(contact, &joined));
     turns->joined[p] = PETSC_TRUE;
     turns->fixed[p]  = (PetscBool)!joined;
-    PetscCall(PetscInfo(contact, "gaps of %s that are not turned: %s\n", contact->pairs[p].name,
-                        joined ? "a row joins, and they are again" : "there is no row to join"));
+    PetscCall(PetscInfo(contact, "gaps of %s that are not turned: %s\n", pair->name,
+                        joined ? "rows join, and they are again" : "there is no row to join"));
     *more = (PetscBool)(*more || joined);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
