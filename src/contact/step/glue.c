@@ -56,13 +56,6 @@ PetscErrorCode ContactStepperSetUpGlue(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContactStepperDestroyGlue(ContactStepper *stepper)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFree3(stepper->parameters, stepper->history, stepper->grown));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Numbers of the nodes of glue, in the order in which they are gathered: normals and gaps have one for each row */
 enum { GLUE_AREA, GLUE_NORMAL, GLUE_GAP, GLUE_HISTORY };
 

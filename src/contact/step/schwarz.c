@@ -59,6 +59,7 @@ static PetscErrorCode ChooseLaws(Contact contact, ContactStepper *stepper)
 PetscErrorCode ContactStepperSetUp(Contact contact)
 {
   ContactStepper *stepper    = Stepper(contact);
+  const PetscInt  n          = contact->n_bodies;
   PetscBool       any_static = PETSC_FALSE, all_linear = PETSC_TRUE, floating;
 
   PetscFunctionBegin;
@@ -70,9 +71,8 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
     any_static = (PetscBool)(any_static || BodyDoes(contact->bodies[b], BodyIsStatic));
     all_linear = (PetscBool)(all_linear && BodyDoes(contact->bodies[b], BodyIsLinear));
   }
-  PetscCall(PetscCalloc4(contact->n_bodies, &stepper->rules, contact->n_bodies, &stepper->group, contact->n_bodies, &stepper->moves,
-                         contact->n_bodies, &stepper->rests));
-  PetscCall(PetscCalloc3(contact->n_bodies, &stepper->done, contact->n_bodies, &stepper->scale, contact->n_bodies, &stepper->off));
+  PetscCall(PetscCalloc7(n, &stepper->rules, n, &stepper->group, n, &stepper->moves, n, &stepper->rests, n, &stepper->done, n,
+                         &stepper->scale, n, &stepper->off));
   stepper->assembly.of_state = -1;
   PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperSetUpRules(contact, stepper));
@@ -209,6 +209,8 @@ static PetscBool MayReplaceRows(Contact contact)
 static PetscErrorCode Reset(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);
+  StepperTurns   *turns   = &stepper->turns;
+  StepperSprings *springs = &stepper->springs;
 
   PetscFunctionBegin;
   PetscCall(SNESDestroy(&stepper->outer));
@@ -216,11 +218,11 @@ static PetscErrorCode Reset(Contact contact)
   PetscCall(ContactStepperDestroyVecs(stepper));
   PetscCall(ContactDestroyTiedEnds(contact));
   PetscCall(PetscFree2(stepper->aligns[0], stepper->aligns[1]));
-  PetscCall(ContactStepperDestroyGlue(stepper));
-  PetscCall(ContactStepperDestroyTurns(&stepper->turns));
-  PetscCall(ContactStepperDestroySprings(&stepper->springs));
-  PetscCall(PetscFree4(stepper->rules, stepper->group, stepper->moves, stepper->rests));
-  PetscCall(PetscFree3(stepper->done, stepper->scale, stepper->off));
+  PetscCall(PetscFree3(stepper->parameters, stepper->history, stepper->grown));
+  PetscCall(PetscFree5(turns->fixed, turns->joined, turns->softness, turns->start, turns->read));
+  PetscCall(PetscFree6(turns->uneven, turns->lever, turns->own, turns->shift, turns->places, turns->column));
+  PetscCall(PetscFree4(springs->stiffness, springs->softness, springs->multiplier, springs->change));
+  PetscCall(PetscFree7(stepper->rules, stepper->group, stepper->moves, stepper->rests, stepper->done, stepper->scale, stepper->off));
   PetscCall(PetscMemzero((char *)stepper + offsetof(ContactStepper, outer), sizeof(*stepper) - offsetof(ContactStepper, outer)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

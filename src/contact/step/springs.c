@@ -78,13 +78,6 @@ PetscErrorCode ContactStepperSetUpSprings(Contact contact, ContactStepper *stepp
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContactStepperDestroySprings(StepperSprings *springs)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFree4(springs->stiffness, springs->softness, springs->multiplier, springs->change));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Brings softness and m of the touching rows to all ranks, as a step begins */
 PetscErrorCode ContactStepperListSprings(Contact contact, ContactStepper *stepper)
 {

@@ -170,7 +170,6 @@ PETSC_INTERN PetscErrorCode ContactStepperSetUpGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperBeginGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperEndGlue(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperAcceptGlue(Contact, ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperDestroyGlue(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorPass(Contact, const ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactMonitorStep(Contact, const ContactStepper *, SNESConvergedReason);
 PETSC_INTERN PetscErrorCode ContactStepperGuess(Contact, ContactStepper *);
@@ -199,7 +198,6 @@ PETSC_INTERN PetscReal      StepperSecantMultiply(PetscInt, const PetscScalar[],
 PETSC_INTERN PetscBool      StepperSecantHolds(PetscInt, const PetscScalar[], const PetscScalar[], PetscReal);
 PETSC_INTERN PetscErrorCode StepperSecantCorrect(StepperEntries *, const PetscScalar[], PetscScalar[], PetscBool, LawProblem *);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpTurns(Contact, ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperDestroyTurns(StepperTurns *);
 PETSC_INTERN PetscErrorCode ContactStepperMayTurn(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactStepperBeginTurns(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperListTurns(Contact, ContactStepper *);
@@ -215,7 +213,6 @@ PETSC_INTERN PetscErrorCode ContactStepperAddSprings(const ContactStepper *, Mat
 PETSC_INTERN void           ContactStepperReadSprings(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperImproveSprings(ContactStepper *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactStepperEndSprings(Contact, ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperDestroySprings(StepperSprings *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateVecs(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyVecs(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperGather(Contact, ContactStepper *, const PetscReal[], PetscScalar[]);

@@ -44,14 +44,6 @@ PetscErrorCode ContactStepperSetUpTurns(Contact contact, ContactStepper *stepper
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContactStepperDestroyTurns(StepperTurns *turns)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFree5(turns->fixed, turns->joined, turns->softness, turns->start, turns->read));
-  PetscCall(PetscFree6(turns->uneven, turns->lever, turns->own, turns->shift, turns->places, turns->column));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether turns suit the step, before it is set up: nodes with mass have another rule, whose rows are not closed at its end */
 PetscErrorCode ContactStepperMayTurn(Contact contact, PetscBool *may)
 {
