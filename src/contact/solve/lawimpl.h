@@ -17,7 +17,6 @@ typedef struct {
   PetscReal      resolution;  /* what rows read is right to so much, by round-off of positions [m] */
   PetscReal      proximal;    /* weight of the proximal term, in parts of the diagonal of S */
   PetscBool      regular;     /* S is, so that there need be no such term: springs are on its diagonal */
-  PetscBool      alone;       /* it was when it was taken, and rows of different nodes did not move each other: sweeps come first */
   PetscScalar   *base, *read; /* per row: a force [N], and what is read under it [m] */
   PetscScalar   *centre;      /* per row: the force that the proximal term pulls to [N] */
   PetscScalar   *force;       /* per row: the solution [N] */

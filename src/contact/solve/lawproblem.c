@@ -321,33 +321,6 @@ PetscErrorCode LawProblemSetUp(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether nodes do not move each other, and S is regular by its diagonal: as that of one node, or of lumped masses on an obstacle */
-static PetscErrorCode FindAlone(LawProblem *problem)
-{
-  const PetscScalar *S;
-  LawPattern         of_S;
-
-  PetscFunctionBegin;
-  problem->alone = (PetscBool)!LawProblemHasProducts(problem);
-  if (!problem->alone) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LawProblemGetS(problem, &of_S, &S));
-  for (PetscInt node = 0; node < problem->n_nodes && problem->alone; node++)
-    for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1] && problem->alone; i++) {
-      const PetscInt begin = of_S.begin ? of_S.begin[i] : i * problem->n, end = of_S.begin ? of_S.begin[i + 1] : begin + problem->n;
-      PetscReal      others = 0;
-
-      for (PetscInt e = begin; e < end && problem->alone; e++) {
-        const PetscInt column = of_S.begin ? of_S.columns[e] : e - begin;
-
-        if (column != i) others += PetscAbsScalar(S[e]);
-        if (S[e] != 0 && (column < problem->begin[node] || column >= problem->begin[node + 1])) problem->alone = PETSC_FALSE;
-      }
-      if (!(others < problem->diagonal[i])) problem->alone = PETSC_FALSE;
-    }
-  PetscCall(LawProblemRestoreS(problem, &of_S, &S));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* S of the rows there are, which the equations own from now on: the one that they have with other values, or another; solvers are those of
    its size and kind. `near`: (NULL where S has entries) a sparse matrix for S that is only multiplied with. `begin` is known. */
 PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
@@ -378,7 +351,6 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
   PetscCall(VecGetArrayRead(problem->out, &diagonal));
   for (PetscInt i = 0; i < problem->n; i++) problem->diagonal[i] = PetscRealPart(diagonal[i]);
   PetscCall(VecRestoreArrayRead(problem->out, &diagonal));
-  PetscCall(FindAlone(problem));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

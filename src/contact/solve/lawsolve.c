@@ -50,21 +50,33 @@ static PetscErrorCode SolveBySecants(LawProblem *problem, PetscInt iterations, S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Nodes that do not move each other: sweeps solve, and one more to round-off, for less than PETSc's solvers take to begin */
-static PetscErrorCode SolveAlone(LawProblem *problem)
+/* Nodes that do not move each other: a sweep solves, after which another one changes nothing, for less than PETSc's solvers take to begin.
+   Neither needs the proximal term. */
+static PetscErrorCode SweepFirst(LawProblem *problem)
 {
+  const PetscReal proximal = problem->proximal;
+  PetscScalar    *before   = problem->work + problem->n;
+  PetscReal       change   = 0;
+
   PetscFunctionBegin;
-  for (PetscInt sweep = 0; sweep < FIRST_SWEEPS && !problem->solved; sweep++) {
+  problem->proximal = 0;
+  PetscCall(PetscArraycpy(problem->centre, problem->force, problem->n));
+  PetscCall(LawProblemHolds(problem, &problem->solved));
+  if (!problem->solved && !problem->softens && !LawProblemHasProducts(problem)) {
     PetscCall(LawProblemSweep(problem, problem->force));
-    PetscCall(LawProblemHolds(problem, &problem->solved));
-    problem->iterations++;
+    PetscCall(PetscArraycpy(before, problem->force, problem->n));
+    PetscCall(LawProblemSweep(problem, problem->force));
+    for (PetscInt i = 0; i < problem->n; i++) change = PetscMax(change, PetscAbsScalar(problem->force[i] - before[i]));
+    PetscCall(LawProblemHolds(problem, &problem->solved)); /* which what is no number does not */
+    problem->solved     = (PetscBool)(problem->solved && change <= PETSC_MACHINE_EPSILON * LawProblemForceScale(problem, problem->force));
+    problem->iterations = problem->solved;
   }
-  if (problem->solved) PetscCall(LawProblemSweep(problem, problem->force));
-  else PetscCall(PetscArraycpy(problem->force, problem->centre, problem->n)); /* as it was */
+  if (!problem->solved) PetscCall(PetscArraycpy(problem->force, problem->centre, problem->n)); /* as it was */
+  problem->proximal = proximal;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By sweeps where nodes stand alone, or Newton's method; where Newton's goes round in a circle, from where a few sweeps lead, or
+/* By Newton's method; where that goes round in a circle, from where a few sweeps lead, or
    secants of glue that softens, more of them each time */
 static PetscErrorCode SolveOnce(LawProblem *problem)
 {
@@ -77,8 +89,6 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(LawProblemHolds(problem, &problem->solved));
   if (problem->solved) PetscFunctionReturn(PETSC_SUCCESS);
-  if (problem->alone && !problem->softens) PetscCall(SolveAlone(problem));
-  if (problem->solved && !problem->asked) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(SNESGetTolerances(problem->newton, NULL, &rtol, NULL, NULL, NULL));
   enough = ENOUGH * rtol * LawProblemForceScale(problem, problem->force);
@@ -147,13 +157,16 @@ static PetscErrorCode SolveProximal(LawProblem *problem, PetscBool *slow)
 PetscErrorCode LawProblemSolve(LawProblem *problem)
 {
   const PetscReal proximal[] = {0, 1e-8, 1e-10, 1e-6}; /* of the diagonal of S */
-  const PetscBool none       = (PetscBool)(problem->regular || problem->alone || (problem->sparse && !LawProblemHasProducts(problem)));
+  const PetscBool none       = (PetscBool)(problem->regular || (problem->sparse && !LawProblemHasProducts(problem)));
   PetscBool       slow       = PETSC_TRUE;
 
   PetscFunctionBegin;
   problem->iterations = 0;
-  problem->by_nodes = problem->solved = PETSC_FALSE;
+  problem->by_nodes   = PETSC_FALSE;
   LawProblemFindWeights(problem);
+  PetscCall(SweepFirst(problem));
+  if (problem->solved && !problem->asked) PetscFunctionReturn(PETSC_SUCCESS);
+  problem->solved = PETSC_FALSE;
   for (size_t k = !none; k < PETSC_STATIC_ARRAY_LENGTH(proximal) && !problem->solved; k++) {
     const PetscReal part = LawProblemHasProducts(problem) ? LESS : 1;
 
