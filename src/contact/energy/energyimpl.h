@@ -8,6 +8,5 @@ PETSC_INTERN PetscErrorCode ContactComputeWork(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeEnergies(Contact, PetscReal[], PetscReal[]);
 PETSC_INTERN void           ContactFindGroups(Contact);
 PETSC_INTERN PetscErrorCode ContactLeaveOutStatic(Contact);
-PETSC_INTERN PetscReal      ContactGroupRoom(Contact, PetscInt);
 PETSC_INTERN PetscReal      ContactMoreRoom(Contact);
 PETSC_INTERN PetscErrorCode ContactCanAffordHalves(Contact, PetscBool *);

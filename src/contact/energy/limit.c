@@ -35,12 +35,23 @@
 /* How often the two kinds of attempts take turns */
 #define MAX_TURNS 4
 
+/* What each group may gain in this step [J] */
+static void FindRooms(Contact contact)
+{
+  const ContactEnergy *energy = &contact->energy;
+  const PetscReal      more   = ContactMoreRoom(contact);
+
+  for (PetscInt g = 0; g < contact->n_bodies; g++) energy->of_group[g] = 0;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->of_group[energy->group[b]] += energy->room[b] - energy->change[b] + more;
+  for (PetscInt g = 0; g < contact->n_bodies; g++) energy->of_group[g] = PetscMax(energy->of_group[g], 0);
+}
+
 /* Whether a group has gained more than it has room for */
 static PetscBool GainsTooMuch(Contact contact, PetscInt g)
 {
   const ContactEnergy *energy = &contact->energy;
 
-  return (PetscBool)(energy->group_work[g] > ContactGroupRoom(contact, g) + ROUND_OFF * energy->scale);
+  return (PetscBool)(energy->group_work[g] > energy->of_group[g] + ROUND_OFF * energy->scale);
 }
 
 /* Unmarked rows of a group that have left in the step, on all ranks. Those that end without force, not open, gain nothing. */
@@ -175,12 +186,12 @@ static PetscErrorCode SearchOn(Contact contact, PetscInt g)
     PetscCall(TakeMoreAway(contact, g));
   } else if (search->stage == 1) {
     if (search->low < 0 && too_much) PetscCall(TakeMoreAway(contact, g));
-    else LookBetween(contact, g, ContactGroupRoom(contact, g), StartWithPart);
+    else LookBetween(contact, g, energy->of_group[g], StartWithPart);
   } else if (search->stage == 2 && too_much) {
     const PetscReal less = search->gain[1] - gain;
 
     /* what halves do is halved each time: this is far from enough, since the energy is not that of contact */
-    search->in_vain = gain - PetscMax(ContactGroupRoom(contact, g), 0) > IN_VAIN * PetscAbsReal(less) ? search->in_vain + 1 : 0;
+    search->in_vain = gain - energy->of_group[g] > IN_VAIN * PetscAbsReal(less) ? search->in_vain + 1 : 0;
     search->gain[1] = gain;
     if (search->tries < MAX_HALVES && search->in_vain < MAX_IN_VAIN) StartHalfWay(contact, g);
     else search->done = PETSC_TRUE;
@@ -195,15 +206,11 @@ static PetscErrorCode SearchOn(Contact contact, PetscInt g)
 
 static PetscBool AnyGainsTooMuch(Contact contact)
 {
-  const ContactEnergy *energy = &contact->energy;
-  PetscReal           *room   = energy->of_group;
-  const PetscReal      more   = ContactMoreRoom(contact);
+  PetscBool any = PETSC_FALSE;
 
-  for (PetscInt g = 0; g < contact->n_bodies; g++) room[g] = 0;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) room[energy->group[b]] += energy->room[b] - energy->change[b] + more;
-  for (PetscInt g = 0; g < contact->n_bodies; g++)
-    if (energy->group[g] == g && energy->group_work[g] > PetscMax(room[g], 0) + ROUND_OFF * energy->scale) return PETSC_TRUE;
-  return PETSC_FALSE;
+  FindRooms(contact);
+  for (PetscInt g = 0; g < contact->n_bodies; g++) any = (PetscBool)(any || (contact->energy.group[g] == g && GainsTooMuch(contact, g)));
+  return any;
 }
 
 /* Whether friction brings energy on a row by the forces at both ends. Slip of a sticking node is left residual, which no start lessens. */
@@ -251,6 +258,7 @@ static PetscErrorCode Attempt(Contact contact)
   PetscCall(PetscArrayzero(energy->search, contact->n_bodies));
   while (going) {
     going = PETSC_FALSE;
+    FindRooms(contact);
     for (PetscInt g = 0; g < contact->n_bodies; g++) {
       ContactSearch *search = &energy->search[g];
       const PetscInt before = search->stage;

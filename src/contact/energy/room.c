@@ -74,17 +74,6 @@ PetscReal ContactMoreRoom(Contact contact)
   return energy->at_rest ? Resolution(contact) * PetscMax(SumForces(contact) - energy->largest_force, 0) / (PetscReal)contact->n_bodies : 0;
 }
 
-/* What the group of a body may gain in this step [J] */
-PetscReal ContactGroupRoom(Contact contact, PetscInt group)
-{
-  const PetscReal more = ContactMoreRoom(contact);
-  PetscReal       room = 0;
-
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (contact->energy.group[b] == group) room += contact->energy.room[b] - contact->energy.change[b] + more;
-  return PetscMax(room, 0);
-}
-
 /* At the start of a step: by how much more energy bodies have, since it has another size than the last one. Collective. */
 PetscErrorCode ContactNoteLevel(Contact contact)
 {
