@@ -17,7 +17,6 @@ static PetscErrorCode DestroyRows(StepperAssembly *assembly)
   PetscCall(PetscFree(assembly->begin));
   PetscCall(PetscFree2(assembly->columns, assembly->values));
   PetscCall(MatDestroy(&assembly->rows));
-  PetscCall(MatDestroy(&assembly->transpose));
   PetscCall(MatDestroy(&assembly->product));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -220,9 +219,8 @@ static PetscErrorCode MultiplyRows(PetscInt n, StepperAssembly *assembly)
     assembly->values  = values;
     PetscCall(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n_columns, begin, columns, values, &assembly->rows));
   }
-  PetscCall(MatTranspose(assembly->rows, same ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, &assembly->transpose));
-  PetscCall(
-      MatMatMult(assembly->rows, assembly->transpose, same ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, PETSC_DETERMINE, &assembly->product));
+  PetscCall(MatMatTransposeMult(assembly->rows, assembly->rows, same ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, PETSC_DETERMINE,
+                                &assembly->product));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -62,7 +62,7 @@ typedef struct {
   /* R, the rows of bodies whose nodes answer alone: where each of n begins, and per entry */
   PetscInt     n, *begin, *columns;
   PetscScalar *values;
-  Mat          rows, transpose, product; /* R, R^T, R R^T */
+  Mat          rows, product; /* R, R R^T */
 } StepperAssembly;
 
 /* Turns of gaps, see turns.c */
