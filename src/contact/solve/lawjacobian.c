@@ -104,11 +104,9 @@ static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar for
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt rows = problem->begin[node + 1] - problem->begin[node];
     PetscReal     *last = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
-    PetscReal      p[ROW_LAW_ROWS], projected[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
-    PetscReal      change = 0;
+    PetscReal      projected[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS], change = 0;
 
-    LawProblemGetTrial(problem, node, force, y, p);
-    (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, projected, derivative);
+    LawProblemProject(problem, node, force, y, projected, derivative);
     for (PetscInt k = 0; k < rows * rows; k++) change = PetscMax(change, PetscAbsReal(derivative[k] - last[k]));
     if (change == 0) continue;
     PetscCall(PetscArraycpy(last, derivative, rows * rows));

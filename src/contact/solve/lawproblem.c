@@ -33,10 +33,9 @@ static PetscErrorCode Miss(LawProblem *problem, const PetscScalar x[], PetscScal
   PetscCall(LawProblemRead(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
-    PetscReal      p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
+    PetscReal      force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
-    LawProblemGetTrial(problem, node, x, y, p);
-    (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, force, derivative);
+    LawProblemProject(problem, node, x, y, force, derivative);
     for (PetscInt k = 0; k < rows; k++) f[first + k] = x[first + k] - force[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -159,10 +158,9 @@ PetscErrorCode LawProblemSweep(LawProblem *problem, PetscScalar x[])
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
 
     for (PetscInt it = 0, moves = 1; moves && it < (rows > 1 ? NODE_ITERATIONS : 1); it++) {
-      PetscReal p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
+      PetscReal force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
-      LawProblemGetTrial(problem, node, x, y, p);
-      (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, force, derivative);
+      LawProblemProject(problem, node, x, y, force, derivative);
       moves = 0;
       for (PetscInt k = 0; k < rows; k++) {
         const PetscScalar change = force[k] - x[first + k];

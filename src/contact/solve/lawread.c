@@ -83,9 +83,40 @@ void LawProblemFindWeights(LawProblem *problem)
   }
 }
 
-/* The trial forces lambda - r y of a node's rows */
-void LawProblemGetTrial(const LawProblem *problem, PetscInt node, const PetscScalar force[], const PetscScalar y[], PetscReal p[])
+/* P of the trial forces lambda - r y of a node's rows, and its derivative */
+void LawProblemProject(const LawProblem *problem, PetscInt node, const PetscScalar force[], const PetscScalar y[], PetscReal projected[],
+                       PetscReal derivative[])
 {
-  for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++)
-    p[i - problem->begin[node]] = PetscRealPart(force[i] - y[i] / problem->weight[i] - problem->proximal * (force[i] - problem->centre[i]));
+  const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
+  PetscReal      p[ROW_LAW_ROWS];
+
+  for (PetscInt i = first; i < first + rows; i++)
+    p[i - first] = PetscRealPart(force[i] - y[i] / problem->weight[i] - problem->proximal * (force[i] - problem->centre[i]));
+  (*problem->law[node]->project)(rows, problem->limit + 2 * node, &problem->glue[node], p, projected, derivative);
+}
+
+/* Gives a matrix near S the trace of S, for weights of laws: by x x^T S with random signs x (M. F. Hutchinson,
+   Communications in Statistics - Simulation and Computation 19, 1990), the same on all ranks. */
+PetscErrorCode LawProblemMatchTrace(Mat S, Mat near)
+{
+  PetscScalar *signs, ours, its;
+  PetscInt     n;
+  Vec          x, y;
+
+  PetscFunctionBegin;
+  PetscCall(MatCreateVecs(near, &x, &y));
+  PetscCall(VecSetRandom(x, NULL)); /* from 0 to 1, the same each time */
+  PetscCall(VecGetLocalSize(x, &n));
+  PetscCall(VecGetArray(x, &signs));
+  for (PetscInt i = 0; i < n; i++) signs[i] = PetscRealPart(signs[i]) < 0.5 ? -1 : 1;
+  PetscCall(VecRestoreArray(x, &signs));
+  PetscCall(MatMult(near, x, y));
+  PetscCall(VecDot(x, y, &ours));
+  PetscCall(MatMult(S, x, y));
+  PetscCall(VecDot(x, y, &its));
+  if (PetscRealPart(its) > 0 && PetscRealPart(ours) > 0) PetscCall(MatScale(near, its / ours));
+  PetscCall(PetscInfo(S, "a matrix near S for %" PetscInt_FMT " rows, made %g times as large\n", n, (double)PetscRealPart(its / ours)));
+  PetscCall(VecDestroy(&x));
+  PetscCall(VecDestroy(&y));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
