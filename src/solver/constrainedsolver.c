@@ -5,8 +5,7 @@
 
    A row on a spring, rather than prescribed, gives (A + B_m^T k B_m) x = b: the same with t = 0 and the flexibility 1 / k added to its
    entry on the diagonal of W (Woodbury's formula). So a change of the constrained rows never makes A be factored again. The columns C =
-   A^{-1} B^T are made once each, when their row is constrained for the first time, and W_mm comes from them. With many constrained rows the
-   constraint forces are found by conjugate gradients, which need W only as a product. */
+   A^{-1} B^T are made once each, when their row is constrained for the first time, and W_mm comes from them. */
 #include "constrainedsolverimpl.h"
 #include <math.h>
 
@@ -57,11 +56,9 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B)
   for (PetscMPIInt r = 0; r < s->size; total += s->counts[r++]) s->offsets[r] = total;
   PetscCall(FindWhetherAlone(s));
   PetscCall(
-      PetscCalloc5(s->local, &s->mine, s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh));
-  PetscCall(PetscCalloc1(s->global, &s->changes));
+      PetscCalloc5(s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh, s->global, &s->changes));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
-  s->n     = 0;
-  s->dense = PETSC_FALSE;
+  s->n = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -96,14 +93,10 @@ static PetscErrorCode DestroyRows(ConstrainedSolver s)
 {
   PetscFunctionBegin;
   for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
-  PetscCall(PetscFree5(s->mine, s->constrained, s->rows, s->columns, s->fresh));
-  PetscCall(PetscFree(s->changes));
+  PetscCall(PetscFree5(s->constrained, s->rows, s->columns, s->fresh, s->changes));
   PetscCall(PetscFree3(s->gathered, s->force, s->used));
   PetscCall(PetscFree2(s->counts, s->offsets));
   PetscCall(PetscFree2(s->W, s->pivots));
-  PetscCall(KSPDestroy(&s->iterative));
-  PetscCall(VecDestroy(&s->force_vec));
-  PetscCall(VecDestroy(&s->gap_vec));
   PetscCall(VecDestroy(&s->row));
   PetscCall(MatDestroy(&s->B));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -224,29 +217,23 @@ PetscBool ConstrainedSolverIsDirect(ConstrainedSolver s)
   return (PetscBool)(s && s->direct);
 }
 
-/* A solution that did not converge is not a number: the matrix of a nonlinear body may be indefinite where Newton's method has gone astray,
-   and its step fails then. Where a column of a constant matrix is made PETSc has ended with an error. */
-PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver s, KSP ksp, Vec x)
+/* x = A^{-1} b, without constraints. A solution that did not converge is not a number: the matrix of a nonlinear body may be indefinite
+   where Newton's method has gone astray, and its step fails then. Where a column of a constant matrix is made PETSc has ended with an
+   error. */
+PetscErrorCode ConstrainedSolverSolveFree(ConstrainedSolver s, Vec b, Vec x)
 {
   KSPConvergedReason reason;
 
   PetscFunctionBegin;
-  PetscCall(KSPGetConvergedReason(ksp, &reason));
+  if (s->direct) {
+    PetscCall(PCApply(s->direct, b, x));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(KSPSolve(s->ksp, b, x));
+  PetscCall(KSPGetConvergedReason(s->ksp, &reason));
   if (reason >= 0) PetscFunctionReturn(PETSC_SUCCESS);
   if (!s->failed) s->failed = reason;
   PetscCall(VecSet(x, NAN));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* x = A^{-1} b, without constraints */
-PetscErrorCode ConstrainedSolverSolveFree(ConstrainedSolver s, Vec b, Vec x)
-{
-  PetscFunctionBegin;
-  if (s->direct) PetscCall(PCApply(s->direct, b, x));
-  else {
-    PetscCall(KSPSolve(s->ksp, b, x));
-    PetscCall(ConstrainedSolverCheckSolution(s, s->ksp, x));
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

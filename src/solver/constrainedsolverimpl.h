@@ -11,26 +11,20 @@ struct _n_ConstrainedSolver {
   Mat                B;
   PetscInt           local, global, begin; /* rows of B */
   PetscMPIInt        size, *counts, *offsets;
-  PetscBool          constant; /* A is */
-  KSPConvergedReason failed;   /* why a solution with a matrix that is not constant did not converge; 0: none failed */
-  PetscReal         *mine,
-      *constrained;   /* flexibility of a row, 0 where it is prescribed, less than 0 where it is free: this rank's rows, all rows */
-  PetscInt   n;       /* how many rows are constrained */
-  PetscInt  *rows;    /* which */
-  Vec       *columns; /* per row: A^{-1} B^T e, or NULL until needed */
-  PetscBool *fresh;   /* per row: its column is there, with A and B as they are */
-  /* a dense matrix for the constraint forces */
-  PetscBool     dense;       /* its factors are there */
-  PetscBool     must_factor; /* conjugate gradients have not converged, see Iterate() */
-  PetscInt      room;        /* rows that there is room for */
-  PetscScalar  *W;           /* LU factors of W_mm, the same on every rank */
-  PetscBLASInt *pivots;
-  PetscScalar  *gathered, *force; /* of constrained rows, on every rank */
-  Vec          *used;             /* columns */
-  Vec           row, rhs;
-  /* conjugate gradients */
-  KSP            iterative;
-  Vec            force_vec, gap_vec, product;
+  PetscBool          constant;    /* A is */
+  KSPConvergedReason failed;      /* why a solution with a matrix that is not constant did not converge; 0: none failed */
+  PetscReal         *constrained; /* of all rows: its flexibility, 0 where it is prescribed, less than 0 where it is free */
+  PetscInt           n;           /* how many rows are constrained */
+  PetscInt          *rows;        /* which */
+  Vec               *columns;     /* per row: A^{-1} B^T e, or NULL until needed */
+  PetscBool         *fresh;       /* per row: its column is there, with A and B as they are */
+  /* the matrix of the constraint forces */
+  PetscInt       room; /* rows that there is room for */
+  PetscScalar   *W;    /* LU factors of W_mm, the same on every rank */
+  PetscBLASInt  *pivots;
+  PetscScalar   *gathered, *force; /* of constrained rows, on every rank */
+  Vec           *used;             /* columns */
+  Vec            row, rhs, product;
   PetscLogDouble solve_flops; /* of one solution with A */
   PetscInt       block;       /* rows that become known together, by one solution for so many right-hand sides */
   /* corrections by stored columns: their changes, all rows on every rank */
@@ -49,6 +43,5 @@ struct _n_ConstrainedSolver {
 
 PETSC_INTERN PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver, Mat);
-PETSC_INTERN PetscErrorCode ConstrainedSolverCheckSolution(ConstrainedSolver, KSP, Vec);
 PETSC_INTERN PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver, PetscInt);
 PETSC_INTERN PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver, Checkpoint);

@@ -1,71 +1,13 @@
-/* The constraint forces s: by factors of W_mm, or by conjugate gradients, which need W only as a product. */
+/* The constraint forces s, by LU factors of W_mm. */
 #include "constrainedsolverimpl.h"
-#include <sys/petsccompat.h>
 #include <petscblaslapack.h>
 
-/* Constraint forces up to this number by a dense matrix, whose factors take 64 MB then */
-#define MAX_DENSE_CONSTRAINTS 2000
-
-/* Columns for the dense matrix of constraint forces up to so many numbers in all, 800 MB */
-#define MAX_COLUMN_NUMBERS 1e8
-/* Up to so many constraints their matrix is dense: factoring it costs less than a few solutions of a body with such a surface */
-#define FEW_CONSTRAINTS 256
-/* of the constraint forces by conjugate gradients: contact gaps are closed to about 1e-12 of the displacements */
-#define FORCE_TOLERANCE 1e-13
+/* Most constraint forces: factors of their matrix take 800 MB on each rank then; */
+#define MAX_CONSTRAINTS 10000
+/* and most numbers of their columns, 8 GB on all ranks together */
+#define MAX_COLUMN_NUMBERS 1e9
 /* Of a pivot, in parts of the largest entry of its column */
 #define ROUND_OFF (16 * PETSC_MACHINE_EPSILON)
-
-/* y = W_mm x + flexibility x; rows that are not constrained are left out */
-static PetscErrorCode MultiplyConstrained(Mat shell, Vec x, Vec y)
-{
-  ConstrainedSolver  s;
-  const PetscScalar *in;
-  PetscScalar       *out;
-
-  PetscFunctionBegin;
-  PetscCall(MatShellGetContext(shell, &s));
-  PetscCall(ConstrainedSolverApplyCompliance(s, x, y));
-  PetscCall(VecGetArrayRead(x, &in));
-  PetscCall(VecGetArray(y, &out));
-  for (PetscInt i = 0; i < s->local; i++) out[i] = s->mine[i] < 0 ? 0 : out[i] + s->mine[i] * in[i];
-  PetscCall(VecRestoreArray(y, &out));
-  PetscCall(VecRestoreArrayRead(x, &in));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Conjugate gradients begin from zero, so that a step that is made again ends with the same bits, whatever has been solved in between */
-static PetscErrorCode CreateIterative(ConstrainedSolver s)
-{
-  MPI_Comm comm = PetscObjectComm((PetscObject)s->ksp);
-  Mat      shell;
-  PC       pc;
-
-  PetscFunctionBegin;
-  PetscCall(MatCreateShell(comm, s->local, s->local, s->global, s->global, s, &shell));
-  PetscCall(MatShellSetOperation(shell, MATOP_MULT, (void (*)(void))MultiplyConstrained));
-  PetscCall(KSPCreate(comm, &s->iterative));
-  PetscCall(KSPSetOperators(s->iterative, shell, shell));
-  PetscCall(KSPSetType(s->iterative, KSPCG));
-  PetscCall(KSPGetPC(s->iterative, &pc));
-  PetscCall(PCSetType(pc, PCNONE));
-  PetscCall(KSPSetTolerances(s->iterative, FORCE_TOLERANCE, PETSC_CURRENT, PETSC_CURRENT, 500));
-  PetscCall(KSPSetErrorIfNotConverged(s->iterative, s->constant));
-  PetscCall(VecDuplicate(s->row, &s->force_vec));
-  PetscCall(VecDuplicate(s->row, &s->gap_vec));
-  PetscCall(MatDestroy(&shell));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether there is room for a dense matrix of the constraint forces, and the columns that it takes */
-static PetscErrorCode MayBeDense(ConstrainedSolver s, PetscBool *may)
-{
-  PetscInt size;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetSize(s->rhs, &size));
-  *may = (PetscBool)(s->n <= MAX_DENSE_CONSTRAINTS && (PetscReal)s->n * size <= MAX_COLUMN_NUMBERS);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* B x on the constrained rows, less targets of this rank's (NULL: 0), on every rank */
 static PetscErrorCode Gather(ConstrainedSolver s, Vec x, const PetscScalar target[], PetscScalar gathered[])
@@ -125,20 +67,20 @@ static PetscErrorCode FactorMatrix(ConstrainedSolver s, PetscBool *singular)
 
 static PetscErrorCode FactorConstraints(ConstrainedSolver s)
 {
+  PetscInt  size;
   PetscBool singular;
 
   PetscFunctionBegin;
   s->n = 0;
   for (PetscInt j = 0; j < s->global; j++)
     if (s->constrained[j] >= 0) s->rows[s->n++] = j;
-  s->dense = PETSC_TRUE;
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MayBeDense(s, &s->dense));
-  if (s->n > FEW_CONSTRAINTS && !s->must_factor) s->dense = PETSC_FALSE;
-  if (!s->dense) {
-    if (!s->iterative) PetscCall(CreateIterative(s));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  PetscCall(VecGetSize(s->rhs, &size));
+  PetscCheck(s->n <= MAX_CONSTRAINTS && (PetscReal)s->n * size <= MAX_COLUMN_NUMBERS, PetscObjectComm((PetscObject)s->ksp), PETSC_ERR_SUP,
+             "%" PetscInt_FMT " contact rows of a body with %" PetscInt_FMT
+             " displacements are prescribed, or on springs: their compliance "
+             "does not fit into memory; choose a coarser mesh, or -contact_type schwarz in place of alternation, which prescribes none",
+             s->n, size);
   PetscCall(FillMatrix(s));
   PetscCall(FactorMatrix(s, &singular));
   if (s->failed) { /* columns are not numbers: the step has failed, and is not constrained any more */
@@ -154,9 +96,9 @@ static PetscErrorCode FactorConstraints(ConstrainedSolver s)
 PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[], const PetscReal flexibility[])
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = constrained[i] ? (flexibility ? flexibility[i] : 0) : -1;
-  PetscCallMPI(MPI_Allgatherv(s->mine, (PetscMPIInt)s->local, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL,
-                              PetscObjectComm((PetscObject)s->ksp)));
+  for (PetscInt i = 0; i < s->local; i++) s->constrained[s->begin + i] = constrained[i] ? (flexibility ? flexibility[i] : 0) : -1;
+  PetscCallMPI(
+      MPI_Allgatherv(MPI_IN_PLACE, 0, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL, PetscObjectComm((PetscObject)s->ksp)));
   PetscCall(FactorConstraints(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -165,11 +107,8 @@ PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscB
 PetscErrorCode ConstrainedSolverFreeRows(ConstrainedSolver s)
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < s->local; i++) s->mine[i] = -1;
-  s->dense = PETSC_TRUE;
-  if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
-  PetscCall(FactorConstraints(s));
+  for (PetscInt k = 0; k < s->n; k++) s->constrained[s->rows[k]] = -1;
+  s->n = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -191,48 +130,6 @@ PetscErrorCode ConstrainedSolverRefactor(ConstrainedSolver s)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* force_vec = W_mm^-1 gap_vec by conjugate gradients. Where these do not converge, as with elements a hundred times as long as high, and
-   there is room for a dense matrix, there is one from now on, and nothing has been found. */
-static PetscErrorCode Iterate(ConstrainedSolver s)
-{
-  KSPConvergedReason reason;
-  PetscBool          may = PETSC_FALSE, raises;
-
-  PetscFunctionBegin;
-  PetscCall(MayBeDense(s, &may));
-  PetscCall(KSPGetErrorIfNotConverged(s->iterative, &raises));
-  if (may) PetscCall(KSPSetErrorIfNotConverged(s->iterative, PETSC_FALSE));
-  PetscCall(KSPSolve(s->iterative, s->gap_vec, s->force_vec));
-  PetscCall(KSPSetErrorIfNotConverged(s->iterative, raises));
-  PetscCall(KSPGetConvergedReason(s->iterative, &reason));
-  if (may && (reason == KSP_DIVERGED_ITS || reason == KSP_DIVERGED_INDEFINITE_MAT || reason == KSP_DIVERGED_BREAKDOWN)) {
-    s->must_factor = PETSC_TRUE;
-    PetscCall(FactorConstraints(s));
-  } else PetscCall(ConstrainedSolverCheckSolution(s, s->iterative, s->force_vec));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* x -= A^{-1} B_m^T s with the constraint forces s by conjugate gradients, unless it turns out that these have a dense matrix after all */
-static PetscErrorCode ConstrainIteratively(ConstrainedSolver s, const PetscScalar target[], Vec x)
-{
-  PetscScalar *gap;
-
-  PetscFunctionBegin;
-  PetscCall(MatMult(s->B, x, s->gap_vec));
-  PetscCall(VecGetArray(s->gap_vec, &gap));
-  for (PetscInt i = 0; i < s->local; i++) {
-    if (target) gap[i] -= target[i];
-    if (s->mine[i] < 0) gap[i] = 0;
-  }
-  PetscCall(VecRestoreArray(s->gap_vec, &gap));
-  PetscCall(Iterate(s));
-  if (s->dense) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MatMultTranspose(s->B, s->force_vec, s->rhs));
-  PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->product));
-  PetscCall(VecAXPY(x, -1, s->product));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* x, a solution without constraints, becomes that with B_m x = target (this rank's rows; NULL: 0) */
 static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[], Vec x)
 {
@@ -241,8 +138,6 @@ static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[],
 
   PetscFunctionBegin;
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!s->dense) PetscCall(ConstrainIteratively(s, target, x));
-  if (!s->dense) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(Gather(s, x, target, s->gathered));
   for (PetscInt k = 0; k < s->n; k++) {
     s->force[k] = -s->gathered[k];
@@ -254,26 +149,15 @@ static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether iterations that do not converge end with an error of PETSc */
-static PetscErrorCode SetRaises(ConstrainedSolver s, PetscBool raises)
-{
-  PetscFunctionBegin;
-  PetscCall(KSPSetErrorIfNotConverged(s->ksp, raises));
-  if (s->iterative) PetscCall(KSPSetErrorIfNotConverged(s->iterative, raises));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The solution of a step. If it does not converge the step has failed, and ConstrainedSolverTakeFailure() tells why; what a constant matrix
    is asked for beside steps, once, ends with an error instead. */
 PetscErrorCode ConstrainedSolverSolve(ConstrainedSolver s, Vec b, Vec x)
 {
-  const PetscBool iterates = (PetscBool)(!s->direct || (s->n && !s->dense));
-
   PetscFunctionBegin;
-  if (iterates && s->constant) PetscCall(SetRaises(s, PETSC_FALSE));
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, PETSC_FALSE));
   PetscCall(ConstrainedSolverSolveFree(s, b, x));
   PetscCall(Constrain(s, NULL, x));
-  if (iterates && s->constant) PetscCall(SetRaises(s, PETSC_TRUE));
+  PetscCall(KSPSetErrorIfNotConverged(s->ksp, s->constant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -358,14 +242,9 @@ PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar t
 /* The constraints, for a checkpoint; their matrix follows from the columns, which are loaded before */
 PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver s, Checkpoint checkpoint)
 {
-  PetscInt numbers[2] = {s->missed, s->must_factor};
-
   PetscFunctionBegin;
-  PetscCall(CheckpointVisitReals(checkpoint, "flexibility", s->local, s->mine));
   PetscCall(CheckpointVisitReals(checkpoint, "flexibility of all", s->global, s->constrained));
-  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 2, numbers));
-  s->missed      = numbers[0];
-  s->must_factor = (PetscBool)numbers[1];
+  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 1, &s->missed));
   if (CheckpointLoads(checkpoint)) PetscCall(FactorConstraints(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
