@@ -21,9 +21,9 @@
 #define LATEST 0.5
 
 /* What a row makes of vectors of the nodes: n . (sum_j P_j x_j - x), and the part across the normal */
-PetscReal TransferSplitRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[], PetscReal across[])
+PetscReal TransferSplitRow(const Transfer transfer, const RowSet *set, PetscInt row, const PetscReal x[], const PetscReal columns[],
+                           PetscReal across[])
 {
-  const RowSet    *set    = &transfer->rows;
   const PetscReal *normal = set->normals + transfer->dim * row;
   PetscReal        along  = 0;
 
@@ -41,7 +41,7 @@ static PetscReal AlongRow(const Transfer transfer, PetscInt row, const PetscReal
 {
   PetscReal across[3];
 
-  return TransferSplitRow(transfer, row, x, columns, across);
+  return TransferSplitRow(transfer, &transfer->rows, row, x, columns, across);
 }
 
 /* Takes the slip of the last step into the mean. `across`: that slip [m]; `ratio`: of this step to the last one */
@@ -124,8 +124,8 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
 
   PetscFunctionBegin;
   gap = set->gap[row] - AlongRow(transfer, row, data->reference, transfer->column_reference) +
-        TransferSplitRow(transfer, row, data->positions, transfer->column_x, before);
-  way = TransferSplitRow(transfer, row, follow->moved, transfer->column_moved, across);
+        TransferSplitRow(transfer, set, row, data->positions, transfer->column_x, before);
+  way = TransferSplitRow(transfer, set, row, follow->moved, transfer->column_moved, across);
   ExpectSlip(transfer, row, across, ratio);
   if (follow->known[row]) PetscCall(PetscArraycpy(expected, follow->slip + 3 * row, dim));
   if (!middle) PetscCall(PetscArraycpy(ahead, expected, dim));
@@ -138,7 +138,7 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
   PetscCall(Approach(transfer, row, expected, ahead));
   way           = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
   set->gap[row] = gap + (middle ? 0.5 : -0.5) * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
-                  TransferSplitRow(transfer, row, data->positions, transfer->column_x, after);
+                  TransferSplitRow(transfer, set, row, data->positions, transfer->column_x, after);
   /* slips are counted from the last build on */
   for (PetscInt d = 0; d < dim; d++) transfer->built_slip[3 * row + d] += after[d] - before[d];
   PetscFunctionReturn(PETSC_SUCCESS);

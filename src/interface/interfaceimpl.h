@@ -226,7 +226,7 @@ PETSC_INTERN void           TransferListState(Transfer, StateList[2]);
 PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
 PETSC_INTERN PetscErrorCode TransferSetUpTurns(Transfer);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
-PETSC_INTERN PetscReal      TransferSplitRow(const Transfer, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);
+PETSC_INTERN PetscReal      TransferSplitRow(const Transfer, const RowSet *, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferGetReach(Transfer, PetscReal, PetscReal *);
 PETSC_INTERN PetscBool      RowPartnerNormal(Surface, const RowSet *, PetscInt, const PetscReal[], PetscReal[]);
 PETSC_INTERN void           TransferPresentNormal(Transfer, PetscInt, PetscReal[]);

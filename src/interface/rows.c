@@ -110,30 +110,6 @@ static PetscErrorCode ConnectColumns(MPI_Comm comm, PetscInt n_owned, PetscInt n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Corrects the goals of a row that goes on from where it is, so that its present gap is that of its goals. */
-static PetscErrorCode GoOn(Transfer transfer, PetscInt row, PetscReal end, PetscReal *gap, PetscReal *present, RowSet *set)
-{
-  const SurfaceData *data  = &transfer->dirichlet->data;
-  const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal   *normal = set->normals + dim * row;
-
-  PetscFunctionBegin;
-  *gap = 0;
-  for (PetscInt d = 0; d < dim; d++) {
-    PetscReal now = 0, there = 0;
-
-    for (PetscInt j = 0; j < n; j++) {
-      now += set->shares[first + j].value * transfer->column_x[3 * set->columns[first + j] + d];
-      there += set->shares[first + j].value * transfer->column_reference[3 * set->columns[first + j] + d];
-    }
-    *gap += normal[d] * (there - data->reference[3 * row + d] - (now - data->positions[3 * row + d]));
-  }
-  if (set->beyond[row]) *present = end;
-  *gap += *present;
-  set->rest[row] = 1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether a node lies on a sharp edge, and what it sees of the partner is smooth: then its row is along the mean normal of that. Else it
    keeps the mean normal of its own faces, as where a corner meets a corner. Rows of ties, which have no guards, keep it too. */
 static PetscBool SeesSmooth(Transfer transfer, PetscInt node, const PetscReal seen[], PetscReal area, PetscReal normal[])
@@ -150,20 +126,20 @@ static PetscBool SeesSmooth(Transfer transfer, PetscInt node, const PetscReal se
 }
 
 /* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes
-   that touch, and ahead [m]. The weights of a node beyond the end of
-   the partner continue the partner as a straight line. Its gap is counted from the gap `end` [m] where the partner ends: so the node
-   touches when the end of the partner does, not before or after. Normals of the partner's nodes, those on sharp edges too, are in
-   `column_moved`. */
+   that touch, and ahead [m]. The weights of a node beyond the end of the partner continue the partner as a straight line. Its gap is
+   counted from the gap `end` [m] where the partner ends: so the node touches when the end of the partner does, not before or after.
+   Corrected weights are goals: those of a row that goes on from where it is stay, and its present gap is that of its goals. Normals of the
+   partner's nodes, those on sharp edges too, are in `column_moved`. */
 static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, const PetscReal seen[], PetscReal ahead, PetscReal behind,
                                 RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal  **normals, **smooth, **partners;
-  PetscReal *weights, gap, present, bulge, normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
+  const PetscReal   *x = data->positions + 3 * row, **normals, **smooth, **partners;
+  PetscReal *weights, present = 0, across[3], normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
-  for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
+  PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
   set->gap[row] = PETSC_MAX_REAL;
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc4(n, &weights, n, &partners, n, &normals, n, &smooth));
@@ -177,39 +153,27 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
     (void)RowPartnerNormal(transfer->dirichlet, set, row, transfer->column_x, normal); /* as it is found again later, from slopes */
     for (PetscInt d = 0; d < 3; d++) normal[d] = -normal[d];
   } else if (transfer->options.curved) RowNormal(dim, n, transfer->options.share, data->normals + 3 * row, smooth, weights, normal);
-  for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = normal[d];
-  for (PetscInt pass = 0; pass < 2; pass++)
-    RowCorrect(dim, n, data->positions + 3 * row, normal, partners, data->sizes[row], weights); /* twice for round-off */
-  gap = present = 0;
+  PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
+  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, x, normal, partners, data->sizes[row], weights); /* twice for round-off */
   for (PetscInt d = 0; d < dim; d++) {
-    PetscReal there = 0, now = 0;
+    PetscReal now = 0;
 
-    for (PetscInt j = 0; j < n; j++) {
-      there += weights[j] * transfer->column_reference[3 * set->columns[first + j] + d];
-      now += weights[j] * partners[j][d];
-    }
-    gap += normal[d] * (there - data->reference[3 * row + d]);
-    present += normal[d] * (now - data->positions[3 * row + d]);
+    for (PetscInt j = 0; j < n; j++) now += weights[j] * partners[j][d];
+    present += normal[d] * (now - x[d]);
   }
   set->bow[row] = RowBow(dim, n, partners, normals, weights);
-  bulge         = transfer->options.curved ? RowBulge(dim, n, data->positions + 3 * row, normal, partners, smooth, weights) : 0;
-  if (!set->beyond[row]) {
-    gap -= bulge;
-    present -= bulge;
-  }
+  if (set->beyond[row]) present = end;
+  else if (transfer->options.curved) present -= RowBulge(dim, n, x, normal, partners, smooth, weights);
   for (PetscInt j = 0; j < n; j++) {
     set->shares[first + j].goal = weights[j];
     if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
   }
   PetscCall(PetscFree4(weights, partners, normals, smooth));
-  if (transfer->goes_on[row]) PetscCall(GoOn(transfer, row, end, &gap, &present, set));
-  else if (set->beyond[row]) {
-    gap += end - present;
-    present = end;
-  }
+  set->rest[row]     = transfer->goes_on[row] ? 1 : 0;
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind, set->bow[row]));
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
-  set->gap[row] = gap;
+  set->gap[row] = present + (TransferSplitRow(transfer, set, row, data->reference, transfer->column_reference, across) -
+                             TransferSplitRow(transfer, set, row, data->positions, transfer->column_x, across));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -33,7 +33,7 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
     transfer->slip[row] = 0;
     if (!transfer->rows.opposite[row]) continue;
     if (transfer->neumann) {
-      gap = TransferSplitRow(transfer, row, data->positions, transfer->column_x, offset);
+      gap = TransferSplitRow(transfer, &transfer->rows, row, data->positions, transfer->column_x, offset);
       for (PetscInt d = 0; d < dim; d++) slip += PetscSqr(offset[d] - transfer->built_slip[3 * row + d]);
       transfer->slip[row] = PetscSqrtReal(slip) / size;
       if (PetscAbsReal(gap) >= NEAR_CONTACT * size) continue; /* of most rows the normals do not matter */
@@ -74,7 +74,8 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
     PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
     for (PetscInt row = 0; row < transfer->n; row++) /* the slip of rows that are kept is still counted from their own last build */
       if (!transfer->keep[row])
-        (void)TransferSplitRow(transfer, row, transfer->dirichlet->data.positions, transfer->column_x, transfer->built_slip + 3 * row);
+        (void)TransferSplitRow(transfer, &transfer->rows, row, transfer->dirichlet->data.positions, transfer->column_x,
+                               transfer->built_slip + 3 * row);
   }
   transfer->built        = PETSC_TRUE;
   transfer->numbers.near = near;
