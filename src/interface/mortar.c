@@ -9,13 +9,11 @@
 
 /* Integrals over the covered part of one Dirichlet face */
 typedef struct {
-  PetscInt  n;
-  PetscReal corners[4][2];
+  Target    target;
   PetscReal combine[4][4]; /* function of node k: sum_l combine[k][l] phi_l */
   PetscReal lumped[4];     /* int phi_k */
   PetscReal mass[4][4];    /* int phi_k phi_l */
-  PetscBool axisymmetric;  /* integrals have the weight 2 pi x, which is along the face: */
-  PetscReal x, slope;      /* in the middle, and with the first coordinate of its plane [m, 1] */
+  PetscBool axisymmetric;  /* integrals have the weight 2 pi x */
 } Patch;
 
 /* A node far beyond the partner's end has no row. Its neighbours take its shape function over, so that the sum stays one. */
@@ -44,29 +42,30 @@ static void ShapesAt(const Patch *patch, const PetscReal s[], PetscReal shapes[]
 {
   PetscReal phi[4];
 
-  FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, s, phi);
-  for (PetscInt k = 0; k < patch->n; k++) {
+  FaceShapes(patch->target.n, (const PetscReal(*)[2])patch->target.corners, s, phi);
+  for (PetscInt k = 0; k < patch->target.n; k++) {
     shapes[k] = 0;
-    for (PetscInt l = 0; l < patch->n; l++) shapes[k] += patch->combine[k][l] * phi[l];
+    for (PetscInt l = 0; l < patch->target.n; l++) shapes[k] += patch->combine[k][l] * phi[l];
   }
 }
 
 /* Adds the integrals over a segment to those of its patch, and finds int phi_k N_j over the segment */
 static void IntegrateSegment(Patch *patch, const Segment *segment, PetscInt n_partner, PetscReal cross[4][4])
 {
+  const Frame   *frame = &patch->target.frame;
   PetscReal      points[36][2], weights[36], shapes[4], partner[4];
   const PetscInt n_points = PolygonQuadrature(segment->n, (const PetscReal(*)[2])segment->polygon, points, weights);
 
   for (PetscInt k = 0; k < 4; k++)
     for (PetscInt j = 0; j < 4; j++) cross[k][j] = 0;
   for (PetscInt q = 0; q < n_points && patch->axisymmetric; q++)
-    weights[q] *= 2 * PETSC_PI * PetscMax(0, patch->x + patch->slope * points[q][0]);
+    weights[q] *= 2 * PETSC_PI * PetscMax(0, frame->origin[0] + frame->tangents[0][0] * points[q][0]);
   for (PetscInt q = 0; q < n_points; q++) {
     ShapesAt(patch, points[q], shapes);
     FaceShapes(n_partner, (const PetscReal(*)[2])segment->partner_corners, points[q], partner);
-    for (PetscInt k = 0; k < patch->n; k++) {
+    for (PetscInt k = 0; k < patch->target.n; k++) {
       patch->lumped[k] += weights[q] * shapes[k];
-      for (PetscInt l = 0; l < patch->n; l++) patch->mass[k][l] += weights[q] * shapes[k] * shapes[l];
+      for (PetscInt l = 0; l < patch->target.n; l++) patch->mass[k][l] += weights[q] * shapes[k] * shapes[l];
       for (PetscInt j = 0; j < n_partner; j++) cross[k][j] += weights[q] * shapes[k] * partner[j];
     }
   }
@@ -79,8 +78,8 @@ static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
   PetscInt  which[4], n = 0;
   PetscReal a[4][8], scale[4];
 
-  for (PetscInt k = 0; k < patch->n; k++) {
-    for (PetscInt l = 0; l < patch->n; l++) dual[k][l] = k == l;
+  for (PetscInt k = 0; k < patch->target.n; k++) {
+    for (PetscInt l = 0; l < patch->target.n; l++) dual[k][l] = k == l;
     if (patch->lumped[k] > 0 && patch->mass[k][k] > 0) which[n++] = k;
   }
   for (PetscInt i = 0; i < n; i++) scale[i] = 1 / PetscSqrtReal(patch->mass[which[i]][which[i]]);
@@ -103,24 +102,6 @@ static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
   }
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt j = 0; j < n; j++) dual[which[i]][which[j]] = patch->lumped[which[i]] * a[i][n + j] * scale[i] * scale[j];
-}
-
-/* The patch of face f, before any segment has been added */
-static void SetUpPatch(Surface surface, PetscInt f, const PetscInt marks[], Patch *patch)
-{
-  const SurfaceData *data = &surface->data;
-  const PetscInt     n = data->face_nodes, *nodes = data->faces + f * n;
-  PetscReal          x[4][3];
-  Frame              frame;
-
-  *patch = (Patch){.n = n, .axisymmetric = surface->axisymmetric};
-  for (PetscInt k = 0; k < n; k++)
-    for (PetscInt d = 0; d < 3; d++) x[k][d] = data->positions[3 * nodes[k] + d];
-  FrameOfFace(n, (const PetscReal(*)[3])x, data->face_normals + 3 * f, &frame);
-  for (PetscInt k = 0; k < n; k++) FrameProject(&frame, x[k], patch->corners[k]);
-  patch->x     = frame.origin[0];
-  patch->slope = frame.tangents[0][0];
-  CombineFunctions(n, nodes, marks, patch->combine);
 }
 
 /* Appends the integrals of the nodes of face f with one partner to `shares`, and the ranks that own these nodes to `owners`. `weights`: the
@@ -158,19 +139,6 @@ static void GapNormal(Surface surface, const Segments *segments, PetscInt node, 
   for (PetscInt d = 0; d < 3; d++) normal[d] = edge ? -partner->normal[d] : surface->data.normals[3 * node + d];
 }
 
-/* The gap at the point s of the face's plane, along a normal [m] */
-static PetscReal GapAt(const SurfaceData *data, const PetscReal normal[], const PetscInt nodes[], const Patch *patch,
-                       const Segment *segment, PetscInt n_partner, const Face *partner, const PetscReal s[])
-{
-  PetscReal shapes[4], gap = 0;
-
-  FaceShapes(n_partner, (const PetscReal(*)[2])segment->partner_corners, s, shapes);
-  for (PetscInt j = 0; j < n_partner; j++) gap += shapes[j] * Dot(normal, partner->x[j]);
-  FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, s, shapes);
-  for (PetscInt k = 0; k < patch->n; k++) gap -= shapes[k] * Dot(normal, data->positions + 3 * nodes[k]);
-  return gap;
-}
-
 /* The gap where the partner ends before node k of the face [m]: the least at the covered part's corners with the largest shape function */
 static PetscReal GapAtEnd(Surface surface, PetscInt k, const PetscInt nodes[], const Patch *patch, const Segments *segments, PetscInt begin,
                           PetscInt end, const Face faces[])
@@ -185,11 +153,11 @@ static PetscReal GapAtEnd(Surface surface, PetscInt k, const PetscInt nodes[], c
       for (PetscInt v = 0; v < segment->n; v++) {
         PetscReal shapes[4];
 
-        FaceShapes(patch->n, (const PetscReal(*)[2])patch->corners, segment->polygon[v], shapes);
+        FaceShapes(patch->target.n, (const PetscReal(*)[2])patch->target.corners, segment->polygon[v], shapes);
         if (!pass) largest = PetscMax(largest, shapes[k]);
         else if (shapes[k] >= largest - SAME_POINT)
-          smallest = PetscMin(smallest, GapAt(&surface->data, normal, nodes, patch, segment, segments->face_nodes, &faces[segment->partner],
-                                              segment->polygon[v]));
+          smallest = PetscMin(smallest, TargetGap(&patch->target, normal, &faces[segment->partner], segments->face_nodes,
+                                                  (const PetscReal(*)[2])segment->partner_corners, segment->polygon[v]));
       }
     }
   return smallest;
@@ -208,10 +176,12 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(end - begin, &cross));
   if (n == 1) {
-    patch          = (Patch){.n = 1, .lumped = {1}};
+    patch          = (Patch){.lumped = {1}};
     cross[0][0][0] = dual[0][0] = 1;
   } else {
-    SetUpPatch(surface, f, marks, &patch);
+    patch = (Patch){.axisymmetric = surface->axisymmetric};
+    TargetSetUp(&surface->data, f, &patch.target);
+    CombineFunctions(n, nodes, marks, patch.combine);
     for (PetscInt i = begin; i < end; i++) IntegrateSegment(&patch, &segments->list[i], n_partner, cross[i - begin]);
     ComputeDual(&patch, dual);
     for (PetscInt k = 0; k < n; k++)

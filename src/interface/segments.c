@@ -15,15 +15,7 @@
    than 37 degrees, as the side of a block beside its edge is. Its end is not guarded. */
 #define STEEP (-0.8)
 
-/* A Dirichlet face, and what does not depend on the face that it is compared with */
-typedef struct {
-  PetscInt           face, n; /* nodes of a face */
-  const SurfaceData *data;
-  Frame              frame;
-  PetscReal          corners[4][2], area, size;
-} Target;
-
-static void SetUpTarget(const SurfaceData *data, PetscInt f, Target *target)
+void TargetSetUp(const SurfaceData *data, PetscInt f, Target *target)
 {
   const PetscInt n = data->face_nodes;
   PetscReal      x[4][3];
@@ -39,16 +31,17 @@ static void SetUpTarget(const SurfaceData *data, PetscInt f, Target *target)
   for (PetscInt k = 0; k < n; k++) FrameProject(&target->frame, x[k], target->corners[k]);
 }
 
-/* The gap at the point s of the Dirichlet face's plane, along the normal of this face [m] */
-static PetscReal GapAt(const Target *target, const Face *face, PetscInt n, const PetscReal corners[][2], const PetscReal s[])
+/* The gap at the point s of the Dirichlet face's plane, along a normal, before a face of n nodes with `corners` in that plane [m] */
+PetscReal TargetGap(const Target *target, const PetscReal normal[], const Face *face, PetscInt n, const PetscReal corners[][2],
+                    const PetscReal s[])
 {
   PetscReal shapes[4], gap = 0;
 
   FaceShapes(n, corners, s, shapes);
-  for (PetscInt j = 0; j < n; j++) gap += shapes[j] * Dot(target->frame.normal, face->x[j]);
+  for (PetscInt j = 0; j < n; j++) gap += shapes[j] * Dot(normal, face->x[j]);
   FaceShapes(target->n, (const PetscReal(*)[2])target->corners, s, shapes);
   for (PetscInt k = 0; k < target->n; k++)
-    gap -= shapes[k] * Dot(target->frame.normal, target->data->positions + 3 * target->data->faces[target->face * target->n + k]);
+    gap -= shapes[k] * Dot(normal, target->data->positions + 3 * target->data->faces[target->face * target->n + k]);
   return gap;
 }
 
@@ -78,7 +71,7 @@ static PetscErrorCode CompareFaces(const Target *target, const Face *face, Petsc
                           segment.polygon);
   if (!segment.n || PolygonMeasure(segment.n, (const PetscReal(*)[2])segment.polygon, centroid) < SLIVER * target->area)
     PetscFunctionReturn(PETSC_SUCCESS);
-  segment.gap = GapAt(target, face, n, (const PetscReal(*)[2])segment.partner_corners, centroid);
+  segment.gap = TargetGap(target, target->frame.normal, face, n, (const PetscReal(*)[2])segment.partner_corners, centroid);
   if (segment.gap > segments->ahead + target->size || segment.gap < -segments->behind - target->size) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(AddSegment(segments, &segment));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -203,7 +196,7 @@ PetscErrorCode SegmentsFind(Surface surface, PetscInt n_faces, const Face faces[
     const PetscInt begin = segments->n;
     Target         target;
 
-    SetUpTarget(data, f, &target);
+    TargetSetUp(data, f, &target);
     PetscCall(CompareWithTree(&target, &tree, faces, segments));
     DropHidden(&target, segments, begin);
     if (segments->guards) DropGrazed(&target, surface->sharp, segments, begin); /* not from ties */

@@ -2,6 +2,14 @@
 #pragma once
 #include "interfaceimpl.h"
 
+/* A Dirichlet face, and what does not depend on the face that it is compared with */
+typedef struct {
+  PetscInt           face, n; /* nodes of a face */
+  const SurfaceData *data;
+  Frame              frame;
+  PetscReal          corners[4][2], area, size;
+} Target;
+
 typedef struct {
   PetscInt  face, partner;         /* the Dirichlet face, and the number of the partner's face among those that this rank has received */
   PetscInt  n;                     /* corners of the part that they have in common */
@@ -20,4 +28,6 @@ typedef struct {
   Segment  *list;          /* segments of one Dirichlet face follow each other */
 } Segments;
 
+PETSC_INTERN void           TargetSetUp(const SurfaceData *, PetscInt, Target *);
+PETSC_INTERN PetscReal      TargetGap(const Target *, const PetscReal[], const Face *, PetscInt, const PetscReal[][2], const PetscReal[]);
 PETSC_INTERN PetscErrorCode SegmentsFind(Surface, PetscInt, const Face[], PetscInt[], Segments *);
