@@ -191,8 +191,7 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
   PetscReal turn[2] = {0, 0}, pace = 1;
 
   PetscFunctionBegin;
-  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
-  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->smooth, transfer->column_normals));
+  PetscCall(TransferBringColumns(transfer));
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (!transfer->rows.opposite[row]) continue;
     balance->gap[row] = TransferPresentGap(transfer, row);

@@ -22,43 +22,26 @@ static PetscErrorCode GetNewGaps(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GetObstacleDrift(Transfer transfer, PetscReal drift[], PetscReal turn[])
-{
-  const SurfaceData *data = &transfer->dirichlet->data;
-
-  PetscFunctionBegin;
-  for (PetscInt row = 0; row < transfer->n; row++) {
-    const PetscReal *normal = transfer->rows.normals + transfer->dim * row, *x = data->positions + 3 * row;
-    PetscReal        gradient[3], chord                                        = 0;
-
-    if (!transfer->rows.opposite[row]) continue;
-    PetscCall(ObstacleGetGap(transfer->obstacle, x, &drift[row], gradient));
-    drift[row] -= transfer->rows.gap[row];
-    for (PetscInt d = 0; d < transfer->dim; d++) {
-      drift[row] += normal[d] * (x[d] - data->reference[3 * row + d]);
-      chord += PetscSqr(gradient[d] + normal[d]);
-    }
-    turn[row] = 2 * PetscAsinReal(PetscMin(1, 0.5 * PetscSqrtReal(chord)));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* How far rows are off from new ones where the surfaces are: for each row of this rank the difference of gaps, 0 where nothing is opposite
    [m], and the angle between the normals, of rows against an obstacle [rad]. In two or three dimensions; u_neumann NULL: an obstacle */
 PetscErrorCode TransferGetDrift(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal drift[], PetscReal turn[])
 {
+  PetscReal normal[3];
+
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(drift, transfer->n));
   PetscCall(PetscArrayzero(turn, transfer->n));
   if (transfer->idle) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(SurfaceUpdate(transfer->dirichlet, u_dirichlet));
-  if (transfer->obstacle) {
-    PetscCall(GetObstacleDrift(transfer, drift, turn));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (transfer->neumann) {
+    PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
+    PetscCall(GetNewGaps(transfer, u_dirichlet, u_neumann, drift));
+    PetscCall(TransferBringColumns(transfer));
+  } else {
+    PetscCall(TransferGetTilts(transfer, turn));
+    for (PetscInt row = 0; row < transfer->n; row++)
+      PetscCall(ObstacleGetGap(transfer->obstacle, transfer->dirichlet->data.positions + 3 * row, &drift[row], normal));
   }
-  PetscCall(SurfaceUpdate(transfer->neumann, u_neumann));
-  PetscCall(GetNewGaps(transfer, u_dirichlet, u_neumann, drift));
-  PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
   for (PetscInt row = 0; row < transfer->n; row++)
     drift[row] = transfer->rows.opposite[row] && drift[row] < PETSC_MAX_REAL ? drift[row] - TransferPresentGap(transfer, row) : 0;
   PetscFunctionReturn(PETSC_SUCCESS);

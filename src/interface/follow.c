@@ -96,22 +96,6 @@ static PetscErrorCode Approach(Transfer transfer, PetscInt row, const PetscReal 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether neither the slip that is expected nor the turn of the normal since the row was changed is worth a change */
-static PetscBool IsStill(const Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, const PetscReal across[],
-                         const PetscReal ahead[])
-{
-  const SurfaceData *data = &transfer->dirichlet->data;
-  PetscReal          slip = 0, turn = 0, normal[3];
-
-  TransferPresentNormal(transfer, row, normal);
-
-  for (PetscInt d = 0; d < transfer->dim; d++) {
-    slip += PetscSqr(across[d] + ahead[d]);
-    turn += PetscSqr(normal[d] - transfer->rows.normals[transfer->dim * row + d]);
-  }
-  return (PetscBool)(slip < PetscSqr(still * data->sizes[row]) && (!turns || turn < PetscSqr(still)));
-}
-
 /* New normal and weights of a row, and the gap without displacements that has its gap go on. `middle`: surfaces are where they will be in
    the middle of the step; `ratio`: of this step to the last one */
 static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still, PetscBool turns, PetscBool middle, PetscReal ratio)
@@ -120,7 +104,7 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
   Follow            *follow = &transfer->follow;
   RowSet            *set    = &transfer->rows;
   const PetscInt     dim    = transfer->dim;
-  PetscReal          gap, way, across[3] = {0}, before[3] = {0}, after[3] = {0}, expected[3] = {0}, ahead[3] = {0};
+  PetscReal gap, way, across[3] = {0}, before[3] = {0}, after[3] = {0}, expected[3] = {0}, ahead[3] = {0}, present[3], slip = 0, turn;
 
   PetscFunctionBegin;
   gap = set->gap[row] - AlongRow(transfer, row, data->reference, transfer->column_reference) +
@@ -130,11 +114,12 @@ static PetscErrorCode FollowRow(Transfer transfer, PetscInt row, PetscReal still
   if (follow->known[row]) PetscCall(PetscArraycpy(expected, follow->slip + 3 * row, dim));
   if (!middle) PetscCall(PetscArraycpy(ahead, expected, dim));
   follow->known[row] = PETSC_TRUE;
-  if (IsStill(transfer, row, still, turns, before, ahead)) {
-    transfer->followed[row] = PETSC_FALSE;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (turns) TransferPresentNormal(transfer, row, set->normals + dim * row);
+  PetscCall(TransferPresentNormal(transfer, row, present, &turn));
+  for (PetscInt d = 0; d < dim; d++) slip += PetscSqr(before[d] + ahead[d]);
+  /* whether the slip that is expected, or the turn of the normal since the row was changed, is worth a change */
+  transfer->followed[row] = (PetscBool)(slip >= PetscSqr(still * data->sizes[row]) || (turns && turn >= PetscSqr(still)));
+  if (!transfer->followed[row]) PetscFunctionReturn(PETSC_SUCCESS);
+  if (turns) PetscCall(PetscArraycpy(set->normals + dim * row, present, dim));
   PetscCall(Approach(transfer, row, expected, ahead));
   way           = AlongRow(transfer, row, follow->moved, transfer->column_moved) - way;
   set->gap[row] = gap + (middle ? 0.5 : -0.5) * ratio * way + AlongRow(transfer, row, data->reference, transfer->column_reference) -
@@ -169,10 +154,7 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   const RowSet *set = &transfer->rows;
 
   PetscFunctionBegin;
-  if (!transfer->columns_present) {
-    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
-    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->smooth, transfer->column_normals));
-  }
+  if (!transfer->columns_present) PetscCall(TransferBringColumns(transfer));
   for (PetscInt k = 0; k < (transfer->some_near ? transfer->n_near : transfer->n); k++) {
     const PetscInt row = transfer->some_near ? transfer->near[k] : k, n = set->offsets[row + 1] - set->offsets[row];
 

@@ -18,16 +18,13 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
 
   PetscFunctionBegin;
   *slipped = PETSC_FALSE;
-  if (transfer->neumann) {
-    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->data.positions, transfer->column_x));
-    PetscCall(RowSetGetColumns(&transfer->rows, transfer->neumann->smooth, transfer->column_normals));
-    transfer->columns_present = PETSC_TRUE;
-  }
+  PetscCall(TransferBringColumns(transfer));
+  transfer->columns_present = PETSC_TRUE;
   for (PetscInt k = 0; k < (transfer->some_near ? transfer->n_near : transfer->n); k++) {
-    const PetscInt   row    = transfer->some_near ? transfer->near[k] : k;
-    const PetscReal *normal = transfer->rows.normals + dim * row, size = data->sizes[row];
-    PetscReal        offset[3], gap, slip = 0, turned = 0, gradient[3], present[3];
-    PetscBool        within;
+    const PetscInt  row  = transfer->some_near ? transfer->near[k] : k;
+    const PetscReal size = data->sizes[row];
+    PetscReal       offset[3], gap, slip = 0, turned, present[3];
+    PetscBool       within;
 
     transfer->keep[row] = PETSC_FALSE;
     transfer->slip[row] = 0;
@@ -36,14 +33,9 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
       gap = TransferSplitRow(transfer, &transfer->rows, row, data->positions, transfer->column_x, offset);
       for (PetscInt d = 0; d < dim; d++) slip += PetscSqr(offset[d] - transfer->built_slip[3 * row + d]);
       transfer->slip[row] = PetscSqrtReal(slip) / size;
-      if (PetscAbsReal(gap) >= NEAR_CONTACT * size) continue; /* of most rows the normals do not matter */
-      TransferPresentNormal(transfer, row, present);
-      for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(present[d] - normal[d]);
-    } else {
-      PetscCall(ObstacleGetGap(transfer->obstacle, data->positions + 3 * row, &gap, gradient));
-      for (PetscInt d = 0; d < dim; d++) turned += PetscSqr(gradient[d] + normal[d]);
-    }
-    if (PetscAbsReal(gap) >= NEAR_CONTACT * size) continue;
+    } else gap = TransferPresentGap(transfer, row);
+    if (PetscAbsReal(gap) >= NEAR_CONTACT * size) continue; /* of most rows the normals do not matter */
+    PetscCall(TransferPresentNormal(transfer, row, present, &turned));
     within              = (PetscBool)(slip <= PetscSqr(transfer->options.slip_bound * size) && turned <= turn * turn);
     transfer->keep[row] = within;
     if (!within) *slipped = PETSC_TRUE;
