@@ -57,13 +57,10 @@ PetscErrorCode CreateVectorForest(MPI_Comm comm, PetscInt n_roots, PetscInt n_le
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A box, lower and upper corner, of all that may lie opposite to this rank's faces: these, swept along their normals. */
+/* The box of all that may lie opposite to this rank's faces: these, swept along their normals. */
 static void SweptBox(const SurfaceData *data, PetscReal ahead, PetscReal behind, PetscReal box[])
 {
-  for (PetscInt d = 0; d < 3; d++) {
-    box[d]     = PETSC_MAX_REAL;
-    box[3 + d] = -PETSC_MAX_REAL;
-  }
+  BoxFind(0, NULL, box);
   for (PetscInt f = 0; f < data->n_faces; f++) {
     const PetscReal *normal = data->face_normals + 3 * f, size = FaceSize(data->face_nodes, data->face_areas[f]);
 
@@ -73,14 +70,11 @@ static void SweptBox(const SurfaceData *data, PetscReal ahead, PetscReal behind,
                         from = x - normal[d] * (behind + size);
 
         box[d]     = PetscMin(box[d], PetscMin(from, to) - BOX_MARGIN * size);
-        box[3 + d] = PetscMax(box[3 + d], PetscMax(from, to) + BOX_MARGIN * size);
+        box[3 + d] = PetscMin(box[3 + d], -PetscMax(from, to) - BOX_MARGIN * size);
       }
   }
   if (ahead < PETSC_MAX_REAL || !data->n_faces) return;
-  for (PetscInt d = 0; d < 3; d++) { /* partners at any distance are wanted */
-    box[d]     = -PETSC_MAX_REAL;
-    box[3 + d] = PETSC_MAX_REAL;
-  }
+  for (PetscInt k = 0; k < 6; k++) box[k] = -PETSC_MAX_REAL; /* partners at any distance are wanted */
 }
 
 /* Face f of a surface, where it is now */
@@ -116,21 +110,11 @@ PetscErrorCode ExchangeFaces(MPI_Comm comm, Surface from, Surface to, PetscReal 
   PetscCallMPI(MPI_Allgather(box, 6, MPIU_REAL, boxes, 6, MPIU_REAL, comm));
   for (PetscMPIInt r = 0; r < size; r++)
     for (PetscInt f = 0; f < data->n_faces; f++) {
-      const PetscReal *wanted = boxes + 6 * r;
-      PetscBool        meets  = PETSC_TRUE;
-      Face             face   = {0};
+      Face face = {0};
 
       SurfaceGetFace(to, f, &face);
-      for (PetscInt d = 0; d < data->dim; d++) {
-        PetscReal lower = face.x[0][d], upper = face.x[0][d];
-
-        for (PetscInt k = 1; k < data->face_nodes; k++) {
-          lower = PetscMin(lower, face.x[k][d]);
-          upper = PetscMax(upper, face.x[k][d]);
-        }
-        if (lower > wanted[3 + d] || upper < wanted[d]) meets = PETSC_FALSE;
-      }
-      if (!meets) continue;
+      BoxFind(data->face_nodes, face.x[0], box);
+      if (!BoxesMeet(box, boxes + 6 * r)) continue;
       if (n == max) {
         max = 2 * max + 64;
         PetscCall(PetscRealloc((size_t)max * sizeof(Face), &sent));

@@ -126,8 +126,7 @@ static PetscErrorCode GetSupport(MPI_Comm comm, Surface surface, Vec u, PetscInt
   PetscCall(DMGetCoordinatesLocal(surface->dm, &coordinates));
   PetscCall(DMGetLocalSection(surface->dm, &section));
   PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
-  if (u && !surface->divided) PetscCall(VecGetArrayRead(u, &values)); /* its nodes are in the order of the section */
-  else if (u) {
+  if (u) {
     PetscCall(DMGetLocalVector(surface->dm, &local));
     PetscCall(DMGlobalToLocalBegin(surface->dm, u, INSERT_VALUES, local));
     PetscCall(DMGlobalToLocalEnd(surface->dm, u, INSERT_VALUES, local));
@@ -145,8 +144,7 @@ static PetscErrorCode GetSupport(MPI_Comm comm, Surface surface, Vec u, PetscInt
     for (PetscInt i = 0; i < n; i++) support[i] = PetscMax(support[i], Dot(position, directions[i]));
   }
   PetscCall(VecRestoreArrayRead(coordinates, &x));
-  if (u && !surface->divided) PetscCall(VecRestoreArrayRead(u, &values));
-  else if (u) {
+  if (u) {
     PetscCall(VecRestoreArrayRead(local, &values));
     PetscCall(DMRestoreLocalVector(surface->dm, &local));
   }
@@ -165,28 +163,30 @@ static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, P
   }
 }
 
-/* An upper bound of the depth by which the convex hulls of two bodies overlap [m]: the least of the depths along the mean normals of the
-   groups and along the axes. If the depth along any direction is negative, the bodies are apart (theorem of separating axes). */
-static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, Directions *of_a, Directions *of_b,
-                                     PetscReal *overlap)
+/* The directions of both surfaces, and an upper bound of the depth by which the convex hulls of two bodies overlap [m]: the least of the
+   depths along the mean normals of the groups and along the axes. If the depth along any direction is negative, the bodies are apart
+   (theorem of separating axes). */
+static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, Directions directions[2], PetscReal *overlap)
 {
   PetscReal *support[2];
   PetscReal(*list)[3];
   PetscInt n = 0;
 
   PetscFunctionBegin;
+  PetscCall(GetDirections(comm, a, &directions[0]));
+  PetscCall(GetDirections(comm, b, &directions[1]));
   PetscCall(PetscMalloc3(2 * GROUPS + 6, &list, 2 * GROUPS + 6, &support[0], 2 * GROUPS + 6, &support[1]));
   for (PetscInt side = 0; side < 2 * a->data.dim; side++, n++)
     for (PetscInt d = 0; d < 3; d++) list[n][d] = d == side / 2 ? (side % 2 ? 1 : -1) : 0;
-  AddDirections(of_a, 1, &n, list);
-  AddDirections(of_b, -1, &n, list);
+  AddDirections(&directions[0], 1, &n, list);
+  AddDirections(&directions[1], -1, &n, list);
   PetscCall(GetSupport(comm, a, u_a, n, (const PetscReal(*)[3])list, support[0]));
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt d = 0; d < 3; d++) list[i][d] = -list[i][d];
   PetscCall(GetSupport(comm, b, u_b, n, (const PetscReal(*)[3])list, support[1]));
   *overlap = PETSC_MAX_REAL;
   for (PetscInt i = 0; i < n; i++) *overlap = PetscMin(*overlap, support[0][i] + support[1][i]);
-  *overlap = PetscMax(*overlap, 0) * (1 + OVERLAP_MARGIN) + OVERLAP_FLOOR * PetscMax(of_a->extent, of_b->extent);
+  *overlap = PetscMax(*overlap, 0) * (1 + OVERLAP_MARGIN) + OVERLAP_FLOOR * PetscMax(directions[0].extent, directions[1].extent);
   PetscCall(PetscFree3(list, support[0], support[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -198,9 +198,7 @@ PetscErrorCode SurfaceComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface 
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(2, &directions));
-  PetscCall(GetDirections(comm, a, &directions[0]));
-  PetscCall(GetDirections(comm, b, &directions[1]));
-  PetscCall(ComputeOverlap(comm, a, u_a, b, u_b, &directions[0], &directions[1], overlap));
+  PetscCall(ComputeOverlap(comm, a, u_a, b, u_b, directions, overlap));
   *round_off = OVERLAP_FLOOR * PetscMax(directions[0].extent, directions[1].extent);
   PetscCall(PetscFree(directions));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -224,9 +222,7 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
   if (!keep_a && !keep_b) PetscFunctionReturn(PETSC_SUCCESS);
   if (b) {
     PetscCall(PetscMalloc1(2, &directions));
-    for (PetscInt side = 0; side < 2; side++)
-      PetscCall(GetDirections(PetscObjectComm((PetscObject)surfaces[side]->dm), surfaces[side], &directions[side]));
-    PetscCall(ComputeOverlap(PetscObjectComm((PetscObject)a->dm), a, NULL, b, NULL, &directions[0], &directions[1], &depth));
+    PetscCall(ComputeOverlap(PetscObjectComm((PetscObject)a->dm), a, NULL, b, NULL, directions, &depth));
   }
   for (PetscInt side = 0; side < 2; side++) {
     if (!surfaces[side] || !wanted[side]) continue;

@@ -25,14 +25,6 @@ PetscErrorCode ProbesDestroy(Probes *probes)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether two boxes have a point in common, which an empty one has with none */
-PetscBool BoxesMeet(const PetscReal a[6], const PetscReal b[6])
-{
-  for (PetscInt d = 0; d < 3; d++)
-    if (a[d] > -b[3 + d] || b[d] > -a[3 + d]) return PETSC_FALSE;
-  return PETSC_TRUE;
-}
-
 /* The tree of the faces that this rank has of a surface */
 static PetscErrorCode GetTree(ProbeSearch *search, PetscInt s, Tree **tree)
 {

@@ -32,6 +32,5 @@ typedef struct {
 
 PETSC_INTERN PetscErrorCode ProbesAdd(Probes *, const Probe *, PetscMPIInt);
 PETSC_INTERN PetscErrorCode ProbesDestroy(Probes *);
-PETSC_INTERN PetscBool      BoxesMeet(const PetscReal[6], const PetscReal[6]);
 PETSC_INTERN PetscErrorCode ProbesFindCrossings(ProbeSearch *, const Probes *, PetscInt *, Probe *[]);
 PETSC_INTERN PetscErrorCode ProbesFindClosest(ProbeSearch *, Probes *);

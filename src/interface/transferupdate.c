@@ -79,25 +79,19 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
    boxes about both surfaces, so that the closest partner is always known. Faces further away are not sent to other ranks. */
 PetscErrorCode TransferGetReach(Transfer transfer, PetscReal near, PetscReal *reach)
 {
-  const SurfaceData *data[2] = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
-  PetscReal corners[13], square = 0; /* for each side the upper corner and the lower one with its sign changed; then the largest face */
+  const SurfaceData *data[2]   = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
+  PetscReal          boxes[13] = {0}, square = 0; /* of both sides; then the largest face with its sign changed */
 
   PetscFunctionBegin;
   *reach = near;
   if (near == PETSC_MAX_REAL || !data[1]) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < 13; k++) corners[k] = -PETSC_MAX_REAL;
-  for (PetscInt side = 0; side < 2; side++)
-    for (PetscInt i = 0; i < data[side]->n_owned; i++) {
-      for (PetscInt d = 0; d < 3; d++) {
-        corners[6 * side + d]     = PetscMax(corners[6 * side + d], data[side]->positions[3 * i + d]);
-        corners[6 * side + 3 + d] = PetscMax(corners[6 * side + 3 + d], -data[side]->positions[3 * i + d]);
-      }
-      corners[12] = PetscMax(corners[12], data[side]->sizes[i]);
-    }
-  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, corners, 13, MPIU_REAL, MPIU_MAX, transfer->comm));
-  for (PetscInt d = 0; d < 3; d++)
-    square += PetscSqr(PetscMax(0, PetscMax(-corners[3 + d] - corners[6 + d], -corners[9 + d] - corners[d])));
-  *reach = PetscMax(near, PetscSqrtReal(square) + FACES_AHEAD * corners[12]);
+  for (PetscInt side = 0; side < 2; side++) {
+    BoxFind(data[side]->n_owned, data[side]->positions, boxes + 6 * side);
+    for (PetscInt i = 0; i < data[side]->n_owned; i++) boxes[12] = PetscMin(boxes[12], -data[side]->sizes[i]);
+  }
+  PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, boxes, 13, MPIU_REAL, MPIU_MIN, transfer->comm));
+  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(boxes[d] + boxes[9 + d], boxes[6 + d] + boxes[3 + d])));
+  *reach = PetscMax(near, PetscSqrtReal(square) - FACES_AHEAD * boxes[12]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

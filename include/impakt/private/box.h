@@ -12,3 +12,11 @@ static inline void BoxFind(PetscInt n, const PetscReal x[], PetscReal box[6])
       box[3 + d] = PetscMin(box[3 + d], -x[3 * i + d]);
     }
 }
+
+/* Whether two boxes have a point in common, which an empty one has with none */
+static inline PetscBool BoxesMeet(const PetscReal a[6], const PetscReal b[6])
+{
+  for (PetscInt d = 0; d < 3; d++)
+    if (a[d] > -b[3 + d] || b[d] > -a[3 + d]) return PETSC_FALSE;
+  return PETSC_TRUE;
+}
