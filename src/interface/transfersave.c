@@ -38,42 +38,22 @@ void TransferListState(Transfer transfer, StateList lists[2])
                          .arrays = {{3, transfer->built_x[1]}, {3, follow->x[1]}, {3, follow->partner_moved}}};
 }
 
-/* The shares. Those of rows that have been built since they were put aside last need room of another size. */
-static PetscErrorCode SaveShares(Transfer transfer)
+/* The shares. Those of rows of another build need room of another size. */
+static PetscErrorCode CopyShares(Transfer transfer, const RowSet *from, PetscBool other, RowSet *to)
 {
-  const RowSet  *rows     = &transfer->rows;
-  TransferSaved *saved    = &transfer->saved;
-  const PetscInt n_shares = rows->offsets[transfer->n];
+  const PetscInt n_shares = from->offsets[transfer->n];
 
   PetscFunctionBegin;
-  if (saved->builds != transfer->builds) {
-    PetscCall(RowSetDestroy(&saved->rows));
-    PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, &saved->rows));
-    PetscCall(PetscArraycpy(saved->rows.offsets, rows->offsets, transfer->n + 1));
-    if (n_shares) PetscCall(PetscArraycpy(saved->rows.columns, rows->columns, n_shares));
-    saved->rows.n_columns = rows->n_columns;
-    saved->rows.vectors   = rows->vectors;
-    if (rows->vectors) PetscCall(PetscObjectReference((PetscObject)rows->vectors));
-    saved->builds = transfer->builds;
+  if (other) {
+    PetscCall(RowSetDestroy(to));
+    PetscCall(RowSetAllocate(transfer->dim, transfer->n, n_shares, to));
+    PetscCall(PetscArraycpy(to->offsets, from->offsets, transfer->n + 1));
+    if (n_shares) PetscCall(PetscArraycpy(to->columns, from->columns, n_shares));
+    to->n_columns = from->n_columns;
+    to->vectors   = from->vectors;
+    if (to->vectors) PetscCall(PetscObjectReference((PetscObject)to->vectors));
   }
-  PetscCall(PetscArraycpy(saved->rows.shares, rows->shares, n_shares));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RestoreShares(Transfer transfer)
-{
-  TransferSaved *saved = &transfer->saved;
-
-  PetscFunctionBegin;
-  if (saved->builds == transfer->builds) {
-    PetscCall(PetscArraycpy(transfer->rows.shares, saved->rows.shares, transfer->rows.offsets[transfer->n]));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(RowSetDestroy(&transfer->rows));
-  transfer->rows = saved->rows;
-  PetscCall(PetscMemzero(&saved->rows, sizeof(saved->rows)));
-  PetscCall(TransferSetUpColumns(transfer, &transfer->rows, PETSC_FALSE));
-  PetscCall(SaveShares(transfer)); /* the step may have to be made once more */
+  PetscCall(PetscArraycpy(to->shares, from->shares, n_shares));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,18 +61,19 @@ static PetscErrorCode RestoreShares(Transfer transfer)
 PetscErrorCode TransferSave(Transfer transfer)
 {
   TransferSaved  *saved = &transfer->saved;
-  const PetscBool same  = (PetscBool)(saved->same && saved->builds == transfer->builds);
+  const PetscBool other = (PetscBool)(saved->builds != transfer->builds), same = (PetscBool)(saved->same && !other);
   StateList       lists[2];
 
   PetscFunctionBegin;
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
   if (same && !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS); /* builds alone change what obstacles remember */
-  if (!same) PetscCall(SaveShares(transfer));
+  if (!same) PetscCall(CopyShares(transfer, &transfer->rows, other, &saved->rows));
   TransferListState(transfer, lists);
   for (PetscInt side = 0; side < 2; side++) {
     if (!saved->state[side]) PetscCall(StateListAllocate(&lists[side], &saved->state[side]));
     PetscCall(StateListCopy(&lists[side], PETSC_FALSE, saved->state[side]));
   }
+  saved->builds  = transfer->builds;
   saved->numbers = transfer->numbers;
   saved->same    = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -101,15 +82,18 @@ PetscErrorCode TransferSave(Transfer transfer)
 /* Goes back to the last TransferSave(), any number of times, with rows and surfaces as they were. Counts of builds go on. */
 PetscErrorCode TransferRestore(Transfer transfer)
 {
-  TransferSaved *saved = &transfer->saved;
-  StateList      lists[2];
+  TransferSaved  *saved = &transfer->saved;
+  const PetscBool other = (PetscBool)(saved->builds != transfer->builds);
+  StateList       lists[2];
 
   PetscFunctionBegin;
   PetscCheck(saved->state[0], transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferSave() first");
-  PetscCall(RestoreShares(transfer));
+  PetscCall(CopyShares(transfer, &saved->rows, other, &transfer->rows));
+  if (other) PetscCall(TransferSetUpColumns(transfer, &transfer->rows, PETSC_FALSE));
   TransferListState(transfer, lists);
   for (PetscInt side = 0; side < 2; side++) PetscCall(StateListCopy(&lists[side], PETSC_TRUE, saved->state[side]));
   transfer->numbers = saved->numbers;
+  saved->builds     = transfer->builds;
   saved->same       = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
