@@ -1,12 +1,15 @@
 /* Many right-hand sides at once. A solution reads all factors of A, which are larger than any cache: together each costs a fraction. */
 #include "constrainedsolverimpl.h"
 
+/* Right-hand sides that are solved for together, at most */
+#define MAX_BLOCK 256
+
 /* Factors of MUMPS on all ranks, or NULL */
 PetscErrorCode ConstrainedSolverGetMUMPS(ConstrainedSolver s, Mat *factors)
 {
   PetscFunctionBegin;
   *factors = NULL;
-  if (s->block > 1 && !s->home) PetscCall(PCFactorGetMatrix(s->factors, factors));
+  if (s->mumps) PetscCall(PCFactorGetMatrix(s->factors, factors));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,9 +9,6 @@
 #include "constrainedsolverimpl.h"
 #include <math.h>
 
-/* Numbers that the right-hand sides may have which are solved for together: 200 MB */
-#define MAX_BLOCK_NUMBERS 25000000
-
 /* Whether columns are kept: on interfaces of few rows, and where to add up those of all rows is half the work of a solution by factors, or
    less; they take a quarter of the factors' memory then, or less */
 static PetscErrorCode ChooseColumns(ConstrainedSolver s)
@@ -57,35 +54,9 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B)
   PetscCall(FindWhetherAlone(s));
   PetscCall(
       PetscCalloc5(s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh, s->global, &s->changes));
+  PetscCall(PetscMalloc3(s->global, &s->gathered, s->global, &s->force, s->global, &s->used));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
   s->n = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* How many right-hand sides are solved for together by MUMPS; PETSc's own factors solve for one after the other */
-static PetscErrorCode ChooseBlock(ConstrainedSolver s)
-{
-  PetscInt      size;
-  PetscBool     mumps = PETSC_FALSE;
-  MatSolverType package;
-
-  PetscFunctionBegin;
-  s->block = 1;
-  if (!s->factors || s->global <= FEW_ROWS) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PCFactorGetMatSolverType(s->factors, &package));
-  PetscCall(PetscStrcmp(package, MATSOLVERMUMPS, &mumps));
-  if (!mumps) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecGetSize(s->rhs, &size));
-  s->block = PetscMax(1, PetscMin(MAX_BLOCK, MAX_BLOCK_NUMBERS / size));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ChooseForRows(ConstrainedSolver s)
-{
-  PetscFunctionBegin;
-  PetscCall(ChooseColumns(s));
-  PetscCall(ChooseBlock(s));
-  PetscCall(PetscMalloc3(s->global, &s->gathered, s->global, &s->force, s->global, &s->used));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -108,7 +79,7 @@ PetscErrorCode ConstrainedSolverReplaceRows(ConstrainedSolver s, Mat B)
   PetscFunctionBegin;
   PetscCall(DestroyRows(s));
   PetscCall(CreateRows(s, B));
-  PetscCall(ChooseForRows(s));
+  PetscCall(ChooseColumns(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -162,7 +133,7 @@ PetscErrorCode ConstrainedSolverEnd(ConstrainedSolver s)
   PetscCall(KSPSetUpOnBlocks(s->ksp)); /* now, not with the first solution */
   PetscCall(KSPGetOperators(s->ksp, &A, NULL));
   PetscCall(ConstrainedSolverCountFlops(s, A));
-  PetscCall(ChooseForRows(s));
+  PetscCall(ChooseColumns(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -26,7 +26,7 @@ struct _n_ConstrainedSolver {
   Vec           *used;             /* columns */
   Vec            row, rhs, product;
   PetscLogDouble solve_flops; /* of one solution with A */
-  PetscInt       block;       /* rows that become known together, by one solution for so many right-hand sides */
+  PetscBool      mumps;       /* all ranks have `factors` of MUMPS, which take many right-hand sides at once */
   /* corrections by stored columns: their changes, all rows on every rank */
   PetscBool    keeps;  /* columns are kept of all rows whose forces change */
   PetscBool    exact;  /* corrections for which columns are missing are solutions, see ConstrainedSolverSetExact() */
@@ -38,10 +38,6 @@ struct _n_ConstrainedSolver {
 /* Interfaces of so few rows in all make the column of each row that is asked for: a correction adds them up in place of a solution */
 #define FEW_ROWS 16
 
-/* Right-hand sides that are solved for together, at most */
-#define MAX_BLOCK 256
-
 PETSC_INTERN PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverCountFlops(ConstrainedSolver, Mat);
 PETSC_INTERN PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver, PetscInt);
-PETSC_INTERN PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver, Checkpoint);

@@ -239,12 +239,21 @@ PetscErrorCode ConstrainedSolverCorrect(ConstrainedSolver s, const PetscScalar t
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The constraints, for a checkpoint; their matrix follows from the columns, which are loaded before */
-PetscErrorCode ConstrainedSolverVisitConstraints(ConstrainedSolver s, Checkpoint checkpoint)
+/* State for a checkpoint. A and B are loaded before: columns of A^{-1} B^T follow from them, to the last bit, and the matrix of the
+   constraints from those. Collective. */
+PetscErrorCode ConstrainedSolverVisit(ConstrainedSolver s, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
-  PetscCall(CheckpointVisitReals(checkpoint, "flexibility of all", s->global, s->constrained));
-  PetscCall(CheckpointVisitInts(checkpoint, "constrained", 1, &s->missed));
-  if (CheckpointLoads(checkpoint)) PetscCall(FactorConstraints(s));
+  PetscCall(CheckpointCheckInts(checkpoint, "rows", 1, &s->global));
+  PetscCall(CheckpointVisitBools(checkpoint, "columns", s->global, s->fresh));
+  PetscCall(CheckpointVisitReals(checkpoint, "flexibility", s->global, s->constrained));
+  PetscCall(CheckpointVisitInts(checkpoint, "missed columns", 1, &s->missed));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < s->global; j++) {
+    if (!s->fresh[j]) continue;
+    s->fresh[j] = PETSC_FALSE;
+    PetscCall(ConstrainedSolverMakeColumn(s, j));
+  }
+  PetscCall(FactorConstraints(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -56,16 +56,21 @@ PetscErrorCode ConstrainedSolverChooseMUMPS(PC pc)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ChooseSequential(PC pc, PetscInt n, PetscInt dim)
+/* PETSc's own factors */
+static PetscErrorCode ChooseOwn(PC pc)
 {
   PetscFunctionBegin;
-  if (n > max_sequential_size[dim]) {
-    PetscCall(ConstrainedSolverChooseMUMPS(pc));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(PCSetType(pc, PCCHOLESKY));
   PetscCall(PCFactorSetZeroPivot(pc, 0)); /* PETSc's default is 2e-14, whatever the unit of the matrix */
   PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+static PetscErrorCode ChooseSequential(PC pc, PetscInt n, PetscInt dim)
+{
+  PetscFunctionBegin;
+  if (n > max_sequential_size[dim]) PetscCall(ConstrainedSolverChooseMUMPS(pc));
+  else PetscCall(ChooseOwn(pc));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -115,9 +120,7 @@ PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
     PetscCall(PCRedundantGetKSP(pc, &inner));
     PetscCall(KSPSetType(inner, KSPPREONLY));
     PetscCall(KSPGetPC(inner, &pc));
-    PetscCall(PCSetType(pc, PCCHOLESKY));
-    PetscCall(PCFactorSetZeroPivot(pc, 0));
-    PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
+    PetscCall(ChooseOwn(pc));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (size > 1) PetscCall(ConstrainedSolverChooseMUMPS(pc));
@@ -149,9 +152,10 @@ PetscErrorCode ConstrainedSolverAdjust(KSP ksp)
 /* Which preconditioner has factors of A, if any has: `direct`, or the one of the block where one of several ranks has all of A */
 PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver s, Mat A)
 {
-  PetscBool blocks, factored;
-  KSP      *inner;
-  PC        pc = s->direct;
+  PetscBool     blocks, factored;
+  KSP          *inner;
+  PC            pc = s->direct;
+  MatSolverType package;
 
   PetscFunctionBegin;
   if (!pc) PetscFunctionReturn(PETSC_SUCCESS);
@@ -163,7 +167,11 @@ PetscErrorCode ConstrainedSolverFindFactors(ConstrainedSolver s, Mat A)
     if (s->home) PetscCall(KSPGetPC(inner[0], &pc));
   }
   PetscCall(PetscObjectTypeCompareAny((PetscObject)pc, &factored, PCLU, PCCHOLESKY, ""));
-  if (factored) s->factors = pc;
+  if (!factored) PetscFunctionReturn(PETSC_SUCCESS);
+  s->factors = pc;
+  if (s->home) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PCFactorGetMatSolverType(pc, &package));
+  PetscCall(PetscStrcmp(package, MATSOLVERMUMPS, &s->mumps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
