@@ -38,42 +38,48 @@ static PetscErrorCode PrescribeKinematics(Contact contact, PetscInt p)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CopyUnknowns(Contact contact, PetscInt p, const PetscScalar x[], Trace trace)
+/* Puts the unknowns of a pair on its Dirichlet side: displacements or, under Robin conditions, right-hand sides */
+static PetscErrorCode PutUnknowns(Contact contact, PetscInt p, const PetscScalar x[], PetscBool robin)
 {
   Alternation       *alternation = (Alternation *)contact->data;
   const ContactPair *pair        = &contact->pairs[p];
-  PetscScalar       *values;
+  const BodyTraces  *to          = &contact->traces[DirichletBody(pair)];
+  Trace              trace       = alternation->trace[SideIndex(contact, p)];
+  const PetscInt     to_begin    = pair->begin - DirichletShift(pair);
+  PetscScalar       *force, *displacement, *values;
 
   PetscFunctionBegin;
-  for (PetscInt level = 1; level <= alternation->levels[contact->pairs[p].dirichlet][p]; level++) {
+  PetscCall(TraceGetLevel(to->reaction, 0, &force));
+  PetscCall(TraceGetLevel(to->displacement, 0, &displacement));
+  PetscCall(TraceGetLevel(trace, 0, &values));
+  for (PetscInt i = pair->begin; i < pair->end; i++) {
+    const PetscInt k = i - DirichletShift(pair);
+
+    values[i - pair->begin] = robin ? force[k] + alternation->weight[i] * displacement[k] : displacement[k];
+  }
+  for (PetscInt level = 1; level <= alternation->levels[pair->dirichlet][p]; level++) {
     PetscCall(TraceGetLevel(trace, level, &values));
     for (PetscInt i = pair->begin; i < pair->end; i++) values[i - pair->begin] = x[alternation->offset[i] + level - 1];
   }
+  PetscCall(TraceResample(trace, 0, pair->end - pair->begin, 1, robin ? to->force_in : to->displacement_in, to_begin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Puts the unknowns of a pair on its Dirichlet side, with the velocity and acceleration that the Neumann side has */
-static PetscErrorCode PrescribePair(Contact contact, PetscInt p, const PetscScalar x[])
+/* Puts the velocity and acceleration that the Neumann side has on the Dirichlet side of a pair */
+static PetscErrorCode PrescribeRates(Contact contact, PetscInt p)
 {
   Alternation       *alternation = (Alternation *)contact->data;
   const ContactPair *pair        = &contact->pairs[p];
   const BodyTraces  *to = &contact->traces[DirichletBody(pair)], *from = &contact->traces[NeumannBody(pair)];
-  Trace              trace     = alternation->trace[SideIndex(contact, p)];
   const PetscBool    kinematic = alternation->kinematic[SideIndex(contact, p)];
   const PetscInt     n = pair->end - pair->begin, to_begin = pair->begin - DirichletShift(pair);
-  const PetscInt     rate_begin = kinematic ? pair->begin : pair->begin - NeumannShift(pair);
-  const PetscReal    sign       = kinematic ? 1 : -1;
-  PetscScalar       *start, *values;
+  const PetscInt     begin = kinematic ? pair->begin : pair->begin - NeumannShift(pair);
+  const PetscReal    sign  = kinematic ? 1 : -1;
 
   PetscFunctionBegin;
-  PetscCall(TraceGetLevel(to->displacement, 0, &start));
-  PetscCall(TraceGetLevel(trace, 0, &values));
-  for (PetscInt k = 0; k < n; k++) values[k] = start[to_begin + k];
-  PetscCall(CopyUnknowns(contact, p, x, trace));
-  PetscCall(TraceResample(trace, 0, n, 1, to->displacement_in, to_begin));
   if (kinematic) PetscCall(PrescribeKinematics(contact, p));
-  PetscCall(TraceResample(kinematic ? alternation->rate[0] : from->velocity, rate_begin, n, sign, to->velocity_in, to_begin));
-  PetscCall(TraceResample(kinematic ? alternation->rate[1] : from->acceleration, rate_begin, n, sign, to->acceleration_in, to_begin));
+  PetscCall(TraceResample(kinematic ? alternation->rate[0] : from->velocity, begin, n, sign, to->velocity_in, to_begin));
+  PetscCall(TraceResample(kinematic ? alternation->rate[1] : from->acceleration, begin, n, sign, to->acceleration_in, to_begin));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -89,26 +95,6 @@ static PetscErrorCode HandReactionOn(Contact contact, const ContactPair *pair)
   PetscFunctionBegin;
   if (alternation->waveform == SCHWARZ_WAVEFORM_CONSTANT) PetscCall(TraceResampleConstant(from, begin, n, 1, to, to_begin));
   else PetscCall(TraceResample(from, begin, n, 1, to, to_begin));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Under Robin conditions, the unknowns of a pair are the right-hand side of its Dirichlet side */
-static PetscErrorCode LoadDirichlet(Contact contact, PetscInt p, const PetscScalar x[])
-{
-  Alternation       *alternation = (Alternation *)contact->data;
-  const ContactPair *pair        = &contact->pairs[p];
-  const BodyTraces  *to          = &contact->traces[DirichletBody(pair)];
-  Trace              trace       = alternation->trace[SideIndex(contact, p)];
-  PetscScalar       *force, *displacement, *values;
-
-  PetscFunctionBegin;
-  PetscCall(TraceGetLevel(to->reaction, 0, &force));
-  PetscCall(TraceGetLevel(to->displacement, 0, &displacement));
-  PetscCall(TraceGetLevel(trace, 0, &values));
-  for (PetscInt i = pair->begin; i < pair->end; i++)
-    values[i - pair->begin] = force[i - DirichletShift(pair)] + alternation->weight[i] * displacement[i - DirichletShift(pair)];
-  PetscCall(CopyUnknowns(contact, p, x, trace));
-  PetscCall(TraceResample(trace, 0, pair->end - pair->begin, 1, to->force_in, pair->begin - DirichletShift(pair)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -142,20 +128,18 @@ static PetscErrorCode LoadNeumann(Contact contact, PetscInt p)
 /* What the rows of a body take in: it is prescribed or loaded by its partners as they are now */
 static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[])
 {
-  Alternation *alternation = (Alternation *)contact->data;
+  const PetscBool robin = (PetscBool)(((Alternation *)contact->data)->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
 
   PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
     const PetscInt     p    = contact->body_rows[b].pairs[k];
     const ContactPair *pair = &contact->pairs[p];
 
-    if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) {
-      if (DirichletBody(pair) == b) PetscCall(PrescribePair(contact, p, x));
-      if (NeumannBody(pair) == b) PetscCall(HandReactionOn(contact, pair));
-    } else {
-      if (DirichletBody(pair) == b) PetscCall(LoadDirichlet(contact, p, x));
-      if (NeumannBody(pair) == b) PetscCall(LoadNeumann(contact, p));
+    if (DirichletBody(pair) == b) {
+      PetscCall(PutUnknowns(contact, p, x, robin));
+      if (!robin) PetscCall(PrescribeRates(contact, p));
     }
+    if (NeumannBody(pair) == b) PetscCall(robin ? LoadNeumann(contact, p) : HandReactionOn(contact, pair));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
