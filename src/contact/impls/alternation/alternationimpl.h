@@ -62,7 +62,6 @@ typedef struct {
   /* the controller step under way */
   PetscInt *left;             /* per row: 1 once it has left in this step, 2 once it has joined again */
   PetscBool cycled;           /* one has joined again */
-  PetscBool swept;            /* there has been a sweep of this iteration */
   PetscReal change, position; /* of the last sweep: the body with the worst ratio */
   struct {
     PetscInt     sweeps, steady; /* of this iteration; of these the last ones with steady forces and no smaller change of position */

@@ -115,10 +115,6 @@ PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
   PetscReal       worst       = -1;
 
   PetscFunctionBegin;
-  if (!alternation->swept) {
-    alternation->stall.sweeps = alternation->stall.steady = 0;
-    alternation->stall.least                              = PETSC_MAX_REAL;
-  }
   alternation->converged = PETSC_TRUE;
   for (PetscInt k = 0; k < (mismatch ? 1 : contact->n_bodies); k++) {
     PetscReal change, position;
@@ -132,7 +128,6 @@ PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
   }
   alternation->change = worst;
   if (!alternation->converged) PetscCall(FindStall(contact));
-  alternation->swept = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
