@@ -23,25 +23,24 @@ static PetscErrorCode ContactSetUp_Lagrange(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(SuitsForward(contact, &forward));
-  if (forward)
-    PetscCall(ContactRefuseFriction(contact, "forward-increment Lagrange multipliers have no friction, since their forces are not those at "
-                                             "the end of the step; leave -<body>_mass_redistribute at true, or choose -contact_law "
-                                             "frictionless"));
-  if (forward) {
-    PetscCheck(contact->options.stabilization != CONTACT_STABILIZATION_CONTACT_STABILIZED, comm, PETSC_ERR_USER_INPUT,
-               "-contact_stabilization contact_stabilized works with implicit bodies only, and all are explicit; give them -<body>_ts_type "
-               "alpha2, or leave the stabilization at none");
-    PetscCheck(contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm, PETSC_ERR_USER_INPUT,
-               "-contact_stabilization naive: with forward-increment Lagrange multipliers the accelerations at the end of a step have no "
-               "contact force in them yet, so that to set them to zero would take away internal forces; they do not chatter either. Leave "
-               "it at none, or choose -contact_type schwarz or penalty");
+  if (!forward) {
+    PetscCall(LagrangeSetUpImplicit(contact));
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (forward) contact->energy.unlimited = "forward increments are known only after the step that they begin";
-  if (forward) { /* which has nothing of the step */
-    PetscCall(ContactStepperDestroy(contact));
-    PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
-    PetscCall(LagrangeSetUpForward(contact));
-  } else PetscCall(LagrangeSetUpImplicit(contact));
+  PetscCall(ContactRefuseFriction(contact, "forward-increment Lagrange multipliers have no friction, since their forces are not those at "
+                                           "the end of the step; leave -<body>_mass_redistribute at true, or choose -contact_law "
+                                           "frictionless"));
+  PetscCheck(contact->options.stabilization != CONTACT_STABILIZATION_CONTACT_STABILIZED, comm, PETSC_ERR_USER_INPUT,
+             "-contact_stabilization contact_stabilized works with implicit bodies only, and all are explicit; give them -<body>_ts_type "
+             "alpha2, or leave the stabilization at none");
+  PetscCheck(contact->options.stabilization == CONTACT_STABILIZATION_NONE, comm, PETSC_ERR_USER_INPUT,
+             "-contact_stabilization naive: with forward-increment Lagrange multipliers the accelerations at the end of a step have no "
+             "contact force in them yet, so that to set them to zero would take away internal forces; they do not chatter either. Leave "
+             "it at none, or choose -contact_type schwarz or penalty");
+  contact->energy.unlimited = "forward increments are known only after the step that they begin";
+  PetscCall(ContactStepperDestroy(contact)); /* forward increments have nothing of the step */
+  PetscCall(PetscMemzero(contact->ops, sizeof(*contact->ops)));
+  PetscCall(LagrangeSetUpForward(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
