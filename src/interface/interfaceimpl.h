@@ -17,7 +17,6 @@ struct _p_Surface {
   DM           dm;
   SurfaceData  data;
   PetscInt    *points;      /* per face: point of the DMPLEX, ascending */
-  PetscReal   *signs;       /* per face, in one dimension: direction of its outward normal, 1 or -1 */
   PetscInt    *owner_index; /* per node: its number on the rank that owns it */
   PetscMPIInt *owner_rank;
   PetscBool    divided;      /* some rank has nodes of the mesh that another one owns */
@@ -54,7 +53,7 @@ typedef struct {
 
 /* A node of a tree of boxes that bound faces */
 typedef struct {
-  PetscReal lower[3], upper[3];
+  PetscReal bounds[6];         /* see impakt/private/box.h */
   PetscInt  begin, end, child; /* its faces are order[begin] to order[end - 1]; the first of its two children, -1 for a leaf */
 } Box;
 typedef struct {
@@ -201,7 +200,7 @@ PETSC_INTERN PetscInt FaceFindCrossings(PetscInt, const Face *, const PetscReal[
 PETSC_INTERN PetscErrorCode TreeCreate(PetscInt, PetscInt, const Face[], Tree *);
 PETSC_INTERN PetscErrorCode TreeDestroy(Tree *);
 PETSC_INTERN PetscErrorCode TreeQuery(Tree *, const Frame *, const PetscReal[], const PetscReal[], PetscInt *, const PetscInt *[]);
-PETSC_INTERN void           BoxDistances(const PetscReal[], const PetscReal[], const PetscReal[], PetscReal *, PetscReal *);
+PETSC_INTERN void           BoxDistances(const PetscReal[6], const PetscReal[], PetscReal *, PetscReal *);
 PETSC_INTERN void           TreeFindClosest(const Tree *, PetscInt, const Face[], const PetscReal[], Closest *);
 
 PETSC_INTERN PetscErrorCode CreateVectorForest(MPI_Comm, PetscInt, PetscInt, const PetscInt[], const PetscSFNode[], PetscSF *);

@@ -11,30 +11,25 @@
 /* Sine of 30 degrees, the tilt of normals out of a plane of symmetry: beyond are edges. A ball of 4 elements round the quarter has 11. */
 #define TILTED 0.5
 
-/* How far the nodes of the faces around each node reach along each axis, on all ranks */
-static PetscErrorCode FindExtents(Surface surface, PetscReal lower[], PetscReal upper[])
+/* How far the nodes of the faces around each node reach along each axis, on all ranks: the least of `sign` times their coordinates */
+static PetscErrorCode FindExtents(Surface surface, PetscReal sign, PetscReal least[])
 {
   const SurfaceData *data = &surface->data;
   const PetscInt     n    = data->face_nodes;
 
   PetscFunctionBegin;
-  PetscCall(PetscArraycpy(lower, data->reference, 3 * data->n_nodes));
-  PetscCall(PetscArraycpy(upper, data->reference, 3 * data->n_nodes));
+  for (PetscInt i = 0; i < 3 * data->n_nodes; i++) least[i] = sign * data->reference[i];
   for (PetscInt f = 0; f < data->n_faces; f++)
     for (PetscInt k = 0; k < n; k++)
       for (PetscInt l = 0; l < n; l++)
         for (PetscInt d = 0; d < 3; d++) {
-          const PetscInt  at    = 3 * data->faces[f * n + k] + d;
-          const PetscReal other = data->reference[3 * data->faces[f * n + l] + d];
+          const PetscInt at = 3 * data->faces[f * n + k] + d;
 
-          lower[at] = PetscMin(lower[at], other);
-          upper[at] = PetscMax(upper[at], other);
+          least[at] = PetscMin(least[at], sign * data->reference[3 * data->faces[f * n + l] + d]);
         }
   if (!surface->divided) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscSFReduceBegin(surface->vectors, MPIU_REAL, lower, lower, MPIU_MIN));
-  PetscCall(PetscSFReduceEnd(surface->vectors, MPIU_REAL, lower, lower, MPIU_MIN));
-  PetscCall(PetscSFReduceBegin(surface->vectors, MPIU_REAL, upper, upper, MPIU_MAX));
-  PetscCall(PetscSFReduceEnd(surface->vectors, MPIU_REAL, upper, upper, MPIU_MAX));
+  PetscCall(PetscSFReduceBegin(surface->vectors, MPIU_REAL, least, least, MPIU_MIN));
+  PetscCall(PetscSFReduceEnd(surface->vectors, MPIU_REAL, least, least, MPIU_MIN));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -44,7 +39,7 @@ static PetscErrorCode FindExtents(Surface surface, PetscReal lower[], PetscReal 
 PetscErrorCode SurfaceSetMirrors(Surface surface, PetscInt n, const PetscInt dofs[], PetscInt first)
 {
   const SurfaceData *data = &surface->data;
-  PetscReal         *lower, *upper;
+  PetscReal         *lower, *upper; /* the latter with its sign changed */
 
   PetscFunctionBegin;
   PetscCall(PetscFree(surface->mirrors));
@@ -52,18 +47,19 @@ PetscErrorCode SurfaceSetMirrors(Surface surface, PetscInt n, const PetscInt dof
   PetscCall(SurfaceUpdate(surface, NULL));
   PetscCall(PetscCalloc1(data->n_owned, &surface->mirrors));
   PetscCall(PetscMalloc2(3 * data->n_nodes, &lower, 3 * data->n_nodes, &upper));
-  PetscCall(FindExtents(surface, lower, upper));
+  PetscCall(FindExtents(surface, 1, lower));
+  PetscCall(FindExtents(surface, -1, upper));
   for (PetscInt i = 0; i < data->n_owned; i++) {
     PetscInt count = 0, mirrors = 0;
 
     for (PetscInt d = 0; d < data->dim; d++) {
-      const PetscReal *x = data->reference + 3 * i, extent = upper[3 * i + d] - lower[3 * i + d];
+      const PetscReal *x = data->reference + 3 * i, extent = -upper[3 * i + d] - lower[3 * i + d];
       PetscInt         place;
 
       PetscCall(PetscFindInt(data->dofs[i] + d - first, n, dofs, &place));
       if (place < 0) continue;
       count++;
-      if (PetscMin(x[d] - lower[3 * i + d], upper[3 * i + d] - x[d]) < BEHIND * extent && PetscAbsReal(data->normals[3 * i + d]) <= TILTED)
+      if (PetscMin(x[d] - lower[3 * i + d], -upper[3 * i + d] - x[d]) < BEHIND * extent && PetscAbsReal(data->normals[3 * i + d]) <= TILTED)
         mirrors |= 1 << d;
     }
     if (count < data->dim) surface->mirrors[i] = mirrors;

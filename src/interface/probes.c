@@ -149,11 +149,11 @@ PetscErrorCode ProbesFindClosest(ProbeSearch *search, Probes *points)
     point->closest = (Closest){.square = PETSC_MAX_REAL};
     for (PetscInt pass = 0; pass < 2; pass++)
       for (PetscMPIInt r = 0; r < search->n_ranks; r++) {
-        const PetscReal *box = boxes + 6 * search->n * r, upper[3] = {-box[3], -box[4], -box[5]};
+        const PetscReal *box = boxes + 6 * search->n * r;
         PetscReal        least, largest;
 
-        if (box[0] > upper[0]) continue; /* that rank has none */
-        BoxDistances(box, upper, point->x[0], &least, &largest);
+        if (box[0] > -box[3]) continue; /* that rank has none */
+        BoxDistances(box, point->x[0], &least, &largest);
         if (!pass) point->closest.square = PetscMin(point->closest.square, largest * (1 + FARTHER));
         else if (least <= point->closest.square) PetscCall(ProbesAdd(&questions, point, r));
       }

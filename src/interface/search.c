@@ -16,16 +16,13 @@ static PetscReal Middle(PetscInt n, const Face *face, PetscInt d)
 
 static void BoundFaces(PetscInt n, const Face faces[], const PetscInt order[], Box *box)
 {
-  for (PetscInt d = 0; d < 3; d++) {
-    box->lower[d] = PETSC_MAX_REAL;
-    box->upper[d] = -PETSC_MAX_REAL;
+  BoxFind(0, NULL, box->bounds);
+  for (PetscInt i = box->begin; i < box->end; i++) {
+    PetscReal face[6];
+
+    BoxFind(n, faces[order[i]].x[0], face);
+    for (PetscInt k = 0; k < 6; k++) box->bounds[k] = PetscMin(box->bounds[k], face[k]);
   }
-  for (PetscInt i = box->begin; i < box->end; i++)
-    for (PetscInt k = 0; k < n; k++)
-      for (PetscInt d = 0; d < 3; d++) {
-        box->lower[d] = PetscMin(box->lower[d], faces[order[i]].x[k][d]);
-        box->upper[d] = PetscMax(box->upper[d], faces[order[i]].x[k][d]);
-      }
 }
 
 /* A tree of the boxes that bound some faces, each box halved along its longest axis */
@@ -50,7 +47,7 @@ PetscErrorCode TreeCreate(PetscInt face_nodes, PetscInt n, const Face faces[], T
     box->child = -1;
     if (box->end - box->begin <= LEAF) continue;
     for (PetscInt d = 1; d < 3; d++)
-      if (box->upper[d] - box->lower[d] > box->upper[axis] - box->lower[axis]) axis = d;
+      if (box->bounds[d] + box->bounds[3 + d] < box->bounds[axis] + box->bounds[3 + axis]) axis = d;
     for (PetscInt i = box->begin; i < box->end; i++) middles[tree->order[i]] = Middle(face_nodes, &faces[tree->order[i]], axis);
     PetscCall(PetscSortRealWithPermutation(box->end - box->begin, middles, tree->order + box->begin));
     box->child                       = tree->n_boxes;
@@ -79,8 +76,8 @@ static PetscBool BoxMeets(const Box *box, const Frame *frame, const PetscReal lo
     PetscReal        middle = 0, half = 0;
 
     for (PetscInt d = 0; d < 3; d++) {
-      middle += ((box->lower[d] + box->upper[d]) / 2 - frame->origin[d]) * axis[d];
-      half += (box->upper[d] - box->lower[d]) / 2 * PetscAbsReal(axis[d]);
+      middle += ((box->bounds[d] - box->bounds[3 + d]) / 2 - frame->origin[d]) * axis[d];
+      half -= (box->bounds[d] + box->bounds[3 + d]) / 2 * PetscAbsReal(axis[d]);
     }
     if (middle - half > upper[a] || middle + half < lower[a]) return PETSC_FALSE;
   }
@@ -117,12 +114,12 @@ PetscErrorCode TreeQuery(Tree *tree, const Frame *frame, const PetscReal lower[]
 }
 
 /* The square of the least distance of a point from a box, and of its largest one [m^2] */
-void BoxDistances(const PetscReal lower[], const PetscReal upper[], const PetscReal x[], PetscReal *least, PetscReal *largest)
+void BoxDistances(const PetscReal box[6], const PetscReal x[], PetscReal *least, PetscReal *largest)
 {
   *least = *largest = 0;
   for (PetscInt d = 0; d < 3; d++) {
-    *least += PetscSqr(PetscMax(0, PetscMax(lower[d] - x[d], x[d] - upper[d])));
-    *largest += PetscSqr(PetscMax(PetscAbsReal(lower[d] - x[d]), PetscAbsReal(upper[d] - x[d])));
+    *least += PetscSqr(PetscMax(0, PetscMax(box[d] - x[d], x[d] + box[3 + d])));
+    *largest += PetscSqr(PetscMax(PetscAbsReal(box[d] - x[d]), PetscAbsReal(box[3 + d] + x[d])));
   }
 }
 
@@ -136,17 +133,13 @@ void TreeFindClosest(const Tree *tree, PetscInt n, const Face faces[], const Pet
     const Box *box = &tree->boxes[stack[--depth]];
     PetscReal  least[2], largest;
 
-    BoxDistances(box->lower, box->upper, x, &least[0], &largest);
+    BoxDistances(box->bounds, x, &least[0], &largest);
     if (least[0] > closest->square) continue;
     if (box->child < 0) {
       for (PetscInt i = box->begin; i < box->end; i++) FaceFindClosest(n, &faces[tree->order[i]], x, closest);
       continue;
     }
-    for (PetscInt k = 0; k < 2; k++) {
-      const Box *child = &tree->boxes[box->child + k];
-
-      BoxDistances(child->lower, child->upper, x, &least[k], &largest);
-    }
+    for (PetscInt k = 0; k < 2; k++) BoxDistances(tree->boxes[box->child + k].bounds, x, &least[k], &largest);
     stack[depth++] = box->child + (least[0] <= least[1]); /* the nearer one comes first */
     stack[depth++] = box->child + (least[0] > least[1]);
   }

@@ -128,7 +128,7 @@ static PetscErrorCode OrientFace(Surface surface, PetscInt f, const PetscInt num
     for (PetscInt d = 0; d < 3; d++) outward[d] += x[k][d] / n;
   }
   if (data->dim == 1) {
-    surface->signs[f] = outward[0] < 0 ? -1 : 1;
+    data->face_normals[3 * f] = outward[0] < 0 ? -1 : 1; /* for ever */
   } else {
     FaceNormal(n, x, normal, &area);
     out = Dot(normal, outward);
@@ -153,8 +153,7 @@ static PetscErrorCode SetUpFaces(Surface surface, const PetscInt numbers[])
   if (data->n_faces) PetscCall(SurfaceListVertices(surface->dm, surface->points[0], &n, vertices));
   PetscCallMPI(MPIU_Allreduce(&n, &data->face_nodes, 1, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)surface->dm)));
   n = data->face_nodes;
-  PetscCall(PetscMalloc4(data->n_faces * n, &data->faces, data->n_faces, &surface->signs, 3 * data->n_faces, &data->face_normals,
-                         data->n_faces, &data->face_areas));
+  PetscCall(PetscCalloc3(data->n_faces * n, &data->faces, 3 * data->n_faces, &data->face_normals, data->n_faces, &data->face_areas));
   PetscCall(PetscMalloc5(3 * data->n_nodes, &data->reference, 3 * data->n_nodes, &data->positions, 3 * data->n_nodes, &data->normals,
                          data->n_nodes, &data->areas, data->n_nodes, &data->sizes));
   PetscCall(DMPlexGetChart(surface->dm, &start, NULL));
@@ -199,7 +198,7 @@ PetscErrorCode SurfaceClearNodes(Surface surface)
   PetscCall(PetscSFDestroy(&surface->sf));
   PetscCall(PetscSFDestroy(&surface->vectors));
   PetscCall(PetscFree4(data->vertices, data->dofs, surface->owner_index, surface->owner_rank));
-  PetscCall(PetscFree4(data->faces, surface->signs, data->face_normals, data->face_areas));
+  PetscCall(PetscFree3(data->faces, data->face_normals, data->face_areas));
   PetscCall(PetscFree3(surface->near, surface->near_nodes, surface->near_faces));
   PetscCall(PetscFree2(surface->sharp, surface->smooth));
   PetscCall(PetscFree5(data->reference, data->positions, data->normals, data->areas, data->sizes));

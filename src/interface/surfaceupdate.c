@@ -63,8 +63,6 @@ static void AddFace(Surface surface, PetscInt f)
 
   for (PetscInt k = 0; k < n; k++)
     for (PetscInt d = 0; d < 3; d++) x[k][d] = data->positions[3 * nodes[k] + d];
-  normal[0] = surface->signs[f];
-  normal[1] = normal[2] = 0;
   FaceNormal(n, (const PetscReal(*)[3])x, normal, &data->face_areas[f]);
   FaceNodeAreas(n, (const PetscReal(*)[3])x, normal, areas);
   if (surface->axisymmetric) /* 2 pi x is linear along the face */
