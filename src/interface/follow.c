@@ -20,23 +20,6 @@
 /* Part of the last step's slip in the mean. With all of it, bars that meet at a fifth of their wave speed chatter. */
 #define LATEST 0.5
 
-/* What a row makes of vectors of the nodes: n . (sum_j P_j x_j - x), and the part across the normal */
-PetscReal TransferSplitRow(const Transfer transfer, const RowSet *set, PetscInt row, const PetscReal x[], const PetscReal columns[],
-                           PetscReal across[])
-{
-  const PetscReal *normal = set->normals + transfer->dim * row;
-  PetscReal        along  = 0;
-
-  for (PetscInt d = 0; d < transfer->dim; d++) {
-    across[d] = -x[3 * row + d];
-    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
-      across[d] += set->shares[j].value * columns[3 * set->columns[j] + d];
-    along += normal[d] * across[d];
-  }
-  for (PetscInt d = 0; d < transfer->dim; d++) across[d] -= along * normal[d];
-  return along;
-}
-
 static PetscReal AlongRow(const Transfer transfer, PetscInt row, const PetscReal x[], const PetscReal columns[])
 {
   PetscReal across[3];

@@ -18,6 +18,23 @@
 #define BENT 0.985
 #define EDGE 0.95
 
+/* What a row makes of vectors of the nodes: n . (sum_j P_j x_j - x), and the part across the normal */
+PetscReal TransferSplitRow(const Transfer transfer, const RowSet *set, PetscInt row, const PetscReal x[], const PetscReal columns[],
+                           PetscReal across[])
+{
+  const PetscReal *normal = set->normals + transfer->dim * row;
+  PetscReal        along  = 0;
+
+  for (PetscInt d = 0; d < transfer->dim; d++) {
+    across[d] = -x[3 * row + d];
+    for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
+      across[d] += set->shares[j].value * columns[3 * set->columns[j] + d];
+    along += normal[d] * across[d];
+  }
+  for (PetscInt d = 0; d < transfer->dim; d++) across[d] -= along * normal[d];
+  return along;
+}
+
 /* What the conditions of RowCorrect() say of a point of the partner */
 static void FindConditions(const PetscReal x[], PetscReal tangents[2][3], PetscReal size, const PetscReal point[], PetscReal condition[3])
 {
