@@ -41,15 +41,14 @@ static PetscErrorCode VisitSides(Transfer transfer, Tables tables)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where each node of the partner is: rank, number there, first displacement; a table beside the others, of this run */
-static PetscErrorCode ShareOwners(Transfer transfer, Tables *owners)
+/* Where each node of a side is: rank, number there, first displacement; a table beside the others, of this run */
+static PetscErrorCode ShareOwners(MPI_Comm comm, const SurfaceData *data, Tables *owners)
 {
-  const SurfaceData *data = &transfer->neumann->data;
-  PetscReal         *packed;
-  PetscMPIInt        rank;
+  PetscReal  *packed;
+  PetscMPIInt rank;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_rank(transfer->comm, &rank));
+  PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCall(PetscMalloc1(6 * data->n_owned, &packed));
   for (PetscInt i = 0; i < data->n_owned; i++) {
     PetscCall(PetscArraycpy(packed + 6 * i, data->reference + 3 * i, 3));
@@ -57,7 +56,7 @@ static PetscErrorCode ShareOwners(Transfer transfer, Tables *owners)
     packed[6 * i + 4] = (PetscReal)i;
     packed[6 * i + 5] = (PetscReal)data->dofs[i];
   }
-  PetscCall(TablesCreate(transfer->comm, PETSC_TRUE, owners));
+  PetscCall(TablesCreate(comm, PETSC_TRUE, owners));
   PetscCall(TablesAdd(*owners, "owners", data->n_owned, 6, packed));
   PetscCall(PetscFree(packed));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -66,29 +65,20 @@ static PetscErrorCode ShareOwners(Transfer transfer, Tables *owners)
 /* The shares of the rows of this rank, and room for its rows */
 static PetscErrorCode UnpackShares(Transfer transfer, Tables tables)
 {
-  const SurfaceData *data = &transfer->dirichlet->data;
-  PetscInt           n, count = 0, n_owners;
-  const PetscReal   *packed, *owner;
-  Share             *shares;
-  Tables             own, owners = NULL;
-  PetscReal         *keys;
+  PetscInt         n, count = 0, n_owners;
+  const PetscReal *packed, *owner;
+  Share           *shares;
+  Tables           own, owners = NULL;
 
   PetscFunctionBegin;
   PetscCall(TablesGet(tables, "shares", N_SHARE, &n, &packed));
   PetscCall(PetscMalloc1(n, &shares));
-  /* the rows of this rank by their keys, with those of other ranks left out */
-  PetscCall(TablesCreate(PETSC_COMM_SELF, PETSC_TRUE, &own));
-  PetscCall(PetscMalloc1(4 * transfer->n, &keys));
-  for (PetscInt i = 0; i < transfer->n; i++) {
-    PetscCall(PetscArraycpy(keys + 4 * i, data->reference + 3 * i, 3));
-    keys[4 * i + 3] = (PetscReal)i;
-  }
-  PetscCall(TablesShare(own, "own", transfer->n, 4, keys));
-  if (transfer->neumann) PetscCall(ShareOwners(transfer, &owners));
+  PetscCall(ShareOwners(PETSC_COMM_SELF, &transfer->dirichlet->data, &own)); /* rows of other ranks are left out */
+  if (transfer->neumann) PetscCall(ShareOwners(transfer->comm, &transfer->neumann->data, &owners));
   for (PetscInt j = 0; j < n; j++) {
     PetscInt row, node;
 
-    PetscCall(TablesLookFor(own, "own", packed + N_SHARE * j, &row));
+    PetscCall(TablesLookFor(own, "owners", packed + N_SHARE * j, &row));
     if (row < 0) continue;
     PetscCall(TablesFind(owners, "owners", packed + N_SHARE * j + 3, &node));
     PetscCall(TablesGet(owners, "owners", 6, &n_owners, &owner));
