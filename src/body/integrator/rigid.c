@@ -92,7 +92,7 @@ static PetscErrorCode FindForces(Body body, PetscReal t, PetscReal position, Vec
   PetscCall(VecZeroEntries(force));
   PetscCall(BodyAddExternalForce(body, t, 1, force));
   PetscCall(BodyAddContactForce(body, position, 1, U, force));
-  PetscCall(BodyRigidFindResultant(body, force, resultant));
+  PetscCall(BodyRigidFindResultant(body, NULL, force, resultant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -156,14 +156,6 @@ static PetscErrorCode Advance(TS ts, PetscReal t, PetscReal dt, Vec U, Vec V, vo
   BodyRigidFindAcceleration(body, forces[1].force, torque, &end);
   if (BodyIsLed(body) && !body->unloaded) PetscCall(BodyLead(body, t + dt, &end));
   PetscCall(BodyRigidWriteMotion(body, &end, U, V, body->state.a));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Everything is written by Advance() */
-static PetscErrorCode FinishSubstep(Body body)
-{
-  PetscFunctionBegin;
-  (void)body;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -269,7 +261,6 @@ PetscErrorCode BodyIntegratorCreate_Rigid(BodyIntegrator integrator)
   integrator->affine                = PETSC_TRUE;
   integrator->ops.getparameters     = GetParameters;
   integrator->ops.setup             = SetUp;
-  integrator->ops.finishsubstep     = FinishSubstep;
   integrator->ops.nodalcolumns      = BodyRigidSetNodalColumns;
   integrator->ops.solvemass         = BodyRigidSolveMass;
   integrator->ops.start             = Start;

@@ -24,7 +24,7 @@ PetscErrorCode BodyRigidSolveMass(Body body, Vec f, Vec a)
 
   PetscFunctionBegin;
   PetscCall(BodyRigidFindPlace(body, body->state.u, &place));
-  PetscCall(BodyRigidFindResultant(body, f, &resultant));
+  PetscCall(BodyRigidFindResultant(body, NULL, f, &resultant));
   Respond(body, &place, &resultant, &motion);
   PetscCall(BodyRigidWriteMotion(body, &motion, NULL, NULL, a));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -59,7 +59,7 @@ static PetscErrorCode FindUnitResultant(Body body, PetscInt dof, Resultant *resu
     resultant->force[d] = 1;
     for (PetscInt b = 0; b < dim; b++) resultant->dyad[3 * d + b] = Y[b];
   }
-  PetscCall(BodyRigidSum(body, sizeof(*resultant) / sizeof(PetscReal), (PetscReal *)resultant));
+  PetscCall(BodyRigidSum(body, resultant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

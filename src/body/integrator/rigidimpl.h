@@ -14,7 +14,7 @@ typedef struct {
   PetscReal linear[3], angular[3];
 } Momentum;
 
-/* Forces on the nodes as far as a rigid body feels them: their sum [N], and sum f Y^T [N m] */
+/* Forces on the nodes as far as a rigid body feels them: their sum [N], and sum f Y^T [N m]; or the same of other vectors */
 typedef struct {
   PetscReal force[3], dyad[9];
 } Resultant;
@@ -24,8 +24,8 @@ PETSC_INTERN void           BodyRigidGetArm(const struct _p_Body *, PetscInt, Pe
 PETSC_INTERN PetscErrorCode BodyRigidFindPlace(Body, Vec, RigidMotion *);
 PETSC_INTERN PetscErrorCode BodyRigidFindMotion(Body, Vec, Vec, RigidMotion *);
 PETSC_INTERN PetscErrorCode BodyRigidFindMomentum(Body, const RigidMotion *, Vec, Momentum *);
-PETSC_INTERN PetscErrorCode BodyRigidFindResultant(Body, Vec, Resultant *);
-PETSC_INTERN PetscErrorCode BodyRigidSum(Body, PetscInt, PetscReal[]);
+PETSC_INTERN PetscErrorCode BodyRigidFindResultant(Body, Vec, Vec, Resultant *);
+PETSC_INTERN PetscErrorCode BodyRigidSum(Body, Resultant *);
 PETSC_INTERN PetscErrorCode BodyRigidWriteMotion(Body, const RigidMotion *, Vec, Vec, Vec);
 PETSC_INTERN PetscBool      BodyRigidIsFixed(const struct _p_Body *, PetscInt);
 PETSC_INTERN void           BodyRigidFindAcceleration(Body, const PetscReal[3], const PetscReal[3], RigidMotion *);

@@ -16,44 +16,56 @@ void BodyRigidGetArm(const struct _p_Body *body, PetscInt node, PetscReal Y[3])
 }
 
 /* Sums over all ranks */
-PetscErrorCode BodyRigidSum(Body body, PetscInt n, PetscReal sums[])
+PetscErrorCode BodyRigidSum(Body body, Resultant *resultant)
 {
+  const PetscMPIInt n = sizeof(*resultant) / sizeof(PetscReal);
+
   PetscFunctionBegin;
-  if (body->rows.size > 1)
-    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, sums, (PetscMPIInt)n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  if (body->rows.size > 1) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, resultant, n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Sum of vectors of the nodes, and of their dyads with the arms: of `x`, or of each of its components times that of `weights` */
+PetscErrorCode BodyRigidFindResultant(Body body, Vec weights, Vec x, Resultant *resultant)
+{
+  const PetscInt     dim = body->mesh.dim;
+  const PetscScalar *values, *weight = NULL;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMemzero(resultant, sizeof(*resultant)));
+  PetscCall(VecGetArrayRead(x, &values));
+  if (weights) PetscCall(VecGetArrayRead(weights, &weight));
+  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
+    PetscReal Y[3];
+
+    BodyRigidGetArm(body, node, Y);
+    for (PetscInt d = 0; d < dim; d++) {
+      const PetscInt  i         = node * dim + d;
+      const PetscReal component = PetscRealPart(weights ? weight[i] * values[i] : values[i]);
+
+      resultant->force[d] += component;
+      for (PetscInt b = 0; b < dim; b++) resultant->dyad[3 * d + b] += component * Y[b];
+    }
+  }
+  if (weights) PetscCall(VecRestoreArrayRead(weights, &weight));
+  PetscCall(VecRestoreArrayRead(x, &values));
+  PetscCall(BodyRigidSum(body, resultant));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Centre and rotation of the displacement u; those nearest to it, if it is not rigid */
 PetscErrorCode BodyRigidFindPlace(Body body, Vec u, RigidMotion *motion)
 {
-  const BodyRigid   *rigid    = BodyGetRigid(body);
-  const PetscInt     dim      = body->mesh.dim;
-  PetscReal          sums[12] = {0}, A[9];
-  const PetscScalar *way, *mass;
+  const BodyRigid *rigid = BodyGetRigid(body);
+  Resultant        moved;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(u, &way));
-  PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    PetscReal Y[3];
-
-    BodyRigidGetArm(body, node, Y);
-    for (PetscInt d = 0; d < dim; d++) {
-      const PetscReal moment = PetscRealPart(mass[node * dim + d] * way[node * dim + d]);
-
-      sums[d] += moment;
-      for (PetscInt b = 0; b < dim; b++) sums[3 + 3 * d + b] += moment * Y[b];
-    }
-  }
-  PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
-  PetscCall(VecRestoreArrayRead(u, &way));
-  PetscCall(BodyRigidSum(body, 12, sums));
-  for (PetscInt d = 0; d < 3; d++) motion->centre[d] = body->mass.centre[d] + sums[d] / body->mass.total;
+  PetscCall(BodyRigidFindResultant(body, body->mass.row_sum, u, &moved));
+  for (PetscInt d = 0; d < 3; d++) motion->centre[d] = body->mass.centre[d] + moved.force[d] / body->mass.total;
   if (rigid->turns) {
-    for (PetscInt k = 0; k < 9; k++) A[k] = rigid->spread[k] + sums[3 + k];
-    RigidProduct(A, rigid->inverse_spread, motion->rotation);
-    if (dim == 2) motion->rotation[8] = 1;
+    for (PetscInt k = 0; k < 9; k++) moved.dyad[k] += rigid->spread[k];
+    RigidProduct(moved.dyad, rigid->inverse_spread, motion->rotation);
+    if (body->mesh.dim == 2) motion->rotation[8] = 1;
     PetscCheck(RigidFindRotation(motion->rotation), PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "Body '%s' is rigid, but its displacement is far from a rigid motion", body->hdr.name);
   } else
@@ -64,56 +76,13 @@ PetscErrorCode BodyRigidFindPlace(Body body, Vec u, RigidMotion *motion)
 /* Of velocities or accelerations of the nodes */
 PetscErrorCode BodyRigidFindMomentum(Body body, const RigidMotion *motion, Vec v, Momentum *momentum)
 {
-  const PetscInt     dim     = body->mesh.dim;
-  const Vec          work    = body->work.nodes[0];
-  PetscReal          sums[6] = {0};
-  const PetscScalar *p;
+  Resultant sums;
 
   PetscFunctionBegin;
-  PetscCall(BodyMultiplyMass(body, v, work));
-  PetscCall(VecGetArrayRead(work, &p));
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    PetscReal Y[3], r[3], q[3] = {0}, moment[3];
-
-    BodyRigidGetArm(body, node, Y);
-    RigidMultiply(motion->rotation, Y, r);
-    for (PetscInt d = 0; d < dim; d++) q[d] = PetscRealPart(p[node * dim + d]);
-    RigidCross(r, q, moment);
-    for (PetscInt d = 0; d < 3; d++) {
-      sums[d] += q[d];
-      sums[3 + d] += moment[d];
-    }
-  }
-  PetscCall(VecRestoreArrayRead(work, &p));
-  PetscCall(BodyRigidSum(body, 6, sums));
-  PetscCall(PetscArraycpy(momentum->linear, sums, 3));
-  PetscCall(PetscArraycpy(momentum->angular, sums + 3, 3));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyRigidFindResultant(Body body, Vec f, Resultant *resultant)
-{
-  const PetscInt     dim      = body->mesh.dim;
-  PetscReal          sums[12] = {0};
-  const PetscScalar *force;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(f, &force));
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    PetscReal Y[3];
-
-    BodyRigidGetArm(body, node, Y);
-    for (PetscInt d = 0; d < dim; d++) {
-      const PetscReal component = PetscRealPart(force[node * dim + d]);
-
-      sums[d] += component;
-      for (PetscInt b = 0; b < dim; b++) sums[3 + 3 * d + b] += component * Y[b];
-    }
-  }
-  PetscCall(VecRestoreArrayRead(f, &force));
-  PetscCall(BodyRigidSum(body, 12, sums));
-  PetscCall(PetscArraycpy(resultant->force, sums, 3));
-  PetscCall(PetscArraycpy(resultant->dyad, sums + 3, 9));
+  PetscCall(BodyMultiplyMass(body, v, body->work.nodes[0]));
+  PetscCall(BodyRigidFindResultant(body, NULL, body->work.nodes[0], &sums));
+  PetscCall(PetscArraycpy(momentum->linear, sums.force, 3));
+  RigidTorque(motion->rotation, sums.dyad, momentum->angular);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -199,48 +168,31 @@ void BodyRigidFindAcceleration(Body body, const PetscReal force[3], const PetscR
 /* Second moments of the mass matrix, which have the inertia in them, and of the masses of nodes, by which a place is found */
 PetscErrorCode BodyRigidFindInertia(Body body)
 {
-  BodyRigid         *rigid    = BodyGetRigid(body);
-  const PetscInt     dim      = body->mesh.dim;
-  PetscReal          sums[18] = {0}, trace;
-  PetscScalar       *arm;
-  const PetscScalar *moment, *mass;
-  Vec                Y = body->work.nodes[0], MY = body->work.nodes[1];
+  BodyRigid     *rigid = BodyGetRigid(body);
+  const PetscInt dim   = body->mesh.dim;
+  PetscReal      trace;
+  PetscScalar   *arm;
+  Vec            Y = body->work.nodes[0], MY = body->work.nodes[1];
+  Resultant      moments, spread;
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(Y, &arm));
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    PetscReal y[3];
-
-    BodyRigidGetArm(body, node, y);
-    for (PetscInt d = 0; d < dim; d++) arm[node * dim + d] = y[d];
-  }
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++) arm[i] = body->mesh.coordinates[i] - body->mass.centre[i % dim];
   PetscCall(VecRestoreArrayWrite(Y, &arm));
   PetscCall(BodyMultiplyMass(body, Y, MY));
-  PetscCall(VecGetArrayRead(MY, &moment));
-  PetscCall(VecGetArrayRead(body->mass.row_sum, &mass));
-  for (PetscInt node = 0; node < body->mesh.owned_nodes; node++) {
-    PetscReal y[3];
-
-    BodyRigidGetArm(body, node, y);
-    for (PetscInt a = 0; a < dim; a++)
-      for (PetscInt b = 0; b < dim; b++) {
-        sums[3 * a + b] += y[a] * PetscRealPart(moment[node * dim + b]);
-        sums[9 + 3 * a + b] += y[a] * y[b] * PetscRealPart(mass[node * dim + b]);
-      }
-  }
-  PetscCall(VecRestoreArrayRead(body->mass.row_sum, &mass));
-  PetscCall(VecRestoreArrayRead(MY, &moment));
-  PetscCall(BodyRigidSum(body, 18, sums));
-  PetscCall(PetscArraycpy(rigid->spread, sums + 9, 9));
+  PetscCall(BodyRigidFindResultant(body, NULL, MY, &moments));
+  PetscCall(BodyRigidFindResultant(body, body->mass.row_sum, Y, &spread));
+  PetscCall(PetscArraycpy(rigid->spread, spread.dyad, 9));
   if (!rigid->turns) PetscFunctionReturn(PETSC_SUCCESS);
-  trace = sums[0] + sums[4] + sums[8];
+  trace = moments.dyad[0] + moments.dyad[4] + moments.dyad[8];
   if (dim == 2) {
     rigid->inertia[8] = trace;
     rigid->inverse[8] = 1 / trace;
     rigid->spread[8]  = 1; /* nothing lies across the plane */
   } else {
     for (PetscInt i = 0; i < 3; i++)
-      for (PetscInt j = 0; j < 3; j++) rigid->inertia[3 * i + j] = (i == j ? trace : 0) - 0.5 * (sums[3 * i + j] + sums[3 * j + i]);
+      for (PetscInt j = 0; j < 3; j++)
+        rigid->inertia[3 * i + j] = (i == j ? trace : 0) - 0.5 * (moments.dyad[3 * i + j] + moments.dyad[3 * j + i]);
     PetscCheck(RigidInvert(rigid->inertia, rigid->inverse), PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
                "Rigid body '%s' has no moment of inertia about some axis: its mesh is a line", body->hdr.name);
   }

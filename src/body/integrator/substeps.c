@@ -66,7 +66,7 @@ PetscErrorCode BodyMakeSubsteps(Body body)
     PetscCall(BodyCheckSubstep(body));
     if (BodyHasStopped(body)) break;
     if (body->rows.any_by_mean) PetscCall(BodyEndMeanForce(body));
-    PetscCall((*body->integrator->ops.finishsubstep)(body));
+    if (body->integrator->ops.finishsubstep) PetscCall((*body->integrator->ops.finishsubstep)(body));
     if (!body->state.incomplete) PetscCall(BodyEndHistory(body));
     PetscCall(BodyWriteTraces(body, body->time.substep + 1));
     if (body->time.substeps > 1) {

@@ -18,7 +18,7 @@ typedef struct {
   PetscErrorCode (*step)(Body);     /* (NULL) makes a substep in place of TSStep(); may be set in setup() */
   PetscErrorCode (*checksubstep)(
       Body); /* (NULL) after TSStep(): notes in the body's failure where, and why, the equations of the substep were not solved */
-  /* after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and what else the TS leaves undone */
+  /* (NULL) after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and what else the TS leaves undone */
   PetscErrorCode (*finishsubstep)(Body);
   /* (NULL) after the one substep of a controller step: moves its end state to the present inputs, given by how much more force acts on
      forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
