@@ -1,31 +1,31 @@
 /* What unit forces on nodes of a body bring about in a controller step from rest, without loads; afterwards it is as it was. */
 #include <body/layout/bodyimpl.h>
 
-/* A force of 1 N along one displacement, at the end of the controller step or throughout it, so that the step starts from it too */
-static PetscErrorCode SetUnitNodalForce(Body body, PetscInt dof)
+/* BodySetUnit - a vector laid out as displacements that is 1 at one of them, by its number on all ranks, and else 0 */
+PetscErrorCode BodySetUnit(Vec vec, PetscInt dof)
 {
-  const Vec force = body->rows.nodal_force;
-  PetscInt  begin, end;
+  PetscInt begin, end;
 
   PetscFunctionBegin;
-  PetscCall(VecZeroEntries(force));
-  PetscCall(VecGetOwnershipRange(force, &begin, &end));
-  if (dof >= begin && dof < end) PetscCall(VecSetValue(force, dof, 1, INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(force));
-  PetscCall(VecAssemblyEnd(force));
-  if (body->rows.nodal_shape == BODY_FORCE_LINEAR) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(force, body->work.nodes[0]));
-  PetscCall(BodyAnswerAtStart(body, body->saved.a));
+  PetscCall(VecZeroEntries(vec));
+  PetscCall(VecGetOwnershipRange(vec, &begin, &end));
+  if (dof >= begin && dof < end) PetscCall(VecSetValue(vec, dof, 1, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(vec));
+  PetscCall(VecAssemblyEnd(vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The substeps of a controller step, from the saved state, whose displacements become a column */
+/* The substeps of a controller step under a force of 1 N, from the saved state, whose displacements become a column */
 static PetscErrorCode ProbeColumn(Body body, PetscInt dof, Compliance matrices)
 {
   const PetscScalar *u;
 
   PetscFunctionBegin;
-  PetscCall(SetUnitNodalForce(body, dof));
+  PetscCall(BodySetUnit(body->rows.nodal_force, dof));
+  if (body->rows.nodal_shape == BODY_FORCE_CONSTANT) { /* the step starts from it too */
+    PetscCall(VecCopy(body->rows.nodal_force, body->work.nodes[0]));
+    PetscCall(BodyAnswerAtStart(body, body->saved.a));
+  }
   PetscCall(BodyRestore(body));
   StepFailureClear(&body->failure);
   PetscCall(BodyMakeSubsteps(body));

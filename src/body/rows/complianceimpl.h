@@ -22,9 +22,9 @@ struct _BodyCompliance {
 PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], PetscInt *, NodalMatrix *,
                                              PetscBool *);
 PETSC_INTERN PetscErrorCode BodyCreateNodalCompliance(Body, Compliance *);
-PETSC_INTERN PetscErrorCode NodalMatrixProbe(Body, const NodalMatrix, PetscInt, const PetscInt[], Compliance);
+PETSC_INTERN PetscErrorCode NodalMatrixProbe(Body, const NodalMatrix, BodyForceShape, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode FrontCreateMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode FrontProbe(Body, Mat, BodyForceShape, PetscInt, const PetscInt[], Compliance);
-PETSC_INTERN PetscErrorCode BodyCreateSlabFunctions(Mat, Vec, PetscInt, Vec, PetscInt, IS *, Mat *);
+PETSC_INTERN PetscErrorCode BodyCreateSlabFunctions(Body, Mat, PetscInt, const PetscInt[], PetscInt, Mat *);
 PETSC_INTERN const char    *NodalMatrixDescribe(const NodalMatrix);
 PETSC_INTERN PetscErrorCode NodalMatrixDestroy(NodalMatrix *);

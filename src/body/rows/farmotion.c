@@ -12,217 +12,161 @@
 /* Edge of a coarse cell, in edges of elements as they are on average */
 #define CELL 4
 
-/* The coarse grid. Nodes that have no weight in any dof have no number. */
+/* The coarse grid */
 typedef struct {
-  PetscInt  dim, cells[3], n_all; /* the latter: of nodes times components */
+  PetscInt  dim, cells[3];
   PetscReal lower[3], edge[3];
-  PetscInt  n;       /* of these that have a number */
-  PetscInt *numbers; /* of each, or -1 */
+  PetscInt  begin, n; /* its first column, and how many it has: nodes times components */
 } Coarse;
 
-/* One with weight in a dof */
-typedef struct {
-  PetscInt  index;
-  PetscReal weight;
-} CoarseWeight;
-
-static PetscErrorCode CreateCoarse(Vec positions, PetscInt dim, Coarse *coarse)
+static PetscErrorCode LayCoarse(Body body, Coarse *coarse)
 {
-  PetscReal          box[6] = {PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL, PETSC_MIN_REAL}, edge = 1;
-  PetscInt           n, size;
-  const PetscScalar *x;
+  const PetscInt dim = body->mesh.dim;
+  PetscReal      upper[3], edge = 1;
 
   PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(positions, &n));
-  PetscCall(VecGetSize(positions, &size));
-  PetscCall(VecGetArrayRead(positions, &x));
-  for (PetscInt i = 0; i < n; i++) {
-    box[i % dim]     = PetscMax(box[i % dim], PetscRealPart(x[i]));
-    box[3 + i % dim] = PetscMax(box[3 + i % dim], -PetscRealPart(x[i]));
-  }
-  PetscCall(VecRestoreArrayRead(positions, &x));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, box, 6, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)positions)));
-  for (PetscInt k = 0; k < dim; k++) edge *= box[k] + box[3 + k];
-  edge          = CELL * PetscPowReal(edge * dim / (PetscReal)size, 1 / (PetscReal)dim);
-  coarse->dim   = dim;
-  coarse->n_all = dim;
+  PetscCall(DMGetBoundingBox(body->mesh.dm, coarse->lower, upper));
+  PetscCall(VecGetSize(body->mesh.positions, &coarse->begin));
+  for (PetscInt k = 0; k < dim; k++) edge *= upper[k] - coarse->lower[k];
+  edge        = CELL * PetscPowReal(edge * dim / (PetscReal)coarse->begin, 1 / (PetscReal)dim);
+  coarse->dim = coarse->n = dim;
   for (PetscInt k = 0; k < dim; k++) {
-    const PetscReal extent = box[k] + box[3 + k];
-
-    coarse->cells[k] = PetscMax(1, (PetscInt)(extent / edge + 0.5));
-    coarse->lower[k] = -box[3 + k];
-    coarse->edge[k]  = extent / (PetscReal)coarse->cells[k];
-    coarse->n_all *= coarse->cells[k] + 1;
+    coarse->cells[k] = PetscMax(1, (PetscInt)((upper[k] - coarse->lower[k]) / edge + 0.5));
+    coarse->edge[k]  = (upper[k] - coarse->lower[k]) / (PetscReal)coarse->cells[k];
+    coarse->n *= coarse->cells[k] + 1;
   }
-  PetscCall(PetscMalloc1(coarse->n_all, &coarse->numbers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The coarse nodes around a point, and their weights, for one component of a displacement */
-static PetscInt FindWeights(const Coarse *coarse, const PetscScalar x[], PetscInt component, CoarseWeight list[8])
+/* The columns of the coarse nodes around a point, for one component of a displacement, and their weights */
+static PetscInt FindWeights(const Coarse *coarse, const PetscScalar x[], PetscInt component, PetscInt columns[8], PetscScalar weights[8])
 {
   PetscInt n = 0;
 
   for (PetscInt corner = 0; corner < 1 << coarse->dim; corner++) {
-    CoarseWeight *to = &list[n];
+    PetscInt  index  = 0;
+    PetscReal weight = 1;
 
-    *to = (CoarseWeight){.index = 0, .weight = 1};
     for (PetscInt k = 0; k < coarse->dim; k++) {
       const PetscReal at   = (PetscRealPart(x[k]) - coarse->lower[k]) / coarse->edge[k];
       const PetscInt  cell = PetscMin((PetscInt)at, coarse->cells[k] - 1), next = corner >> k & 1;
 
-      to->index = to->index * (coarse->cells[k] + 1) + cell + next;
-      to->weight *= next ? at - (PetscReal)cell : 1 - (at - (PetscReal)cell);
+      index = index * (coarse->cells[k] + 1) + cell + next;
+      weight *= next ? at - (PetscReal)cell : 1 - (at - (PetscReal)cell);
     }
-    to->index = to->index * coarse->dim + component;
-    if (to->weight > PETSC_SQRT_MACHINE_EPSILON) n++;
+    if (weight <= PETSC_SQRT_MACHINE_EPSILON) continue;
+    columns[n]   = coarse->begin + index * coarse->dim + component;
+    weights[n++] = weight;
   }
   return n;
 }
 
-/* Which of this rank's dofs the coarse grid moves: none of the slab, and none that is held, whose row of A has its diagonal entry alone */
-static PetscErrorCode FindMoved(Mat A, IS near, PetscBool moved[])
+/* Marks the displacements within so many layers of elements of those that are marked, by the entries of A */
+static PetscErrorCode MarkNear(Mat A, PetscInt layers, Vec near)
 {
-  const PetscInt *dofs;
-  PetscInt        begin, end, n;
-
-  PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRange(A, &begin, &end));
-  for (PetscInt i = begin; i < end; i++) {
-    const PetscInt    *columns;
-    const PetscScalar *values;
-
-    moved[i - begin] = PETSC_FALSE;
-    PetscCall(MatGetRow(A, i, &n, &columns, &values));
-    for (PetscInt k = 0; k < n && !moved[i - begin]; k++) moved[i - begin] = (PetscBool)(columns[k] != i && values[k] != 0);
-    PetscCall(MatRestoreRow(A, i, &n, &columns, &values));
-  }
-  PetscCall(ISGetLocalSize(near, &n));
-  PetscCall(ISGetIndices(near, &dofs));
-  for (PetscInt k = 0; k < n; k++) moved[dofs[k] - begin] = PETSC_FALSE;
-  PetscCall(ISRestoreIndices(near, &dofs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Numbers the coarse nodes that have weight in dofs of any rank */
-static PetscErrorCode NumberCoarse(Coarse *coarse, Vec positions, const PetscBool moved[])
-{
-  PetscInt           n;
-  const PetscScalar *x;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(positions, &n));
-  PetscCall(PetscArrayzero(coarse->numbers, coarse->n_all));
-  PetscCall(VecGetArrayRead(positions, &x));
-  for (PetscInt i = 0; i < n; i++) {
-    CoarseWeight   list[8];
-    const PetscInt of = moved[i] ? FindWeights(coarse, &x[i - i % coarse->dim], i % coarse->dim, list) : 0;
-
-    for (PetscInt k = 0; k < of; k++) coarse->numbers[list[k].index] = 1;
-  }
-  PetscCall(VecRestoreArrayRead(positions, &x));
-  PetscCallMPI(
-      MPI_Allreduce(MPI_IN_PLACE, coarse->numbers, (PetscMPIInt)coarse->n_all, MPIU_INT, MPI_MAX, PetscObjectComm((PetscObject)positions)));
-  coarse->n = 0;
-  for (PetscInt k = 0; k < coarse->n_all; k++) coarse->numbers[k] = coarse->numbers[k] ? coarse->n++ : -1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The columns of the slab's dofs come first on each rank, then, on the last one, all coarse ones */
-static PetscErrorCode FillFunctions(const Coarse *coarse, Vec positions, IS near, const PetscBool moved[], Mat P)
-{
+  PetscInt           n, count = 0, begin, *list;
   const PetscInt    *dofs;
-  const PetscScalar *x;
-  PetscInt           begin, n, column, n_near, n_columns;
+  const PetscScalar *marked;
+  IS                 reach;
 
   PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(positions, &n));
-  PetscCall(MatGetOwnershipRange(P, &begin, NULL));
-  PetscCall(MatGetOwnershipRangeColumn(P, &column, NULL));
-  PetscCall(MatGetSize(P, NULL, &n_columns));
-  PetscCall(ISGetLocalSize(near, &n_near));
-  PetscCall(ISGetIndices(near, &dofs));
-  for (PetscInt k = 0; k < n_near; k++) PetscCall(MatSetValue(P, dofs[k], column + k, 1, INSERT_VALUES));
-  PetscCall(ISRestoreIndices(near, &dofs));
-  PetscCall(VecGetArrayRead(positions, &x));
-  for (PetscInt i = 0; i < n; i++) {
-    CoarseWeight   list[8];
-    const PetscInt of = moved[i] ? FindWeights(coarse, &x[i - i % coarse->dim], i % coarse->dim, list) : 0;
-
-    for (PetscInt k = 0; k < of; k++)
-      PetscCall(MatSetValue(P, begin + i, n_columns - coarse->n + coarse->numbers[list[k].index], list[k].weight, INSERT_VALUES));
-  }
-  PetscCall(VecRestoreArrayRead(positions, &x));
-  PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Mark(IS dofs, Vec mark)
-{
-  const PetscInt *dof;
-  PetscInt        n;
-
-  PetscFunctionBegin;
-  PetscCall(ISGetLocalSize(dofs, &n));
-  PetscCall(ISGetIndices(dofs, &dof));
-  for (PetscInt i = 0; i < n; i++) PetscCall(VecSetValue(mark, dof[i], 1, INSERT_VALUES));
-  PetscCall(ISRestoreIndices(dofs, &dof));
-  PetscCall(VecAssemblyBegin(mark));
-  PetscCall(VecAssemblyEnd(mark));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ListMarked(Vec mark, IS *is)
-{
-  PetscInt           count = 0, *dofs, begin, n;
-  const PetscScalar *values;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(mark, &n));
-  PetscCall(VecGetOwnershipRange(mark, &begin, NULL));
-  PetscCall(VecGetArrayRead(mark, &values));
-  PetscCall(PetscMalloc1(n, &dofs));
+  PetscCall(VecGetLocalSize(near, &n));
+  PetscCall(VecGetOwnershipRange(near, &begin, NULL));
+  PetscCall(PetscMalloc1(n, &list));
+  PetscCall(VecGetArrayRead(near, &marked));
   for (PetscInt i = 0; i < n; i++)
-    if (values[i] != 0) dofs[count++] = begin + i;
-  PetscCall(VecRestoreArrayRead(mark, &values));
-  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)mark), count, dofs, PETSC_COPY_VALUES, is));
-  PetscCall(PetscFree(dofs));
+    if (marked[i] != 0) list[count++] = begin + i;
+  PetscCall(VecRestoreArrayRead(near, &marked));
+  PetscCall(ISCreateGeneral(PetscObjectComm((PetscObject)A), count, list, PETSC_OWN_POINTER, &reach));
+  PetscCall(MatIncreaseOverlap(A, 1, &reach, layers));
+  PetscCall(ISGetLocalSize(reach, &n));
+  PetscCall(ISGetIndices(reach, &dofs));
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecSetValue(near, dofs[i], 1, ADD_VALUES));
+  PetscCall(ISRestoreIndices(reach, &dofs));
+  PetscCall(ISDestroy(&reach));
+  PetscCall(VecAssemblyBegin(near));
+  PetscCall(VecAssemblyEnd(near));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* P, the displacements near a surface and what the body may do beyond them on a coarse grid: all dofs by functions, those near the surface
-   first on each rank. `A`: matrix of the body, without entries beside the diagonal in rows of held dofs; `surface`: not zero on dofs of
-   which functions have those one by one that are within so many layers of elements, which become `near` */
-PetscErrorCode BodyCreateSlabFunctions(Mat A, Vec positions, PetscInt dim, Vec surface, PetscInt layers, IS *near, Mat *functions)
+/* All functions of all displacements: those near the surface one by one, the coarse grid on others that are not held */
+static PetscErrorCode Fill(const Coarse *coarse, Vec positions, Vec near, Vec free, Mat all)
 {
-  MPI_Comm    comm   = PetscObjectComm((PetscObject)A);
-  Coarse      coarse = {0};
-  PetscBool  *moved;
-  PetscInt    n, n_near;
+  const PetscScalar *x, *is_near, *is_free, one = 1;
+  PetscScalar        weights[8];
+  PetscInt           begin, end, columns[8];
+
+  PetscFunctionBegin;
+  PetscCall(VecGetOwnershipRange(near, &begin, &end));
+  PetscCall(VecGetArrayRead(positions, &x));
+  PetscCall(VecGetArrayRead(near, &is_near));
+  PetscCall(VecGetArrayRead(free, &is_free));
+  for (PetscInt row = begin; row < end; row++) {
+    const PetscInt i = row - begin, d = i % coarse->dim;
+
+    if (is_near[i] != 0) PetscCall(MatSetValues(all, 1, &row, 1, &row, &one, INSERT_VALUES));
+    else if (is_free[i] != 0)
+      PetscCall(MatSetValues(all, 1, &row, FindWeights(coarse, &x[i - d], d, columns, weights), columns, weights, INSERT_VALUES));
+  }
+  PetscCall(VecRestoreArrayRead(free, &is_free));
+  PetscCall(VecRestoreArrayRead(near, &is_near));
+  PetscCall(VecRestoreArrayRead(positions, &x));
+  PetscCall(MatAssemblyBegin(all, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(all, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The columns of a matrix that have entries */
+static PetscErrorCode DropEmptyColumns(Mat all, Mat *functions)
+{
+  MPI_Comm   comm = PetscObjectComm((PetscObject)all);
+  PetscInt   begin, end, n, count = 0, *list;
+  PetscReal *norms;
+  IS         rows, columns;
+
+  PetscFunctionBegin;
+  PetscCall(MatGetSize(all, NULL, &n));
+  PetscCall(MatGetOwnershipRangeColumn(all, &begin, &end));
+  PetscCall(PetscMalloc1(n, &norms));
+  PetscCall(PetscMalloc1(end - begin, &list));
+  PetscCall(MatGetColumnNorms(all, NORM_INFINITY, norms));
+  for (PetscInt k = begin; k < end; k++)
+    if (norms[k] > 0) list[count++] = k;
+  PetscCall(ISCreateGeneral(comm, count, list, PETSC_OWN_POINTER, &columns));
+  PetscCall(MatGetOwnershipRange(all, &begin, &end));
+  PetscCall(ISCreateStride(comm, end - begin, begin, 1, &rows));
+  PetscCall(MatCreateSubMatrix(all, rows, columns, MAT_INITIAL_MATRIX, functions));
+  PetscCall(ISDestroy(&rows));
+  PetscCall(ISDestroy(&columns));
+  PetscCall(PetscFree(norms));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* P, the displacements near a surface and what the body may do beyond them on a coarse grid: all dofs by functions. The surface has the
+   entries of all rows and n displacements; those within so many layers of elements of it come one by one. `A`: a matrix of the body */
+PetscErrorCode BodyCreateSlabFunctions(Body body, Mat A, PetscInt n, const PetscInt dofs[], PetscInt layers, Mat *functions)
+{
+  MPI_Comm    comm = PetscObjectComm((PetscObject)A);
+  const Vec   near = body->work.nodes[0], free = body->work.nodes[1];
+  Coarse      coarse;
+  PetscInt    local;
   PetscMPIInt rank, size;
-  IS          reach;
+  Mat         all;
 
   PetscFunctionBegin;
   PetscCallMPI(MPI_Comm_rank(comm, &rank));
   PetscCallMPI(MPI_Comm_size(comm, &size));
-  PetscCall(ListMarked(surface, &reach));
-  PetscCall(MatIncreaseOverlap(A, 1, &reach, layers));
-  PetscCall(Mark(reach, surface));
-  PetscCall(ISDestroy(&reach));
-  PetscCall(ListMarked(surface, near));
-  PetscCall(MatGetLocalSize(A, &n, NULL));
-  PetscCall(ISGetLocalSize(*near, &n_near));
-  PetscCall(PetscMalloc1(n, &moved));
-  PetscCall(FindMoved(A, *near, moved));
-  PetscCall(CreateCoarse(positions, dim, &coarse));
-  PetscCall(NumberCoarse(&coarse, positions, moved));
-  PetscCall(MatCreate(comm, functions));
-  PetscCall(MatSetSizes(*functions, n, n_near + (rank == size - 1 ? coarse.n : 0), PETSC_DETERMINE, PETSC_DETERMINE));
-  PetscCall(MatSetType(*functions, MATAIJ));
-  PetscCall(MatSetUp(*functions));
-  PetscCall(FillFunctions(&coarse, positions, *near, moved, *functions));
-  PetscCall(PetscFree(coarse.numbers));
-  PetscCall(PetscFree(moved));
+  PetscCall(VecZeroEntries(near));
+  for (PetscInt i = 0; i < n; i++) PetscCall(VecSetValue(near, dofs[i], 1, ADD_VALUES));
+  PetscCall(BodyMarkColumns(body->rows.matrix, near));
+  PetscCall(MarkNear(A, layers, near));
+  PetscCall(VecSet(free, 1));
+  PetscCall(BodyZeroHeld(body, free));
+  PetscCall(LayCoarse(body, &coarse));
+  PetscCall(MatGetLocalSize(A, &local, NULL));
+  PetscCall(MatCreateAIJ(comm, local, local + (rank == size - 1 ? coarse.n : 0), PETSC_DETERMINE, PETSC_DETERMINE, 8, NULL, 8, NULL, &all));
+  PetscCall(Fill(&coarse, body->mesh.positions, near, free, all));
+  PetscCall(DropEmptyColumns(all, functions));
+  PetscCall(MatDestroy(&all));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,7 +1,7 @@
 /* Displacements of nodes under unit forces on them, at the end of a controller step of one substep, by solutions with a matrix in place of
    controller steps. Which matrix that is:
 
-   - the stiffness of the massless layer, of an explicit body whose forces grow from none: exact for linear bodies. Nodes with mass do not
+   - the tangent of the massless layer, of an explicit body whose forces grow from none: exact for linear bodies. Nodes with mass do not
      feel what acts at the end of a step alone;
    - the effective matrix A of an implicit body: exact for linear ones; of nonlinear ones that of the last iteration of Newton's method;
    - that of a slab at the surface and what the body may do beyond it on a coarse grid, P^T A P, undeformed: approximate. Whoever uses it
@@ -19,14 +19,11 @@
 #define MANY       100   /* displacements, from which on a slab is asked and not controller steps */
 #define SMALL_BODY 5000  /* displacements of a body whose own matrix is asked however many they are: a solution costs little then */
 
-typedef enum { BY_BODY, BY_LAYER, BY_SLAB, BY_FRONT } Kind;
+typedef enum { BY_STEPS = NODAL_BY_STEPS, BY_BODY, BY_LAYER, BY_SLAB, BY_FRONT } Kind;
 
 struct _NodalMatrix {
   Kind              kind;
-  BodyForceShape    shape;
-  NodalMatrix       layer;     /* of massless nodes, where a constant force counts twice on all but them; else NULL */
   Mat               functions; /* P; NULL: all displacements, one by one */
-  IS                near;      /* which displacements of this rank its first columns are, one by one */
   ConstrainedSolver solver;    /* that the body has for the matrix; NULL: the following are */
   Mat               matrix;    /* P^T A P, or the stiffness */
   KSP               ksp;
@@ -39,8 +36,6 @@ PetscErrorCode NodalMatrixDestroy(NodalMatrix *nodal)
   PetscCall(MatDestroy(&(*nodal)->functions));
   PetscCall(MatDestroy(&(*nodal)->matrix));
   PetscCall(KSPDestroy(&(*nodal)->ksp));
-  PetscCall(NodalMatrixDestroy(&(*nodal)->layer));
-  PetscCall(ISDestroy(&(*nodal)->near));
   PetscCall(PetscFree(*nodal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -58,30 +53,35 @@ PetscErrorCode BodyNodalComplianceFollows(Body body, PetscInt n, PetscBool *foll
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What tells how n displacements answer; whether anything does but controller steps */
-static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *kind, PetscBool *any)
+/* What tells how n displacements answer */
+static PetscErrorCode Choose(Body body, BodyForceShape shape, PetscInt n, Kind *kind)
 {
   const PetscBool is_explicit = (PetscBool)(body->integrator->staggered > 0), inertia = body->integrator->has_inertia;
+  const PetscBool lumped  = (PetscBool)(body->mass.inverse && !body->layer.exists && !body->damping);
   PetscBool       follows = PETSC_FALSE;
-  PetscMPIInt     size;
   PetscInt        all;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Comm_size(PetscObjectComm((PetscObject)body), &size));
-  *kind = BY_FRONT;
-  *any  = (PetscBool)(size == 1 && is_explicit && n > MANY && body->mass.inverse && !body->layer.exists && !body->damping);
-  if (!body->integrator->deforms) *any = PETSC_FALSE;
-  if (!body->integrator->deforms || body->time.substeps > 1) PetscFunctionReturn(PETSC_SUCCESS);
+  *kind = BY_STEPS;
+  if (!body->integrator->deforms) PetscFunctionReturn(PETSC_SUCCESS);
+  if (body->time.substeps > 1) {
+    if (body->rows.size == 1 && is_explicit && n > MANY && lumped) *kind = BY_FRONT;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  if (!body->solver) PetscFunctionReturn(PETSC_SUCCESS);
+  if (is_explicit) {
+    if (shape == BODY_FORCE_LINEAR && body->layer.exists) *kind = BY_LAYER;
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(VecGetSize(body->state.u, &all));
   PetscCall(BodyNodalComplianceFollows(body, n, &follows));
-  *kind = is_explicit ? BY_LAYER : follows || (body->model.linear && (n <= MANY || all <= SMALL_BODY || !inertia)) ? BY_BODY : BY_SLAB;
-  *any  = (PetscBool)(is_explicit ? shape == BODY_FORCE_LINEAR && body->layer.exists && body->solver
-                                  : body->solver && (follows || body->model.linear || (inertia && n > MANY)));
+  if (follows || (body->model.linear && (n <= MANY || all <= SMALL_BODY || !inertia))) *kind = BY_BODY;
+  else if (body->model.linear || (inertia && n > MANY)) *kind = BY_SLAB;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The matrix of the whole undeformed body: the effective matrix of one that is linear, which on massless nodes is the stiffness */
-static PetscErrorCode GetMatrix(Body body, Kind kind, Mat *A)
+/* The effective matrix of the whole undeformed body */
+static PetscErrorCode GetMatrix(Body body, Mat *A)
 {
   PetscFunctionBegin;
   if (body->model.linear) {
@@ -91,47 +91,9 @@ static PetscErrorCode GetMatrix(Body body, Kind kind, Mat *A)
   }
   PetscCall(BodyCreateMatrix(body, NULL, A));
   PetscCall(BodyAssembleTangent(body, NULL, NULL, *A));
-  if (kind == BY_SLAB) PetscCall(BodyAddMassMatrix(body, 4 / PetscSqr(body->time.step), *A));
+  PetscCall(BodyAddMassMatrix(body, 4 / PetscSqr(body->time.step), *A));
   PetscCall(BodyAddSpringStiffness(body, *A));
   PetscCall(BodyEliminateHeld(body, *A));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* P of a slab at the displacements that rows have entries in, and those asked for */
-static PetscErrorCode CreateSlabFunctions(Body body, PetscInt n, const PetscInt dofs[], Mat A, NodalMatrix nodal)
-{
-  Vec surface;
-
-  PetscFunctionBegin;
-  PetscCall(BodyCreateVec(body, &surface));
-  PetscCall(VecZeroEntries(surface));
-  for (PetscInt i = 0; i < n; i++) PetscCall(VecSetValue(surface, dofs[i], 1, ADD_VALUES));
-  PetscCall(BodyMarkColumns(body->rows.matrix, surface));
-  PetscCall(BodyCreateSlabFunctions(A, body->mesh.positions, body->mesh.dim, surface, LAYERS, &nodal->near, &nodal->functions));
-  PetscCall(VecDestroy(&surface));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* P of a layer: its displacements, one by one */
-static PetscErrorCode CreateLayerFunctions(Body body, NodalMatrix nodal)
-{
-  MPI_Comm       comm   = PetscObjectComm((PetscObject)body);
-  const PetscInt n_dofs = body->layer.n_dofs;
-  PetscInt       n, begin, column, *near;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(body->state.u, &n));
-  PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
-  PetscCall(MatCreateAIJ(comm, n, n_dofs, PETSC_DETERMINE, PETSC_DETERMINE, 1, NULL, 0, NULL, &nodal->functions));
-  PetscCall(MatGetOwnershipRangeColumn(nodal->functions, &column, NULL));
-  PetscCall(PetscMalloc1(n_dofs, &near));
-  for (PetscInt k = 0; k < n_dofs; k++) {
-    near[k] = begin + body->layer.dofs[k];
-    PetscCall(MatSetValue(nodal->functions, near[k], column + k, 1, INSERT_VALUES));
-  }
-  PetscCall(ISCreateGeneral(comm, n_dofs, near, PETSC_OWN_POINTER, &nodal->near));
-  PetscCall(MatAssemblyBegin(nodal->functions, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(nodal->functions, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -143,13 +105,11 @@ static PetscErrorCode Factor(Body body, NodalMatrix nodal, Mat A)
   PetscFunctionBegin;
   PetscCall(MatPtAP(A, nodal->functions, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &nodal->matrix));
   PetscCall(MatProductClear(nodal->matrix)); /* which would keep A */
-  if (nodal->kind == BY_SLAB) {
-    PetscCall(MatCreateVecs(nodal->matrix, &diagonal, NULL));
-    PetscCall(MatGetDiagonal(nodal->matrix, diagonal));
-    PetscCall(VecScale(diagonal, SHIFT));
-    PetscCall(MatDiagonalSet(nodal->matrix, diagonal, ADD_VALUES));
-    PetscCall(VecDestroy(&diagonal));
-  }
+  PetscCall(MatCreateVecs(nodal->matrix, &diagonal, NULL));
+  PetscCall(MatGetDiagonal(nodal->matrix, diagonal));
+  PetscCall(VecScale(diagonal, SHIFT));
+  PetscCall(MatDiagonalSet(nodal->matrix, diagonal, ADD_VALUES));
+  PetscCall(VecDestroy(&diagonal));
   PetscCall(KSPCreate(PetscObjectComm((PetscObject)body), &nodal->ksp));
   PetscCall(KSPSetType(nodal->ksp, KSPPREONLY));
   PetscCall(KSPGetPC(nodal->ksp, &pc));
@@ -159,45 +119,29 @@ static PetscErrorCode Factor(Body body, NodalMatrix nodal, Mat A)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode Create(Body body, Kind kind, PetscInt n, const PetscInt dofs[], NodalMatrix *result)
-{
-  NodalMatrix nodal;
-  Mat         A;
-
-  PetscFunctionBegin;
-  PetscCall(PetscNew(&nodal));
-  *result     = nodal;
-  nodal->kind = kind;
-  /* an explicit body has a solver for its layer alone */
-  if (kind == BY_BODY || body->integrator->staggered > 0) nodal->solver = body->solver;
-  if (kind == BY_FRONT) PetscCall(FrontCreateMatrix(body, &nodal->matrix));
-  if (kind == BY_BODY || kind == BY_FRONT) PetscFunctionReturn(PETSC_SUCCESS);
-  if (kind == BY_LAYER) PetscCall(CreateLayerFunctions(body, nodal));
-  if (nodal->solver) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetMatrix(body, kind, &A));
-  if (kind == BY_SLAB) PetscCall(CreateSlabFunctions(body, n, dofs, A, nodal));
-  PetscCall(Factor(body, nodal, A));
-  PetscCall(MatDestroy(&A));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* NodalMatrixRenew - the matrix that tells how some displacements answer, of n in all, in place of an old one; NULL: controller steps have
    to. `kind`: of the columns that are known, NODAL_BY_STEPS if by controller steps; `renewed`: they are of another one. */
 PetscErrorCode NodalMatrixRenew(Body body, BodyForceShape shape, PetscInt n, PetscInt n_dofs, const PetscInt dofs[], PetscInt *kind,
                                 NodalMatrix *nodal, PetscBool *renewed)
 {
-  Kind      chosen;
-  PetscBool has;
+  Kind chosen;
+  Mat  A;
 
   PetscFunctionBegin;
-  PetscCall(Choose(body, shape, n, &chosen, &has));
-  *renewed = (PetscBool)(*kind != (has ? (PetscInt)chosen : NODAL_BY_STEPS));
+  PetscCall(Choose(body, shape, n, &chosen));
+  *renewed = (PetscBool)(*kind != (PetscInt)chosen);
   if (*renewed) PetscCall(NodalMatrixDestroy(nodal));
-  *kind = has ? (PetscInt)chosen : NODAL_BY_STEPS;
-  if (!has || *nodal) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Create(body, chosen, n_dofs, dofs, nodal));
-  (*nodal)->shape = shape;
-  if (shape == BODY_FORCE_CONSTANT && body->layer.exists) PetscCall(Create(body, BY_LAYER, n_dofs, dofs, &(*nodal)->layer));
+  *kind = chosen;
+  if (chosen == BY_STEPS || *nodal) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(PetscNew(nodal));
+  (*nodal)->kind = chosen;
+  if (chosen == BY_BODY) (*nodal)->solver = body->solver;
+  if (chosen == BY_FRONT) PetscCall(FrontCreateMatrix(body, &(*nodal)->matrix));
+  if (chosen != BY_SLAB) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(GetMatrix(body, &A));
+  PetscCall(BodyCreateSlabFunctions(body, A, n_dofs, dofs, LAYERS, &(*nodal)->functions));
+  PetscCall(Factor(body, *nodal, A));
+  PetscCall(MatDestroy(&A));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -242,7 +186,7 @@ static PetscErrorCode SolveSparse(Body body, const NodalMatrix nodal, PetscInt n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacements under unit forces on some of them, at most COLUMNS: of all, or of those that P has one by one */
+/* Displacements under unit forces on some of them, at most COLUMNS, in terms of P */
 static PetscErrorCode Solve(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Mat *answers)
 {
   MPI_Comm    comm    = PetscObjectComm((PetscObject)body);
@@ -285,70 +229,69 @@ static PetscErrorCode Solve(Body body, const NodalMatrix nodal, PetscInt n, cons
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Columns of some displacements, at most COLUMNS. Displacements far from the surface are not asked for, and stay zero. */
-static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Compliance compliance)
+/* Columns of some displacements, at most COLUMNS */
+static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, BodyForceShape shape, PetscInt n, const PetscInt dofs[],
+                                   Compliance compliance)
 {
-  const NodalMatrix parts[]  = {nodal, nodal->layer};
-  const PetscReal   factor[] = {nodal->shape == BODY_FORCE_CONSTANT ? 2 : 1, -1};
-  const Vec         column   = body->work.nodes[0];
-  const PetscInt    n_parts  = nodal->layer ? 2 : 1;
-  const PetscInt   *near[2];
-  Mat               answers[2];
-  PetscInt          sizes[2], begin;
+  const Vec          column = body->work.nodes[0], of_layer = body->work.nodes[1];
+  const PetscBool    layer = (PetscBool)(nodal->kind == BY_LAYER || (shape == BODY_FORCE_CONSTANT && body->layer.exists));
+  const PetscScalar *values;
+  Mat                answers = NULL;
+  Vec                answer;
 
   PetscFunctionBegin;
-  PetscCall(VecGetOwnershipRange(column, &begin, NULL));
-  for (PetscInt p = 0; p < n_parts; p++) {
-    PetscCall(Solve(body, parts[p], n, dofs, &answers[p]));
-    if (parts[p]->functions) PetscCall(ISGetLocalSize(parts[p]->near, &sizes[p]));
-    else PetscCall(VecGetLocalSize(column, &sizes[p]));
-    if (parts[p]->functions) PetscCall(ISGetIndices(parts[p]->near, &near[p]));
+  if (nodal->kind != BY_LAYER) PetscCall(Solve(body, nodal, n, dofs, &answers));
+  if (answers && layer) { /* undeformed */
+    PetscCall(VecZeroEntries(of_layer));
+    PetscCall(BodyPrepareLayer(body, of_layer));
   }
-  PetscCall(VecZeroEntries(column));
   for (PetscInt k = 0; k < n; k++) {
-    PetscScalar *values;
-
-    PetscCall(VecGetArray(column, &values));
-    for (PetscInt p = 0; p < n_parts; p++) {
-      const PetscScalar *u;
-      PetscInt           leading;
-
-      PetscCall(MatDenseGetLDA(answers[p], &leading));
-      PetscCall(MatDenseGetArrayRead(answers[p], &u));
-      for (PetscInt i = 0; i < sizes[p]; i++) {
-        const PetscInt at = parts[p]->functions ? near[p][i] - begin : i;
-
-        values[at] = factor[p] * u[k * leading + i] + (p ? values[at] : 0);
-      }
-      PetscCall(MatDenseRestoreArrayRead(answers[p], &u));
+    PetscCall(VecZeroEntries(column));
+    if (answers) {
+      PetscCall(MatDenseGetColumnVecRead(answers, k, &answer));
+      if (nodal->functions) PetscCall(MatMult(nodal->functions, answer, column));
+      else PetscCall(VecCopy(answer, column));
+      PetscCall(MatDenseRestoreColumnVecRead(answers, k, &answer));
+      PetscCall(VecScale(column, shape == BODY_FORCE_CONSTANT ? 2 : 1));
     }
-    PetscCall(VecRestoreArray(column, &values));
+    if (layer) {
+      PetscCall(BodySetUnit(of_layer, dofs[k]));
+      if (answers) PetscCall(BodyApplyLayerCompliance(body, of_layer, of_layer));
+      else { /* by the factors of its balance */ PetscCall(BodyReadLayer(body, of_layer, body->layer.rhs));
+        PetscCall(ConstrainedSolverSolveFree(body->solver, body->layer.rhs, body->layer.solution));
+        PetscCall(VecZeroEntries(of_layer));
+        PetscCall(BodyWriteLayer(body, body->layer.solution, INSERT_VALUES, of_layer));
+      }
+      PetscCall(VecAXPY(column, answers ? -1 : 1, of_layer));
+    }
     PetscCall(BodyZeroHeld(body, column)); /* the matrix has some stiffness there */
-    PetscCall(VecGetArray(column, &values));
+    PetscCall(VecGetArrayRead(column, &values));
     PetscCall(ComplianceSetColumn(compliance, dofs[k], values));
-    PetscCall(VecRestoreArray(column, &values));
+    PetscCall(VecRestoreArrayRead(column, &values));
   }
-  for (PetscInt p = 0; p < n_parts; p++) {
-    if (parts[p]->functions) PetscCall(ISRestoreIndices(parts[p]->near, &near[p]));
-    PetscCall(MatDestroy(&answers[p]));
-  }
+  PetscCall(MatDestroy(&answers));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* NodalMatrixProbe - columns of displacements, by their numbers on all ranks */
-PetscErrorCode NodalMatrixProbe(Body body, const NodalMatrix nodal, PetscInt n, const PetscInt dofs[], Compliance compliance)
+/* NodalMatrixProbe - columns of displacements, by their numbers on all ranks; NULL: by controller steps */
+PetscErrorCode NodalMatrixProbe(Body body, const NodalMatrix nodal, BodyForceShape shape, PetscInt n, const PetscInt dofs[],
+                                Compliance compliance)
 {
   PetscInt some[COLUMNS], count = 0;
 
   PetscFunctionBegin;
+  if (!nodal) {
+    PetscCall(BodyProbeNodes(body, shape, n, dofs, compliance));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   if (nodal->kind == BY_FRONT) {
-    PetscCall(FrontProbe(body, nodal->matrix, nodal->shape, n, dofs, compliance));
+    PetscCall(FrontProbe(body, nodal->matrix, shape, n, dofs, compliance));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   for (PetscInt i = 0; i < n; i++) {
     if (!ComplianceKnows(compliance, dofs[i])) some[count++] = dofs[i];
     if (!count || (count < COLUMNS && i < n - 1)) continue;
-    PetscCall(SolveColumns(body, nodal, count, some, compliance));
+    PetscCall(SolveColumns(body, nodal, shape, count, some, compliance));
     count = 0;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -98,8 +98,7 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
                         ((PetscObject)body)->name, NodalMatrixDescribe(compliance->nodal_matrix)));
     PetscCall(ComplianceReserve(*nodal, unknown));
     if (probe) PetscCall((*probe)(body, shape, n, dofs, *nodal));
-    else if (compliance->nodal_matrix) PetscCall(NodalMatrixProbe(body, compliance->nodal_matrix, n, dofs, *nodal));
-    else PetscCall(BodyProbeNodes(body, shape, n, dofs, *nodal));
+    else PetscCall(NodalMatrixProbe(body, compliance->nodal_matrix, shape, n, dofs, *nodal));
     PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   }
   ComplianceGetRows(*nodal, NULL, NULL, place);
