@@ -150,36 +150,23 @@ static PetscErrorCode FinishSubstep(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Forces throughout the step: da = M^{-1} B^T df at its start, and the way and the velocity at mid-step that follow */
-static PetscErrorCode RepeatConstantForces(Body body, const PetscScalar force[])
-{
-  const PetscReal dt = body->time.step, scales[] = {1, 0.5 * dt, 0.5 * dt * dt};
-  const Vec       vecs[] = {body->saved.a, body->state.v, body->state.u};
-
-  PetscFunctionBegin;
-  if (BodyAnswersByNodes(body)) PetscCall(BodyAddAnswerOfNodes(body, force, PETSC_FALSE, 3, scales, vecs));
-  else {
-    PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
-    for (PetscInt k = 0; k < 3; k++) PetscCall(VecAXPY(vecs[k], scales[k], body->work.nodes[2]));
-  }
-  if (body->state.damping) PetscCall(BodyMultiplyDamping(body, body->state.u, body->state.v, body->state.damping));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* da = M^{-1} B^T df, dv = dt / 2 da: forces at the end of the substep, where contact nodes have mass, do nothing else */
+/* Contact nodes with mass. Forces at the end of the substep change da = M^{-1} B^T df there, and dv = dt/2 da. Forces throughout it change
+   the acceleration at its start, and the way and the velocity at mid-step that follow. */
 static PetscErrorCode RepeatForces(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
-  Vec change = body->work.nodes[2];
+  const PetscBool early = IsEarly(body);
+  const PetscReal dt = body->time.step, scales[] = {1, 0.5 * dt, 0.5 * dt * dt};
+  const Vec       vecs[] = {early ? body->saved.a : body->state.a, body->state.v, body->state.u};
+  const PetscInt  n      = early ? 3 : 2;
 
   PetscFunctionBegin;
   (void)displacement;
-  if (IsEarly(body)) {
-    PetscCall(RepeatConstantForces(body, force));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (early && BodyAnswersByNodes(body)) PetscCall(BodyAddAnswerOfNodes(body, force, PETSC_FALSE, n, scales, vecs));
+  else {
+    PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
+    for (PetscInt k = 0; k < n; k++) PetscCall(VecAXPY(vecs[k], scales[k], body->work.nodes[2]));
   }
-  PetscCall(BodySolveMassOfRows(body, force, change));
-  PetscCall(VecAXPY(body->state.a, 1, change));
-  PetscCall(VecAXPY(body->state.v, 0.5 * body->time.step, change));
+  if (early && body->state.damping) PetscCall(BodyMultiplyDamping(body, body->state.u, body->state.v, body->state.damping));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -115,35 +115,16 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The acceleration at the end by Newmark's formula, which TSALPHA2 keeps to itself */
-static PetscErrorCode ComputeAcceleration(Body body)
-{
-  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal    dt = body->time.step, beta = implicit->beta, c2 = 1 / (beta * dt * dt), c1 = c2 * dt, c0 = (1 - 2 * beta) / (2 * beta);
-  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar *u0, *v0, *u1;
-  PetscScalar       *a;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
-  PetscCall(VecGetArrayRead(body->substep_start.v, &v0));
-  PetscCall(VecGetArrayRead(body->state.u, &u1));
-  PetscCall(VecGetArray(body->state.a, &a));
-  for (PetscInt i = 0; i < n; i++) a[i] = c2 * (u1[i] - u0[i]) - c1 * v0[i] - c0 * a[i];
-  PetscCall(VecRestoreArray(body->state.a, &a));
-  PetscCall(VecRestoreArrayRead(body->state.u, &u1));
-  PetscCall(VecRestoreArrayRead(body->substep_start.v, &v0));
-  PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* What the TS leaves undone: acceleration; rates of prescribed and massless nodes; the internal force at the end, if not evaluated */
 static PetscErrorCode FinishSubstep(Body body)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  if (!body->model.linear) PetscCall(ComputeAcceleration(body));
+  if (!body->model.linear) { /* TSALPHA2 keeps the acceleration to itself */
+    PetscCall(VecZeroEntries(body->work.nodes[0]));
+    PetscCall(BodyImplicitMoveEnd(body, body->work.nodes[0]));
+  }
   PetscCall(BodyFinishLayer(body));
   PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, body->state.a));
   if (body->rows.have_mass) {

@@ -22,7 +22,6 @@ typedef struct {
   PetscReal  unit_strain;                 /* norm of the forces of strains of size 1, of a nonlinear body [N] */
   Vec        lead[4];                     /* work of BodyImplicitCarry() */
   Vec        stage_u, stage_v, stage_a;   /* of a linear body, at the stage: NULL where its residual does not read them, or is at the end */
-  Vec        u, v, a, next;               /* state of a body at rest while a column of the compliance is made; NULL until then */
   struct _BodyOwnStep *own;               /* of a nonlinear body that one of several ranks has: see ownstep.c; or NULL */
   PetscBool            alone;             /* the substep under way is that rank's alone */
 } BodyImplicit;
@@ -51,4 +50,5 @@ PETSC_INTERN PetscErrorCode BodyImplicitAddForces(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitPrescribe(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitCarry(Body, BodyResidualFn *, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitCorrect(Body, const PetscScalar[], PetscReal, PetscReal, PetscReal, Vec);
+PETSC_INTERN PetscErrorCode BodyImplicitMoveEnd(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitVisit(Body, PetscInt, Checkpoint);

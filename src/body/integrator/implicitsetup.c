@@ -104,7 +104,7 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
 PetscErrorCode BodyImplicitDestroy(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  Vec *vecs[] = {&implicit->u, &implicit->v, &implicit->a, &implicit->next, &implicit->stage_u, &implicit->stage_v, &implicit->stage_a};
+  Vec          *vecs[]   = {&implicit->stage_u, &implicit->stage_v, &implicit->stage_a};
 
   PetscFunctionBegin;
   for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));

@@ -77,7 +77,8 @@ SIMD_CLONES static void MoveEnds(PetscInt n, Newmark m, PetscReal scale, const P
   }
 }
 
-static PetscErrorCode Correct(Body body, Vec du, Vec U, Vec V)
+/* The displacement at the end of the substep less a change of it at the stage, with the velocity and the acceleration there */
+PetscErrorCode BodyImplicitMoveEnd(Body body, Vec du)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
   const Newmark       m        = NewmarkOf(implicit, body->time.step);
@@ -89,13 +90,13 @@ static PetscErrorCode Correct(Body body, Vec du, Vec U, Vec V)
   PetscCall(VecGetArrayRead(du, &change));
   PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
   PetscCall(VecGetArrayRead(body->substep_start.v, &v0));
-  PetscCall(VecGetArray(U, &u));
-  PetscCall(VecGetArrayWrite(V, &v));
+  PetscCall(VecGetArray(body->state.u, &u));
+  PetscCall(VecGetArrayWrite(body->state.v, &v));
   PetscCall(VecGetArray(body->state.a, &a));
-  MoveEnds(n, m, 1 / implicit->alpha_f, change, u0, v0, u, v, a); /* the change is that of the stage */
+  MoveEnds(n, m, 1 / implicit->alpha_f, change, u0, v0, u, v, a);
   PetscCall(VecRestoreArray(body->state.a, &a));
-  PetscCall(VecRestoreArrayWrite(V, &v));
-  PetscCall(VecRestoreArray(U, &u));
+  PetscCall(VecRestoreArrayWrite(body->state.v, &v));
+  PetscCall(VecRestoreArray(body->state.u, &u));
   PetscCall(VecRestoreArrayRead(body->substep_start.v, &v0));
   PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
   PetscCall(VecRestoreArrayRead(du, &change));
@@ -179,7 +180,7 @@ static PetscErrorCode MakeStep(TS ts)
   PetscCall((*compute_residual)(ts, t + implicit->alpha_f * dt, implicit->stage_u ? implicit->stage_u : U, implicit->stage_v,
                                 implicit->stage_a, F, body));
   PetscCall(ConstrainedSolverSolve(body->solver, F, du));
-  PetscCall(Correct(body, du, U, body->state.v));
+  PetscCall(BodyImplicitMoveEnd(body, du));
   body->state.force_known = PETSC_FALSE;
   PetscCall(TSSetTime(ts, t + dt));
   PetscFunctionReturn(PETSC_SUCCESS);
