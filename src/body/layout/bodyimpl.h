@@ -213,6 +213,7 @@ typedef struct {
   RowList        near;
   PetscBool      some_near;   /* on some rank there may be others than near ones */
   PetscBool      constant;    /* forces act that are the same throughout the controller step, see BodySetConstantForces() */
+  PetscReal     *excess;      /* per local row: by how much these are more than those that the last step ended with [N] */
   PetscBool      idle;        /* these are zero; where all rows are on this rank */
   Vec            nodal_force; /* while the body is probed: acts on its nodes in the controller step; else NULL [N] */
   BodyForceShape nodal_shape; /* how */

@@ -11,7 +11,6 @@ PetscErrorCode BodyDestroyCompliance(Body body)
   PetscCall(ComplianceDestroy(&c->nodal));
   PetscCall(NodalMatrixDestroy(&c->nodal_matrix));
   PetscCall(VecDestroy(&c->diagonal));
-  PetscCall(PetscFree(c->change));
   PetscCall(PetscFree(body->compliance));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -21,7 +20,6 @@ PetscErrorCode BodyCreateCompliance(Body body)
   PetscFunctionBegin;
   PetscCall(PetscNew(&body->compliance));
   body->compliance->nodal_kind = NODAL_BY_STEPS;
-  PetscCall(PetscCalloc1(body->rows.local, &body->compliance->change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -16,7 +16,6 @@ struct _BodyCompliance {
   Vec            diagonal;       /* see BodyGetNodalDiagonal(); or NULL */
   PetscReal      diagonal_step;  /* the substep that it is of [s], */
   BodyForceShape diagonal_shape; /* and how forces run in it */
-  PetscReal     *change;         /* of this rank's rows: how much more constant forces are than those at the end of the last step [N] */
 };
 
 PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], PetscInt *, NodalMatrix *,

@@ -1,6 +1,6 @@
 /* Rows near contact. Callers who know which rows may have a force say so, and a step costs what these cost, not what all contact nodes do:
    of a sheet that falls these are all of its nodes, though a corner touches. Output traces of other rows are old. */
-#include "complianceimpl.h"
+#include <body/layout/bodyimpl.h>
 
 /* values = B vec, of near rows */
 PetscErrorCode BodyMultiplyNearRows(Body body, Vec vec, PetscScalar values[])
@@ -49,6 +49,6 @@ PetscErrorCode BodyComputeForceChange(Body body, PetscBool *any, Vec change)
   *any = (PetscBool)(body->rows.constant && body->state.step - body->saved.step == 1);
   if (!*any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecZeroEntries(change));
-  PetscCall(BodyAddNearRows(body, body->compliance->change, change));
+  PetscCall(BodyAddNearRows(body, body->rows.excess, change));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,5 +1,5 @@
 /* Room for the rows of the interface of a body, and rows that take the place of others while a run goes on. */
-#include <body/layout/bodyimpl.h>
+#include "complianceimpl.h"
 
 /* Waveforms of all rows, once the substeps are known */
 PetscErrorCode BodyCreateTraces(Body body)
@@ -29,8 +29,8 @@ PetscErrorCode BodyCreateRowArrays(Body body)
   elsewhere = (PetscBool)(rows->local && !body->mesh.is_owner);
   if (body->mesh.whole) PetscCall(BodyAnyRank(body, &elsewhere));
   rows->at_home = (PetscBool)(body->mesh.whole && !elsewhere);
-  PetscCall(PetscCalloc4(rows->local, &rows->conditions, rows->local, &rows->constrained, rows->local, &rows->flexibility, rows->local,
-                         &rows->robin));
+  PetscCall(PetscCalloc5(rows->local, &rows->conditions, rows->local, &rows->constrained, rows->local, &rows->flexibility, rows->local,
+                         &rows->robin, rows->local, &rows->excess));
   PetscCall(PetscMalloc1(rows->global, &rows->changed));
   PetscCall(BodyHandoverCreate(rows->local, &rows->handover));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(rows->matrix, NULL, &body->work.rows[k]));
@@ -45,7 +45,7 @@ PetscErrorCode BodyDestroyRowArrays(Body body)
   BodyRows *rows = &body->rows;
 
   PetscFunctionBegin;
-  PetscCall(PetscFree4(rows->conditions, rows->constrained, rows->flexibility, rows->robin));
+  PetscCall(PetscFree5(rows->conditions, rows->constrained, rows->flexibility, rows->robin, rows->excess));
   PetscCall(PetscFree(rows->changed));
   PetscCall(PetscFree(rows->by_mean));
   PetscCall(BodyHandoverDestroy(&rows->handover));
@@ -78,34 +78,18 @@ static PetscErrorCode MoveTraces(Body body, const PetscInt from[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What levels of cut steps know of the rows begins anew; their factors stay */
+/* What levels of cut steps know of nodes begins anew, as slabs lie at the rows; factors get other rows. The present level is the first. */
 static PetscErrorCode RenewLevels(Body body)
 {
-  struct _BodyCompliance *first = body->compliance, *renewed;
-  ConstrainedSolver       of_first;
-
   PetscFunctionBegin;
-  PetscCall(BodyCreateCompliance(body));
-  renewed  = body->compliance;
-  of_first = body->solver;
-  if (of_first) PetscCall(ConstrainedSolverReplaceRows(of_first, body->rows.free_matrix));
-  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) { /* the present one may be in the list too */
-    BodyLevel *level = &body->levels[k];
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
+    struct _BodyCompliance *compliance = k ? body->levels[k].compliance : body->compliance;
+    const ConstrainedSolver solver     = k ? body->levels[k].solver : body->solver;
 
-    if (!level->compliance) continue;
-    if (level->compliance == first) level->compliance = renewed;
-    else {
-      body->compliance = level->compliance;
-      PetscCall(BodyDestroyCompliance(body));
-      PetscCall(BodyCreateCompliance(body));
-      level->compliance = body->compliance;
-    }
-    body->compliance = level->compliance;
-    if (level->solver && level->solver != of_first) PetscCall(ConstrainedSolverReplaceRows(level->solver, body->rows.free_matrix));
+    if (compliance) PetscCall(ComplianceDestroy(&compliance->nodal));
+    if (compliance) PetscCall(NodalMatrixDestroy(&compliance->nodal_matrix));
+    if (solver && (k == 0 || solver != body->solver)) PetscCall(ConstrainedSolverReplaceRows(solver, body->rows.free_matrix));
   }
-  body->compliance = first;
-  PetscCall(BodyDestroyCompliance(body));
-  body->compliance = renewed;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -8,7 +8,7 @@
 PetscErrorCode BodySetConstantForces(Body body, PetscInt n, const PetscInt rows[], const PetscReal force[], const PetscReal last[],
                                      const PetscReal none[])
 {
-  PetscReal   *change = body->compliance->change;
+  PetscReal   *change = body->rows.excess;
   PetscScalar *values;
 
   PetscFunctionBegin;
@@ -38,7 +38,7 @@ PetscErrorCode BodyEndConstantForces(Body body, const PetscScalar start[], const
   PetscFunctionBegin;
   PetscCall(TraceGetLevel(body->traces.force_in, body->time.substeps, &end));
   for (PetscInt i = 0; i < body->rows.local; i++) {
-    body->compliance->change[i] = PetscRealPart(start[i]);
+    body->rows.excess[i] = PetscRealPart(start[i]);
     end[i] += more[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
