@@ -9,7 +9,8 @@
    Rows of a node that depend on each other are prescribed as well as can be, by least squares with a weight w for each row, and share the
    force according to their weights: with A = diag(w) the inverse becomes A^{1/2} (A^{1/2} G A^{1/2})^+ A^{1/2}, which is G^{-1} where there
    is one. Two with one direction are prescribed their weighted mean, and each takes its part of the force; so the work of the force is that
-   of its parts, and with the areas that two partners cover for weights this is the mortar condition of both together. */
+   of its parts, and with the areas that two partners cover for weights this is the mortar condition of both together. With the directions
+   D of the rows of a node in space, that inverse is A D ((D^T A D)^+)^2 D^T A: 3 x 3 numbers for each node. */
 #include <body/layout/bodyimpl.h>
 #include <petscblaslapack.h>
 
@@ -19,23 +20,20 @@
 #define UNIT 1e-12
 
 struct _n_BodyGram {
-  PetscInt     n_blocks, *offsets, *rows;
-  PetscInt    *starts; /* of each block in: */
-  PetscScalar *inverses;
-  PetscBool   *dependent; /* of each of `rows`: on those before it in its block */
-  PetscScalar *work;      /* room for a row vector, and for the eigenvalues of a block */
-  PetscInt     work_room, inverse_room;
-  PetscInt    *nodes;      /* work space, per row */
-  PetscReal   *directions; /* of all rows: 3 each, without held dofs */
+  PetscInt   n_blocks, *offsets, *rows;
+  PetscBool *dependent;  /* of each of `rows`: on those before it in its block */
+  PetscReal *squares;    /* of each block: ((D^T A D)^+)^2 */
+  PetscReal *weights;    /* of all rows: A */
+  PetscReal *directions; /* of all rows: 3 each, without held dofs */
+  PetscInt  *nodes;      /* work space, per row */
 };
 
 PetscErrorCode BodyGramDestroy(BodyGram *gram)
 {
   PetscFunctionBegin;
   if (!*gram) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree6((*gram)->offsets, (*gram)->rows, (*gram)->dependent, (*gram)->starts, (*gram)->nodes, (*gram)->directions));
-  PetscCall(PetscFree((*gram)->work));
-  PetscCall(PetscFree((*gram)->inverses));
+  PetscCall(PetscFree7((*gram)->offsets, (*gram)->rows, (*gram)->dependent, (*gram)->squares, (*gram)->weights, (*gram)->directions,
+                       (*gram)->nodes));
   PetscCall(PetscFree(*gram));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -73,70 +71,49 @@ static PetscReal Dot(const PetscReal a[3], const PetscReal b[3])
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* An array of at least so many numbers; what was in it is lost where it grows */
-static PetscErrorCode Grow(PetscInt n, PetscInt *room, PetscScalar *values[])
+/* Which of some rows depend on those before them; whether any does */
+static PetscBool FindDependent(const BodyGram gram, PetscInt n, const PetscInt rows[], PetscBool dependent[])
 {
-  PetscFunctionBegin;
-  if (n <= *room) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscFree(*values));
-  PetscCall(PetscCalloc1(n, values));
-  *room = n;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  PetscReal basis[3][3];
+  PetscInt  size = 0;
 
-/* Inverse of a symmetric matrix by sweeping pivots (Goodnight, The American Statistician 33, 1979); false if none, with dependent rows */
-static PetscBool Invert(PetscInt n, PetscScalar A[], PetscScalar diagonal[], PetscBool dependent[])
-{
-  PetscBool any = PETSC_FALSE;
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal *direction = gram->directions + 3 * rows[i];
+    PetscReal        left[3], square;
 
-  for (PetscInt i = 0; i < n; i++) diagonal[i] = A[i * n + i];
-  for (PetscInt k = 0; k < n; k++) {
-    const PetscScalar pivot = A[k * n + k];
+    PetscArraycpy(left, direction, 3);
+    for (PetscInt k = 0; k < size; k++) {
+      const PetscReal along = Dot(left, basis[k]);
 
-    dependent[k] = (PetscBool) !(PetscRealPart(pivot) > DEPENDENT * PetscRealPart(diagonal[k]));
-    any          = (PetscBool)(any || dependent[k]);
-    if (dependent[k]) continue;
-    for (PetscInt i = 0; i < n; i++)
-      for (PetscInt j = 0; j < n; j++)
-        if (i != k && j != k) A[i * n + j] -= A[i * n + k] * A[k * n + j] / pivot;
-    for (PetscInt i = 0; i < n; i++)
-      if (i != k) A[i * n + k] = A[k * n + i] = A[i * n + k] / pivot;
-    A[k * n + k] = -1 / pivot;
-  }
-  for (PetscInt i = 0; i < n * n; i++) A[i] = -A[i];
-  return (PetscBool)!any;
-}
-
-/* G of some rows, with the square roots of weights on both sides */
-static void FillBlock(const BodyGram gram, PetscInt n, const PetscInt rows[], const PetscReal weights[], PetscScalar block[])
-{
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = 0; j < n; j++) {
-      const PetscReal scale = weights ? PetscSqrtReal(weights[rows[i]] * weights[rows[j]]) : 1;
-
-      block[i * n + j] = scale * Dot(gram->directions + 3 * rows[i], gram->directions + 3 * rows[j]);
+      for (PetscInt d = 0; d < 3; d++) left[d] -= along * basis[k][d];
     }
+    square       = Dot(left, left);
+    dependent[i] = (PetscBool)(size == 3 || !(square > DEPENDENT * Dot(direction, direction)));
+    if (dependent[i]) continue;
+    for (PetscInt d = 0; d < 3; d++) basis[size][d] = left[d] / PetscSqrtReal(square);
+    size++;
+  }
+  return (PetscBool)(size < n);
 }
 
-/* A^{1/2} M^+ A^{1/2} of such a block M with weights */
-static PetscErrorCode PseudoInvert(const BodyGram gram, PetscInt n, const PetscInt rows[], const PetscReal weights[], PetscScalar block[])
+/* ((D^T A D)^+)^2 of some rows */
+static PetscErrorCode Square(const BodyGram gram, PetscInt n, const PetscInt rows[], PetscReal square[9])
 {
-  PetscScalar *vectors = gram->work, *values = vectors + n * n, *work = values + n;
-  PetscBLASInt order, lwork, info;
+  PetscScalar  vectors[9] = {0}, values[3], work[12];
+  PetscBLASInt order = 3, lwork = 12, info;
 
   PetscFunctionBegin;
-  PetscCall(PetscBLASIntCast(n, &order));
-  PetscCall(PetscBLASIntCast(4 * n, &lwork));
-  FillBlock(gram, n, rows, weights, vectors);
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscReal *direction = gram->directions + 3 * rows[i];
+
+    for (PetscInt k = 0; k < 9; k++) vectors[k] += gram->weights[rows[i]] * direction[k / 3] * direction[k % 3];
+  }
   PetscCallBLAS("LAPACKsyev", LAPACKsyev_("V", "L", &order, vectors, &order, values, work, &lwork, &info));
   PetscCheck(info == 0, PETSC_COMM_SELF, PETSC_ERR_LIB, "LAPACK syev info %d", (int)info);
-  for (PetscInt i = 0; i < n; i++)
-    for (PetscInt j = 0; j < n; j++) {
-      block[i * n + j] = 0;
-      for (PetscInt k = 0; k < n; k++)
-        if (values[k] > DEPENDENT * values[n - 1]) block[i * n + j] += vectors[k * n + i] * vectors[k * n + j] / values[k];
-      if (weights) block[i * n + j] *= PetscSqrtReal(weights[rows[i]] * weights[rows[j]]);
-    }
+  PetscCall(PetscArrayzero(square, 9));
+  for (PetscInt v = 0; v < 3; v++)
+    for (PetscInt k = 0; k < 9 && values[v] > DEPENDENT * values[2]; k++)
+      square[k] += vectors[3 * v + k / 3] * vectors[3 * v + k % 3] / PetscSqr(values[v]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,13 +137,12 @@ static PetscErrorCode SortRows(Body body, PetscInt *n)
 static PetscErrorCode FindBlocks(Body body, PetscInt n)
 {
   const BodyGram gram  = body->rows.gram;
-  PetscInt       count = 0, size = 0, most = 0;
+  PetscInt       count = 0;
 
   PetscFunctionBegin;
   gram->n_blocks = 0;
   for (PetscInt begin = 0, end; begin < n; begin = end) {
     const PetscReal *direction = gram->directions + 3 * gram->rows[begin];
-    const PetscInt   first     = count;
     const PetscBool  unit      = (PetscBool)(PetscAbsReal(Dot(direction, direction) - 1) <= UNIT);
 
     for (end = begin + 1; end < n && gram->nodes[end] == gram->nodes[begin];) end++;
@@ -174,14 +150,8 @@ static PetscErrorCode FindBlocks(Body body, PetscInt n)
     PetscCall(PetscSortInt(end - begin, gram->rows + begin));
     for (PetscInt k = begin; k < end; k++)
       if (body->rows.conditions[gram->rows[k]] == BODY_PRESCRIBED) gram->rows[count++] = gram->rows[k];
-    if (count == first) continue;
-    gram->starts[gram->n_blocks++] = size;
-    gram->offsets[gram->n_blocks]  = count;
-    size += PetscSqr(count - first);
-    most = PetscMax(most, count - first);
+    if (count > gram->offsets[gram->n_blocks]) gram->offsets[++gram->n_blocks] = count;
   }
-  PetscCall(Grow(most * (most + 5), &gram->work_room, &gram->work));
-  PetscCall(Grow(size, &gram->inverse_room, &gram->inverses));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -195,20 +165,19 @@ PetscErrorCode BodyUpdateGram(Body body)
   PetscFunctionBegin;
   if (!body->rows.gram) {
     PetscCall(PetscNew(&gram));
-    PetscCall(PetscCalloc6(n + 1, &gram->offsets, n, &gram->rows, n, &gram->dependent, n, &gram->starts, n, &gram->nodes, 3 * n,
-                           &gram->directions));
+    PetscCall(PetscCalloc7(n + 1, &gram->offsets, n, &gram->rows, n, &gram->dependent, 9 * n, &gram->squares, n, &gram->weights, 3 * n,
+                           &gram->directions, n, &gram->nodes));
     body->rows.gram = gram;
   }
   gram = body->rows.gram;
   PetscCall(SortRows(body, &count));
   PetscCall(FindBlocks(body, count));
   for (PetscInt b = 0; b < gram->n_blocks; b++) {
-    const PetscInt first = gram->offsets[b], size = gram->offsets[b + 1] - first;
-    PetscScalar   *block = gram->inverses + gram->starts[b];
+    const PetscInt  size = gram->offsets[b + 1] - gram->offsets[b], *rows = gram->rows + gram->offsets[b];
+    const PetscBool any = FindDependent(gram, size, rows, gram->dependent + gram->offsets[b]);
 
-    FillBlock(gram, size, gram->rows + first, NULL, block);
-    if (!Invert(size, block, gram->work, gram->dependent + first))
-      PetscCall(PseudoInvert(gram, size, gram->rows + first, body->rows.weights, block));
+    for (PetscInt i = 0; i < size; i++) gram->weights[rows[i]] = any && body->rows.weights ? body->rows.weights[rows[i]] : 1;
+    PetscCall(Square(gram, size, rows, gram->squares + 9 * b));
   }
   body->rows.any_oblique = (PetscBool)(gram->n_blocks > 0);
   if (body->rows.n_prescribed) PetscCall(BodyAnyRank(body, &body->rows.any_oblique));
@@ -230,13 +199,17 @@ void BodyDivideByGram(Body body, PetscScalar row[])
   const BodyGram gram = body->rows.gram;
 
   for (PetscInt b = 0; b < gram->n_blocks; b++) {
-    const PetscInt     n = gram->offsets[b + 1] - gram->offsets[b], *rows = gram->rows + gram->offsets[b];
-    const PetscScalar *inverse = gram->inverses + gram->starts[b];
+    const PetscReal *square = gram->squares + 9 * b;
+    PetscReal        sum[3] = {0};
 
-    for (PetscInt i = 0; i < n; i++) gram->work[i] = row[rows[i]];
-    for (PetscInt i = 0; i < n; i++) {
-      row[rows[i]] = 0;
-      for (PetscInt j = 0; j < n; j++) row[rows[i]] += inverse[i * n + j] * gram->work[j];
+    for (PetscInt k = gram->offsets[b]; k < gram->offsets[b + 1]; k++)
+      for (PetscInt d = 0; d < 3; d++)
+        sum[d] += gram->weights[gram->rows[k]] * gram->directions[3 * gram->rows[k] + d] * PetscRealPart(row[gram->rows[k]]);
+    for (PetscInt k = gram->offsets[b]; k < gram->offsets[b + 1]; k++) {
+      const PetscReal *direction = gram->directions + 3 * gram->rows[k];
+      const PetscReal  along[3]  = {Dot(square, direction), Dot(square + 3, direction), Dot(square + 6, direction)};
+
+      row[gram->rows[k]] = gram->weights[gram->rows[k]] * Dot(along, sum);
     }
   }
 }
