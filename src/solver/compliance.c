@@ -11,20 +11,20 @@ struct _n_Compliance {
   PetscScalar *values;               /* work space: a column */
 };
 
-/* For `local` rows of this rank from number `begin` on, of `global` rows in all */
-PetscErrorCode ComplianceCreate(MPI_Comm comm, PetscInt local, PetscInt begin, PetscInt global, Compliance *compliance)
+/* For rows laid out as a vector; none is known yet */
+PetscErrorCode ComplianceCreate(Vec layout, Compliance *compliance)
 {
   Compliance c;
 
   PetscFunctionBegin;
   PetscCall(PetscNew(&c));
-  c->comm   = comm;
-  c->local  = local;
-  c->begin  = begin;
-  c->global = global;
-  PetscCallMPI(MPI_Comm_size(comm, &c->size));
-  PetscCall(PetscMalloc1(global, &c->place));
-  for (PetscInt j = 0; j < global; j++) c->place[j] = -1;
+  c->comm = PetscObjectComm((PetscObject)layout);
+  PetscCall(VecGetLocalSize(layout, &c->local));
+  PetscCall(VecGetOwnershipRange(layout, &c->begin, NULL));
+  PetscCall(VecGetSize(layout, &c->global));
+  PetscCallMPI(MPI_Comm_size(c->comm, &c->size));
+  PetscCall(PetscMalloc1(c->global, &c->place));
+  for (PetscInt j = 0; j < c->global; j++) c->place[j] = -1;
   *compliance = c;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,12 +1,12 @@
 /* The compliance of displacements: a matrix of the displacement of one under a unit force on another one. It is symmetric (Maxwell, Betti),
    the same on every rank, and known row by row: a row gets a place among the known ones. */
 #pragma once
-#include <petscsys.h>
+#include <petscvec.h>
 #include <checkpoint/checkpoint.h>
 
 typedef struct _n_Compliance *Compliance;
 
-PETSC_INTERN PetscErrorCode ComplianceCreate(MPI_Comm, PetscInt, PetscInt, PetscInt, Compliance *);
+PETSC_INTERN PetscErrorCode ComplianceCreate(Vec, Compliance *);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *);
 PETSC_INTERN void           ComplianceClear(Compliance);
 PETSC_INTERN PetscErrorCode ComplianceReserve(Compliance, PetscInt);

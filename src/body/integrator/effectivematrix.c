@@ -125,13 +125,6 @@ PetscErrorCode BodyImplicitRenew(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode BodyImplicitSetRows(Body body, const PetscMPIInt changed[])
-{
-  PetscFunctionBegin;
-  PetscCall(ConstrainedSolverSetRows(body->solver, body->rows.free_matrix, changed));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* For a checkpoint: where a nonlinear body's matrix, in use until Newton's next iteration, was linearised, at a level of cut steps */
 PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoint)
 {

@@ -1,27 +1,13 @@
 /* A body under central differences. */
 #include "explicitimpl.h"
 
-/* a = (force - internal force) / m in one pass; without a force, where it is NULL */
+/* a = (force - internal force) / m; without a force, where it is NULL */
 static PetscErrorCode DivideByMass(Body body, Vec force, Vec A)
 {
-  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar *internal, *inverse, *outside;
-  PetscScalar       *a;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(body->state.internal_force, &internal));
-  PetscCall(VecGetArrayRead(body->mass.inverse, &inverse));
-  PetscCall(VecGetArrayWrite(A, &a));
-  if (force) {
-    PetscCall(VecGetArrayRead(force, &outside));
-    for (PetscInt i = 0; i < n; i++) a[i] = (outside[i] - internal[i]) * inverse[i];
-    PetscCall(VecRestoreArrayRead(force, &outside));
-  } else {
-    for (PetscInt i = 0; i < n; i++) a[i] = -internal[i] * inverse[i];
-  }
-  PetscCall(VecRestoreArrayWrite(A, &a));
-  PetscCall(VecRestoreArrayRead(body->mass.inverse, &inverse));
-  PetscCall(VecRestoreArrayRead(body->state.internal_force, &internal));
+  if (force) PetscCall(VecWAXPY(A, -1, body->state.internal_force, force));
+  else PetscCall(VecAXPBY(A, -1, 0, body->state.internal_force));
+  PetscCall(VecPointwiseMult(A, A, body->mass.inverse));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -170,8 +156,9 @@ static PetscErrorCode RepeatForces(Body body, const PetscScalar force[], const P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A linear body: the displacement of nodes with mass is known before the end of the substep, and so is the velocity at mid-step, which
-   dashpots feel; layer and prescribed rows are put in place anew, and the new acceleration replaces the old one in the velocity */
+/* The displacement of nodes with mass is known before the end of the substep, and so is the velocity at mid-step, which dashpots feel;
+   layer and prescribed rows are put in place anew. Of a linear body the new acceleration replaces the old one in the velocity; where the
+   layer alone answers, of any, Complete() finds it. */
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   const PetscReal half = 0.5 * body->time.step;
@@ -182,24 +169,13 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   body->time.substep = 0;
-  PetscCall(VecAXPY(body->state.v, -half, body->state.a));
+  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -half, body->state.a));
   PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
-  PetscCall(Accelerate(body, body->state.time, KnowsForce(body), body->work.nodes[0], body->state.u, body->state.a));
-  PetscCall(VecAXPY(body->state.v, half, body->state.a));
-  PetscCall(FinishSubstep(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Where the layer alone answers: it is put in place anew from where it is, and all else is as it was at mid-step */
-static PetscErrorCode RepeatLayer(Body body, const PetscScalar force[], const PetscScalar displacement[])
-{
-  PetscFunctionBegin;
-  (void)force;
-  (void)displacement;
-  body->time.substep = 0;
-  if (!body->state.incomplete) PetscCall(VecAXPY(body->state.v, -0.5 * body->time.step, body->state.a));
-  PetscCall(PlaceRows(body, body->state.time, body->state.u, body->work.nodes[0]));
-  PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
+  if (IsEarly(body)) PetscCall(LeaveIncomplete(body, body->state.u, body->state.a));
+  else {
+    PetscCall(Accelerate(body, body->state.time, KnowsForce(body), body->work.nodes[0], body->state.u, body->state.a));
+    PetscCall(VecAXPY(body->state.v, half, body->state.a));
+  }
   PetscCall(FinishSubstep(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -248,8 +224,7 @@ static PetscErrorCode SetUp(Body body)
   integrator->depends_on_step = (PetscBool)(body->time.substeps > 1);
   integrator->reads_start     = layer;
   if (body->time.substeps == 1) integrator->ops.complete = Complete;
-  if (explicit->layer_alone) integrator->ops.repeat = RepeatLayer;
-  else if (body->time.substeps == 1 && body->model.linear) integrator->ops.repeat = Repeat;
+  if (explicit->layer_alone || (body->time.substeps == 1 && body->model.linear)) integrator->ops.repeat = Repeat;
   else if (body->time.substeps == 1 && !layer) integrator->ops.repeat = RepeatForces;
   integrator->repeats_prescribed = (PetscBool)(body->model.linear || explicit->layer_alone);
   integrator->repeats_constant   = (PetscBool)(body->time.substeps == 1 && !layer);

@@ -44,7 +44,6 @@ PETSC_INTERN PetscErrorCode BodyImplicitComputeUnitStrainForce(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitSetLevel(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitRefactor(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitRenew(Body);
-PETSC_INTERN PetscErrorCode BodyImplicitSetRows(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode BodyImplicitCheckSubstep(Body);
 PETSC_INTERN PetscErrorCode BodyImplicitAddForces(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitPrescribe(Body, Vec);

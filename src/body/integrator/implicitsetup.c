@@ -30,14 +30,6 @@ static PetscErrorCode Agree(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Brings what BodyImplicitCorrect() needs from ranks with rows */
-static PetscErrorCode BringChanges(Body body, const PetscScalar force[])
-{
-  PetscFunctionBegin;
-  PetscCall(ConstrainedSolverBring(body->solver, force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
 {
   BodyImplicit *implicit;
@@ -47,8 +39,7 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   integrator->data               = implicit;
   integrator->reads_start        = PETSC_TRUE;
   integrator->repeats_prescribed = PETSC_TRUE;
-  integrator->ops.bringchanges   = BringChanges;
-  integrator->ops.setrows        = BodyImplicitSetRows;
+  integrator->repeats_by_solver  = PETSC_TRUE;
   integrator->ops.setlevel       = BodyImplicitSetLevel;
   integrator->ops.renew          = BodyImplicitRenew;
   integrator->ops.checksubstep   = BodyImplicitCheckSubstep;

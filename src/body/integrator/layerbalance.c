@@ -152,14 +152,6 @@ static PetscErrorCode ComputeMissing(Body body, const LoadCase *load, PetscBool 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Moves the layer in u, a vector of the body, by the solution */
-static PetscErrorCode Move(Body body, Vec u)
-{
-  PetscFunctionBegin;
-  PetscCall(BodyWriteLayer(body, body->layer.solution, ADD_VALUES, u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Takes back so much of the last round, with rhs as it is after it, that less force is left along its way, where it has gone too far: what
    flows has a potential of each step (M. Ortiz, L. Stainier, The variational formulation of viscoplastic constitutive updates, Computer
    Methods in Applied Mechanics and Engineering 171, 1999), and this is a search for its least value along a line. `before`: force along
@@ -177,7 +169,7 @@ static PetscErrorCode TakeBack(Body body, const LoadCase *load, PetscBool follow
     const PetscReal next = low + (high - low) * PetscMin(PetscMax(root, LEAST_PART), 1 - LEAST_PART);
 
     PetscCall(VecScale(body->layer.solution, next - at));
-    PetscCall(Move(body, u));
+    PetscCall(BodyWriteLayer(body, body->layer.solution, ADD_VALUES, u));
     PetscCall(VecScale(body->layer.solution, 1 / (next - at)));
     PetscCall(ComputeMissing(body, load, follows, u));
     PetscCall(BodyGetDot(body, body->layer.solution, body->layer.rhs, &left));
@@ -217,7 +209,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     if (body->history && round > 1) PetscCall(TakeBack(body, &load, robin, work, u)); /* the first puts held rows in their places */
     PetscCall(ConstrainedSolverSolve(body->solver, body->layer.rhs, body->layer.solution));
     if (body->history) PetscCall(BodyGetDot(body, body->layer.solution, body->layer.rhs, &work));
-    PetscCall(Move(body, u));
+    PetscCall(BodyWriteLayer(body, body->layer.solution, ADD_VALUES, u));
     if (linear) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(BodyGetNorm(body, body->layer.solution, &change));
     first = PetscMax(first, change);

@@ -88,18 +88,9 @@ static PetscErrorCode SetUp(Body body)
 /* The velocity is the mean of the substep */
 static PetscErrorCode FinishSubstep(Body body)
 {
-  const PetscInt     n = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar *u0, *u1;
-  PetscScalar       *v1;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
-  PetscCall(VecGetArrayRead(body->state.u, &u1));
-  PetscCall(VecGetArrayWrite(body->state.v, &v1));
-  for (PetscInt i = 0; i < n; i++) v1[i] = (u1[i] - u0[i]) / body->time.step;
-  PetscCall(VecRestoreArrayWrite(body->state.v, &v1));
-  PetscCall(VecRestoreArrayRead(body->state.u, &u1));
-  PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
+  PetscCall(VecWAXPY(body->state.v, -1, body->substep_start.u, body->state.u));
+  PetscCall(VecScale(body->state.v, 1 / body->time.step));
   PetscCall(VecZeroEntries(body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -107,7 +98,7 @@ static PetscErrorCode FinishSubstep(Body body)
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
   PetscFunctionBegin;
-  (void)force; /* which BringChanges() has brought */
+  (void)force; /* which the solver has been brought */
   PetscCall(BodyImplicitCorrect(body, displacement, 1, 1 / body->time.step, 0, body->work.nodes[2]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -55,7 +55,7 @@ static PetscErrorCode VisitNodal(Body body, struct _BodyCompliance *compliance, 
   PetscCall(CheckpointVisitReals(checkpoint, "nodal step", 1, &compliance->nodal_step));
   PetscCall(CheckpointVisitReals(checkpoint, "nodal time", 1, &compliance->nodal_time));
   compliance->nodal_shape = (BodyForceShape)shape;
-  if (!compliance->nodal) PetscCall(BodyCreateNodalCompliance(body, &compliance->nodal));
+  if (!compliance->nodal) PetscCall(ComplianceCreate(body->state.u, &compliance->nodal));
   PetscCall(ComplianceVisit(compliance->nodal, checkpoint));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

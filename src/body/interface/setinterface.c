@@ -25,7 +25,6 @@ PetscErrorCode BodyUpdateInterface(Body body, Mat B, const PetscInt numbers[], c
   body->rows.matrix = B;
   PetscCall(BodySetNearRows(body, -1, NULL));
   PetscCall(BodySetUpFreeRows(body));
-  if (body->integrator->ops.setrows) PetscCall((*body->integrator->ops.setrows)(body, all));
   PetscCall(BodySetRowsOfLevels(body, all));
   if (body->mass.solver) PetscCall(ConstrainedSolverSetRows(body->mass.solver, body->rows.free_matrix, all));
   body->repeats = PETSC_FALSE;

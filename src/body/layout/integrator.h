@@ -11,7 +11,8 @@ typedef struct {
   PetscErrorCode (*setdefaults)(Body);   /* (NULL) gives a TS that has just been made the parameters that are Impakt's default */
   PetscErrorCode (*getparameters)(Body); /* (NULL) reads and checks the parameters of the TS, after program and options have set them */
   PetscErrorCode (*setup)(Body);         /* callbacks of the TS, matrices and factors; mass, rows, loads and substeps are known */
-  PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* (NULL) the rows that are marked, of all ranks, have new entries */
+  PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* (NULL) the rows that are marked, of all ranks, have new entries: tells the
+                                                           solver in place of BodySetRowsOfLevels() */
   PetscErrorCode (*setlevel)(Body); /* (NULL) the controller step is cut in halves another number of times, body->time.level: matrix and
                                        solver are those of this level, made where there are none yet */
   PetscErrorCode (*renew)(Body);    /* (NULL) of a nonlinear body: matrix and factors anew, at the saved displacement */
@@ -23,8 +24,6 @@ typedef struct {
   /* (NULL) after the one substep of a controller step: moves its end state to the present inputs, given by how much more force acts on
      forced and Robin rows [N], and by how much prescribed rows go farther [m], than when it was made; may be unset in setup() */
   PetscErrorCode (*repeat)(Body, const PetscScalar[], const PetscScalar[]);
-  /* (NULL) before repeat(), which needs changes and not forces: brings what it needs of these from the ranks that have rows */
-  PetscErrorCode (*bringchanges)(Body, const PetscScalar[]);
   /* (NULL) finds what TSStep() and repeat() have left out of a state that they mark as incomplete; may be set in setup() */
   PetscErrorCode (*complete)(Body);
   PetscErrorCode (*save)(Body);    /* (NULL) the state has been put aside: so is to be what the integrator remembers beside it */
@@ -67,6 +66,7 @@ struct _n_BodyIntegrator {
   PetscBool leaves_force;       /* substeps leave the internal force to BodyFindInternalForce() */
   PetscBool reads_start;        /* finishsubstep() reads body->substep_start */
   PetscBool repeats_prescribed; /* repeat() can do it with prescribed rows */
+  PetscBool repeats_by_solver;  /* repeat() lets the solver correct, which has been brought the changes of forces from ranks with rows */
   PetscBool repeats_constant;   /* repeat() can do it with forces that are the same throughout the step */
   PetscBool answers_by_layer;   /* those of the rows do so by the massless layer alone, whose matrix is that of body->solver */
 };

@@ -20,7 +20,6 @@ struct _BodyCompliance {
 
 PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], PetscInt *, NodalMatrix *,
                                              PetscBool *);
-PETSC_INTERN PetscErrorCode BodyCreateNodalCompliance(Body, Compliance *);
 PETSC_INTERN PetscErrorCode NodalMatrixProbe(Body, const NodalMatrix, BodyForceShape, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode FrontCreateMatrix(Body, Mat *);
 PETSC_INTERN PetscErrorCode FrontProbe(Body, Mat, BodyForceShape, PetscInt, const PetscInt[], Compliance);

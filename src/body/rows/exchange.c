@@ -36,7 +36,7 @@ PetscErrorCode BodyBeginExchange(Body body, PetscBool completes)
   if (!Exchanges(body) || (completes && !body->state.incomplete)) PetscFunctionReturn(PETSC_SUCCESS);
   body->rows.exchange.open   = PETSC_TRUE;
   body->rows.exchange.writes = PETSC_FALSE;
-  if (!completes && body->repeats && body->integrator->ops.bringchanges) PetscCall(BodyBringChanges(body));
+  if (!completes && body->repeats && body->integrator->repeats_by_solver) PetscCall(BodyBringChanges(body));
   else PetscCall(BringForces(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

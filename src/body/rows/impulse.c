@@ -41,25 +41,21 @@ static PetscErrorCode MultiplyRows(Body body, Vec diagonal, PetscBool inverse, M
 /* B M^{-1} B^T with a mass matrix that is not diagonal: dense, a solution for each row */
 static PetscErrorCode ProbeRows(Body body, Mat matrix)
 {
-  const BodyRows    *rows = &body->rows;
-  const PetscScalar *moved;
-  PetscScalar       *unit;
+  const BodyRows *rows = &body->rows;
+  PetscScalar    *unit, *moved;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(rows->local, &unit));
+  PetscCall(PetscCalloc2(rows->local, &unit, rows->local, &moved));
   for (PetscInt j = 0; j < rows->global; j++) {
     const PetscInt local = j - rows->begin;
 
     if (local >= 0 && local < rows->local) unit[local] = 1;
-    PetscCall(BodySolveMassOfRows(body, unit, body->work.nodes[2]));
+    PetscCall(BodyMultiplyInverseMass(body, unit, moved));
     if (local >= 0 && local < rows->local) unit[local] = 0;
-    PetscCall(MatMult(body->rows.matrix, body->work.nodes[2], body->work.rows[0]));
-    PetscCall(VecGetArrayRead(body->work.rows[0], &moved));
     for (PetscInt i = 0; i < rows->local; i++)
       if (moved[i] != 0) PetscCall(MatSetValue(matrix, rows->begin + i, j, moved[i], INSERT_VALUES));
-    PetscCall(VecRestoreArrayRead(body->work.rows[0], &moved));
   }
-  PetscCall(PetscFree(unit));
+  PetscCall(PetscFree2(unit, moved));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -86,7 +86,7 @@ PetscErrorCode BodyBringChanges(Body body)
 
   PetscFunctionBegin;
   PetscCall(CompareInputs(body, &any));
-  PetscCall((*body->integrator->ops.bringchanges)(body, body->repeat->changes[0]));
+  PetscCall(ConstrainedSolverBring(body->solver, body->repeat->changes[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -116,8 +116,8 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   /* Without a change a state in balance stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and
      acceleration, which others feel through a mass matrix that is not diagonal alone. */
   if (any || (body->rows.have_mass && body->mass.matrix)) {
-    if (body->integrator->ops.bringchanges && !body->rows.exchange.open)
-      PetscCall((*body->integrator->ops.bringchanges)(body, repeat->changes[0]));
+    if (body->integrator->repeats_by_solver && !body->rows.exchange.open)
+      PetscCall(ConstrainedSolverBring(body->solver, repeat->changes[0]));
     PetscCall((*body->integrator->ops.repeat)(body, repeat->changes[0], repeat->changes[1]));
   } else if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));

@@ -123,7 +123,6 @@ PetscErrorCode BodyReplaceInterface(Body body, Mat B, const PetscInt from[])
   PetscCall(MoveTraces(body, from));
   PetscCall(RenewLevels(body));
   for (PetscInt i = 0; i < rows->global; i++) rows->changed[i] = 1;
-  if (body->integrator->ops.setrows) PetscCall((*body->integrator->ops.setrows)(body, rows->changed));
   PetscCall(BodySetRowsOfLevels(body, rows->changed));
   PetscCall(ConstrainedSolverDestroy(&body->mass.solver));
   if (had_mass_solver) PetscCall(BodySetUpMassSolver(body));

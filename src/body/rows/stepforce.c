@@ -44,19 +44,6 @@ PetscErrorCode BodyEndConstantForces(Body body, const PetscScalar start[], const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyCreateNodalCompliance - one in which no displacement is known yet */
-PetscErrorCode BodyCreateNodalCompliance(Body body, Compliance *nodal)
-{
-  PetscInt local, begin, all;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(body->state.u, &local));
-  PetscCall(VecGetOwnershipRange(body->state.u, &begin, NULL));
-  PetscCall(VecGetSize(body->state.u, &all));
-  PetscCall(ComplianceCreate(PetscObjectComm((PetscObject)body), local, begin, all, nodal));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Displacements at the end of the controller step under unit forces on n displacements, global numbers, the same on every rank. `place`:
    of each displacement of all ranks among the known ones, or -1; `matrix`: known by known ones, by columns `leading` apart [m/N], owned
    by the body. Known ones cost nothing; a new one costs a solution, see nodalmatrix.c, or a controller step linearized about the
@@ -86,7 +73,7 @@ PetscErrorCode BodyGetNodalCompliance(Body body, BodyForceShape shape, PetscInt 
   if (unknown) {
     PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
     PetscCall(NodalMatrixRenew(body, shape, known + unknown, n, dofs, &compliance->nodal_kind, &compliance->nodal_matrix, &renewed));
-    if (!*nodal) PetscCall(BodyCreateNodalCompliance(body, nodal));
+    if (!*nodal) PetscCall(ComplianceCreate(body->state.u, nodal));
     if (renewed) ComplianceClear(*nodal);
     if (renewed || !known) {
       compliance->nodal_time  = body->saved.time;
