@@ -23,20 +23,15 @@
 /* What a sum of a few products loses, in units of the largest number in it: a node belongs to some 8 elements */
 #define ROUND_OFF (8 * PETSC_MACHINE_EPSILON)
 
-/* 2-norm of a vector laid out as displacements; of a substep that one rank makes alone, of that rank's part. Of a local body no other rank
-   need have seen that the vector has changed: there PETSc's own would give some ranks the norm that they remember. */
+/* BodyGetNorm(), but for substeps that all ranks make of a body that one rank has: those in which others bring forces, and the first */
 static PetscErrorCode GetNorm(Body body, Vec vec, PetscReal *norm)
 {
-  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+  const PetscBool alone = ((const BodyImplicit *)body->integrator->data)->alone;
 
   PetscFunctionBegin;
-  if (!body->local) {
-    PetscCall(VecNorm(vec, NORM_2, norm));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(BodyGetLocalDot(vec, vec, norm));
-  if (!implicit->alone) PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, norm, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
-  *norm = PetscSqrtReal(*norm);
+  PetscCall(BodyGetNorm(body, vec, norm));
+  if (BodyStepsAlone(body) && !alone)
+    PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, norm, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

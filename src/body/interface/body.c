@@ -163,7 +163,6 @@ PetscErrorCode BodyBeginSetUp(Body body)
   PetscCall(BodySetUpDamping(body));
   PetscCall(BodySetUpPoints(body));
   PetscCall(BodySetUpTime(body));
-  PetscCall(BodySetUpRepeat(body));
   body->local = (PetscBool)(body->mesh.whole && body->integrator->is_local);
   body->begun = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -227,7 +226,6 @@ PetscErrorCode BodyDestroy(Body *body)
     BodyState *states[] = {&b->state, &b->saved, &b->substep_start};
 
     PetscCall(BodyDestroyHistory(b));
-    PetscCall(BodyDestroyRepeat(b));
     PetscCall(BodyDestroyContactNodes(b));
     PetscCall(BodyIntegratorDestroy(b));
     PetscCall(BodyDestroyLevels(b));

@@ -209,6 +209,9 @@ typedef struct {
   Vec          stage_balance; /* forces that hold rows and held dofs at the stage; NULL: they are those at the end [N] */
   BodyHandover handover;
   BodyExchange exchange;
+  /* per local row, at the end of the controller step: what the present end state was made with, and by how much that has changed since, see
+     BodyRepeat(): force [N] and displacement [m] */
+  PetscScalar *inputs[2], *changes[2];
   /* rows that anything happens to, see BodySetNearRows() */
   RowList        near;
   PetscBool      some_near;   /* on some rank there may be others than near ones */
@@ -291,7 +294,6 @@ struct _p_Body {
   BodyTraces              traces;
   struct _BodyCompliance *compliance; /* of the present level, as is the solver */
   BodyLevel               levels[STEP_MAX_CUTS + 1];
-  struct _BodyRepeat     *repeat;
   StepFailure             failure; /* of the last integration */
   PetscBool repeats; /* the present end state is that of an integration from the saved state, under the present conditions and inputs */
   /* loads */
@@ -482,8 +484,6 @@ PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyHandoverEnd(Body);
-PETSC_INTERN PetscErrorCode BodyHandoverCreate(PetscInt, BodyHandover *);
-PETSC_INTERN PetscErrorCode BodyHandoverDestroy(BodyHandover *);
 PETSC_INTERN PetscBool      BodyHandsOver(Body);
 PETSC_INTERN PetscErrorCode BodySetHandoverRest(Body, const PetscReal[]);
 PETSC_INTERN PetscErrorCode BodyAddStoppedHandover(Body, Vec);
@@ -496,8 +496,6 @@ PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyMultiplyNearRows(Body, Vec, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyAddNearRows(Body, const PetscScalar[], Vec);
 PETSC_INTERN PetscBool      BodyNearRowsAreZero(Body, const PetscScalar[]);
-PETSC_INTERN PetscErrorCode BodyDestroyNearRows(Body);
-PETSC_INTERN PetscErrorCode BodyClearRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyListContactDofs(Body);
 PETSC_INTERN PetscErrorCode BodyMarkColumns(Mat, Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
@@ -511,10 +509,8 @@ PETSC_INTERN PetscErrorCode BodyDestroyCompliance(Body);
 PETSC_INTERN PetscErrorCode BodySetRowsOfLevels(Body, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode BodyTakeLevel(Body, PetscInt, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyDestroyLevels(Body);
-PETSC_INTERN PetscErrorCode BodySetUpRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
-PETSC_INTERN PetscErrorCode BodyDestroyRepeat(Body);
 PETSC_INTERN PetscErrorCode BodyPrepareLinearized(Body);
 PETSC_INTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
 PETSC_INTERN PetscErrorCode BodySetUnit(Vec, PetscInt);

@@ -12,21 +12,6 @@
    another impulse, and momentum would be lost. */
 #include <body/layout/bodyimpl.h>
 
-PetscErrorCode BodyHandoverCreate(PetscInt n, BodyHandover *handover)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc4(n, &handover->before, n, &handover->now, n, &handover->rest, n, &handover->intervals));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyHandoverDestroy(BodyHandover *handover)
-{
-  PetscFunctionBegin;
-  PetscCall(MatDestroy(&handover->matrix));
-  PetscCall(PetscFree4(handover->before, handover->now, handover->rest, handover->intervals));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The rows are those of an accepted step: the next one starts with forces along them */
 PetscErrorCode BodyHandoverEnd(Body body)
 {

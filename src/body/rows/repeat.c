@@ -2,36 +2,6 @@
    its integrator may find what a change of the inputs changes at the end of the step without another whole step. */
 #include <body/layout/bodyimpl.h>
 
-struct _BodyRepeat {
-  PetscScalar *inputs[2], *changes[2]; /* of this rank's rows, at the end of the controller step: force [N], displacement [m] */
-};
-
-PetscErrorCode BodyDestroyRepeat(Body body)
-{
-  PetscFunctionBegin;
-  if (!body->repeat) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < 2; k++) PetscCall(PetscFree2(body->repeat->inputs[k], body->repeat->changes[k]));
-  PetscCall(PetscFree(body->repeat));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Rows that nobody looks at have no changes */
-PetscErrorCode BodyClearRepeat(Body body)
-{
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2 && body->repeat; k++) PetscCall(PetscArrayzero(body->repeat->changes[k], body->rows.local));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodySetUpRepeat(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscNew(&body->repeat));
-  for (PetscInt k = 0; k < 2; k++)
-    PetscCall(PetscCalloc2(body->rows.local, &body->repeat->inputs[k], body->rows.local, &body->repeat->changes[k]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether a row takes in a force (0) or a displacement (1) */
 static PetscBool Counts(Body body, PetscInt input, PetscInt row)
 {
@@ -43,9 +13,9 @@ static PetscBool Counts(Body body, PetscInt input, PetscInt row)
 /* Changes of the inputs at the end of the controller step from the present state's, on rows they count for; `any`: on this rank */
 static PetscErrorCode CompareInputs(Body body, PetscBool *any)
 {
-  const Trace         traces[] = {body->traces.force_in, body->traces.displacement_in};
-  struct _BodyRepeat *repeat   = body->repeat;
-  const RowList      *read     = &body->rows.near;
+  const Trace    traces[] = {body->traces.force_in, body->traces.displacement_in};
+  BodyRows      *rows     = &body->rows;
+  const RowList *read     = &rows->near;
 
   PetscFunctionBegin;
   *any = PETSC_FALSE;
@@ -56,8 +26,8 @@ static PetscErrorCode CompareInputs(Body body, PetscBool *any)
     for (PetscInt j = 0; j < read->n; j++) {
       const PetscInt i = read->numbers[j];
 
-      repeat->changes[k][i] = Counts(body, k, i) ? values[i] - repeat->inputs[k][i] : 0;
-      if (repeat->changes[k][i] != 0) *any = PETSC_TRUE;
+      rows->changes[k][i] = Counts(body, k, i) ? values[i] - rows->inputs[k][i] : 0;
+      if (rows->changes[k][i] != 0) *any = PETSC_TRUE;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -74,7 +44,7 @@ static PetscErrorCode TakeInputs(Body body)
     PetscScalar *values;
 
     PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
-    for (PetscInt j = 0; j < read->n; j++) body->repeat->inputs[k][read->numbers[j]] = values[read->numbers[j]];
+    for (PetscInt j = 0; j < read->n; j++) body->rows.inputs[k][read->numbers[j]] = values[read->numbers[j]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -86,7 +56,7 @@ PetscErrorCode BodyBringChanges(Body body)
 
   PetscFunctionBegin;
   PetscCall(CompareInputs(body, &any));
-  PetscCall(ConstrainedSolverBring(body->solver, body->repeat->changes[0]));
+  PetscCall(ConstrainedSolverBring(body->solver, body->rows.changes[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,7 +73,7 @@ PetscErrorCode BodyNoteInputs(Body body)
 /* Moves the end state of this controller step to the inputs as they are now, if that can be done */
 PetscErrorCode BodyRepeat(Body body, PetscBool *done)
 {
-  struct _BodyRepeat *repeat = body->repeat;
+  PetscScalar *const *changes = body->rows.changes;
   PetscBool           any;
 
   PetscFunctionBegin;
@@ -116,9 +86,8 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   /* Without a change a state in balance stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and
      acceleration, which others feel through a mass matrix that is not diagonal alone. */
   if (any || (body->rows.have_mass && body->mass.matrix)) {
-    if (body->integrator->repeats_by_solver && !body->rows.exchange.open)
-      PetscCall(ConstrainedSolverBring(body->solver, repeat->changes[0]));
-    PetscCall((*body->integrator->ops.repeat)(body, repeat->changes[0], repeat->changes[1]));
+    if (body->integrator->repeats_by_solver && !body->rows.exchange.open) PetscCall(ConstrainedSolverBring(body->solver, changes[0]));
+    PetscCall((*body->integrator->ops.repeat)(body, changes[0], changes[1]));
   } else if (body->rows.have_mass) {
     PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
     PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));

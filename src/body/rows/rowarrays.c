@@ -32,7 +32,10 @@ PetscErrorCode BodyCreateRowArrays(Body body)
   PetscCall(PetscCalloc5(rows->local, &rows->conditions, rows->local, &rows->constrained, rows->local, &rows->flexibility, rows->local,
                          &rows->robin, rows->local, &rows->excess));
   PetscCall(PetscMalloc1(rows->global, &rows->changed));
-  PetscCall(BodyHandoverCreate(rows->local, &rows->handover));
+  PetscCall(PetscMalloc4(rows->local, &rows->handover.before, rows->local, &rows->handover.now, rows->local, &rows->handover.rest,
+                         rows->local, &rows->handover.intervals));
+  PetscCall(PetscCalloc4(rows->local, &rows->inputs[0], rows->local, &rows->inputs[1], rows->local, &rows->changes[0], rows->local,
+                         &rows->changes[1]));
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(rows->matrix, NULL, &body->work.rows[k]));
   PetscCall(BodySetNearRows(body, -1, NULL));
   rows->n_prescribed = rows->n_forced = rows->n_robin = 0;
@@ -48,9 +51,14 @@ PetscErrorCode BodyDestroyRowArrays(Body body)
   PetscCall(PetscFree5(rows->conditions, rows->constrained, rows->flexibility, rows->robin, rows->excess));
   PetscCall(PetscFree(rows->changed));
   PetscCall(PetscFree(rows->by_mean));
-  PetscCall(BodyHandoverDestroy(&rows->handover));
+  PetscCall(MatDestroy(&rows->handover.matrix));
+  PetscCall(PetscFree4(rows->handover.before, rows->handover.now, rows->handover.rest, rows->handover.intervals));
+  PetscCall(PetscFree4(rows->inputs[0], rows->inputs[1], rows->changes[0], rows->changes[1]));
   PetscCall(VecDestroy(&rows->exchange.force));
-  PetscCall(BodyDestroyNearRows(body));
+  PetscCall(MatDestroy(&rows->near.matrix));
+  PetscCall(VecDestroy(&rows->near.values));
+  PetscCall(PetscFree(rows->near.numbers));
+  rows->near.n = -1;
   for (PetscInt k = 0; k < 3; k++) PetscCall(VecDestroy(&body->work.rows[k]));
   PetscCall(MatDestroy(&rows->free_matrix));
   rows->pattern = 0;
@@ -113,7 +121,6 @@ PetscErrorCode BodyReplaceInterface(Body body, Mat B, const PetscInt from[])
   PetscCheck(body->setup && !body->time.level && (rows->expected || rows->global), PetscObjectComm((PetscObject)body),
              PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp() with rows, or with BodyExpectRows(), at the start of a whole step");
   PetscCall(BodyDestroyRowArrays(body));
-  PetscCall(BodyDestroyRepeat(body));
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&rows->matrix));
   rows->matrix = B;
@@ -126,29 +133,9 @@ PetscErrorCode BodyReplaceInterface(Body body, Mat B, const PetscInt from[])
   PetscCall(BodySetRowsOfLevels(body, rows->changed));
   PetscCall(ConstrainedSolverDestroy(&body->mass.solver));
   if (had_mass_solver) PetscCall(BodySetUpMassSolver(body));
-  PetscCall(BodySetUpRepeat(body));
   PetscCall(BodySetConstraints(body));
   PetscCall(BodyHandoverEnd(body));
   body->repeats = PETSC_FALSE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode DestroyList(RowList *list)
-{
-  PetscFunctionBegin;
-  PetscCall(MatDestroy(&list->matrix));
-  PetscCall(VecDestroy(&list->values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode BodyDestroyNearRows(Body body)
-{
-  BodyRows *rows = &body->rows;
-
-  PetscFunctionBegin;
-  PetscCall(DestroyList(&rows->near));
-  PetscCall(PetscFree(rows->near.numbers));
-  rows->near.n = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -181,14 +168,15 @@ PetscErrorCode BodySetNearRows(Body body, PetscInt n, const PetscInt near[])
   const PetscBool all = (PetscBool)(n < 0), other = (PetscBool)(!all || rows->some_near || rows->near.n != rows->local);
 
   PetscFunctionBegin;
-  PetscCall(DestroyList(&rows->near));
+  PetscCall(MatDestroy(&rows->near.matrix));
+  PetscCall(VecDestroy(&rows->near.values));
   rows->near.n    = all ? rows->local : n;
   rows->some_near = (PetscBool)!all;
   if (!rows->near.numbers) PetscCall(PetscMalloc1(rows->local, &rows->near.numbers));
   for (PetscInt k = 0; k < rows->near.n && other; k++) rows->near.numbers[k] = all ? k : near[k];
   if (!all) {
     PetscCall(CreateMatrix(body, &rows->near));
-    PetscCall(BodyClearRepeat(body));
+    for (PetscInt k = 0; k < 2; k++) PetscCall(PetscArrayzero(rows->changes[k], rows->local)); /* rows that nobody looks at have none */
   } else {
     PetscCall(PetscObjectReference((PetscObject)rows->matrix));
     PetscCall(PetscObjectReference((PetscObject)body->work.rows[0]));
