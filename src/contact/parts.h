@@ -26,6 +26,12 @@ typedef struct ContactPreference {
 /* Length of the texts of ContactDescribeMoves() and ContactDescribeRound() */
 #define CONTACT_MOVES 256
 
+/* A pair that outputs are told of */
+static inline const ContactPair *ContactToldPair(Contact contact, PetscInt pair)
+{
+  return contact->neighbours.come_and_go ? &contact->neighbours.told.pairs[pair] : &contact->pairs[pair];
+}
+
 /* Groups of bodies, each named by its first one. While groups are joined, `of` leads to that by way of others. */
 static inline PetscInt ContactGroupOf(const PetscInt of[], PetscInt b)
 {
@@ -103,8 +109,7 @@ PETSC_INTERN void           ContactListRowState(Contact, StateList *);
 PETSC_INTERN PetscErrorCode ContactVisitPairNodes(const ContactPair *, const StateList *, const char[], Tables);
 PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTold(Contact);
-PETSC_INTERN PetscErrorCode ContactTakeLeave(Contact, const ContactPair *, const PetscReal[], const PetscReal[]);
-PETSC_INTERN void           ContactGetTold(Contact, PetscInt, PetscInt *, PetscInt *);
+PETSC_INTERN void           ContactTakeLeave(Contact, const ContactPair *, const ContactPairState *);
 PETSC_INTERN PetscErrorCode ContactComputePairStates(Contact, PetscInt, PetscInt, ContactPairState[]);
 PETSC_INTERN PetscErrorCode ContactSetUpPairResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpRowEnergy(Contact);

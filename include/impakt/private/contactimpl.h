@@ -368,12 +368,10 @@ typedef struct {
 
 /* What is told of pairs that come and go, see src/contact/interface/told.c */
 typedef struct {
-  PetscInt   n;
-  char     **names;
-  PetscReal *gone;          /* what pairs that have gone have done: this rank's shares, see resultants.c */
-  PetscReal *sums;          /* work space */
-  PetscReal *gone_friction; /* what friction has taken in pairs that have gone, and the work of obstacles there, of all ranks: 2 each [J] */
-  PetscInt   room;          /* of the following */
+  PetscInt          n;
+  ContactPair      *pairs;  /* their names and bodies */
+  ContactPairState *gone;   /* what pairs that have gone have done, of all ranks */
+  PetscInt          room;   /* of the following */
   ContactPairState *states; /* work space, per pair */
 } ContactTold;
 

@@ -53,24 +53,15 @@ of the bodies.
 @*/
 PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[], Body *dirichlet, Body *neumann)
 {
-  PetscInt first;
+  const ContactPair *told;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   ContactCheckPair(contact, pair);
-  if (contact->neighbours.come_and_go) {
-    PetscInt body, obstacle;
-
-    ContactGetTold(contact, pair, &body, &obstacle);
-    if (name) *name = contact->neighbours.told.names[pair];
-    if (dirichlet) *dirichlet = contact->bodies[body];
-    if (neumann) *neumann = obstacle < 0 ? contact->bodies[body] : NULL;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  first = contact->pairs[pair].turned ? 1 : 0;
-  if (name) *name = contact->pairs[pair].name;
-  if (dirichlet) *dirichlet = contact->bodies[contact->pairs[pair].body[first]];
-  if (neumann) *neumann = contact->pairs[pair].obstacle ? NULL : contact->bodies[contact->pairs[pair].body[1 - first]];
+  told = ContactToldPair(contact, pair);
+  if (name) *name = told->name;
+  if (dirichlet) *dirichlet = contact->bodies[told->body[told->turned ? 1 : 0]];
+  if (neumann) *neumann = told->obstacle ? NULL : contact->bodies[told->body[told->turned ? 0 : 1]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -81,22 +72,18 @@ PetscErrorCode ContactPairIsNamed(Contact contact, PetscInt pair, PetscBool *nam
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(named, 3);
   ContactCheckPair(contact, pair);
-  *named = (PetscBool)(!contact->neighbours.come_and_go && !contact->pairs[pair].chosen);
+  *named = (PetscBool)!ContactToldPair(contact, pair)->chosen;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Mean outward normal of the first body of a pair: 3 numbers, zeros beyond the space dimension */
+/* Mean outward normal of the first body of a pair: 3 numbers, zeros beyond the space dimension, and of pairs that come and go */
 PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal normal[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(normal, 3);
   ContactCheckPair(contact, pair);
-  if (contact->neighbours.come_and_go) { /* there is none */
-    for (PetscInt d = 0; d < 3; d++) normal[d] = 0;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt d = 0; d < 3; d++) normal[d] = ContactPairSign(&contact->pairs[pair]) * contact->pairs[pair].normal[d];
+  for (PetscInt d = 0; d < 3; d++) normal[d] = ContactPairSign(ContactToldPair(contact, pair)) * ContactToldPair(contact, pair)->normal[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -165,8 +152,8 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
     if (contact->friction.pair_driven) counts->obstacle_work += contact->friction.pair_driven[p];
   }
   for (PetscInt p = 0; p < contact->neighbours.told.n; p++) {
-    counts->friction_loss += contact->neighbours.told.gone_friction[2 * p];
-    counts->obstacle_work += contact->neighbours.told.gone_friction[2 * p + 1];
+    counts->friction_loss += contact->neighbours.told.gone[p].friction_loss;
+    counts->obstacle_work += contact->neighbours.told.gone[p].obstacle_work;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

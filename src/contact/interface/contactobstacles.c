@@ -89,14 +89,7 @@ PetscErrorCode ContactGetPairObstacle(Contact contact, PetscInt pair, PetscInt *
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(i, 3);
   ContactCheckPair(contact, pair);
-  if (contact->neighbours.come_and_go) {
-    PetscInt body;
-
-    ContactGetTold(contact, pair, &body, i);
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  *i = contact->pairs[pair].obstacle ? contact->n_obstacles - 1 : -1;
-  while (*i >= 0 && contact->obstacles[*i] != contact->pairs[pair].obstacle) (*i)--;
+  *i = ContactToldPair(contact, pair)->obstacle ? ContactPairPartner(contact, ContactToldPair(contact, pair)) - contact->n_bodies : -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

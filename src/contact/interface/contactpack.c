@@ -5,16 +5,18 @@
 #include <interface/transfervisit.h>
 #include "contactvisit.h"
 
-/* Sums whose shares ranks have; loading, the first rank takes them */
-static PetscErrorCode VisitSums(Contact contact, const char name[], PetscInt n, PetscReal shares[], Tables tables)
+/* What pairs have done so far, of which ranks have shares; loading, the first rank takes all */
+static PetscErrorCode VisitImpulses(Contact contact, Tables tables)
 {
-  PetscReal *sums;
+  const PetscInt n      = CONTACT_IMPULSES * contact->n_pairs;
+  PetscReal     *shares = contact->resultants.impulse, *sums;
 
   PetscFunctionBegin;
+  PetscCall(TablesBegin(tables, "contact"));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc1(n, &sums));
   PetscCallMPI(MPIU_Allreduce(shares, sums, (PetscMPIInt)n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscCall(TablesVisitNumbers(tables, name, n, sums));
+  PetscCall(TablesVisitNumbers(tables, "impulses", n, sums));
   for (PetscInt k = 0; k < n && TablesLoads(tables); k++) shares[k] = contact->ranks.rank ? 0 : sums[k];
   PetscCall(PetscFree(sums));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -83,10 +85,7 @@ PetscErrorCode ContactVisitTables(Contact contact, Tables tables)
     PetscTryTypeMethod(contact, visittables, tables);
     if (loads) PetscCall(VisitRows(contact, tables));
   }
-  /* what pairs have done so far, those that have gone too */
-  PetscCall(TablesBegin(tables, "contact"));
-  PetscCall(VisitSums(contact, "impulses", CONTACT_IMPULSES * contact->n_pairs, contact->resultants.impulse, tables));
-  PetscCall(VisitSums(contact, "gone", CONTACT_IMPULSES * contact->neighbours.told.n, contact->neighbours.told.gone, tables));
+  PetscCall(VisitImpulses(contact, tables));
   if (!loads) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactStartImpulses(contact)); /* the forces of the last step each rank has of its own rows */
   contact->attempt.again = PETSC_FALSE;

@@ -84,10 +84,9 @@ static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
   if (contact->friction.slip) {
     PetscCall(CheckpointVisitReals(checkpoint, "friction", contact->n_pairs, contact->friction.pair_loss));
     PetscCall(CheckpointVisitReals(checkpoint, "obstacle work", contact->n_pairs, contact->friction.pair_driven));
-    if (contact->neighbours.come_and_go)
-      PetscCall(CheckpointVisitReals(checkpoint, "friction of pairs that have gone", 2 * contact->neighbours.told.n,
-                                     contact->neighbours.told.gone_friction));
   }
+  PetscCall(CheckpointVisitBytes(checkpoint, "gone", (size_t)contact->neighbours.told.n * sizeof(ContactPairState),
+                                 contact->neighbours.told.gone));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -201,7 +200,6 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(CheckpointBegin(checkpoint, "contact states"));
   if (CheckpointLoads(checkpoint)) contact->attempt.again = PETSC_FALSE;
   PetscCall(CheckpointVisitReals(checkpoint, "impulses", CONTACT_IMPULSES * contact->n_pairs, contact->resultants.impulse));
-  PetscCall(CheckpointVisitReals(checkpoint, "gone", CONTACT_IMPULSES * contact->neighbours.told.n, contact->neighbours.told.gone));
   for (PetscInt t = BODY_FIRST_FORCE; t < BODY_TRACES; t++)
     PetscCall(CheckpointVisitTrace(checkpoint, "obstacle", contact->traces[contact->n_bodies].all[t]));
   if (contact->turns.n) PetscCall(CheckpointVisitReals(checkpoint, "turned", contact->rows.n, contact->turns.turned));

@@ -4,12 +4,13 @@
 
 /* What is kept of rows and pairs, while they are laid out */
 typedef struct {
-  PetscInt     n_pairs;
-  ContactPair *pairs;
-  PetscInt     width;   /* numbers of each row: what checkpoints have of it, and its first displacement */
-  PetscReal   *rows;    /* per row: those */
-  PetscReal   *sums;    /* per pair: N_SUMS */
-  PetscBool   *goes_on; /* per pair */
+  PetscInt          n_pairs;
+  ContactPair      *pairs;
+  PetscInt          width;   /* numbers of each row: what checkpoints have of it, and its first displacement */
+  PetscReal        *rows;    /* per row: those */
+  PetscReal        *sums;    /* per pair: N_SUMS */
+  ContactPairState *states;  /* per pair */
+  PetscBool        *goes_on; /* per pair */
 } Kept;
 
 /* Of a pair: impulses, sums of energies, what friction has taken, and the work of an obstacle [J] */
@@ -33,8 +34,9 @@ static PetscErrorCode KeepRows(Contact contact, Kept *kept)
   PetscFunctionBegin;
   ContactListRowState(contact, &list);
   kept->width = StateListGetWidth(&list) + 1;
-  PetscCall(
-      PetscCalloc3(kept->width * contact->rows.n, &kept->rows, N_SUMS * contact->n_pairs, &kept->sums, contact->n_pairs, &kept->goes_on));
+  PetscCall(PetscCalloc4(kept->width * contact->rows.n, &kept->rows, N_SUMS * contact->n_pairs, &kept->sums, contact->n_pairs,
+                         &kept->goes_on, contact->n_pairs, &kept->states));
+  PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, kept->states));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     StateListCopyOne(&list, i, PETSC_FALSE, kept->rows + kept->width * i);
     kept->rows[kept->width * (i + 1) - 1] = (PetscReal)contact->rows.dof[i];
@@ -74,7 +76,7 @@ static PetscErrorCode TakePairs(Contact contact, PetscInt n, const PetscInt list
 
     if (kept->goes_on[p]) continue;
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) affected[pair->body[side]] = PETSC_TRUE;
-    PetscCall(ContactTakeLeave(contact, pair, kept->sums + N_SUMS * p, kept->sums + N_SUMS * p + SUM_FRICTION));
+    ContactTakeLeave(contact, pair, &kept->states[p]);
     PetscCall(ContactDestroyPair(pair));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -193,7 +195,7 @@ PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt l
   PetscCall(ContactSetUpObstacleTraces(contact));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
   contact->neighbours.layouts++;
-  PetscCall(PetscFree3(kept.rows, kept.sums, kept.goes_on));
+  PetscCall(PetscFree4(kept.rows, kept.sums, kept.goes_on, kept.states));
   PetscCall(PetscFree(kept.pairs));
   PetscCall(PetscFree2(was, affected));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -27,7 +27,7 @@ PetscErrorCode ContactGetPairRowSide(Contact contact, PetscInt pair, PetscInt *b
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(body, 3);
   ContactCheckPair(contact, pair);
-  *body = !contact->neighbours.come_and_go && contact->pairs[pair].turned ? 1 : 0;
+  *body = ContactToldPair(contact, pair)->turned ? 1 : 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
