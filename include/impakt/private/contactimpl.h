@@ -90,6 +90,7 @@ typedef struct {
   PetscInt    body;
   const char *name;   /* borrowed from a pair; NULL: the whole boundary */
   PetscBool   shared; /* its faces are the same whoever the partner is */
+  PetscBool   first;  /* of its body: the mean position and velocity of its nodes are in the history */
   Surface     surface;
 } ContactSurface;
 
@@ -136,13 +137,6 @@ typedef struct {
   PetscReal length; /* [m] */
   PetscReal force;  /* [N] */
 } ContactScale;
-
-/* Contact nodes of each body in its first pair: their mean position and velocity are in the history */
-typedef struct {
-  PetscInt **dofs;  /* first displacement of each node that this rank owns, rank numbering */
-  PetscInt  *n;     /* their number */
-  PetscInt  *n_all; /* the number on all ranks */
-} ContactNodes;
 
 /* The rows: those of this rank, but for n_all */
 typedef struct {
@@ -407,13 +401,11 @@ typedef struct {
   PetscReal *mean;         /* per body: mean velocity of its nodes [m/s], and their number */
   PetscReal *spread;       /* per body: the most by which the velocity of a node differs from that [m/s] */
   PetscReal *acceleration; /* per body: the largest of a node, where pairs come and go [m/s^2]; follows `spread` in memory */
-  PetscReal  all;          /* surfaces that far apart may touch in the step, as far as speeds tell [m] */
 } ContactReach;
 
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
-  PetscReal     *traces;        /* six numbers per body, see ContactGetBodyTraces() */
-  PetscBool     *left_out;      /* per body: it is not integrated with others */
+  PetscReal     *traces;        /* seven numbers per body, see ContactGetBodyTraces() */
   int           *hands_over;    /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;         /* to a body */
   PetscReal     *last_gap;      /* per row */
@@ -459,7 +451,6 @@ struct _p_Contact {
   Mat              *spares;     /* the same of other steps, to be filled next */
   Vec              *ends;       /* per body: where rows are laid if not where it is, as where the last attempt at the step has ended */
   PetscReal        *ahead;      /* per body: rows of all its pairs are laid where it will be in that time, by its velocities [s] */
-  ContactNodes      nodes;
   ContactRows       rows;
   ContactTurns      turns;
   ContactTies       ties;

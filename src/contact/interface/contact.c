@@ -221,16 +221,14 @@ PetscErrorCode ContactDestroy(Contact *contact)
     if (c->interfaces) PetscCall(MatDestroy(&c->interfaces[b]));
     if (c->spares) PetscCall(MatDestroy(&c->spares[b]));
     if (c->ends) PetscCall(VecDestroy(&c->ends[b]));
-    if (c->nodes.dofs) PetscCall(PetscFree(c->nodes.dofs[b]));
   }
   PetscCall(ContactDestroyRows(c));
   PetscCall(ContactDestroyNeighbours(c));
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree2(c->reach.mean, c->reach.spread));
-  PetscCall(PetscFree6(c->traces, c->interfaces, c->order, c->nodes.dofs, c->nodes.n, c->nodes.n_all));
-  PetscCall(PetscFree4(c->spares, c->work.hands_over, c->work.traces, c->work.left_out));
-  PetscCall(PetscFree2(c->ends, c->ahead));
+  PetscCall(PetscFree4(c->traces, c->interfaces, c->spares, c->order));
+  PetscCall(PetscFree4(c->ends, c->ahead, c->work.hands_over, c->work.traces));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyOverlaps(c));
   PetscCall(ContactDestroyFloating(c));

@@ -158,32 +158,30 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sums over this rank's contact nodes of a body: positions and velocities, three numbers each */
-static PetscErrorCode SumBodyTrace(Contact contact, PetscInt body, PetscReal sums[6])
+/* Adds up the positions and velocities of this rank's nodes of a surface, three numbers each, and how many these are */
+static PetscErrorCode SumNodes(const ContactSurface *surface, Body body, PetscReal sums[7])
 {
+  const SurfaceData *data;
   const PetscScalar *x, *u, *v;
   Vec                positions, displacements, velocities;
-  PetscInt           dim;
-  PetscReal          sum[6] = {0};
+  PetscInt           first;
 
   PetscFunctionBegin;
-  PetscCall(BodyGetDimension(contact->bodies[body], &dim));
-  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
-  PetscCall(BodyGetSolution(contact->bodies[body], &displacements, &velocities, NULL));
-  PetscCall(PetscArrayzero(sums, 6));
-  if (!contact->nodes.n[body]) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SurfaceGetData(surface->surface, &data));
+  PetscCall(BodyGetReferencePositions(body, &positions));
+  PetscCall(BodyGetSolution(body, &displacements, &velocities, NULL));
+  PetscCall(VecGetOwnershipRange(positions, &first, NULL));
   PetscCall(VecGetArrayRead(positions, &x));
   PetscCall(VecGetArrayRead(displacements, &u));
   PetscCall(VecGetArrayRead(velocities, &v));
-  for (PetscInt i = 0; i < contact->nodes.n[body]; i++) {
-    const PetscInt dof = contact->nodes.dofs[body][i];
+  for (PetscInt i = 0; i < data->n_owned; i++)
+    for (PetscInt d = 0; d < data->dim; d++) {
+      const PetscInt dof = data->dofs[i] - first + d;
 
-    for (PetscInt d = 0; d < dim; d++) {
-      sum[d] += x[dof + d] + u[dof + d];
-      sum[3 + d] += v[dof + d];
+      sums[d] += PetscRealPart(x[dof] + u[dof]);
+      sums[3 + d] += PetscRealPart(v[dof]);
     }
-  }
-  PetscCall(PetscArraycpy(sums, sum, 6));
+  sums[6] = (PetscReal)data->n_owned;
   PetscCall(VecRestoreArrayRead(velocities, &v));
   PetscCall(VecRestoreArrayRead(displacements, &u));
   PetscCall(VecRestoreArrayRead(positions, &x));
@@ -200,14 +198,17 @@ PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], Pets
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(positions, 2);
   PetscAssertPointer(velocities, 3);
-  for (PetscInt b = 0; b < n; b++) PetscCall(SumBodyTrace(contact, b, sums + 6 * b));
-  PetscCall(ContactReduce(contact, 6 * n, MPIU_REAL, MPIU_SUM, sums));
-  for (PetscInt b = 0; b < n; b++)
-    for (PetscInt d = 0; d < 3; d++) {
-      const PetscInt nodes = contact->nodes.n_all[b];
+  PetscCall(PetscArrayzero(sums, 7 * n));
+  for (PetscInt s = 0; s < contact->n_surfaces; s++) {
+    const PetscInt b = contact->surfaces[s].body;
 
-      positions[3 * b + d]  = nodes ? sums[6 * b + d] / nodes : 0;
-      velocities[3 * b + d] = nodes ? sums[6 * b + 3 + d] / nodes : 0;
+    if (contact->surfaces[s].first) PetscCall(SumNodes(&contact->surfaces[s], contact->bodies[b], sums + 7 * b));
+  }
+  PetscCall(ContactReduce(contact, 7 * n, MPIU_REAL, MPIU_SUM, sums));
+  for (PetscInt b = 0; b < n; b++, sums += 7)
+    for (PetscInt d = 0; d < 3; d++) {
+      positions[3 * b + d]  = sums[d] / PetscMax(sums[6], 1);
+      velocities[3 * b + d] = sums[3 + d] / PetscMax(sums[6], 1);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

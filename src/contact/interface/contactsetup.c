@@ -12,13 +12,11 @@ static PetscErrorCode AllocateBodies(Contact contact)
   const PetscInt n = contact->n_bodies;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc2(n, &contact->ends, n, &contact->ahead));
   PetscCall(PetscCalloc2(4 * n, &contact->reach.mean, 2 * n, &contact->reach.spread));
   contact->reach.acceleration = contact->reach.spread + n;
   PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));
-  PetscCall(PetscCalloc4(n, &contact->spares, n, &contact->work.hands_over, 6 * n, &contact->work.traces, n, &contact->work.left_out));
-  PetscCall(PetscCalloc6(n + 1, &contact->traces, n, &contact->interfaces, n, &contact->order, n, &contact->nodes.dofs, n,
-                         &contact->nodes.n, n, &contact->nodes.n_all));
+  PetscCall(PetscCalloc4(n + 1, &contact->traces, n, &contact->interfaces, n, &contact->spares, n, &contact->order));
+  PetscCall(PetscCalloc4(n, &contact->ends, n, &contact->ahead, n, &contact->work.hands_over, 7 * n, &contact->work.traces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -3,25 +3,6 @@
 #include <impakt/private/bodymesh.h>
 #include <impakt/private/bodymass.h>
 
-/* The contact position and velocity of a body in the history are those of the first surface that it has */
-static PetscErrorCode NoteNodes(Contact contact, PetscInt body, Surface surface)
-{
-  const SurfaceData *data;
-  PetscInt           rstart;
-  Vec                positions;
-
-  PetscFunctionBegin;
-  if (contact->nodes.n_all[body]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SurfaceGetData(surface, &data));
-  PetscCallMPI(MPIU_Allreduce(&data->n_owned, &contact->nodes.n_all[body], 1, MPIU_INT, MPI_SUM, PetscObjectComm((PetscObject)contact)));
-  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
-  PetscCall(VecGetOwnershipRange(positions, &rstart, NULL));
-  PetscCall(PetscMalloc1(data->n_owned, &contact->nodes.dofs[body]));
-  for (PetscInt i = 0; i < data->n_owned; i++) contact->nodes.dofs[body][i] = data->dofs[i] - rstart;
-  contact->nodes.n[body] = data->n_owned;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Tells both bodies of a pair which of their nodes may touch, and are to be massless: all nodes of both surfaces, since any may come
    opposite to the partner by sliding. None of a pair tied with its mass, unless the whole body keeps it */
 PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
@@ -36,7 +17,6 @@ PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
       if (BodyDoes(contact->bodies[body], BodyGetMassRedistributeNear)) PetscCall(ContactMarkNearNodes(contact, pair, side));
       else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
     }
-    PetscCall(NoteNodes(contact, body, pair->surfaces[side]));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -86,43 +66,42 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A surface of one side of a pair: that of an earlier pair where it has the same, or a new one */
-static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt side, PetscBool shared)
+/* A surface of a body at the end of those of all pairs */
+static PetscErrorCode AppendSurface(Contact contact, PetscInt body, const char name[], PetscBool shared)
 {
   ContactSurface *entry;
+  PetscBool       first = PETSC_TRUE;
 
   PetscFunctionBegin;
-  if (contact->neighbours.come_and_go) { /* all bodies have theirs from the start, in their order */
-    entry = &contact->surfaces[pair->body[side]];
-    PetscCall(PetscObjectReference((PetscObject)entry->surface));
-    pair->surfaces[side] = entry->surface;
-    pair->place[side]    = pair->body[side];
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  for (PetscInt s = 0; s < contact->n_surfaces && shared; s++) {
-    PetscBool same;
-
-    entry = &contact->surfaces[s];
-    if (!entry->shared || entry->body != pair->body[side]) continue;
-    PetscCall(PetscStrcmp(entry->name, pair->surface[side], &same));
-    if (!same) continue;
-    PetscCall(PetscObjectReference((PetscObject)entry->surface));
-    pair->surfaces[side] = entry->surface;
-    pair->place[side]    = s;
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
+  for (PetscInt s = 0; s < contact->n_surfaces; s++) first = (PetscBool)(first && contact->surfaces[s].body != body);
   if (contact->n_surfaces == contact->max_surfaces) {
     contact->max_surfaces = 2 * contact->max_surfaces + 4;
     PetscCall(PetscRealloc((size_t)contact->max_surfaces * sizeof(*contact->surfaces), &contact->surfaces));
   }
-  pair->place[side] = contact->n_surfaces;
-
   entry  = &contact->surfaces[contact->n_surfaces++];
-  *entry = (ContactSurface){.body = pair->body[side], .name = pair->surface[side], .shared = shared};
-  PetscCall(ContactCreateSurface(contact, pair->body[side], pair->surface[side], &entry->surface));
+  *entry = (ContactSurface){.body = body, .name = name, .shared = shared, .first = first};
+  PetscCall(ContactCreateSurface(contact, body, name, &entry->surface));
   PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
-  PetscCall(PetscObjectReference((PetscObject)entry->surface));
-  pair->surfaces[side] = entry->surface;
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* A surface of one side of a pair: that of an earlier pair where it has the same, or a new one */
+static PetscErrorCode TakeSurface(Contact contact, ContactPair *pair, PetscInt side, PetscBool shared)
+{
+  PetscInt place = contact->n_surfaces;
+
+  PetscFunctionBegin;
+  for (PetscInt s = 0; s < contact->n_surfaces && shared && place == contact->n_surfaces; s++) {
+    const ContactSurface *entry = &contact->surfaces[s];
+    PetscBool             same  = (PetscBool)(entry->shared && entry->body == pair->body[side]);
+
+    if (same) PetscCall(PetscStrcmp(entry->name, pair->surface[side], &same));
+    if (same) place = s;
+  }
+  if (place == contact->n_surfaces) PetscCall(AppendSurface(contact, pair->body[side], pair->surface[side], shared));
+  pair->place[side]    = place;
+  pair->surfaces[side] = contact->surfaces[place].surface;
+  PetscCall(PetscObjectReference((PetscObject)pair->surfaces[side]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -147,19 +126,13 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
   PetscInt n_found;
 
   PetscFunctionBegin;
-  contact->n_surfaces = contact->max_surfaces = contact->n_bodies;
-  PetscCall(PetscCalloc1(contact->n_bodies, &contact->surfaces));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    ContactSurface *entry = &contact->surfaces[b];
     const PetscInt *vertices;
     PetscInt        n, dim;
 
-    *entry = (ContactSurface){.body = b, .shared = PETSC_TRUE};
-    PetscCall(ContactCreateSurface(contact, b, NULL, &entry->surface));
-    PetscCall(SurfaceSetRound(entry->surface, (PetscBool)(contact->dim == 3 && contact->options.balance)));
-    PetscCall(SurfaceGetVertices(entry->surface, &n, &vertices));
+    PetscCall(AppendSurface(contact, b, NULL, PETSC_TRUE));
+    PetscCall(SurfaceGetVertices(contact->surfaces[b].surface, &n, &vertices));
     PetscCall(BodySetContactNodes(contact->bodies[b], n, vertices));
-    PetscCall(NoteNodes(contact, b, entry->surface));
     PetscCall(GrowExtent(contact->bodies[b], &dim, extent));
   }
   PetscCall(ContactMeasureNeighbours(contact));

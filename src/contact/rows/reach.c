@@ -88,7 +88,7 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
       if (i % 4 < 3) mean[i] /= PetscMax(mean[i - i % 4 + 3], 1);
   }
   PetscCall(ContactReduce(contact, 2 * n, MPIU_REAL, MPIU_MAX, spread));
-  *reach = contact->reach.all = AHEAD * contact->step * TwoFastest(contact, gains);
+  *reach = AHEAD * contact->step * TwoFastest(contact, gains);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
