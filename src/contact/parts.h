@@ -143,7 +143,7 @@ PETSC_INTERN PetscErrorCode ContactAcceptTurns(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckTies(Contact);
 PETSC_INTERN PetscErrorCode ContactMeasureTies(Contact, const ContactPair *, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactTie(Contact);
-PETSC_INTERN void           ContactGetFrame(PetscInt, const PetscReal[], PetscInt, PetscReal[3]);
+PETSC_INTERN void           ContactGetDirection(Contact, const ContactPair *, const TransferRows *, PetscInt, PetscReal[3]);
 PETSC_INTERN const char    *ContactNameLaw(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactReadLaw(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactReadLawParameters(Contact);
@@ -191,7 +191,7 @@ PETSC_INTERN PetscErrorCode ContactMarkHeldRows(Contact);
 PETSC_INTERN PetscErrorCode ContactKeepHeldRows(Contact, Vec);
 PETSC_INTERN void           ContactLeaveOutDropped(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, PetscInt);
-PETSC_INTERN PetscErrorCode ContactSumMergedMoments(Contact, const ContactPair *, const PetscScalar[], const PetscScalar[], PetscReal[]);
+PETSC_INTERN PetscErrorCode ContactGetPartForces(Contact, Vec *);
 PETSC_INTERN PetscErrorCode ContactDestroyMerger(Contact);
 PETSC_INTERN PetscErrorCode ContactFillMatrices(Contact);
 /* Numbers of a pair whose least over ranks counts: motion of its surfaces; -1 where it touches, or has; -1 where it may in the step */

@@ -17,30 +17,6 @@ static PetscErrorCode VisitPairs(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The matrix that gives the shares of rows that have been dropped to others */
-static PetscErrorCode VisitHeld(Contact contact, Checkpoint checkpoint)
-{
-  ContactHeldRows *held   = &contact->held;
-  const PetscInt   n      = contact->rows.n;
-  PetscBool        merger = (PetscBool)(held->merger != NULL);
-
-  PetscFunctionBegin;
-  PetscCall(CheckpointVisitBools(checkpoint, "merger", 1, &merger));
-  if (!merger) {
-    PetscCall(ContactDestroyMerger(contact));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (!held->merger) {
-    PetscCall(MatCreateAIJ(PetscObjectComm((PetscObject)contact), n, n, contact->rows.n_all, contact->rows.n_all, 0, NULL, 0, NULL,
-                           &held->merger));
-    PetscCall(MatAssemblyBegin(held->merger, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(held->merger, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatCreateVecs(held->merger, &held->places, &held->means));
-  }
-  PetscCall(CheckpointVisitMat(checkpoint, "merger matrix", &held->merger));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
@@ -53,6 +29,7 @@ static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Loading, shares of rows that have been dropped go to others as they have; that leaves rows as they are loaded */
 static PetscErrorCode VisitRows(Contact contact, Checkpoint checkpoint)
 {
   StateList list;
@@ -60,6 +37,10 @@ static PetscErrorCode VisitRows(Contact contact, Checkpoint checkpoint)
   PetscFunctionBegin;
   ContactListRowState(contact, &list);
   PetscCall(StateListVisit(&list, "rows", checkpoint));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactSaveRowState(contact));
+  PetscCall(ContactMergeDroppedRows(contact));
+  PetscCall(StateListCopy(&list, PETSC_TRUE, contact->saved.state));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -190,7 +171,6 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   PetscCall(VisitPairs(contact, checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "contact rows"));
   PetscCall(VisitRows(contact, checkpoint));
-  PetscCall(VisitHeld(contact, checkpoint));
   PetscCall(VisitMatrices(contact, checkpoint));
   /* before the method, which notes the matrices of their layers as they are */
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisit(contact->bodies[b], checkpoint));

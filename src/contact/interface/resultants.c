@@ -125,27 +125,32 @@ PetscBool ContactHasTouched(Contact contact, const ContactPair *pair)
 static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, PetscReal moment[])
 {
   const Body         body = contact->bodies[pair->body[0]];
-  const PetscScalar *reference, *displacement;
-  Vec                positions, u;
-  PetscInt           dim;
+  const PetscScalar *reference, *displacement, *parts = NULL;
+  TransferRows       rows;
+  Vec                positions, u, of_parts;
 
   PetscFunctionBegin;
   if (BodyDoes(body, BodyGetAxisymmetric)) PetscFunctionReturn(PETSC_SUCCESS); /* around a ring moments are in balance */
-  PetscCall(BodyGetDimension(body, &dim));
+  PetscCall(TransferGetRows(pair->transfer, &rows));
+  if (contact->held.merger) {
+    PetscCall(ContactGetPartForces(contact, &of_parts));
+    PetscCall(VecGetArrayRead(of_parts, &parts));
+  }
   PetscCall(BodyGetReferencePositions(body, &positions));
   PetscCall(BodyGetSolution(body, &u, NULL, NULL));
   PetscCall(VecGetArrayRead(positions, &reference));
   PetscCall(VecGetArrayRead(u, &displacement));
-  if (contact->held.merger) PetscCall(ContactSumMergedMoments(contact, pair, reference, displacement, moment));
-  for (PetscInt k = pair->acts_begin; k < pair->acts_end && !contact->held.merger; k++) {
-    const PetscInt   i = contact->rows.acting[k], dof = contact->rows.dof[i];
-    const PetscReal *normal = contact->rows.normal + 3 * i;
-    PetscReal        x[3]   = {0};
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
+    const PetscInt  i = contact->rows.acting[k], dof = contact->rows.dof[i];
+    const PetscReal force = parts ? PetscRealPart(parts[i]) : contact->end.force[i];
+    PetscReal       x[3]  = {0}, normal[3];
 
-    for (PetscInt d = 0; d < dim; d++) x[d] = PetscRealPart(reference[dof + d] + displacement[dof + d]);
-    for (PetscInt d = 0; d < 3; d++)
-      moment[d] += contact->end.force[i] * (x[(d + 1) % 3] * normal[(d + 2) % 3] - x[(d + 2) % 3] * normal[(d + 1) % 3]);
+    if (parts) ContactGetDirection(contact, pair, &rows, i, normal);
+    else PetscCall(PetscArraycpy(normal, contact->rows.normal + 3 * i, 3));
+    for (PetscInt d = 0; d < contact->dim; d++) x[d] = PetscRealPart(reference[dof + d] + displacement[dof + d]);
+    for (PetscInt d = 0; d < 3; d++) moment[d] += force * (x[(d + 1) % 3] * normal[(d + 2) % 3] - x[(d + 2) % 3] * normal[(d + 1) % 3]);
   }
+  if (parts) PetscCall(VecRestoreArrayRead(of_parts, &parts));
   PetscCall(VecRestoreArrayRead(u, &displacement));
   PetscCall(VecRestoreArrayRead(positions, &reference));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -5,7 +5,7 @@
 #include <contact/parts.h>
 
 /* The direction of row k of a node: its normal, then unit vectors across it */
-void ContactGetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscReal direction[3])
+static void GetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscReal direction[3])
 {
   PetscReal first[3] = {0}, length = 0;
   PetscInt  least = 0;
@@ -30,6 +30,15 @@ void ContactGetFrame(PetscInt dim, const PetscReal normal[], PetscInt k, PetscRe
 
     direction[d] = k == 1 ? first[d] : normal[e] * first[f] - normal[f] * first[e];
   }
+}
+
+/* The direction of row i of a pair, as its transfer has it: of ties an axis */
+void ContactGetDirection(Contact contact, const ContactPair *pair, const TransferRows *rows, PetscInt i, PetscReal direction[3])
+{
+  const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+
+  for (PetscInt d = 0; d < 3; d++) direction[d] = d == k ? 1 : 0;
+  if (!ContactPairTies(pair)) GetFrame(contact->dim, rows->normals + contact->dim * node, k, direction);
 }
 
 /* All rows of a node become ties as they are at the start of the controller step */

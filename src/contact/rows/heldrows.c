@@ -39,16 +39,12 @@ static PetscErrorCode GetRows(Contact contact, RowNumber which, PetscInt d, Vec 
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscInt node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+      PetscReal      direction[3];
 
+      ContactGetDirection(contact, pair, &rows, i, direction);
       if (which == ROW_AREA) values[i] = rows.area[node];
       else if (which == ROW_GAP) values[i] = tied || k > 0 || !rows.opposite[node] ? 0 : rows.gap[node];
-      else if (tied) values[i] = d == k ? 1 : 0;
-      else {
-        PetscReal direction[3];
-
-        ContactGetFrame(contact->dim, rows.normals + contact->dim * node, k, direction);
-        values[i] = direction[d];
-      }
+      else values[i] = direction[d];
     }
   }
   PetscCall(VecRestoreArrayWrite(vec, &values));
@@ -261,35 +257,17 @@ PetscErrorCode ContactMergeMatrix(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds this rank's share of the moment of a pair about the origin [N m]: a force on a merged row acts at each of its nodes, along that
-   node's normal. `reference` and `displacement` are those of the first body [m]. */
-PetscErrorCode ContactSumMergedMoments(Contact contact, const ContactPair *pair, const PetscScalar reference[],
-                                       const PetscScalar displacement[], PetscReal moment[])
+/* Forces on the rows as transfers have them, on this rank: a force on a merged row is one on each of its parts, along that part's normal */
+PetscErrorCode ContactGetPartForces(Contact contact, Vec *parts)
 {
-  const PetscInt     dim = contact->dim;
-  const PetscScalar *means, *own;
-  PetscScalar       *levers;
+  PetscScalar *force;
 
   PetscFunctionBegin;
-  for (PetscInt a = 0; a < dim; a++)
-    for (PetscInt b = 0; b < dim; b++) {
-      const PetscInt  third = 3 - a - b;
-      const PetscReal sign  = (b - a + 3) % 3 == 1 ? 1 : -1;
-
-      if (a == b) continue; /* x_a n_b is part of the component along the third axis */
-      PetscCall(GetRows(contact, ROW_NORMAL, b, contact->held.places));
-      PetscCall(VecGetArray(contact->held.places, &levers));
-      for (PetscInt i = 0; i < contact->rows.n; i++)
-        levers[i] *= i >= pair->begin && i < pair->end ? reference[contact->rows.dof[i] + a] + displacement[contact->rows.dof[i] + a] : 0;
-      PetscCall(VecRestoreArray(contact->held.places, &levers));
-      PetscCall(MatMult(contact->held.merger, contact->held.places, contact->held.means));
-      PetscCall(VecGetArrayRead(contact->held.places, &own));
-      PetscCall(VecGetArrayRead(contact->held.means, &means));
-      for (PetscInt i = pair->begin; i < pair->end; i++)
-        moment[third] += sign * contact->end.force[i] * PetscRealPart(contact->held.heir[i] ? means[i] : own[i]);
-      PetscCall(VecRestoreArrayRead(contact->held.means, &means));
-      PetscCall(VecRestoreArrayRead(contact->held.places, &own));
-    }
+  PetscCall(VecGetArrayWrite(contact->held.means, &force));
+  PetscCall(PetscArraycpy(force, contact->end.force, contact->rows.n));
+  PetscCall(VecRestoreArrayWrite(contact->held.means, &force));
+  PetscCall(MatMultTranspose(contact->held.merger, contact->held.means, contact->held.places));
+  *parts = contact->held.places;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -79,10 +79,9 @@ PetscErrorCode ContactLayOutRows(Contact contact)
 /* Describes the rows of a pair as its transfer has them now; ContactMeasureTies() has found ties. A held row neither opens nor closes. */
 PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 {
-  const PetscInt dim = contact->dim;
-  TransferRows   rows;
-  Vec            positions;
-  PetscInt       first;
+  TransferRows rows;
+  Vec          positions;
+  PetscInt     first;
 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
@@ -101,10 +100,10 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       contact->rows.changed[i]     = rows.changed[node];
       contact->rows.followed[i]    = rows.followed[node];
       if (ContactPairTies(pair)) {
-        contact->rows.tied[i]           = contact->ties.holds[i];
-        contact->rows.initial_gap[i]    = contact->rows.tied[i] ? 0 : CONTACT_NO_GAP;
-        contact->rows.normal[3 * i + k] = 1;
-      } else ContactGetFrame(dim, rows.normals + dim * node, k, contact->rows.normal + 3 * i);
+        contact->rows.tied[i]        = contact->ties.holds[i];
+        contact->rows.initial_gap[i] = contact->rows.tied[i] ? 0 : CONTACT_NO_GAP;
+      }
+      ContactGetDirection(contact, pair, &rows, i, contact->rows.normal + 3 * i);
       if (pair->law == CONTACT_LAW_FRICTION && k > 0) contact->rows.initial_gap[i] = CONTACT_NO_GAP;
       if (pair->law == CONTACT_LAW_BONDED && k > 0) { /* until the node sticks */
         contact->rows.opposite[i]    = PETSC_FALSE;
@@ -113,7 +112,7 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
       PetscCall(ContactRowIsHeld(contact, pair, i, &held));
       held                        = (PetscBool)(held && contact->prescribes);
       contact->held.dropped[i]    = (PetscBool)(held && (ContactPairTies(pair) ? contact->rows.tied[i] : rows.opposite[node]) &&
-                                                !pair->obstacle && dim > 1 && pair->law != CONTACT_LAW_BONDED);
+                                                !pair->obstacle && contact->dim > 1 && pair->law != CONTACT_LAW_BONDED);
       contact->held.merged_gap[i] = 0;
       if (!held) continue;
       contact->rows.opposite[i] = contact->rows.tied[i] = PETSC_FALSE;
