@@ -172,7 +172,6 @@ typedef struct {
   PetscInt   n_near, *near;     /* its rows near contact: their places in `rows`, ascending */
   PetscInt   n_acting, *acting; /* those that act, the same */
   PetscReal *area;              /* as that of rows; the body borrows it */
-  PetscInt   n_pairs, *pairs;   /* that it is in, ascending */
   /* its matrix in contact->interfaces, and the spare one */
   PetscBool  affected;    /* rows have got new entries in this attempt at a controller step */
   PetscBool  rewritten;   /* they have in any attempt at it */

@@ -27,27 +27,6 @@ static PetscErrorCode ListRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ListPairs(Contact contact)
-{
-  ContactBodyRows *of = contact->body_rows;
-
-  PetscFunctionBegin;
-  for (PetscInt pass = 0; pass < 2; pass++) {
-    for (PetscInt b = 0; b < contact->n_bodies && pass; b++) {
-      PetscCall(PetscMalloc1(of[b].n_pairs, &of[b].pairs));
-      of[b].n_pairs = 0;
-    }
-    for (PetscInt p = 0; p < contact->n_pairs; p++)
-      for (PetscInt side = 0; side < ContactPairBodies(&contact->pairs[p]); side++) {
-        ContactBodyRows *body = &of[contact->pairs[p].body[side]];
-
-        if (pass) body->pairs[body->n_pairs] = p;
-        body->n_pairs++;
-      }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Which rows each body has. Call when the rows of all ranks and their pairs are known. */
 PetscErrorCode ContactNumberBodyRows(Contact contact)
 {
@@ -57,7 +36,6 @@ PetscErrorCode ContactNumberBodyRows(Contact contact)
   PetscFunctionBegin;
   PetscCall(PetscCalloc1(contact->n_bodies, &contact->body_rows));
   PetscCall(ListRows(contact));
-  PetscCall(ListPairs(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     ContactBodyRows *of = &contact->body_rows[b];
 
@@ -88,7 +66,6 @@ PetscErrorCode ContactDestroyBodyRows(Contact contact)
   for (PetscInt b = 0; contact->body_rows && b < contact->n_bodies; b++) {
     PetscCall(PetscFree4(contact->body_rows[b].rows, contact->body_rows[b].area, contact->body_rows[b].near, contact->body_rows[b].acting));
     PetscCall(PetscFree(contact->body_rows[b].all));
-    PetscCall(PetscFree(contact->body_rows[b].pairs));
   }
   PetscCall(PetscFree(contact->body_rows));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -2,33 +2,24 @@
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 
-/* Entries of each row of a body, by its transfer; unknown for ties, and columns of other ranks where they share the body. */
+/* Entries of each row of a body, at most, by its transfer; columns of other ranks where they share the body. */
 static PetscErrorCode CountEntries(Contact contact, PetscInt b, PetscInt entries[])
 {
-  PetscInt *counts[2] = {contact->work.entry_counts, contact->work.entry_counts + contact->rows.n};
+  const ContactBodyRows *of        = &contact->body_rows[b];
+  PetscInt              *counts[2] = {contact->work.entry_counts, contact->work.entry_counts + contact->rows.n};
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
-    const ContactPair *pair = &contact->pairs[contact->body_rows[b].pairs[k]];
+  for (PetscInt k = 0; k < of->n;) { /* rows of a pair follow each other */
+    const ContactPair *pair = &contact->pairs[contact->rows.pair[of->rows[k]]];
 
     PetscCall(TransferCountValues(pair->transfer, counts[0], pair->obstacle ? NULL : counts[1]));
-    for (PetscInt i = pair->begin; i < pair->end; i++) {
-      const PetscInt node = (i - pair->begin) / pair->components, place = i - pair->shift[pair->body[0] == b ? 0 : 1];
+    for (PetscInt i = pair->begin; i < pair->end; i++, k++) {
+      const PetscInt node = (i - pair->begin) / pair->components;
 
-      entries[place] = (pair->body[0] == b ? counts[0][node] : 0) + (!pair->obstacle && pair->body[1] == b ? counts[1][node] : 0);
+      entries[k] = (pair->body[0] == b ? counts[0][node] : 0) + (!pair->obstacle && pair->body[1] == b ? counts[1][node] : 0);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether a body has rows whose entries the transfers do not count */
-static PetscBool HasTies(Contact contact, PetscInt b)
-{
-  const ContactBodyRows *of = &contact->body_rows[b];
-
-  for (PetscInt k = 0; k < of->n_pairs; k++)
-    if (ContactPairTies(&contact->pairs[of->pairs[k]])) return PETSC_TRUE;
-  return PETSC_FALSE;
 }
 
 static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
@@ -43,7 +34,7 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
   PetscCall(MatCreate(PetscObjectComm((PetscObject)contact), &contact->interfaces[b]));
   PetscCall(MatSetSizes(contact->interfaces[b], contact->body_rows[b].n, n, PETSC_DETERMINE, PETSC_DETERMINE));
   PetscCall(MatSetType(contact->interfaces[b], MATAIJ));
-  if (contact->ranks.size == 1 && !HasTies(contact, b)) {
+  if (contact->ranks.size == 1) {
     PetscCall(CountEntries(contact, b, contact->work.intervals)); /* or PETSc collects them in a hash table */
     PetscCall(MatSeqAIJSetPreallocation(contact->interfaces[b], 0, contact->work.intervals));
   } else PetscCall(MatSetUp(contact->interfaces[b]));
@@ -51,41 +42,25 @@ static PetscErrorCode CreateMatrix(Contact contact, PetscInt b)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether one of several ranks has all of a body, and which. The same on every rank, as is whether all rows are there too. */
-static PetscErrorCode IsWhole(Contact contact, PetscInt b, PetscBool *whole, PetscBool *at_home, PetscMPIInt *rank)
-{
-  PetscFunctionBegin;
-  *whole = *at_home = PETSC_FALSE;
-  if (contact->ranks.size == 1 || HasTies(contact, b)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactIsAtHome(contact, b, rank, at_home));
-  *whole = (PetscBool)(*rank >= 0 && contact->body_rows[b].n_all);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Dofs of the nodes of a body that may touch, on the rank that has it, some twice */
 static PetscErrorCode ListContactDofs(Contact contact, PetscInt b, PetscInt *n, PetscInt *dofs[])
 {
-  const ContactBodyRows *of = &contact->body_rows[b];
-  PetscInt               count;
-
   PetscFunctionBegin;
   for (PetscInt pass = 0; pass < 2; pass++) {
-    count = 0;
-    for (PetscInt k = 0; k < of->n_pairs; k++) {
-      const ContactPair *pair = &contact->pairs[of->pairs[k]];
+    PetscInt count = 0;
+
+    for (PetscInt s = 0; s < contact->n_surfaces; s++) {
       const SurfaceData *data;
 
-      for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-        if (pair->body[side] != b) continue;
-        PetscCall(SurfaceGetData(pair->surfaces[side], &data));
-        for (PetscInt i = 0; i < contact->dim * data->n_owned && pass; i++)
-          (*dofs)[count + i] = data->dofs[i / contact->dim] + i % contact->dim;
-        count += contact->dim * data->n_owned;
-      }
+      if (contact->surfaces[s].body != b) continue;
+      PetscCall(SurfaceGetData(contact->surfaces[s].surface, &data));
+      for (PetscInt i = 0; i < contact->dim * data->n_owned && pass; i++)
+        (*dofs)[count + i] = data->dofs[i / contact->dim] + i % contact->dim;
+      count += contact->dim * data->n_owned;
     }
     if (!pass) PetscCall(PetscMalloc1(count, dofs));
+    *n = count;
   }
-  *n = count;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -120,11 +95,12 @@ static PetscErrorCode CopyMatrix(Contact contact, PetscInt b)
 static PetscErrorCode PrepareMatrix(Contact contact, PetscInt b)
 {
   ContactBodyRows *of = &contact->body_rows[b];
-  PetscBool        whole, at_home;
+  PetscBool        whole, at_home; /* one of several ranks has all of the body; and all its rows too */
   PetscMPIInt      rank = -1;
 
   PetscFunctionBegin;
-  PetscCall(IsWhole(contact, b, &whole, &at_home, &rank));
+  if (contact->ranks.size > 1) PetscCall(ContactIsAtHome(contact, b, &rank, &at_home));
+  whole = (PetscBool)(rank >= 0 && of->n_all);
   if (whole && of->patterns[0] < 0 && of->patterns[1] >= 0) PetscCall(CopyMatrix(contact, b));
   else if (!whole || of->patterns[0] < 0) {
     PetscCall(CreateMatrix(contact, b));

@@ -131,8 +131,7 @@ static PetscErrorCode LoadBody(Contact contact, PetscInt b, const PetscScalar x[
   const PetscBool robin = (PetscBool)(((Alternation *)contact->data)->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < contact->body_rows[b].n_pairs; k++) {
-    const PetscInt     p    = contact->body_rows[b].pairs[k];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     if (DirichletBody(pair) == b) {
