@@ -188,40 +188,38 @@ static PetscErrorCode AppendChosen(Contact contact, PetscInt first, PetscInt sec
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Middle of a body in one dimension [m] */
-static PetscErrorCode GetMiddle(Body body, PetscReal middle[3])
+/* How far the middle of a body in one dimension is from that of another, with a sign, or from an obstacle [m] */
+static PetscErrorCode GetDistance(Contact contact, PetscInt body, PetscInt other, Obstacle obstacle, PetscReal *distance)
 {
-  PetscReal lower[3], upper[3];
-  DM        dm;
+  PetscReal middle[2][3] = {{0}}, normal[3];
 
   PetscFunctionBegin;
-  PetscCall(BodyGetDM(body, &dm));
-  PetscCall(DMGetBoundingBox(dm, lower, upper));
-  middle[0] = 0.5 * (lower[0] + upper[0]);
-  middle[1] = middle[2] = 0;
+  for (PetscInt k = 0; k < (obstacle ? 1 : 2); k++) {
+    PetscReal lower[3], upper[3];
+    DM        dm;
+
+    PetscCall(BodyGetDM(contact->bodies[k ? other : body], &dm));
+    PetscCall(DMGetBoundingBox(dm, lower, upper));
+    middle[k][0] = 0.5 * (lower[0] + upper[0]);
+  }
+  *distance = middle[0][0] - middle[1][0];
+  if (obstacle) PetscCall(ObstacleGetGap(obstacle, middle[0], distance, normal));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether another body keeps body `a` from ever touching body `b`, or an obstacle: in one dimension a body that lies between them does */
 static PetscErrorCode IsHidden(Contact contact, PetscInt a, PetscInt b, Obstacle obstacle, PetscBool *hidden)
 {
-  PetscReal first[3], second[3], normal[3], distance = 0;
+  PetscReal distance, between;
 
   PetscFunctionBegin;
   *hidden = PETSC_FALSE;
   if (contact->dim > 1) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetMiddle(contact->bodies[a], first));
-  if (obstacle) PetscCall(ObstacleGetGap(obstacle, first, &distance, normal));
-  else PetscCall(GetMiddle(contact->bodies[b], second));
+  PetscCall(GetDistance(contact, a, b, obstacle, &distance));
   for (PetscInt c = 0; c < contact->n_bodies; c++) {
-    PetscReal middle[3], between;
-
     if (c == a || c == b) continue;
-    PetscCall(GetMiddle(contact->bodies[c], middle));
-    if (obstacle) {
-      PetscCall(ObstacleGetGap(obstacle, middle, &between, normal));
-      if (between < distance && between > 0) *hidden = PETSC_TRUE;
-    } else if ((middle[0] - first[0]) * (middle[0] - second[0]) < 0) *hidden = PETSC_TRUE;
+    PetscCall(GetDistance(contact, c, b, obstacle, &between));
+    if (between * distance > 0 && PetscAbsReal(between) < PetscAbsReal(distance)) *hidden = PETSC_TRUE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
