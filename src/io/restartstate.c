@@ -1,8 +1,8 @@
 /* Runs whose bodies begin with the state of a checkpoint: displacements, velocities and the history of materials at a new time, under other
    loads, with other integrators, on any number of ranks. Nodes are found by their places in the mesh. */
 #include <body/interface/bodyvisit.h>
-#include <contact/interface/contactvisit.h>
 #include "outputimpl.h"
+#include <impakt/private/contactsteps.h>
 #include <sys/units.h>
 
 /* The bodies begin with the state of the checkpoint -restart_state, as far as it has them. Collective; before the first step. */
@@ -35,7 +35,7 @@ PetscErrorCode OutputTakeState(Output output, const char path[])
   PetscCall(TablesDestroy(&tables));
   PetscCheck(found, comm, PETSC_ERR_USER_INPUT, "-restart_state %s has none of the bodies of this run", path);
   PetscCall(ControllerGetContact(output->controller, &contact));
-  PetscCall(ContactTakeState(contact));
+  PetscCall(ContactTakeStart(contact, PETSC_TRUE));
   PetscCall(ControllerGetTimes(output->controller, &start, NULL, NULL));
   if (start != file.info.time)
     PetscCall(PetscSNPrintf(again, sizeof(again),

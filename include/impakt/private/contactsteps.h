@@ -8,7 +8,7 @@ PETSC_EXTERN PetscErrorCode ContactGetEnergyLoss(Contact, PetscReal *);
 PETSC_EXTERN PetscErrorCode ContactGetResolvedStep(Contact, PetscReal *, size_t, char[]);
 PETSC_EXTERN PetscErrorCode ContactGetShare(Contact, PetscInt *, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetParts(Contact, PetscInt *);
-PETSC_EXTERN PetscErrorCode ContactCheckInitialGap(Contact);
+PETSC_EXTERN PetscErrorCode ContactTakeStart(Contact, PetscBool);
 PETSC_EXTERN PetscErrorCode ContactStep(Contact);
 PETSC_EXTERN PetscErrorCode ContactTryStep(Contact, PetscBool, PetscReal, StepConvergedReason *);
 PETSC_EXTERN PetscErrorCode ContactRaiseFailure(Contact, PetscInt, PetscInt);

@@ -69,7 +69,7 @@ static PetscErrorCode ChooseMass(Contact contact)
   PetscCall(PetscCalloc1(n, &keeps));
   ContactFindSets(contact, set);
   for (PetscInt b = 0; b < n; b++) {
-    PetscBool chooses = PETSC_FALSE, needs;
+    PetscBool chooses = PETSC_FALSE;
 
     if (BodyChoosesMass(contact->bodies[b])) {
       const PetscInt *vertices;
@@ -81,9 +81,9 @@ static PetscErrorCode ChooseMass(Contact contact)
       PetscCall(BodyChooseMass(contact->bodies[b], n_vertices, vertices, &chooses));
       PetscCall(SurfaceDestroy(&boundary));
     }
-    PetscCall(ContactNeedsImpulse(contact, b, &needs));
     if (chooses && kept == n) kept = b;
-    keeps[set[b]] = (PetscBool)(keeps[set[b]] || chooses || (contact->impulses && (needs || contact->options.keep_mass)));
+    keeps[set[b]] = (PetscBool)(keeps[set[b]] || chooses ||
+                                (contact->impulses && (contact->options.keep_mass || ContactNeedsImpulse(contact, b))));
   }
   for (PetscInt p = 0; p < contact->n_pairs && contact->impulses; p++)
     if (contact->pairs[p].keeps_mass) keeps[set[contact->pairs[p].body[0]]] = PETSC_TRUE;
@@ -198,17 +198,21 @@ PetscErrorCode ContactSetUp(Contact contact)
   if (!contact->ops->stored && !contact->energy.unlimited) contact->energy.unlimited = "the method does not tell what its forces store";
   contact->setup = PETSC_TRUE;
   StatusLineTell("first state");
-  PetscCall(ContactCheckInitialGap(contact));
+  PetscCall(ContactTakeStart(contact, PETSC_FALSE));
   PetscCall(PetscObjectViewFromOptions((PetscObject)contact, NULL, "-contact_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The present states are the start; `of_state`: they come from another run */
-static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
+/* Takes the present states as the start: ties what lies on each other, refuses bodies that overlap, and brings massless nodes into balance
+   where loads, strains, ties and closed rows have them, unless -contact_balanced_start false is given. To be called again when states have
+   been changed after ContactSetUp(). A tied pair that ties nothing, a gap above the tie distance or an overlap is an error. `of_state`: the
+   states come from another run; bodies in contact there may overlap by what rows of the other side leave. Collective. */
+PetscErrorCode ContactTakeStart(Contact contact, PetscBool of_state)
 {
   PetscBool renewed;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscCall(ContactRenewNeighbours(contact, 0, PETSC_TRUE, &renewed)); /* initial displacements count */
   PetscCall(ContactReadStartGaps(contact, PETSC_TRUE));
   PetscCall(ContactTie(contact));
@@ -218,24 +222,5 @@ static PetscErrorCode TakeStart(Contact contact, PetscBool of_state)
   PetscCall(ContactSetMeanForces(contact));
   PetscCall(ContactBalanceStart(contact));
   PetscCall(ContactStartTies(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Takes the present states as the start: ties what lies on each other, refuses bodies that overlap, and brings massless nodes into balance
-   where loads, strains, ties and closed rows have them, unless -contact_balanced_start false is given. To be called again when states have
-   been changed after ContactSetUp(). A tied pair that ties nothing, a gap above the tie distance or an overlap is an error. Collective. */
-PetscErrorCode ContactCheckInitialGap(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscCall(TakeStart(contact, PETSC_FALSE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* ContactTakeState - the same with states from another run: bodies in contact there may overlap by what rows of the other side leave */
-PetscErrorCode ContactTakeState(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(TakeStart(contact, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

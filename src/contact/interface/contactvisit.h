@@ -9,4 +9,3 @@ PETSC_INTERN PetscErrorCode ContactRepeatsBits(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactVisit(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactVisitShared(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactVisitTables(Contact, Tables);
-PETSC_INTERN PetscErrorCode ContactTakeState(Contact);
