@@ -10,56 +10,41 @@ PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContactBodyHasMass(Body body, PetscBool *has)
+/* Whether contact nodes of a body have mass and can move alone */
+PetscBool ContactBodyHasMass(Body body)
 {
-  PetscFunctionBegin;
-  *has = (PetscBool)(!BodyDoes(body, BodyIsRedistributed) && !BodyDoes(body, BodyIsStatic) && !BodyDoes(body, BodyIsRigid));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return (PetscBool)(!BodyDoes(body, BodyIsRedistributed) && !BodyDoes(body, BodyIsStatic) && !BodyDoes(body, BodyIsRigid));
 }
 
 /* Whether a set needs the rule `impulse`: contact nodes that have mass, be it that of a rigid body which meets what cannot yield */
-PetscErrorCode ContactNeedsImpulse(Contact contact, PetscInt b, PetscBool *needs)
+PetscBool ContactNeedsImpulse(Contact contact, PetscInt b)
 {
-  PetscFunctionBegin;
-  PetscCall(ContactBodyHasMass(contact->bodies[b], needs));
-  for (PetscInt p = 0; p < contact->n_pairs && BodyDoes(contact->bodies[b], BodyIsRigid) && !*needs; p++) {
+  PetscBool needs = ContactBodyHasMass(contact->bodies[b]);
+
+  for (PetscInt p = 0; p < contact->n_pairs && BodyDoes(contact->bodies[b], BodyIsRigid) && !needs; p++) {
     const ContactPair *pair = &contact->pairs[p];
 
     if (pair->body[0] != b && pair->body[1] != b) continue;
-    if (pair->obstacle) *needs = PETSC_TRUE;
-    else PetscCall(BodyIsRigid(contact->bodies[pair->body[pair->body[0] == b]], needs));
+    needs = pair->obstacle ? PETSC_TRUE : BodyDoes(contact->bodies[pair->body[pair->body[0] == b]], BodyIsRigid);
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return needs;
 }
 
 /* Whether a side of any pair (all_sides = false), or both sides of some pair (true), have mass on contact nodes that can move alone */
-PetscErrorCode ContactHasMass(Contact contact, PetscBool all_sides, PetscBool *has)
+PetscBool ContactHasMass(Contact contact, PetscBool all_sides)
 {
-  PetscInt all = 0;
+  PetscInt with_mass = 0;
 
-  PetscFunctionBegin;
-  *has = PETSC_FALSE;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const PetscInt sides = contact->pairs[p].obstacle ? 1 : 2;
-    PetscInt       with  = 0;
+    const ContactPair *pair   = &contact->pairs[p];
+    const PetscBool    first  = ContactBodyHasMass(contact->bodies[pair->body[0]]);
+    const PetscBool    second = pair->obstacle ? all_sides : ContactBodyHasMass(contact->bodies[pair->body[1]]);
 
-    for (PetscInt side = 0; side < sides; side++) {
-      PetscBool mass = PETSC_FALSE;
-
-      PetscCall(ContactBodyHasMass(contact->bodies[contact->pairs[p].body[side]], &mass));
-      with += mass;
-    }
-    *has = (PetscBool)(*has || (all_sides ? with == sides : with > 0));
+    if (all_sides ? first && second : first || second) return PETSC_TRUE;
   }
-  if (!contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) { /* any two of them may come near */
-    PetscBool mass = PETSC_FALSE;
-
-    PetscCall(ContactBodyHasMass(contact->bodies[b], &mass));
-    all += mass;
-  }
-  if (all > (all_sides && !contact->n_obstacles ? 1 : 0)) *has = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies && contact->neighbours.come_and_go; b++) /* any two of them may come near */
+    with_mass += ContactBodyHasMass(contact->bodies[b]);
+  return (PetscBool)(with_mass > (all_sides && !contact->n_obstacles ? 1 : 0));
 }
 
 /* Line searches that want the slope of the residual's norm multiply with the Jacobian, of which there is only what divides by it */

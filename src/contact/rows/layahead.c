@@ -19,7 +19,7 @@ static PetscErrorCode LaysAhead(Contact contact, const ContactPair *pair, PetscB
   for (PetscInt side = 0; side < 2 && !pair->obstacle && !*ahead; side++) {
     const Body body = contact->bodies[pair->body[side]];
 
-    if (!BodyDoes(body, BodyIsLinear) && !BodyDoes(body, BodyIsRigid)) PetscCall(ContactPairStartsAnew(contact, pair, ahead));
+    if (!BodyDoes(body, BodyIsLinear) && !BodyDoes(body, BodyIsRigid)) *ahead = ContactPairStartsAnew(contact, pair);
   }
   if (!pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ObstacleGetType(pair->obstacle, &type));

@@ -152,12 +152,6 @@ PetscErrorCode ContactNoteNeighbours(Contact contact, PetscInt n, const PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Which of two bodies has the rows: that which comes first in the order of the bodies */
-static PetscBool ComesFirst(const ContactNeighbours *neighbours, PetscInt a, PetscInt b)
-{
-  return (PetscBool)(neighbours->place[a] < neighbours->place[b]);
-}
-
 static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
 {
   ContactNeighbours *neighbours = &contact->neighbours;
@@ -176,7 +170,7 @@ static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
     const PetscReal until = -neighbours->boxes[6 * a + 3 + axis] + near + DROPPED * largest;
 
     for (PetscInt l = k + 1; l < contact->n_bodies && neighbours->lower[l] <= until; l++) {
-      const PetscInt  b = neighbours->sorted[l], first = ComesFirst(neighbours, a, b) ? a : b, second = first == a ? b : a;
+      const PetscInt  b = neighbours->sorted[l], first = neighbours->place[a] < neighbours->place[b] ? a : b, second = a + b - first;
       const PetscReal edge     = PetscMax(neighbours->edge[a], neighbours->edge[b]);
       const PetscReal distance = BoxDistance(neighbours->boxes + 6 * a, neighbours->boxes + 6 * b);
 
@@ -201,19 +195,11 @@ static PetscErrorCode FindObstacles(Contact contact, PetscReal near, PetscInt *n
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the distances beyond `near` are that are taken at least, of all pairs [m] */
-static PetscReal LeastTaken(Contact contact)
-{
-  PetscReal least = PETSC_MAX_REAL;
-
-  for (PetscInt b = 0; b < contact->n_bodies; b++) least = PetscMin(least, contact->neighbours.edge[b]);
-  return (TAKEN - NEAR) * least;
-}
-
 /* The numbers of the near pairs, in order, into neighbours->found; `near`: how far apart bodies may be that touch next [m] */
 PetscErrorCode ContactFindNeighbours(Contact contact, PetscReal near, PetscInt *n)
 {
   ContactNeighbours *neighbours = &contact->neighbours;
+  PetscReal          least      = PETSC_MAX_REAL;
 
   PetscFunctionBegin;
   *n = 0;
@@ -221,7 +207,8 @@ PetscErrorCode ContactFindNeighbours(Contact contact, PetscReal near, PetscInt *
   PetscCall(FindBodies(contact, near, n));
   PetscCall(FindObstacles(contact, near, n));
   PetscCall(PetscSortInt(*n, neighbours->found));
-  neighbours->room_left = LeastTaken(contact);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) least = PetscMin(least, neighbours->edge[b]);
+  neighbours->room_left = (TAKEN - NEAR) * least; /* what is taken at least beyond `near`, of all pairs */
   neighbours->near      = near;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -253,15 +240,6 @@ PetscErrorCode ContactSetUpNeighbours(Contact contact, ContactPreference prefere
   PetscCall(PetscArraycpy(neighbours->preferences, preferences, n));
   for (PetscInt b = 0; b < n; b++) PetscCall(BodyExpectRows(contact->bodies[b]));
   PetscCall(ContactSetUpTold(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The size of contact elements, once contact nodes are known */
-PetscErrorCode ContactMeasureNeighbours(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    PetscCall(BodyGetScale(contact->bodies[b], BODY_CONTACT_ELEMENT_SIZE, &contact->neighbours.edge[b]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -31,15 +31,6 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Displacements of the bodies of a pair with which its rows are laid */
-static PetscErrorCode GetDisplacements(Contact contact, const ContactPair *pair, Vec u[2])
-{
-  PetscFunctionBegin;
-  u[0] = u[1] = NULL;
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(ContactGetRowPlace(contact, pair->body[side], &u[side]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Motion of all pairs' surfaces since rows were built, which touch or had a force, and which may close now; the same on all ranks */
 static PetscErrorCode MeasureMotion(Contact contact)
 {
@@ -70,12 +61,12 @@ static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt
   const ContactPair *pair  = &contact->pairs[p];
   const PetscBool    anew  = (PetscBool)(pair->ahead || (least[MOTION_TOUCHES] == 0 && least[MOTION_CLOSES] < 0));
   const PetscReal    near  = ContactPairReach(contact, pair);
-  Vec                u[2], at[2];
+  Vec                u[2]  = {NULL, NULL}, at[2];
 
   PetscFunctionBegin;
   PetscCall(TransferIsStale(pair->transfer, near, anew, least, rebuilt));
   if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(GetDisplacements(contact, pair, u));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(ContactGetRowPlace(contact, pair->body[side], &u[side]));
   for (PetscInt side = 0; side < 2; side++) at[side] = pair->ahead && u[side] ? contact->ends[pair->body[side]] : u[side];
   for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
   PetscCall(TransferRenew(pair->transfer, at[0], at[1], near, anew));

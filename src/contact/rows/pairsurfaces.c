@@ -134,8 +134,8 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
     PetscCall(SurfaceGetVertices(contact->surfaces[b].surface, &n, &vertices));
     PetscCall(BodySetContactNodes(contact->bodies[b], n, vertices));
     PetscCall(GrowExtent(contact->bodies[b], &dim, extent));
+    PetscCall(BodyGetScale(contact->bodies[b], BODY_CONTACT_ELEMENT_SIZE, &contact->neighbours.edge[b]));
   }
-  PetscCall(ContactMeasureNeighbours(contact));
   PetscCall(ContactFindNeighbours(contact, 0, &n_found));
   for (PetscInt p = 0; p < n_found; p++) {
     ContactPair *pair;

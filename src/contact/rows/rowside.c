@@ -31,16 +31,9 @@ PetscErrorCode ContactGetPairRowSide(Contact contact, PetscInt pair, PetscInt *b
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The number of rigid bodies in a pair, and whether its first one is */
-static PetscErrorCode CountRigid(Contact contact, const ContactPair *pair, PetscInt *n, PetscBool *first)
+static PetscInt CountRigid(Contact contact, const ContactPair *pair)
 {
-  PetscBool second = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  PetscCall(BodyIsRigid(contact->bodies[pair->body[0]], first));
-  if (!pair->obstacle) PetscCall(BodyIsRigid(contact->bodies[pair->body[1]], &second));
-  *n = *first + second;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return BodyDoes(contact->bodies[pair->body[0]], BodyIsRigid) + (!pair->obstacle && BodyDoes(contact->bodies[pair->body[1]], BodyIsRigid));
 }
 
 /* An error where neither side of a pair gives: forces between rigid bodies with mass are impulses, which other methods do not have. Nor do
@@ -79,18 +72,16 @@ static void TurnPair(ContactPair *pair)
    that takes displacements, and a rigid body takes forces, so that its partner has to give unless the method takes pairs of rigid bodies */
 PetscErrorCode ContactChooseRowSide(Contact contact, ContactPair *pair)
 {
-  PetscInt  n     = 0;
-  PetscBool first = PETSC_FALSE;
+  const PetscInt n = CountRigid(contact, pair);
 
   PetscFunctionBegin;
   if (!pair->obstacle && (pair->rows_second || contact->options.rows_second)) {
     pair->rows_second = PETSC_TRUE;
     TurnPair(pair);
   }
-  PetscCall(CountRigid(contact, pair, &n, &first));
   if (n == 2 || (n && pair->obstacle)) {
     if (!contact->impulses) PetscCall(RefuseRigid(contact, pair));
-  } else if (first) {
+  } else if (BodyDoes(contact->bodies[pair->body[0]], BodyIsRigid)) {
     PetscCheck(
         !pair->rows_second, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
         "-contact_rows second: the second body of pair %s, '%s', is rigid, and takes forces; rows lie on its partner. Leave the option "
@@ -103,16 +94,9 @@ PetscErrorCode ContactChooseRowSide(Contact contact, ContactPair *pair)
 }
 
 /* Whether any body in a pair is rigid */
-PetscErrorCode ContactHasRigid(Contact contact, PetscBool *has)
+PetscBool ContactHasRigid(Contact contact)
 {
-  PetscFunctionBegin;
-  *has = PETSC_FALSE;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscInt  n     = 0;
-    PetscBool first = PETSC_FALSE;
-
-    PetscCall(CountRigid(contact, &contact->pairs[p], &n, &first));
-    *has = (PetscBool)(*has || n);
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    if (CountRigid(contact, &contact->pairs[p])) return PETSC_TRUE;
+  return PETSC_FALSE;
 }

@@ -18,16 +18,15 @@ static PetscReal RemainingShift(PetscReal shift, PetscReal size, PetscReal slip)
 }
 
 /* Whether gaps of a pair are right wherever rows are built: on obstacles, without facets, and without inertia (static, rigid partner) */
-PetscErrorCode ContactPairStartsAnew(Contact contact, const ContactPair *pair, PetscBool *anew)
+PetscBool ContactPairStartsAnew(Contact contact, const ContactPair *pair)
 {
-  PetscFunctionBegin;
-  *anew = (PetscBool)(pair->obstacle || pair->rests);
-  for (PetscInt side = 0; side < 2 && *anew && !pair->obstacle; side++) {
+  if (pair->obstacle || !pair->rests) return (PetscBool)(pair->obstacle != NULL);
+  for (PetscInt side = 0; side < 2; side++) {
     const Body body = contact->bodies[pair->body[side]];
 
-    *anew = (PetscBool)(BodyDoes(body, BodyIsStatic) || BodyDoes(body, BodyIsRigid));
+    if (!BodyDoes(body, BodyIsStatic) && !BodyDoes(body, BodyIsRigid)) return PETSC_FALSE;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return PETSC_TRUE;
 }
 
 /* A row that is built again compares the faceted surfaces at other points, and its gap jumps. To close this jump within one step would be a
@@ -39,10 +38,9 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    PetscBool          anew;
+    const PetscBool    anew = ContactPairStartsAnew(contact, pair);
     TransferRows       rows;
 
-    PetscCall(ContactPairStartsAnew(contact, pair, &anew));
     for (PetscInt i = pair->begin; i < pair->end && anew; i++)
       if (contact->rows.changed[i]) contact->rows.gap_shift[i] = 0;
     if (anew) continue;
@@ -84,15 +82,6 @@ static void DropShifts(Contact contact)
   }
 }
 
-/* Intervals of the controller step in which a pair's force is linear: the Dirichlet side's substeps; one where none is prescribed. */
-static PetscErrorCode CountIntervals(Contact contact, ContactPair *pair)
-{
-  PetscFunctionBegin;
-  pair->intervals = 1;
-  if (contact->prescribes) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[pair->dirichlet]], &pair->intervals));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Which bodies begin the step with forces along other rows than they end it with: their rows have got new entries, or have been let go */
 static PetscErrorCode FindHandingOver(Contact contact, const PetscReal before[])
 {
@@ -118,8 +107,11 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
   PetscFunctionBegin;
   PetscCall(FindHandingOver(contact, before));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscCall(CountIntervals(contact, &contact->pairs[p]));
-    fewest = PetscMin(fewest, contact->pairs[p].intervals);
+    ContactPair *pair = &contact->pairs[p];
+
+    pair->intervals = 1; /* the Dirichlet side's substeps, where it is prescribed */
+    if (contact->prescribes) PetscCall(BodyGetSubsteps(contact->bodies[pair->body[pair->dirichlet]], &pair->intervals));
+    fewest = PetscMin(fewest, pair->intervals);
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const ContactBodyRows *of = &contact->body_rows[b];

@@ -15,13 +15,10 @@ PetscErrorCode ContactStepperSetUpRules(Contact contact, ContactStepper *stepper
   ContactFindSets(contact, set);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const PetscInt s = set[b];
-    PetscBool      needs, has;
 
     if (!contact->neighbours.come_and_go && !contact->body_rows[b].n_all) continue;
-    PetscCall(ContactNeedsImpulse(contact, b, &needs));
-    PetscCall(ContactBodyHasMass(contact->bodies[b], &has));
-    impulse[s] = (PetscBool)(impulse[s] || needs);
-    mass[s]    = (PetscBool)(mass[s] || has);
+    impulse[s] = (PetscBool)(impulse[s] || ContactNeedsImpulse(contact, b));
+    mass[s]    = (PetscBool)(mass[s] || ContactBodyHasMass(contact->bodies[b]));
   }
   for (PetscInt b = 0; b < contact->n_bodies; b++) /* rigid bodies among those without inertia */
     if (BodyDoes(contact->bodies[b], BodyIsStatic) && !mass[set[b]]) impulse[set[b]] = PETSC_FALSE;

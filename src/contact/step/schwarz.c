@@ -76,7 +76,7 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   stepper->assembly.of_state = -1;
   PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperSetUpRules(contact, stepper));
-  PetscCall(ContactHasRigid(contact, &stepper->has_rigid));
+  stepper->has_rigid = ContactHasRigid(contact);
   PetscCall(ChooseLaws(contact, stepper));
   PetscCall(ContactStepperSetUpGlue(contact, stepper));
   contact->rows.lists = PETSC_TRUE;
@@ -158,10 +158,9 @@ static PetscErrorCode ViewMass(Contact contact, PetscViewer viewer)
   if (ContactAllPairsTie(contact)) PetscFunctionReturn(PETSC_SUCCESS); /* nothing hits */
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscReal part;
-    PetscBool has, is_thin;
+    PetscBool is_thin;
 
-    PetscCall(ContactBodyHasMass(contact->bodies[b], &has));
-    if (!has || (!contact->body_rows[b].n_all && !contact->neighbours.come_and_go)) continue;
+    if (!ContactBodyHasMass(contact->bodies[b]) || (!contact->body_rows[b].n_all && !contact->neighbours.come_and_go)) continue;
     PetscCall(BodyChooseMass(contact->bodies[b], 0, NULL, &is_thin));
     if (is_thin && thin == contact->n_bodies) thin = b;
     PetscCall(ContactStepperGetFlatHit(contact, b, &part));

@@ -52,12 +52,8 @@ PetscErrorCode ContactStepperMayTurn(Contact contact, PetscBool *may)
   PetscFunctionBegin;
   *may = (PetscBool)(stepper->asked != &ContactRuleImpulse);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2) && *may; side++) {
-      PetscBool needs;
-
-      PetscCall(ContactNeedsImpulse(contact, contact->pairs[p].body[side], &needs));
-      *may = (PetscBool)!needs;
-    }
+    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2) && *may; side++)
+      *may = (PetscBool)!ContactNeedsImpulse(contact, contact->pairs[p].body[side]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -86,7 +86,6 @@ static PetscErrorCode SetUpMasses(Contact contact, PetscInt b, const PetscReal s
 /* The force at the end of a substep must move its row in that substep */
 static PetscErrorCode CheckBodies(Contact contact)
 {
-  PetscBool has_mass;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -105,8 +104,7 @@ static PetscErrorCode CheckBodies(Contact contact)
                "-schwarz_transmission dirichlet_neumann",
                name, name);
   }
-  PetscCall(ContactHasMass(contact, PETSC_FALSE, &has_mass));
-  PetscCall(ContactRefuseUnstable(contact, has_mass,
+  PetscCall(ContactRefuseUnstable(contact, ContactHasMass(contact, PETSC_FALSE),
                                   "-schwarz_transmission robin and impedance gain energy without end where contact nodes have mass; set "
                                   "-<body>_mass_redistribute true, or choose -schwarz_transmission dirichlet_neumann"));
   PetscFunctionReturn(PETSC_SUCCESS);

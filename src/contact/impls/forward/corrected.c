@@ -160,15 +160,13 @@ static PetscErrorCode SetUpCorrected(Contact contact, PetscBool stabilized)
 PetscErrorCode LagrangeSetUpImplicit(Contact contact)
 {
   const PetscBool is_stabilized = (PetscBool)(contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED);
-  PetscBool       has_mass;
 
   PetscFunctionBegin;
   PetscCall(StepperCheckFriction(contact));
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscCall(StepperCheckBodies(contact));
-  PetscCall(ContactHasMass(contact, PETSC_TRUE, &has_mass));
   PetscCall(ContactRefuseUnstable(
       contact,
-      (PetscBool)(has_mass && contact->options.constraint == CONTACT_CONSTRAINT_GAP &&
+      (PetscBool)(ContactHasMass(contact, PETSC_TRUE) && contact->options.constraint == CONTACT_CONSTRAINT_GAP &&
                   contact->options.stabilization == CONTACT_STABILIZATION_NONE),
       "-contact_type lagrange: where the contact nodes of both sides have mass, multipliers at the end of the step swing and gain energy; "
       "set "

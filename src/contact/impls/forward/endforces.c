@@ -29,11 +29,8 @@ PetscErrorCode StepperCheckBodies(Contact contact)
 /* StepperCheckFriction - what friction needs of bodies and options */
 PetscErrorCode StepperCheckFriction(Contact contact)
 {
-  PetscBool has_mass;
-
   PetscFunctionBegin;
-  PetscCall(ContactHasMass(contact, PETSC_FALSE, &has_mass));
-  if (has_mass)
+  if (ContactHasMass(contact, PETSC_FALSE))
     PetscCall(ContactRefuseFriction(contact,
                                     "it needs massless contact nodes with this -contact_type: with mass the forces of friction ring "
                                     "from step to step; leave -<body>_mass_redistribute at true, or choose -contact_type schwarz"));

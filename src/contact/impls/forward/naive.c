@@ -9,7 +9,7 @@ const char *const ContactStabilizations[] = {"none", "naive", "contact_stabilize
 PetscErrorCode ContactSetUpStabilization(Contact contact)
 {
   MPI_Comm  comm = PetscObjectComm((PetscObject)contact);
-  PetscBool lagrange, rigid, all_massless = PETSC_TRUE;
+  PetscBool lagrange, all_massless = PETSC_TRUE;
 
   PetscFunctionBegin;
   if (contact->options.stabilization == CONTACT_STABILIZATION_NONE) PetscFunctionReturn(PETSC_SUCCESS);
@@ -26,8 +26,7 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
                "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose "
                "these, or -contact_stabilization naive",
                ((PetscObject)contact)->type_name);
-  PetscCall(ContactHasRigid(contact, &rigid));
-  PetscCheck(!rigid, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(!ContactHasRigid(contact), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_stabilization changes accelerations of contact nodes, and those of a rigid body have none of their own; leave it at "
              "none");
   contact->energy.unlimited = "a stabilization changes accelerations or forces between steps";
