@@ -27,39 +27,42 @@ static PetscErrorCode GetSide(Body body, Side *side)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* A smaller step, if sides of contact elements of this size close by more than a part of one at this speed */
+static PetscErrorCode LimitClosing(Contact contact, const char who[], PetscReal speed, PetscReal element, PetscReal *step, size_t size,
+                                   char reason[])
+{
+  PetscFunctionBegin;
+  if (!(speed * *step > CLOSING * element)) PetscFunctionReturn(PETSC_SUCCESS);
+  *step = CLOSING * element / speed;
+  PetscCall(PetscSNPrintf(reason, size, "%s close at %.3g%s, by %g of a contact element in it", who, (double)speed,
+                          UnitsOf((PetscObject)contact, UNIT_VELOCITY), CLOSING));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 static PetscErrorCode GetPairStep(Contact contact, const ContactPair *pair, PetscReal *step, size_t size, char reason[])
 {
-  Side      sides[2];
+  Side      sides[2]    = {{.rigid = PETSC_FALSE}, {.rigid = PETSC_FALSE}};
   PetscReal flexibility = 0, mobility = 0, speed = 0, smallest = PETSC_MAX_REAL;
-  PetscInt  deforms = -1;
+  char      second[32] = "";
+  PetscInt  deforms    = -1;
 
   PetscFunctionBegin;
-  *step          = PETSC_INFINITY;
-  sides[1].size  = 0;
-  sides[1].rigid = PETSC_FALSE;
-  for (PetscInt d = 0; d < 3; d++) sides[1].velocity[d] = 0; /* of an obstacle */
+  *step = PETSC_INFINITY;
   for (PetscInt s = 0; s < (pair->obstacle ? 1 : 2); s++) {
     PetscCall(GetSide(contact->bodies[pair->body[s]], &sides[s]));
     smallest = PetscMin(smallest, sides[s].size);
     if (sides[s].rigid) continue;
     flexibility += sides[s].transit / sides[s].impedance;    /* h / M */
     mobility += 1 / (sides[s].transit * sides[s].impedance); /* 1 / (rho h) */
-    deforms = s;
+    if (deforms == 0) PetscCall(PetscSNPrintf(second, sizeof(second), " and %.3g", (double)sides[1].transit));
+    else deforms = s;
   }
   if (deforms < 0) PetscFunctionReturn(PETSC_SUCCESS); /* between rigid bodies springs alone have a period */
   for (PetscInt d = 0; d < 3; d++) speed += PetscSqr(sides[0].velocity[d] - sides[1].velocity[d]);
-  speed = PetscSqrtReal(speed);
   *step = PetscSqrtReal(flexibility / mobility);
-  if (pair->obstacle || sides[0].rigid || sides[1].rigid)
-    PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g%s", pair->name, (double)sides[deforms].transit,
-                            UnitsOf((PetscObject)contact, UNIT_TIME)));
-  else
-    PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g and %.3g%s", pair->name, (double)sides[0].transit,
-                            (double)sides[1].transit, UnitsOf((PetscObject)contact, UNIT_TIME)));
-  if (!(speed * *step > CLOSING * smallest)) PetscFunctionReturn(PETSC_SUCCESS);
-  *step = CLOSING * smallest / speed;
-  PetscCall(PetscSNPrintf(reason, size, "%s close at %.3g%s, by %g of a contact element in it", pair->name, (double)speed,
-                          UnitsOf((PetscObject)contact, UNIT_VELOCITY), CLOSING));
+  PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g%s%s", pair->name, (double)sides[deforms].transit,
+                          second, UnitsOf((PetscObject)contact, UNIT_TIME)));
+  PetscCall(LimitClosing(contact, pair->name, PetscSqrtReal(speed), smallest, step, size, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -86,10 +89,7 @@ static PetscErrorCode GetNeighboursStep(Contact contact, PetscReal *step, size_t
   }
   PetscCall(PetscSNPrintf(reason, size, "waves cross the contact elements of %s in %.3g%s", name, (double)*step,
                           UnitsOf((PetscObject)contact, UNIT_TIME)));
-  if (!((first + second) * *step > CLOSING * smallest)) PetscFunctionReturn(PETSC_SUCCESS);
-  *step = CLOSING * smallest / (first + second);
-  PetscCall(PetscSNPrintf(reason, size, "the two fastest bodies close at %.3g%s at most, by %g of a contact element in it",
-                          (double)(first + second), UnitsOf((PetscObject)contact, UNIT_VELOCITY), CLOSING));
+  PetscCall(LimitClosing(contact, "the two fastest bodies, at most,", first + second, smallest, step, size, reason));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

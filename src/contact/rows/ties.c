@@ -11,11 +11,16 @@
 /* What keeps a node that lies opposite to the partner from being tied */
 typedef enum { TIE_HOLDS, TIE_OVERLAPS, TIE_TOO_FAR, TIE_APART } TieState;
 
+/* Of the nodes in a state that which overlaps most, is too far by most, or, of those apart, is the nearest */
 typedef struct {
-  PetscInt n[4]; /* nodes in each state */
-  struct {
-    PetscReal x[3], gap, size; /* its reference position, its gap without sign, and the edge of its face [m] */
-  } worst; /* node: the one that overlaps most or, if none does, is too far by most or, if none is, of those apart the nearest */
+  double    bad;             /* by how much [m] */
+  PetscReal x[3], gap, size; /* its reference position, its gap without sign, and the edge of its face [m] */
+} TieNode;
+
+typedef struct {
+  PetscInt n[4];  /* nodes in each state */
+  TieState state; /* that is told of: the first that there is of TIE_OVERLAPS, TIE_TOO_FAR and TIE_APART */
+  TieNode  worst; /* in that state; with an infinite gap if there is none */
 } TieSummary;
 
 /* Edge of the elements at the contact point of a body in one dimension [m]; of others the transfer knows the faces */
@@ -63,49 +68,42 @@ PetscErrorCode ContactMeasureTies(Contact contact, const ContactPair *pair, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* That state of some nodes that is told of */
-static TieState WorstState(const TieSummary *summary)
-{
-  return summary->n[TIE_OVERLAPS] ? TIE_OVERLAPS : summary->n[TIE_TOO_FAR] ? TIE_TOO_FAR : TIE_APART;
-}
-
-/* Counts the nodes of a pair in each state, then finds the worst one */
+/* Counts the nodes of a pair in each state, and finds the worst one */
 static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSummary *summary)
 {
   struct {
     double value;
     int    rank;
-  } worst = {-PETSC_MAX_REAL, contact->ranks.rank};
+  } worst = {0, contact->ranks.rank};
+  TieNode            nodes[4]; /* the worst in each state on this rank */
   const PetscScalar *x;
   TransferRows       rows;
   Vec                positions;
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(summary, sizeof(*summary)));
+  for (PetscInt state = 0; state < 4; state++) nodes[state] = (TieNode){.bad = -PETSC_MAX_REAL, .gap = PETSC_MAX_REAL};
   PetscCall(TransferGetRows(pair->transfer, &rows));
   PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
   PetscCall(VecGetArrayRead(positions, &x));
-  for (PetscInt pass = 0; pass < 2; pass++) {
-    for (PetscInt node = 0; node < rows.n; node++) {
-      const PetscInt  i   = pair->begin + node * pair->components;
-      const PetscReal gap = PetscAbsReal(contact->ties.distance[i]);
-      PetscReal       size, bad;
-      TieState        state;
+  for (PetscInt node = 0; node < rows.n; node++) {
+    const PetscInt i   = pair->begin + node * pair->components;
+    TieNode        own = {.gap = PetscAbsReal(contact->ties.distance[i])};
+    TieState       state;
 
-      if (!rows.opposite[node]) continue;
-      PetscCall(GetFaceSize(contact, pair, &rows, node, &size));
-      state = JudgeDistance(contact, contact->ties.distance[i], size);
-      bad   = state == TIE_APART ? -gap : gap;
-      if (!pass) summary->n[state]++;
-      if (!pass || state != WorstState(summary) || bad <= worst.value) continue;
-      worst.value         = bad;
-      summary->worst.gap  = gap;
-      summary->worst.size = size;
-      for (PetscInt d = 0; d < contact->dim; d++) summary->worst.x[d] = PetscRealPart(x[contact->rows.dof[i] + d]);
-    }
-    if (!pass) PetscCall(ContactReduce(contact, 4, MPIU_INT, MPI_SUM, summary->n));
+    if (!rows.opposite[node]) continue;
+    PetscCall(GetFaceSize(contact, pair, &rows, node, &own.size));
+    for (PetscInt d = 0; d < contact->dim; d++) own.x[d] = PetscRealPart(x[contact->rows.dof[i] + d]);
+    state   = JudgeDistance(contact, contact->ties.distance[i], own.size);
+    own.bad = state == TIE_APART ? -own.gap : own.gap;
+    if (own.bad > nodes[state].bad) nodes[state] = own;
+    summary->n[state]++;
   }
   PetscCall(VecRestoreArrayRead(positions, &x));
+  PetscCall(ContactReduce(contact, 4, MPIU_INT, MPI_SUM, summary->n));
+  summary->state = summary->n[TIE_OVERLAPS] ? TIE_OVERLAPS : summary->n[TIE_TOO_FAR] ? TIE_TOO_FAR : TIE_APART;
+  summary->worst = nodes[summary->state];
+  worst.value    = summary->worst.bad;
   PetscCall(ContactReduce(contact, 1, MPI_DOUBLE_INT, MPI_MAXLOC, &worst));
   PetscCallMPI(MPI_Bcast(&summary->worst, sizeof(summary->worst), MPI_BYTE, worst.rank, PetscObjectComm((PetscObject)contact)));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -114,7 +112,7 @@ static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSum
 /* What overlaps, or is neither tied nor apart, is an error that says where */
 static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, const TieSummary *summary)
 {
-  const TieState   state = WorstState(summary);
+  const TieState   state = summary->state;
   const PetscReal *x = summary->worst.x, gap = summary->worst.gap, size = summary->worst.size;
   char             moves[CONTACT_MOVES];
 
@@ -132,12 +130,6 @@ static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, c
           (double)gap, UnitsOf((PetscObject)contact, UNIT_LENGTH), (double)(gap / size), moves, (double)contact->options.tie_distance);
 }
 
-/* Of the nearest node of a pair that ties nothing [m] */
-static PetscReal Distance(const TieSummary *summary)
-{
-  return summary->n[TIE_APART] ? summary->worst.gap : PETSC_MAX_REAL;
-}
-
 /* Pairs that tie nothing are an error if named, or of a body that no pair ties. The pair with the smallest gap is told. */
 static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], const TieSummary summaries[])
 {
@@ -149,7 +141,7 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
     const PetscBool    expected = (PetscBool)(!pair->chosen || !tied[pair->body[0]] || (!pair->obstacle && !tied[pair->body[1]]));
 
     if (!ContactPairTies(pair) || summaries[p].n[TIE_HOLDS] || !expected) continue;
-    if (nearest < 0 || Distance(&summaries[p]) < Distance(&summaries[nearest])) nearest = p;
+    if (nearest < 0 || summaries[p].worst.gap < summaries[nearest].worst.gap) nearest = p;
   }
   if (nearest >= 0) {
     const ContactPair *pair    = &contact->pairs[nearest];
