@@ -12,31 +12,41 @@
 #define NEAR_CONTACT  3
 #define NEAR_OBSTACLE 1.5
 
-/* The acting rows of the bodies, from the list of all */
-static void ListActingOfBodies(Contact contact)
+/* In a step, once it is known which rows touch (NULL: all near ones act): lists those that act, of all and of the bodies. After a failed
+   attempt, with forces on others, all near rows do. */
+void ContactListActingRows(Contact contact, const PetscBool touches[])
 {
+  ContactRows *rows = &contact->rows;
+
+  if (!rows->listed && touches) return; /* all do */
+  rows->n_acting = 0;
   for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].n_acting = 0;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+    ContactPair *pair = &contact->pairs[p];
 
+    pair->acts_begin = rows->n_acting;
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+      const PetscInt first = rows->near[k];
+      PetscBool      acts  = (PetscBool)(!touches || touches[first] || contact->attempt.again);
+
+      for (PetscInt i = first; i < first + pair->components && !acts; i++)
+        acts = (PetscBool)(contact->start.force[i] != 0 || contact->energy.last_force[i] != 0);
+      for (PetscInt i = first; i < first + pair->components && acts; i++) rows->acting[rows->n_acting++] = i;
+    }
+    pair->acts_end = rows->n_acting;
     for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
       ContactBodyRows *of = &contact->body_rows[pair->body[side]];
 
-      for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) of->acting[of->n_acting++] = contact->rows.acting[k] - pair->shift[side];
+      for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) of->acting[of->n_acting++] = rows->acting[k] - pair->shift[side];
     }
   }
 }
 
+/* The near rows of the bodies, from the list of all; all of them act until it is known which touch */
 static PetscErrorCode ListBodyRows(Contact contact)
 {
   PetscFunctionBegin;
-  contact->rows.n_acting = contact->rows.n_near;
-  PetscCall(PetscArraycpy(contact->rows.acting, contact->rows.near, contact->rows.n_near));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    contact->pairs[p].acts_begin = contact->pairs[p].near_begin;
-    contact->pairs[p].acts_end   = contact->pairs[p].near_end;
-  }
-  ListActingOfBodies(contact);
+  ContactListActingRows(contact, NULL);
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     ContactBodyRows *of = &contact->body_rows[b];
 
@@ -44,30 +54,6 @@ static PetscErrorCode ListBodyRows(Contact contact)
     PetscCall(PetscArraycpy(of->near, of->acting, of->n_near));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* In a step, once it is known which rows touch: lists those that act. After a failed attempt, with forces on others, all near rows do. */
-void ContactListActingRows(Contact contact, const PetscBool touches[])
-{
-  ContactRows *rows = &contact->rows;
-
-  if (!rows->listed) return; /* all do */
-  rows->n_acting = 0;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    pair->acts_begin = rows->n_acting;
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
-      const PetscInt first = rows->near[k];
-      PetscBool      acts  = (PetscBool)(touches[first] || contact->attempt.again);
-
-      for (PetscInt i = first; i < first + pair->components && !acts; i++)
-        acts = (PetscBool)(contact->start.force[i] != 0 || contact->energy.last_force[i] != 0);
-      for (PetscInt i = first; i < first + pair->components && acts; i++) rows->acting[rows->n_acting++] = i;
-    }
-    pair->acts_end = rows->n_acting;
-  }
-  ListActingOfBodies(contact);
 }
 
 /* Gaps at the start of the controller step, from the bodies' traces; those of near rows if these are wanted */
