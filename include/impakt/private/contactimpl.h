@@ -238,11 +238,12 @@ typedef struct {
 
 /* What the forces of each pair amount to */
 typedef struct {
-  PetscReal *cross_section;  /* of its first body: turns lengths and points into areas */
-  PetscReal *impulse;        /* this rank's shares, see resultants.c */
-  PetscReal  penalty_energy; /* energy in the penalty springs of all pairs [J] */
-  PetscReal *sums;           /* work space */
-  PetscReal *maxima;         /* work space */
+  PetscReal        *cross_section;  /* of its first body: turns lengths and points into areas */
+  PetscReal        *impulse;        /* this rank's shares, see resultants.c */
+  PetscReal         penalty_energy; /* energy in the penalty springs of all pairs [J] */
+  PetscReal        *sums;           /* work space */
+  PetscReal        *maxima;         /* work space */
+  ContactPairState *states;         /* work space */
 } ContactResultants;
 
 /* The search for a start of the step that keeps the energy of a group of bodies within its room, see src/contact/energy/limit.c */
@@ -320,7 +321,6 @@ typedef struct {
   StepFailure failure;
   PetscBool   local;                 /* a body has been integrated whose failure one rank alone knows; until ContactAgree() */
   PetscInt    failed;                /* the first of these that has failed on this rank; PETSC_INT_MAX: none */
-  PetscBool   returns;               /* ContactStep() leaves a failure to its caller */
   PetscReal   most_loss;             /* energy that a step may take or bring at contact before it is cut, where it may be [J] */
   PetscBool   may_cut;               /* who can make the step again in halves, so that nothing is accepted that has not converged */
   PetscInt    level, accepted_level; /* how often the step is cut in halves; how often that was which was accepted last */
@@ -362,10 +362,8 @@ typedef struct {
 /* What is told of pairs that come and go, see src/contact/interface/told.c */
 typedef struct {
   PetscInt          n;
-  ContactPair      *pairs;  /* their names and bodies */
-  ContactPairState *gone;   /* what pairs that have gone have done, of all ranks */
-  PetscInt          room;   /* of the following */
-  ContactPairState *states; /* work space, per pair */
+  ContactPair      *pairs; /* their names and bodies */
+  ContactPairState *gone;  /* what pairs that have gone have done, of all ranks */
 } ContactTold;
 
 /* How deep bodies are inside each other, see src/contact/interface/overlap.c */
@@ -409,7 +407,6 @@ typedef struct {
   PetscBool     *flags;         /* to a body */
   PetscReal     *last_gap;      /* per row */
   PetscReal     *tilts, *drift; /* per node of a pair */
-  PetscBool     *moved;         /* per row */
   PetscReal     *last_force;    /* per row */
   PetscReal     *handover;      /* two numbers to a body per row */
   PetscInt      *intervals;     /* to a body */

@@ -54,8 +54,7 @@ static PetscErrorCode TakeRows(Contact contact, Tables tables)
   PetscCall(VisitRows(contact, tables));
   ContactForgetMatrices(contact);
   PetscCall(ContactFillMatrices(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
-  PetscCall(ContactUpdateBodies(contact, contact->work.moved));
+  PetscCall(ContactUpdateBodies(contact, PETSC_TRUE));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyTakeRows(contact->bodies[b]));
   ContactForgetMatrices(contact);
   for (PetscInt i = 0; i < contact->rows.n; i++) contact->rows.changed[i] = PETSC_TRUE; /* to the method all are new */

@@ -22,11 +22,10 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
   const PetscInt    n       = PetscMin(contact->n_pairs, MOST_NAMED);
   PetscInt          nearest = 0;
   const char       *between = "";
-  ContactPairState *states;
+  ContactPairState *states  = contact->resultants.states;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(n, &states));
-  PetscCall(ContactComputePairStates(contact, 0, n, states));
+  PetscCall(ContactComputePairStates(contact, states));
   PetscCall(PetscViewerASCIIPrintf(viewer, "  smallest distance%s:", n > MOST_DISTANCES ? " (of chosen pairs that of the nearest)" : ""));
   for (PetscInt p = 1; p < n; p++)
     if (states[p].gap < states[nearest].gap) nearest = p;
@@ -41,7 +40,6 @@ static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
     else PetscCall(PetscViewerASCIIPrintf(viewer, "nothing lies opposite"));
   }
   PetscCall(PetscViewerASCIIPrintf(viewer, "\n"));
-  PetscCall(PetscFree(states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -23,9 +23,8 @@ static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
   if (!contact->rows.n_all) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(CheckpointVisitMat(checkpoint, "rows of a body", &contact->interfaces[b]));
   if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < contact->rows.n; i++) contact->work.moved[i] = PETSC_TRUE;
   ContactForgetMatrices(contact); /* those of later steps are made anew */
-  PetscCall(ContactUpdateBodies(contact, contact->work.moved));
+  PetscCall(ContactUpdateBodies(contact, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

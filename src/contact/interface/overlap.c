@@ -158,11 +158,10 @@ static PetscErrorCode RefuseOverlaps(Contact contact, PetscBool of_state, PetscI
   const SurfaceDepth *refused = NULL;
   const ContactPair  *inside  = NULL;
   PetscReal           depth   = 0;
-  ContactPairState   *states;
+  ContactPairState   *states  = contact->resultants.states;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc1(contact->n_pairs, &states));
-  PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
+  PetscCall(ContactComputePairStates(contact, states));
   for (PetscInt p = 0; p < contact->n_pairs && !inside && !refused; p++) {
     const ContactPair  *pair    = &contact->pairs[p];
     const SurfaceDepth *deepest = pair->obstacle ? NULL : FindDeepest(pair, n, depths);
@@ -172,7 +171,6 @@ static PetscErrorCode RefuseOverlaps(Contact contact, PetscBool of_state, PetscI
     else if (deepest && deepest->depth > contact->options.tolerance) refused = deepest;
     depth = -states[p].gap;
   }
-  PetscCall(PetscFree(states));
   for (PetscInt i = 0; i < n && !refused && !of_state; i++) {
     const PetscInt *of = depths[i].surfaces;
 

@@ -60,12 +60,12 @@ static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair
 /* Adds a pair that is given with a tilde: the sides are the user's, which of them is the first is not */
 static PetscErrorCode AddTilde(Contact contact, const char pair[], const char left[], const char right[])
 {
-  ContactPreference *preferences;
-  PetscInt           body[2];
-  PetscBool          turn;
-  Obstacle           obstacle = NULL;
-  char              *surface, ordered[512];
-  const char        *why = "obstacle second";
+  const ContactPreference *preferences;
+  PetscInt                 body[2];
+  PetscBool                turn;
+  Obstacle                 obstacle = NULL;
+  char                    *surface, ordered[512];
+  const char              *why = "obstacle second";
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
@@ -73,10 +73,8 @@ static PetscErrorCode AddTilde(Contact contact, const char pair[], const char le
     PetscCall(ParseSide(contact, pair, side ? right : left, &body[side], &surface, side ? &obstacle : NULL));
     PetscCall(PetscFree(surface));
   }
-  PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
-  PetscCall(ContactGetPreferences(contact, preferences));
+  PetscCall(ContactGetPreferences(contact, &preferences));
   turn = obstacle ? PETSC_FALSE : ContactChooseSides(&preferences[body[0]], &preferences[body[1]], &why);
-  PetscCall(PetscFree(preferences));
   PetscCall(PetscSNPrintf(ordered, sizeof(ordered), "%s:%s", turn ? right : left, turn ? left : right));
   PetscCall(ContactAddPair(contact, ordered));
   contact->pairs[contact->n_pairs - 1].why = why;
@@ -252,8 +250,8 @@ PetscErrorCode ContactAddAllPairs(Contact contact)
 /* Where the program is to choose all pairs, and there are many: those that are near, if pairs can come and go, or all */
 PetscErrorCode ContactChooseAllPairs(Contact contact)
 {
-  ContactPreference *preferences;
-  PetscBool          suits;
+  const ContactPreference *preferences;
+  PetscBool                suits;
 
   PetscFunctionBegin;
   if (!contact->neighbours.all) PetscFunctionReturn(PETSC_SUCCESS);
@@ -263,10 +261,8 @@ PetscErrorCode ContactChooseAllPairs(Contact contact)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   contact->neighbours.all = PETSC_FALSE;
-  PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
-  PetscCall(ContactGetPreferences(contact, preferences));
-  PetscCall(ContactSetUpNeighbours(contact, preferences));
-  PetscCall(PetscFree(preferences));
+  PetscCall(ContactGetPreferences(contact, &preferences));
+  PetscCall(ContactSetUpNeighbours(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -286,14 +282,13 @@ PetscErrorCode ContactAppendNeighbours(Contact contact, PetscInt number, Contact
 /* All bodies with each other and with all obstacles, for the whole run */
 PetscErrorCode ContactAddEachPair(Contact contact)
 {
-  ContactPreference *preferences;
-  ContactPair       *pair;
-  PetscBool          hidden;
+  const ContactPreference *preferences;
+  ContactPair             *pair;
+  PetscBool                hidden;
 
   PetscFunctionBegin;
   contact->neighbours.all = PETSC_FALSE;
-  PetscCall(PetscMalloc1(contact->n_bodies, &preferences));
-  PetscCall(ContactGetPreferences(contact, preferences));
+  PetscCall(ContactGetPreferences(contact, &preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
     for (PetscInt b = a + 1; b < contact->n_bodies; b++) {
       const char     *why;
@@ -302,7 +297,6 @@ PetscErrorCode ContactAddEachPair(Contact contact)
       PetscCall(IsHidden(contact, a, b, NULL, &hidden));
       if (!hidden) PetscCall(AppendChosen(contact, turn ? b : a, turn ? a : b, why, &pair));
     }
-  PetscCall(PetscFree(preferences));
   for (PetscInt a = 0; a < contact->n_bodies; a++)
     for (PetscInt o = 0; o < contact->n_obstacles; o++) {
       PetscCall(IsHidden(contact, a, -1, contact->obstacles[o], &hidden));

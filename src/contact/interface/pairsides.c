@@ -43,13 +43,16 @@ static PetscErrorCode EstimateSubsteps(Contact contact, const PetscReal size[], 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The preferences of all bodies. Sizes are compared with the largest that is alike, not two by two: of three bodies each could be alike to
-   the next, and the first not to the last, so that the order could go round in a circle. */
-PetscErrorCode ContactGetPreferences(Contact contact, ContactPreference preferences[])
+/* The preferences of all bodies as they are now; owned by the contact. Sizes are compared with the largest that is alike, not two by two:
+   of three bodies each could be alike to the next, and the first not to the last, so that the order could go round in a circle. */
+PetscErrorCode ContactGetPreferences(Contact contact, const ContactPreference *all[])
 {
-  PetscReal *size, level = PETSC_MAX_REAL;
+  ContactPreference *preferences;
+  PetscReal         *size, level = PETSC_MAX_REAL;
 
   PetscFunctionBegin;
+  if (!contact->neighbours.preferences) PetscCall(PetscMalloc1(contact->n_bodies, &contact->neighbours.preferences));
+  *all = preferences = contact->neighbours.preferences;
   PetscCall(PetscMalloc1(contact->n_bodies, &size));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));

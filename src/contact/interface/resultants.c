@@ -25,9 +25,9 @@ PetscErrorCode ContactSetUpPairResultants(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(ContactDestroyResultants(contact));
-  PetscCall(PetscCalloc4(contact->n_pairs, &contact->resultants.cross_section, N_SUMS * contact->n_pairs, &contact->resultants.sums,
-                         N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, N_KEPT * contact->n_pairs,
-                         &contact->resultants.impulse));
+  PetscCall(PetscCalloc5(contact->n_pairs, &contact->resultants.cross_section, N_SUMS * contact->n_pairs, &contact->resultants.sums,
+                         N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, N_KEPT * contact->n_pairs, &contact->resultants.impulse,
+                         contact->n_pairs, &contact->resultants.states));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall(BodyGetScale(contact->bodies[contact->pairs[p].body[0]], BODY_CROSS_SECTION, &contact->resultants.cross_section[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -53,8 +53,8 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
 PetscErrorCode ContactDestroyResultants(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(
-      PetscFree4(contact->resultants.cross_section, contact->resultants.sums, contact->resultants.maxima, contact->resultants.impulse));
+  PetscCall(PetscFree5(contact->resultants.cross_section, contact->resultants.sums, contact->resultants.maxima, contact->resultants.impulse,
+                       contact->resultants.states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -198,37 +198,37 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
 }
 
 /* Gaps of pairs none of whose near rows is close: others may be closer, whose gaps are old. `maxima`: of all ranks */
-static PetscErrorCode FindFarGaps(Contact contact, PetscInt begin, PetscInt end, PetscReal maxima[])
+static PetscErrorCode FindFarGaps(Contact contact, PetscReal maxima[])
 {
   const PetscReal until = -contact->rows.near_reach;
   PetscBool       any   = PETSC_FALSE;
 
   PetscFunctionBegin;
-  for (PetscInt p = begin; p < end; p++) any = (PetscBool)(any || maxima[N_MAXIMA * (p - begin) + MAX_PENETRATION] < until);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || maxima[N_MAXIMA * p + MAX_PENETRATION] < until);
   if (!contact->rows.listed || !any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactRefreshGaps(contact));
-  for (PetscInt p = begin; p < end; p++) {
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair    = &contact->pairs[p];
-    PetscReal         *deepest = &maxima[N_MAXIMA * (p - begin) + MAX_PENETRATION];
+    PetscReal         *deepest = &maxima[N_MAXIMA * p + MAX_PENETRATION];
 
     for (PetscInt i = pair->begin; i < pair->end; i++) *deepest = PetscMax(*deepest, -contact->end.gap[i]);
   }
-  PetscCall(ContactReduce(contact, N_MAXIMA * (end - begin), MPIU_REAL, MPIU_MAX, maxima));
+  PetscCall(ContactReduce(contact, N_MAXIMA * contact->n_pairs, MPIU_REAL, MPIU_MAX, maxima));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* States of the pairs `begin` to `end` - 1 */
-PetscErrorCode ContactComputePairStates(Contact contact, PetscInt begin, PetscInt end, ContactPairState states[])
+/* States of all pairs */
+PetscErrorCode ContactComputePairStates(Contact contact, ContactPairState states[])
 {
   PetscReal *sums = contact->resultants.sums, *maxima = contact->resultants.maxima;
 
   PetscFunctionBegin;
-  for (PetscInt p = begin; p < end; p++) PetscCall(SumPair(contact, p, sums + N_SUMS * (p - begin), maxima + N_MAXIMA * (p - begin)));
-  PetscCall(ContactReduce(contact, N_SUMS * (end - begin), MPIU_REAL, MPIU_SUM, sums));
-  PetscCall(ContactReduce(contact, N_MAXIMA * (end - begin), MPIU_REAL, MPIU_MAX, maxima));
-  PetscCall(FindFarGaps(contact, begin, end, maxima));
-  for (PetscInt p = begin; p < end; p++, sums += N_SUMS, maxima += N_MAXIMA) {
-    ContactPairState *state = &states[p - begin];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(SumPair(contact, p, sums + N_SUMS * p, maxima + N_MAXIMA * p));
+  PetscCall(ContactReduce(contact, N_SUMS * contact->n_pairs, MPIU_REAL, MPIU_SUM, sums));
+  PetscCall(ContactReduce(contact, N_MAXIMA * contact->n_pairs, MPIU_REAL, MPIU_MAX, maxima));
+  PetscCall(FindFarGaps(contact, maxima));
+  for (PetscInt p = 0; p < contact->n_pairs; p++, sums += N_SUMS, maxima += N_MAXIMA) {
+    ContactPairState *state = &states[p];
     const PetscInt    sign  = ContactPairSign(&contact->pairs[p]);
 
     state->force   = sums[SUM_FORCE];

@@ -57,7 +57,6 @@ PetscErrorCode ContactDestroyTold(Contact contact)
   PetscFunctionBegin;
   for (PetscInt p = 0; p < told->n; p++) PetscCall(PetscFree(told->pairs[p].name));
   PetscCall(PetscFree2(told->pairs, told->gone));
-  PetscCall(PetscFree(told->states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -106,18 +105,13 @@ void ContactTakeLeave(Contact contact, const ContactPair *pair, const ContactPai
 /* States of all that is told; collective */
 static PetscErrorCode TellStates(Contact contact, ContactPairState states[])
 {
-  ContactTold *told = &contact->neighbours.told;
+  const ContactTold *told = &contact->neighbours.told;
 
   PetscFunctionBegin;
-  if (told->room < contact->n_pairs) {
-    told->room = 2 * contact->n_pairs;
-    PetscCall(PetscFree(told->states));
-    PetscCall(PetscMalloc1(told->room, &told->states));
-  }
-  PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, told->states));
+  PetscCall(ContactComputePairStates(contact, contact->resultants.states));
   PetscCall(PetscArraycpy(states, told->gone, told->n));
   for (PetscInt p = 0; p < told->n; p++) states[p].gap = CONTACT_NO_GAP;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) Tell(contact, &contact->pairs[p], &told->states[p], states, AddState);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) Tell(contact, &contact->pairs[p], &contact->resultants.states[p], states, AddState);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -139,18 +133,18 @@ static PetscErrorCode TellStates(Contact contact, ContactPairState states[])
 @*/
 PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairState *state)
 {
+  ContactPairState *states;
+  PetscInt          n;
+
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(state, 3);
   ContactCheckPair(contact, pair);
-  if (contact->neighbours.come_and_go) {
-    ContactPairState *states;
-
-    PetscCall(PetscMalloc1(contact->neighbours.told.n, &states));
-    PetscCall(TellStates(contact, states));
-    *state = states[pair];
-    PetscCall(PetscFree(states));
-  } else PetscCall(ContactComputePairStates(contact, pair, pair + 1, state));
+  PetscCall(ContactGetNumPairs(contact, &n));
+  PetscCall(PetscMalloc1(n, &states));
+  PetscCall(ContactGetPairStates(contact, states));
+  *state = states[pair];
+  PetscCall(PetscFree(states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -175,6 +169,6 @@ PetscErrorCode ContactGetPairStates(Contact contact, ContactPairState states[])
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   if (contact->n_pairs) PetscAssertPointer(states, 2);
   if (contact->neighbours.come_and_go) PetscCall(TellStates(contact, states));
-  else PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, states));
+  else PetscCall(ContactComputePairStates(contact, states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -55,9 +55,11 @@ static PetscErrorCode MakeOnce(Contact contact, PetscInt pass, PetscReal *off, P
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Advances all bodies from their saved states through one controller step, or one of the parts of it that ContactGetParts() tells of, under
-   contact. ContactAccept() makes it final. Collective. */
-PetscErrorCode ContactStep(Contact contact)
+/* As ContactStep(), for those who can make a step that fails again in halves. `may_cut`: false where this is the last try, in which the
+   method may accept what has not converged; `most_loss`: energy that contact may take or bring before the step is made again, if it may be
+   [J]; `reason`: negative where the step has failed, the same on every rank. After a step that has failed, or that is not to be accepted,
+   call ContactStepBack(), then ContactSetStepLevel() and try again; or end by ContactRaiseFailure(). Collective. */
+PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most_loss, StepConvergedReason *reason)
 {
   PetscReal off = 0;
   PetscBool again;
@@ -65,8 +67,11 @@ PetscErrorCode ContactStep(Contact contact)
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscAssertPointer(reason, 4);
   PetscCall(PetscLogEventBegin(CONTACT_Step, contact, 0, 0, 0));
-  contact->counts.sweeps = 0;
+  contact->attempt.may_cut   = may_cut;
+  contact->attempt.most_loss = most_loss;
+  contact->counts.sweeps     = 0;
   ContactForgetAhead(contact);
   PetscCall(MakeOnce(contact, pass++, &off, &again));
   while (again) {
@@ -78,26 +83,21 @@ PetscErrorCode ContactStep(Contact contact)
     PetscCall(MakeOnce(contact, PETSC_INT_MAX, &off, &again));
   }
   contact->counts.total_sweeps += contact->counts.sweeps;
+  contact->attempt.may_cut = PETSC_FALSE;
+  *reason                  = contact->attempt.failure.reason;
   PetscCall(PetscLogEventEnd(CONTACT_Step, contact, 0, 0, 0));
-  if (!contact->attempt.returns) PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As ContactStep(), for those who can make a step that fails again in halves. `may_cut`: false where this is the last try, in which the
-   method may accept what has not converged; `most_loss`: energy that contact may take or bring before the step is made again, if it may be
-   [J]; `reason`: negative where the step has failed, the same on every rank. After a step that has failed, or that is not to be accepted,
-   call ContactStepBack(), then ContactSetStepLevel() and try again; or end by ContactRaiseFailure(). Collective. */
-PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most_loss, StepConvergedReason *reason)
+/* Advances all bodies from their saved states through one controller step, or one of the parts of it that ContactGetParts() tells of, under
+   contact; a failure is an error. ContactAccept() makes it final. Collective. */
+PetscErrorCode ContactStep(Contact contact)
 {
+  StepConvergedReason reason;
+
   PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(reason, 4);
-  contact->attempt.returns   = PETSC_TRUE;
-  contact->attempt.may_cut   = may_cut;
-  contact->attempt.most_loss = most_loss;
-  PetscCall(ContactStep(contact));
-  contact->attempt.returns = contact->attempt.may_cut = PETSC_FALSE;
-  *reason                                             = contact->attempt.failure.reason;
+  PetscCall(ContactTryStep(contact, PETSC_FALSE, contact->attempt.most_loss, &reason));
+  PetscCall(StepFailureRaise(PetscObjectComm((PetscObject)contact), &contact->attempt.failure));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -104,7 +104,7 @@ void ContactCarryFriction(Contact contact)
     PetscReal *force = contact->start.force + i, v[3];
 
     if (!ContactRowRubs(contact, i + 1) || ContactRowRubs(contact, i)) continue; /* the first row of a node with friction */
-    if (!contact->work.moved[i] || !contact->rows.opposite[i]) continue;
+    if (!(contact->rows.changed[i] || contact->rows.followed[i]) || !contact->rows.opposite[i]) continue;
     for (PetscInt d = 0; d < 3; d++) v[d] = force[1] * old[3 * (i + 1) + d] + force[2] * old[3 * (i + 2) + d];
     TurnAlong(old + 3 * i, now + 3 * i, v);
     for (PetscInt k = 1; k < 3; k++) {

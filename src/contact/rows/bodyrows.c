@@ -2,12 +2,15 @@
    not with the rows of all bodies. On every rank they are in the order of the rows of contact; so both numbers ascend together. */
 #include <contact/parts.h>
 
-/* How many rows each body has on all ranks, and which */
-static PetscErrorCode ListRows(Contact contact)
+/* Which rows each body has. Call when the rows of all ranks and their pairs are known. */
+PetscErrorCode ContactNumberBodyRows(Contact contact)
 {
-  ContactBodyRows *of = contact->body_rows;
+  const PetscInt   begin = contact->rows.begin, end = begin + contact->rows.n;
+  ContactBodyRows *of;
 
   PetscFunctionBegin;
+  PetscCall(PetscCalloc1(contact->n_bodies, &contact->body_rows));
+  of = contact->body_rows;
   for (PetscInt pass = 0; pass < 2; pass++) {
     for (PetscInt row = 0; row < contact->rows.n_all; row++) {
       const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[row]];
@@ -16,6 +19,8 @@ static PetscErrorCode ListRows(Contact contact)
         ContactBodyRows *body = &of[pair->body[side]];
 
         if (pass) body->all[body->n_all] = row;
+        else if (row < begin) body->begin++;
+        else if (row < end) body->n++;
         body->n_all++;
       }
     }
@@ -24,39 +29,17 @@ static PetscErrorCode ListRows(Contact contact)
       of[b].n_all = 0;
     }
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Which rows each body has. Call when the rows of all ranks and their pairs are known. */
-PetscErrorCode ContactNumberBodyRows(Contact contact)
-{
-  const PetscInt begin = contact->rows.begin, end = begin + contact->rows.n;
-  PetscInt      *next;
-
-  PetscFunctionBegin;
-  PetscCall(PetscCalloc1(contact->n_bodies, &contact->body_rows));
-  PetscCall(ListRows(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].shift[1] = 0; /* obstacles have the traces of all rows */
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    ContactBodyRows *of = &contact->body_rows[b];
+    PetscCall(PetscMalloc4(of[b].n, &of[b].rows, of[b].n, &of[b].area, of[b].n, &of[b].near, of[b].n, &of[b].acting));
+    for (PetscInt k = 0; k < of[b].n; k++) {
+      const PetscInt i    = of[b].all[of[b].begin + k] - begin;
+      ContactPair   *pair = &contact->pairs[contact->rows.pair[i]];
 
-    for (PetscInt k = 0; k < of->n_all; k++) {
-      if (of->all[k] < begin) of->begin++;
-      else if (of->all[k] < end) of->n++;
-    }
-    PetscCall(PetscMalloc4(of->n, &of->rows, of->n, &of->area, of->n, &of->near, of->n, &of->acting));
-    for (PetscInt k = 0; k < of->n; k++) of->rows[k] = of->all[of->begin + k] - begin;
-  }
-  PetscCall(PetscCalloc1(contact->n_bodies, &next));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    pair->shift[1] = 0; /* obstacles have the traces of all rows */
-    for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
-      pair->shift[side] = pair->begin - next[pair->body[side]];
-      next[pair->body[side]] += pair->end - pair->begin;
+      of[b].rows[k]                           = i;
+      pair->shift[pair->body[0] == b ? 0 : 1] = i - k;
     }
   }
-  PetscCall(PetscFree(next));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,14 +95,15 @@ PetscErrorCode ContactCopyAreas(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the bodies whose rows are affected these as the matrices have them now; `changed`: this rank's rows that differ */
-PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
+/* Gives the bodies whose rows are affected these as the matrices have them now; of `all` rows entries differ, or of those that have changed
+ */
+PetscErrorCode ContactUpdateBodies(Contact contact, PetscBool all)
 {
   ContactRanks *ranks = &contact->ranks;
 
   PetscFunctionBegin;
   PetscCall(ContactCopyAreas(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++) ranks->mine_active[i] = changed[i] ? 1 : 0;
+  for (PetscInt i = 0; i < contact->rows.n; i++) ranks->mine_active[i] = all || contact->rows.changed[i] || contact->rows.followed[i];
   PetscCallMPI(MPI_Allgatherv(ranks->mine_active, (PetscMPIInt)contact->rows.n, MPI_INT, ranks->all_active, ranks->counts, ranks->offsets,
                               MPI_INT, PetscObjectComm((PetscObject)contact)));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
@@ -128,15 +112,6 @@ PetscErrorCode ContactUpdateBodies(Contact contact, const PetscBool changed[])
     if (contact->body_rows[b].affected)
       PetscCall(BodyUpdateInterface(contact->bodies[b], contact->interfaces[b], contact->body_rows[b].all, ranks->all_active));
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContactCreateRowVec(Contact contact, Vec *vec)
-{
-  PetscFunctionBegin;
-  PetscCall(VecCreate(PetscObjectComm((PetscObject)contact), vec));
-  PetscCall(VecSetSizes(*vec, contact->rows.n, contact->rows.n_all));
-  PetscCall(VecSetType(*vec, VECSTANDARD));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -96,9 +96,8 @@ PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseM
   PetscFunctionBegin;
   inverse->contact = contact;
   PetscCall(PetscMalloc3(n, &inverse->takes_part, n, &inverse->work[0], n, &inverse->work[1]));
-  PetscCall(ContactCreateRowVec(contact, &inverse->rhs));
-  PetscCall(VecDuplicate(inverse->rhs, &inverse->solution));
   PetscCall(InverseMassAssemble(contact, PETSC_TRUE, &lumped));
+  PetscCall(MatCreateVecs(lumped, &inverse->solution, &inverse->rhs));
   PetscCall(FindRows(contact, lumped, inverse));
   PetscCall(LeaveOutOthers(contact, inverse, lumped));
   if (type == INVERSE_MASS_ONCE) {

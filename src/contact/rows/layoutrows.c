@@ -36,7 +36,7 @@ static PetscErrorCode KeepRows(Contact contact, Kept *kept)
   kept->width = StateListGetWidth(&list) + 1;
   PetscCall(PetscCalloc4(kept->width * contact->rows.n, &kept->rows, N_SUMS * contact->n_pairs, &kept->sums, contact->n_pairs,
                          &kept->goes_on, contact->n_pairs, &kept->states));
-  PetscCall(ContactComputePairStates(contact, 0, contact->n_pairs, kept->states));
+  PetscCall(ContactComputePairStates(contact, kept->states));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     StateListCopyOne(&list, i, PETSC_FALSE, kept->rows + kept->width * i);
     kept->rows[kept->width * (i + 1) - 1] = (PetscReal)contact->rows.dof[i];

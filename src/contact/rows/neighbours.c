@@ -224,7 +224,7 @@ PetscBool ContactNeighboursUsed(Contact contact, PetscReal near)
 }
 
 /* Room for what is kept of each body, once discretizations are known */
-PetscErrorCode ContactSetUpNeighbours(Contact contact, ContactPreference preferences[])
+PetscErrorCode ContactSetUpNeighbours(Contact contact)
 {
   ContactNeighbours *neighbours = &contact->neighbours;
   const PetscInt     n          = contact->n_bodies;
@@ -236,8 +236,6 @@ PetscErrorCode ContactSetUpNeighbours(Contact contact, ContactPreference prefere
   neighbours->come_and_go = PETSC_TRUE;
   PetscCall(
       PetscMalloc5(6 * n, &neighbours->boxes, n, &neighbours->edge, n, &neighbours->lower, n, &neighbours->sorted, n, &neighbours->place));
-  PetscCall(PetscMalloc1(n, &neighbours->preferences));
-  PetscCall(PetscArraycpy(neighbours->preferences, preferences, n));
   for (PetscInt b = 0; b < n; b++) PetscCall(BodyExpectRows(contact->bodies[b]));
   PetscCall(ContactSetUpTold(contact));
   PetscFunctionReturn(PETSC_SUCCESS);

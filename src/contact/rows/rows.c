@@ -48,8 +48,8 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscCall(PetscCalloc4(n, &contact->ties.holds, n, &contact->ties.distance, 2 * n, &contact->work.entry_counts, n, &contact->work.drift));
   PetscCall(PetscCalloc7(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap, n, &contact->work.tilts));
-  PetscCall(PetscCalloc7(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
-                         &contact->rows.followed, n, &contact->work.moved, n, &contact->work.flags, n, &contact->work.rest));
+  PetscCall(PetscCalloc6(n, &contact->work.last_force, 2 * n, &contact->work.handover, n, &contact->work.intervals, n,
+                         &contact->rows.followed, n, &contact->work.flags, n, &contact->work.rest));
   PetscCall(PetscCalloc3(contact->n_pairs, &contact->work.updated, CONTACT_MOTION * contact->n_pairs, &contact->work.motion,
                          contact->n_pairs, &contact->work.off));
   PetscCall(PetscMPIIntCast(n, &mine));
@@ -248,8 +248,8 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->ranks.offsets));
   PetscCall(PetscFree7(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
                        contact->held.merged_gap, contact->work.tilts));
-  PetscCall(PetscFree7(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed,
-                       contact->work.moved, contact->work.flags, contact->work.rest));
+  PetscCall(PetscFree6(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed,
+                       contact->work.flags, contact->work.rest));
   PetscCall(PetscFree3(contact->work.updated, contact->work.motion, contact->work.off));
   PetscCall(ContactDestroyBodyRows(contact));
   PetscCall(PetscFree2(contact->rows.near, contact->rows.acting));

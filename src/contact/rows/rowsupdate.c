@@ -187,9 +187,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   PetscCall(ContactMergeDroppedRows(contact));
   if (contact->held.merger) ContactAffectAll(contact); /* heirs change with rows that are not their own */
   PetscCall(ContactFillMatrices(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    contact->work.moved[i] = (PetscBool)(contact->rows.changed[i] || contact->rows.followed[i]);
-  PetscCall(ContactUpdateBodies(contact, contact->work.moved));
+  PetscCall(ContactUpdateBodies(contact, PETSC_FALSE));
   PetscCall(PetscArraycpy(contact->work.last_gap, contact->start.gap, contact->rows.n));
   PetscCall(ContactReadStartGaps(contact, PETSC_TRUE));
   ContactAlignRubbingRows(contact);
@@ -234,7 +232,7 @@ static PetscErrorCode RebuildTies(Contact contact)
   PetscCall(ContactMergeDroppedRows(contact));
   ContactAffectAll(contact);
   PetscCall(ContactFillMatrices(contact));
-  PetscCall(ContactUpdateBodies(contact, contact->rows.changed));
+  PetscCall(ContactUpdateBodies(contact, PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
