@@ -311,8 +311,7 @@ PetscErrorCode ContactMakeStep(Contact contact)
 
   PetscFunctionBegin;
   if (!f->n) {
-    PetscUseTypeMethod(contact, step);
-    PetscCall(ContactCompleteBodies(contact));
+    PetscCall(MakeStep(contact, PETSC_TRUE));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(PetscArraycpy(f->start_force, contact->start.force, contact->rows.n));

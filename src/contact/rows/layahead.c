@@ -45,24 +45,6 @@ static PetscErrorCode MeasureOff(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* For each pair, how far its planes are off in parts of what is allowed; 0: none of its nodes is in contact */
-static PetscErrorCode MeasurePairs(Contact contact, PetscReal off[])
-{
-  PetscBool any = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscBool ahead;
-
-    off[p] = 0;
-    PetscCall(LaysAhead(contact, &contact->pairs[p], &ahead));
-    if (ahead) PetscCall(MeasureOff(contact, &contact->pairs[p], &off[p]));
-    any = (PetscBool)(any || ahead);
-  }
-  if (any) PetscCall(ContactReduce(contact, contact->n_pairs, MPIU_REAL, MPIU_MAX, off));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* No rows are laid ahead: at the start of a step */
 void ContactForgetAhead(Contact contact)
 {
@@ -74,12 +56,21 @@ void ContactForgetAhead(Contact contact)
 PetscErrorCode ContactLayAhead(Contact contact, PetscInt pass, PetscReal *last, PetscBool *again)
 {
   PetscReal *off = contact->work.off, most = 0;
+  PetscBool  any = PETSC_FALSE;
 
   PetscFunctionBegin;
   *again = PETSC_FALSE;
   /* what changes the start of the step cannot be made again */
   if (contact->dim == 1 || ContactAllPairsTie(contact) || contact->attempt.moves_start) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(MeasurePairs(contact, off));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscBool ahead;
+
+    off[p] = 0;
+    PetscCall(LaysAhead(contact, &contact->pairs[p], &ahead));
+    if (ahead) PetscCall(MeasureOff(contact, &contact->pairs[p], &off[p]));
+    any = (PetscBool)(any || ahead);
+  }
+  if (any) PetscCall(ContactReduce(contact, contact->n_pairs, MPIU_REAL, MPIU_MAX, off));
   for (PetscInt p = 0; p < contact->n_pairs; p++) most = PetscMax(most, off[p]);
   *again = (PetscBool)(most > 1 && pass < MOST_PASSES && (!pass || most < LESS * *last));
   *last  = most;

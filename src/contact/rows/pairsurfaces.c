@@ -217,19 +217,6 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where one of several ranks has all of both surfaces it is the only one that looks at them */
-static PetscErrorCode FindOwner(Contact contact, ContactPair *pair, PetscMPIInt *owner)
-{
-  PetscMPIInt other;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetMeshRank(contact->bodies[pair->body[0]], owner));
-  other = *owner;
-  if (!pair->obstacle) PetscCall(BodyGetMeshRank(contact->bodies[pair->body[1]], &other));
-  pair->owned = (PetscBool)(contact->ranks.size > 1 && !contact->options.balance && *owner >= 0 && *owner == other);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether rows count with the bends of both surfaces. Without inertia they stay as they were built while forces press the surfaces flat:
    between both normals is where that flat surface is, to first order in the curvatures, and what presses along normals of one side alone
    has a part along the surface that is not small beside friction. With inertia rows follow the surfaces; in three dimensions coarse balls
@@ -281,6 +268,7 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
   Vec             u[2]    = {NULL, NULL};
   PetscBool       rebuilt;
   PetscBool       inertia = PETSC_TRUE, linear = PETSC_TRUE;
+  PetscMPIInt     other;
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
@@ -292,7 +280,11 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
   pair->rests    = (PetscBool)!inertia;
   options.curved = IsCurved(contact, pair, inertia, linear);
   PetscCall(GetNormalShare(contact, pair, &options.share));
-  PetscCall(FindOwner(contact, pair, &options.owner));
+  PetscCall(BodyGetMeshRank(contact->bodies[pair->body[0]], &options.owner));
+  other = options.owner;
+  if (!pair->obstacle) PetscCall(BodyGetMeshRank(contact->bodies[pair->body[1]], &other));
+  /* where one of several ranks has all of both surfaces it is the only one that looks at them */
+  pair->owned   = (PetscBool)(contact->ranks.size > 1 && !contact->options.balance && options.owner >= 0 && options.owner == other);
   options.owned = pair->owned;
   PetscCall(ContactCheckBalance(contact, pair));
   PetscCall(TransferCreate(PetscObjectComm((PetscObject)contact), pair->surfaces[0], pair->surfaces[1], pair->obstacle, &options,
