@@ -184,7 +184,6 @@ PETSC_INTERN PetscErrorCode ContactAddBodyMatrix(Contact, PetscInt, Mat, Mat);
 PETSC_INTERN PetscErrorCode ContactMarkNodes(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
-PETSC_INTERN PetscErrorCode ContactRowIsHeld(Contact, const ContactPair *, PetscInt, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactMarkHeldRows(Contact);
 PETSC_INTERN PetscErrorCode ContactKeepHeldRows(Contact, Vec);
 PETSC_INTERN void           ContactLeaveOutDropped(Contact);

@@ -227,7 +227,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyPairs(c));
   PetscCall(PetscFree(c->bodies));
   PetscCall(PetscFree2(c->reach.mean, c->reach.spread));
-  PetscCall(PetscFree4(c->traces, c->interfaces, c->spares, c->order));
+  PetscCall(PetscFree5(c->traces, c->interfaces, c->spares, c->order, c->body_rows));
   PetscCall(PetscFree4(c->ends, c->ahead, c->work.hands_over, c->work.traces));
   PetscCall(ContactDestroyResultants(c));
   PetscCall(ContactDestroyOverlaps(c));

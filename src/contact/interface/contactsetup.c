@@ -15,7 +15,8 @@ static PetscErrorCode AllocateBodies(Contact contact)
   PetscCall(PetscCalloc2(4 * n, &contact->reach.mean, 2 * n, &contact->reach.spread));
   contact->reach.acceleration = contact->reach.spread + n;
   PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));
-  PetscCall(PetscCalloc4(n + 1, &contact->traces, n, &contact->interfaces, n, &contact->spares, n, &contact->order));
+  PetscCall(
+      PetscCalloc5(n + 1, &contact->traces, n, &contact->interfaces, n, &contact->spares, n, &contact->order, n, &contact->body_rows));
   PetscCall(PetscCalloc4(n, &contact->ends, n, &contact->ahead, n, &contact->work.hands_over, 7 * n, &contact->work.traces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -6,11 +6,10 @@
 PetscErrorCode ContactNumberBodyRows(Contact contact)
 {
   const PetscInt   begin = contact->rows.begin, end = begin + contact->rows.n;
-  ContactBodyRows *of;
+  ContactBodyRows *of = contact->body_rows;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(contact->n_bodies, &contact->body_rows));
-  of = contact->body_rows;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) of[b].n = of[b].begin = of[b].n_all = 0;
   for (PetscInt pass = 0; pass < 2; pass++) {
     for (PetscInt row = 0; row < contact->rows.n_all; row++) {
       const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[row]];
@@ -50,7 +49,6 @@ PetscErrorCode ContactDestroyBodyRows(Contact contact)
     PetscCall(PetscFree4(contact->body_rows[b].rows, contact->body_rows[b].area, contact->body_rows[b].near, contact->body_rows[b].acting));
     PetscCall(PetscFree(contact->body_rows[b].all));
   }
-  PetscCall(PetscFree(contact->body_rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

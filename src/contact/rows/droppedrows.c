@@ -1,4 +1,5 @@
-/* Which rows of held nodes are dropped where bodies answer to forces. Such a row is a condition on the partner. Beside rows that are not
+/* Which rows of held nodes are dropped. Methods that prescribe displacements have no use for any. Where bodies answer to forces such a row
+   is a condition on the partner. Beside rows that are not
    held, as at the rim of an interface, it may follow from these, since the partner has no more displacements there than they have forces:
    then its force is not determined. So there it is dropped, see heldrows.c. Farther inside of what is held it stays, unless the partner is
    held too, so that no force on it moves anything. */
@@ -16,7 +17,7 @@ static void LeaveOut(Contact contact, PetscInt i)
 }
 
 /* Whether row i is held: all displacements that it asks for are prescribed. Rows of a node that rubs are held together. */
-PetscErrorCode ContactRowIsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
+static PetscErrorCode RowIsHeld(Contact contact, const ContactPair *pair, PetscInt i, PetscBool *held)
 {
   const PetscInt *dofs;
   PetscInt        n;
@@ -34,11 +35,14 @@ PetscErrorCode ContactRowIsHeld(Contact contact, const ContactPair *pair, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Where bodies answer to forces: marks the rows of held nodes, to be dropped if they are at a rim or move nothing. Obstacles move never. */
+/* Marks the rows of held nodes, to be dropped; where bodies answer to forces, if they are at a rim or move nothing. Obstacles move never.
+ */
 PetscErrorCode ContactMarkHeldRows(Contact contact)
 {
+  const PetscBool merges = (PetscBool)(contact->sideless || contact->dim > 1);
+
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+  for (PetscInt p = 0; p < contact->n_pairs && (contact->sideless || contact->prescribes); p++) {
     const ContactPair *pair = &contact->pairs[p];
     const PetscInt    *dofs;
     PetscInt           n;
@@ -49,11 +53,11 @@ PetscErrorCode ContactMarkHeldRows(Contact contact)
     PetscCall(TransferGetRows(pair->transfer, &rows));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       const PetscBool meets = ContactPairTies(pair) ? contact->ties.holds[i] : rows.opposite[(i - pair->begin) / pair->components];
-      PetscBool       held;
+      PetscBool       held  = PETSC_FALSE;
 
-      PetscCall(ContactRowIsHeld(contact, pair, i, &held));
-      contact->held.dropped[i] = (PetscBool)(held && meets && !pair->obstacle && pair->law != CONTACT_LAW_BONDED);
-      if (held && pair->obstacle) LeaveOut(contact, i);
+      PetscCall(RowIsHeld(contact, pair, i, &held));
+      contact->held.dropped[i] = (PetscBool)(held && meets && merges && !pair->obstacle && pair->law != CONTACT_LAW_BONDED);
+      if (held && (pair->obstacle || contact->prescribes)) LeaveOut(contact, i);
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -12,7 +12,7 @@
    surfaces are merged.
 
    Methods that prescribe displacements have no use for a held row, and leave out those without heirs. Where bodies answer to forces, rows of
-   held nodes are dropped at rims alone: see droppedrows.c. */
+   held nodes are dropped at rims alone. Which rows are held: see droppedrows.c. */
 #include <contact/parts.h>
 
 /* Edges between a held row and its heirs, where held rows that have none are of use: two at the corner of a rim */
@@ -225,7 +225,7 @@ PetscErrorCode ContactMergeDroppedRows(Contact contact)
   int any = contact->held.merger ? 1 : 0;
 
   PetscFunctionBegin;
-  if (contact->sideless) PetscCall(ContactMarkHeldRows(contact));
+  PetscCall(ContactMarkHeldRows(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) any |= contact->held.dropped[i];
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);

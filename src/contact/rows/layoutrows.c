@@ -152,27 +152,6 @@ static PetscErrorCode ReplaceBodies(Contact contact, const PetscBool affected[],
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What counts for each body how its rows have changed goes over to the new numbering */
-static PetscErrorCode LayOut(Contact contact)
-{
-  ContactBodyRows *old;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(contact->n_bodies, &old));
-  PetscCall(PetscArraycpy(old, contact->body_rows, contact->n_bodies));
-  PetscCall(ContactDestroyRows(contact));
-  PetscCall(ContactLayOutRows(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    ContactBodyRows *of = &contact->body_rows[b];
-
-    of->pattern     = old[b].pattern;
-    of->patterns[0] = old[b].patterns[0];
-    of->patterns[1] = old[b].patterns[1];
-  }
-  PetscCall(PetscFree(old));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Other pairs than before, between two controller steps. `list`: the numbers of n pairs by ContactNumberPair(), ascending */
 PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt list[])
 {
@@ -186,7 +165,8 @@ PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt l
   PetscCall(TakePairs(contact, n, list, &kept, was, affected));
   PetscCall(ContactNoteNeighbours(contact, n, list));
   PetscCall((*contact->ops->reset)(contact));
-  PetscCall(LayOut(contact));
+  PetscCall(ContactDestroyRows(contact));
+  PetscCall(ContactLayOutRows(contact));
   PetscCall(ContactSetUpPairResultants(contact));
   PetscCall(ContactSetUpRowEnergy(contact));
   PetscCall(ContactSetUpFriction(contact));

@@ -76,7 +76,7 @@ PetscErrorCode ContactLayOutRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Describes the rows of a pair as its transfer has them now; ContactMeasureTies() has found ties. A held row neither opens nor closes. */
+/* Describes the rows of a pair as its transfer has them now; ContactMeasureTies() has found ties. */
 PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
 {
   TransferRows rows;
@@ -90,7 +90,6 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
   for (PetscInt node = 0; node < rows.n; node++)
     for (PetscInt k = 0; k < pair->components; k++) {
       const PetscInt i = pair->begin + node * pair->components + k;
-      PetscBool      held;
 
       contact->rows.dof[i]         = rows.dofs[node] - first;
       contact->rows.opposite[i]    = rows.opposite[node];
@@ -109,14 +108,7 @@ PetscErrorCode ContactDescribeRows(Contact contact, const ContactPair *pair)
         contact->rows.opposite[i]    = PETSC_FALSE;
         contact->rows.initial_gap[i] = CONTACT_NO_GAP;
       }
-      PetscCall(ContactRowIsHeld(contact, pair, i, &held));
-      held                        = (PetscBool)(held && contact->prescribes);
-      contact->held.dropped[i]    = (PetscBool)(held && (ContactPairTies(pair) ? contact->rows.tied[i] : rows.opposite[node]) &&
-                                                !pair->obstacle && contact->dim > 1 && pair->law != CONTACT_LAW_BONDED);
       contact->held.merged_gap[i] = 0;
-      if (!held) continue;
-      contact->rows.opposite[i] = contact->rows.tied[i] = PETSC_FALSE;
-      contact->rows.initial_gap[i]                      = CONTACT_NO_GAP;
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -203,8 +195,8 @@ PetscErrorCode ContactSetUpRows(Contact contact, PetscReal extent)
     PetscCall(ContactMeasureTies(contact, &contact->pairs[p], &changed));
     PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
   }
-  PetscCall(CheckHeld(contact));
   PetscCall(ContactMergeDroppedRows(contact));
+  PetscCall(CheckHeld(contact));
   ContactForgetMatrices(contact);
   PetscCall(ContactFillMatrices(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
