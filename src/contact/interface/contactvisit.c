@@ -5,18 +5,6 @@
 #include <interface/transfervisit.h>
 #include "contactvisit.h"
 
-static PetscErrorCode VisitPairs(Contact contact, Checkpoint checkpoint)
-{
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-
-    PetscCall(CheckpointBegin(checkpoint, pair->name));
-    PetscCall(TransferVisit(pair->transfer, checkpoint));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode VisitMatrices(Contact contact, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
@@ -167,7 +155,10 @@ PetscErrorCode ContactVisit(Contact contact, Checkpoint checkpoint)
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyVisitMesh(contact->bodies[b], checkpoint));
   PetscCall(CheckpointBegin(checkpoint, "contact"));
   PetscCall(CheckpointCheckInts(checkpoint, "rows, and the first of them", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
-  PetscCall(VisitPairs(contact, checkpoint));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    PetscCall(CheckpointBegin(checkpoint, contact->pairs[p].name));
+    PetscCall(TransferVisit(contact->pairs[p].transfer, checkpoint));
+  }
   PetscCall(CheckpointBegin(checkpoint, "contact rows"));
   PetscCall(VisitRows(contact, checkpoint));
   PetscCall(VisitMatrices(contact, checkpoint));

@@ -3,6 +3,9 @@
 #include <sys/names.h>
 #include <impakt/private/bodystep.h>
 
+/* Up to so many pairs of bodies that the program has chosen all of them are there all the time */
+#define MANY_PAIRS 100
+
 /* Finds body and surface of one side of a pair by its name. The second side may be an obstacle: its body is one past the last. */
 static PetscErrorCode ParseSide(Contact contact, const char pair[], const char side[], PetscInt *body, char **surface, Obstacle *obstacle)
 {
@@ -241,8 +244,8 @@ PetscErrorCode ContactAddAllPairs(Contact contact)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
   PetscCall(ContactFindDimension(contact));
-  PetscCall(ContactHasMany(contact, &contact->neighbours.all));
-  if (contact->n_pairs) contact->neighbours.all = PETSC_FALSE; /* others have been added */
+  contact->neighbours.all = (PetscBool)(!contact->n_pairs && contact->dim > 1 &&
+                                        contact->n_bodies * (contact->n_bodies - 1) / 2 > MANY_PAIRS);
   if (!contact->neighbours.all) PetscCall(ContactAddEachPair(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -134,26 +134,18 @@ static int ComparePreferences(const void *a, const void *b, void *context)
   return ContactChooseSides(&preferences[PetscMin(i, j)], &preferences[PetscMax(i, j)], &why) ? (i < j ? 1 : -1) : (i < j ? -1 : 1);
 }
 
-/* Where pairs come and go, the order of the bodies is that in which any two of them would have their sides */
-static PetscErrorCode OrderByPreference(Contact contact)
-{
-  ContactNeighbours *neighbours = &contact->neighbours;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->order[b] = b;
-  PetscCall(PetscTimSort(contact->n_bodies, contact->order, sizeof(PetscInt), ComparePreferences, neighbours->preferences));
-  for (PetscInt k = 0; k < contact->n_bodies; k++) neighbours->place[contact->order[k]] = k;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Bodies in an order in which every Dirichlet side comes before its Neumann side */
+/* Bodies in an order in which every Dirichlet side comes before its Neumann side; where pairs come and go, in which any two of them would
+   have their sides */
 PetscErrorCode ContactOrderBodies(Contact contact)
 {
-  PetscInt done;
+  ContactNeighbours *neighbours = &contact->neighbours;
+  PetscInt           done;
 
   PetscFunctionBegin;
-  if (contact->neighbours.come_and_go) {
-    PetscCall(OrderByPreference(contact));
+  if (neighbours->come_and_go) {
+    for (PetscInt b = 0; b < contact->n_bodies; b++) contact->order[b] = b;
+    PetscCall(PetscTimSort(contact->n_bodies, contact->order, sizeof(PetscInt), ComparePreferences, neighbours->preferences));
+    for (PetscInt k = 0; k < contact->n_bodies; k++) neighbours->place[contact->order[k]] = k;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(FindOrder(contact, &done));

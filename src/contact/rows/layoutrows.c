@@ -2,6 +2,9 @@
    all that is known of them, under other numbers; those of new pairs begin open. What the method has made of the rows begins anew. */
 #include <contact/parts.h>
 
+/* Pairs are looked for again before what was taken is used up, with room for steps that become faster */
+#define STEPS_AHEAD 2
+
 /* What is kept of rows and pairs, while they are laid out */
 typedef struct {
   PetscInt          n_pairs;
@@ -182,24 +185,27 @@ PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt l
 }
 
 /* Before a whole controller step, or `at_once`: takes the pairs that are near where bodies may have used up the distance up to which pairs
-   were taken. `near`: bodies that far apart may touch in the step [m]. */
+   were taken. `near`: bodies that far apart may touch in the step [m]. What was within reach of a step then is not now where bodies have
+   become faster. */
 PetscErrorCode ContactRenewNeighbours(Contact contact, PetscReal near, PetscBool at_once, PetscBool *any)
 {
-  PetscBool same;
-  PetscInt  n;
+  ContactNeighbours *neighbours = &contact->neighbours;
+  PetscBool          same;
+  PetscInt           n;
 
   PetscFunctionBegin;
   *any = PETSC_FALSE;
-  if (!contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!ContactNeighboursUsed(contact, near) && !at_once) PetscFunctionReturn(PETSC_SUCCESS);
-  if (contact->attempt.again || contact->attempt.level) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!neighbours->come_and_go || contact->attempt.again) PetscFunctionReturn(PETSC_SUCCESS);
+  neighbours->room_left -= near;
+  if (contact->attempt.level || (neighbours->room_left + neighbours->near >= STEPS_AHEAD * near && !at_once))
+    PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactFindNeighbours(contact, near, &n));
-  same = (PetscBool)(n == contact->neighbours.n_living);
-  if (same) PetscCall(PetscArraycmp(contact->neighbours.found, contact->neighbours.living, n, &same));
+  same = (PetscBool)(n == neighbours->n_living);
+  if (same) PetscCall(PetscArraycmp(neighbours->found, neighbours->living, n, &same));
   if (same) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactListAllRows(contact));
   PetscCall(ContactMoveSurfaces(contact));
-  PetscCall(ContactReplacePairs(contact, n, contact->neighbours.found));
+  PetscCall(ContactReplacePairs(contact, n, neighbours->found));
   *any = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -7,25 +7,13 @@
 #include <impakt/private/bodystep.h>
 #include <impakt/private/bodymass.h>
 
-/* Up to so many pairs of bodies that the program has chosen all of them are there all the time */
-#define MANY_PAIRS 100
 /* Boxes that are closer than this, beyond the reach of a controller step, must have rows [edges of the larger contact elements] */
 #define NEAR 0.25
 /* Pairs are taken whose boxes are closer than this [edges], and dropped where they are farther apart than DROPPED */
 #define TAKEN   0.75
 #define DROPPED 1.25
-/* Pairs are looked for again before what was taken is used up, with room for steps that become faster */
-#define STEPS_AHEAD 2
 /* Why the pairs of a body stay */
 #define HELD "has prescribed displacements"
-
-/* Whether the pairs of all bodies are so many that they come and go */
-PetscErrorCode ContactHasMany(Contact contact, PetscBool *many)
-{
-  PetscFunctionBegin;
-  *many = (PetscBool)(contact->dim > 1 && contact->n_bodies * (contact->n_bodies - 1) / 2 > MANY_PAIRS);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* What keeps all bodies together from having pairs that come and go, by an option; NULL: nothing */
 static const char *FindUnsuited(Contact contact)
@@ -211,16 +199,6 @@ PetscErrorCode ContactFindNeighbours(Contact contact, PetscReal near, PetscInt *
   neighbours->room_left = (TAKEN - NEAR) * least; /* what is taken at least beyond `near`, of all pairs */
   neighbours->near      = near;
   PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether bodies that have no rows with each other may touch in one of the next steps, or may have come nearer than NEAR */
-PetscBool ContactNeighboursUsed(Contact contact, PetscReal near)
-{
-  ContactNeighbours *neighbours = &contact->neighbours;
-
-  /* what was within reach of a step then is not now where bodies have become faster */
-  if (!contact->attempt.again) neighbours->room_left -= near;
-  return (PetscBool)(neighbours->room_left + neighbours->near < STEPS_AHEAD * near);
 }
 
 /* Room for what is kept of each body, once discretizations are known */
