@@ -53,39 +53,31 @@ static PetscErrorCode MeasureMotion(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of a pair where its bodies are. Rows of surfaces that may touch in this step for the first time
-   are built where the surfaces are now: what happens then does not depend on when they were built before. */
-static PetscErrorCode UpdatePair(Contact contact, PetscInt p, PetscBool *rebuilt)
-{
-  const PetscReal   *least = contact->work.motion + CONTACT_MOTION * p;
-  const ContactPair *pair  = &contact->pairs[p];
-  const PetscBool    anew  = (PetscBool)(pair->ahead || (least[MOTION_TOUCHES] == 0 && least[MOTION_CLOSES] < 0));
-  const PetscReal    near  = ContactPairReach(contact, pair);
-  Vec                u[2]  = {NULL, NULL}, at[2];
-
-  PetscFunctionBegin;
-  PetscCall(TransferIsStale(pair->transfer, near, anew, least, rebuilt));
-  if (!*rebuilt) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) PetscCall(ContactGetRowPlace(contact, pair->body[side], &u[side]));
-  for (PetscInt side = 0; side < 2; side++) at[side] = pair->ahead && u[side] ? contact->ends[pair->body[side]] : u[side];
-  for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
-  PetscCall(TransferRenew(pair->transfer, at[0], at[1], near, anew));
-  /* other pairs may have these surfaces too */
-  for (PetscInt side = 0; side < 2 && pair->ahead && u[side]; side++) PetscCall(SurfaceUpdate(pair->surfaces[side], u[side]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What becomes of the rows of a pair in this step */
+/* What becomes of the rows of a pair in this step, and they where its bodies are. Rows of surfaces that may touch in this step for the
+   first time are built where the surfaces are now: what happens then does not depend on when they were built before. */
 static PetscErrorCode RenewPair(Contact contact, PetscInt p, int *updated)
 {
+  const PetscReal   *least    = contact->work.motion + CONTACT_MOTION * p;
   const ContactPair *pair     = &contact->pairs[p];
+  const PetscBool    anew     = (PetscBool)(pair->ahead || (least[MOTION_TOUCHES] == 0 && least[MOTION_CLOSES] < 0));
+  const PetscReal    near     = ContactPairReach(contact, pair);
+  const PetscInt     sides    = pair->obstacle ? 1 : 2;
   PetscBool          followed = PETSC_FALSE, rebuilt, logged;
+  Vec                u[2] = {NULL, NULL}, at[2] = {NULL, NULL};
 
   PetscFunctionBegin;
   *updated = ROWS_STAY;
   if (pair->bonded) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(StageBegin(STAGE_SEARCH, &logged));
-  PetscCall(UpdatePair(contact, p, &rebuilt));
+  PetscCall(TransferIsStale(pair->transfer, near, anew, least, &rebuilt));
+  for (PetscInt side = 0; side < sides && rebuilt; side++) {
+    PetscCall(ContactGetRowPlace(contact, pair->body[side], &u[side]));
+    at[side] = pair->ahead ? contact->ends[pair->body[side]] : u[side];
+    if (pair->ahead) PetscCall(SurfaceUpdate(pair->surfaces[side], at[side]));
+  }
+  if (rebuilt) PetscCall(TransferRenew(pair->transfer, at[0], at[1], near, anew));
+  for (PetscInt side = 0; side < sides && rebuilt && pair->ahead; side++) /* other pairs may have these surfaces too */
+    PetscCall(SurfaceUpdate(pair->surfaces[side], u[side]));
   PetscCall(StageEnd(logged));
   PetscCall(FollowPair(contact, pair, &followed));
   *updated = rebuilt ? ROWS_REBUILT : followed ? ROWS_FOLLOWED : ROWS_STAY;

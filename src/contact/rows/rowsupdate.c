@@ -129,17 +129,6 @@ static PetscErrorCode HandOver(Contact contact, const PetscReal before[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of a pair have got new entries, in other places if they have been built again */
-static void Affect(Contact contact, const ContactPair *pair, PetscBool rebuilt)
-{
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    ContactBodyRows *of = &contact->body_rows[pair->body[side]];
-
-    of->affected = of->rewritten = PETSC_TRUE;
-    if (rebuilt) of->pattern++;
-  }
-}
-
 /* At the start of a controller step: builds the rows again of those pairs whose surfaces have slid or turned far enough, and lets those
    near contact follow. Rows in contact that have no partner opposite any more are let go. */
 PetscErrorCode ContactUpdateRows(Contact contact)
@@ -175,12 +164,18 @@ PetscErrorCode ContactUpdateRows(Contact contact)
   }
   PetscCall(ContactListAllRows(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const PetscBool rebuilt = (PetscBool)(contact->work.updated[p] == ROWS_REBUILT);
+    const ContactPair *pair    = &contact->pairs[p];
+    const PetscBool    rebuilt = (PetscBool)(contact->work.updated[p] == ROWS_REBUILT);
 
     if (contact->work.updated[p] == ROWS_STAY) continue;
     built = (PetscBool)(built || rebuilt);
-    Affect(contact, &contact->pairs[p], rebuilt);
-    PetscCall(ContactDescribeRows(contact, &contact->pairs[p]));
+    for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+      ContactBodyRows *of = &contact->body_rows[pair->body[side]];
+
+      of->affected = of->rewritten = PETSC_TRUE;
+      if (rebuilt) of->pattern++; /* entries in other places */
+    }
+    PetscCall(ContactDescribeRows(contact, pair));
   }
   if (built) contact->counts.rebuilds++;
   contact->energy.rebuilt = PETSC_TRUE;
