@@ -50,16 +50,6 @@ PetscErrorCode ContactSetUpTold(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ContactDestroyTold(Contact contact)
-{
-  ContactTold *told = &contact->neighbours.told;
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < told->n; p++) PetscCall(PetscFree(told->pairs[p].name));
-  PetscCall(PetscFree2(told->pairs, told->gone));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Adds what a pair has done so far to what is told. What has no direction counts with the rows' body alone, so that sums are right. */
 static void AddDone(ContactPairState *sum, PetscInt sign, const ContactPairState *state)
 {

@@ -75,21 +75,6 @@ static PetscReal BoxDistance(const PetscReal a[], const PetscReal b[])
   return PetscSqrtReal(square);
 }
 
-/* Distance of a box from an obstacle, at least [m]: gaps of two points differ by their distance at most */
-static PetscErrorCode ObstacleDistance(const PetscReal box[], Obstacle obstacle, PetscReal *distance)
-{
-  PetscReal centre[3], normal[3], radius = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt d = 0; d < 3; d++) {
-    centre[d] = 0.5 * (box[d] - box[3 + d]);
-    radius += PetscSqr(0.5 * (-box[3 + d] - box[d]));
-  }
-  PetscCall(ObstacleGetGap(obstacle, centre, distance, normal));
-  *distance -= PetscSqrtReal(radius);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscInt LongestAxis(Contact contact)
 {
   const PetscReal *boxes   = contact->neighbours.boxes;
@@ -168,18 +153,27 @@ static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Gaps of two points differ by their distance at most, so that a box is nearer than its middle by its radius at most */
 static PetscErrorCode FindObstacles(Contact contact, PetscReal near, PetscInt *n)
 {
   ContactNeighbours *neighbours = &contact->neighbours;
 
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    for (PetscInt o = 0; o < contact->n_obstacles; o++) {
-      PetscReal distance;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const PetscReal *box = neighbours->boxes + 6 * b;
+    PetscReal        centre[3], normal[3], radius = 0;
 
-      PetscCall(ObstacleDistance(neighbours->boxes + 6 * b, contact->obstacles[o], &distance));
-      PetscCall(Consider(contact, b, contact->n_bodies + o, distance, near, neighbours->edge[b], n));
+    for (PetscInt d = 0; d < 3; d++) {
+      centre[d] = 0.5 * (box[d] - box[3 + d]);
+      radius += PetscSqr(0.5 * (-box[3 + d] - box[d]));
     }
+    for (PetscInt o = 0; o < contact->n_obstacles; o++) {
+      PetscReal gap;
+
+      PetscCall(ObstacleGetGap(contact->obstacles[o], centre, &gap, normal));
+      PetscCall(Consider(contact, b, contact->n_bodies + o, gap - PetscSqrtReal(radius), near, neighbours->edge[b], n));
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -228,6 +222,7 @@ PetscErrorCode ContactDestroyNeighbours(Contact contact)
   PetscCall(PetscFree(neighbours->preferences));
   PetscCall(PetscFree(neighbours->found));
   PetscCall(PetscFree(neighbours->living));
-  PetscCall(ContactDestroyTold(contact));
+  for (PetscInt p = 0; p < neighbours->told.n; p++) PetscCall(PetscFree(neighbours->told.pairs[p].name));
+  PetscCall(PetscFree2(neighbours->told.pairs, neighbours->told.gone));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
