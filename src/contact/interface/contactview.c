@@ -6,16 +6,6 @@
 /* Up to so many pairs are printed with their distances; of more, those that the user has named, and the nearest one */
 #define MOST_DISTANCES 10
 
-/* Nodes of all ranks that have rows, those of several pairs once in each. Collective. */
-static PetscErrorCode CountNodes(Contact contact, PetscInt *n)
-{
-  PetscFunctionBegin;
-  *n = 0;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) *n += (contact->pairs[p].end - contact->pairs[p].begin) / contact->pairs[p].components;
-  PetscCall(ContactReduce(contact, 1, MPIU_INT, MPI_SUM, n));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* How far apart surfaces of pairs are: a mesh in other units or places shows here. Of many automatic pairs the nearest alone. */
 static PetscErrorCode ViewDistances(Contact contact, PetscViewer viewer)
 {
@@ -80,7 +70,9 @@ PetscErrorCode ContactView(Contact contact, PetscViewer viewer)
   }
   if (contact->n_pairs > MOST_NAMED)
     PetscCall(PetscViewerASCIIPrintf(viewer, " and %" PetscInt_FMT " more pairs", contact->n_pairs - MOST_NAMED));
-  if (contact->setup) PetscCall(CountNodes(contact, &nodes));
+  for (PetscInt p = 0; p < contact->n_pairs && contact->setup; p++) /* nodes of several pairs count once in each */
+    nodes += (contact->pairs[p].end - contact->pairs[p].begin) / contact->pairs[p].components;
+  PetscCall(ContactReduce(contact, 1, MPIU_INT, MPI_SUM, &nodes));
   PetscCall(PetscViewerASCIIPrintf(viewer, ", %" PetscInt_FMT " contact node%s\n", nodes, nodes == 1 ? "" : "s"));
   if (contact->setup) PetscCall(ViewDistances(contact, viewer));
   if (contact->neighbours.stay[0])

@@ -58,20 +58,6 @@ static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode VisitNumbers(Contact contact, Checkpoint checkpoint)
-{
-  ContactAttempt *attempt = &contact->attempt;
-
-  PetscFunctionBegin;
-  PetscCall(CheckpointVisitBytes(checkpoint, "counts", sizeof(contact->counts), &contact->counts));
-  PetscCall(CheckpointVisitReals(checkpoint, "step", 1, &contact->step));
-  PetscCall(CheckpointVisitInts(checkpoint, "level", 1, &attempt->level));
-  PetscCall(CheckpointVisitInts(checkpoint, "accepted level", 1, &attempt->accepted_level));
-  PetscCall(CheckpointVisitReals(checkpoint, "whole step", 1, &attempt->whole_step));
-  PetscCall(CheckpointVisitReals(checkpoint, "penalty energy", 1, &contact->resultants.penalty_energy));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ContactHasVisit - whether runs with the method can have checkpoints */
 PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
 {
@@ -127,7 +113,12 @@ PetscErrorCode ContactVisitShared(Contact contact, Checkpoint checkpoint)
   sizes[1] = contact->n_pairs;
   sizes[2] = contact->rows.n_all;
   PetscCall(CheckpointCheckInts(checkpoint, "bodies, pairs, rows and parts", PETSC_STATIC_ARRAY_LENGTH(sizes), sizes));
-  PetscCall(VisitNumbers(contact, checkpoint));
+  PetscCall(CheckpointVisitBytes(checkpoint, "counts", sizeof(contact->counts), &contact->counts));
+  PetscCall(CheckpointVisitReals(checkpoint, "step", 1, &contact->step));
+  PetscCall(CheckpointVisitInts(checkpoint, "level", 1, &contact->attempt.level));
+  PetscCall(CheckpointVisitInts(checkpoint, "accepted level", 1, &contact->attempt.accepted_level));
+  PetscCall(CheckpointVisitReals(checkpoint, "whole step", 1, &contact->attempt.whole_step));
+  PetscCall(CheckpointVisitReals(checkpoint, "penalty energy", 1, &contact->resultants.penalty_energy));
   PetscCall(VisitEnergy(contact, checkpoint));
   PetscCall(CheckpointVisitInts(checkpoint, "order", contact->n_bodies, contact->order));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {

@@ -1,12 +1,10 @@
 /* The energy that contact takes in a controller step. */
 #include <contact/parts.h>
 
-/* Whether a row joins or leaves contact in the step under way, on any rank; and whether the nodes of such a row have mass, or a body of
-   theirs has no inertia: then what the step takes is not the step's doing */
-static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *left_out)
+/* Whether rows join or leave contact in the step under way, on any rank: such as are of nodes without mass, and such whose nodes have mass,
+   or a body of theirs no inertia: then what the step takes is not the step's doing */
+static PetscErrorCode LookAtChanges(Contact contact, int found[2])
 {
-  int found[2] = {0, 0};
-
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair  = &contact->pairs[p];
@@ -21,8 +19,6 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
       if (contact->start.active[i] != contact->end.active[i]) found[other ? 1 : 0] = 1;
   }
   PetscCall(ContactReduce(contact, 2, MPI_INT, MPI_MAX, found));
-  *any      = (PetscBool)(found[0] > 0);
-  *left_out = (PetscBool)(found[1] > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -34,7 +30,7 @@ static PetscErrorCode LookAtChanges(Contact contact, PetscBool *any, PetscBool *
    ContactGetUnresolvedEnergy() tells. Collective. */
 PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
 {
-  PetscBool any = PETSC_FALSE, left_out = PETSC_FALSE;
+  int       found[2] = {0, 0};
   PetscReal unresolved;
 
   PetscFunctionBegin;
@@ -43,8 +39,8 @@ PetscErrorCode ContactGetEnergyLoss(Contact contact, PetscReal *loss)
   *loss = 0;
   if (contact->options.constraint != CONTACT_CONSTRAINT_GAP || !contact->energy.known || contact->energy.stays_whole)
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(LookAtChanges(contact, &any, &left_out));
-  if (!any || left_out) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(LookAtChanges(contact, found));
+  if (!found[0] || found[1]) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactGetUnresolvedEnergy(contact, &unresolved));
   if (!contact->energy.at_rest || PetscAbsReal(contact->energy.step_work) > unresolved) *loss = -contact->energy.step_work;
   PetscFunctionReturn(PETSC_SUCCESS);

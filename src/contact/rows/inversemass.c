@@ -71,34 +71,26 @@ static PetscErrorCode LeaveOutOthers(Contact contact, const InverseMass *inverse
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tied rows of pairs that keep their mass take part, but those whose nodes are massless on both sides, since they have other rows too */
-static PetscErrorCode FindRows(Contact contact, Mat lumped, InverseMass *inverse)
-{
-  const PetscScalar *diagonal;
-
-  PetscFunctionBegin;
-  PetscCall(MatGetDiagonal(lumped, inverse->rhs));
-  PetscCall(VecGetArrayRead(inverse->rhs, &diagonal));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    inverse->takes_part[i] = (PetscBool)(contact->rows.tied[i] && contact->pairs[contact->rows.pair[i]].keeps_mass &&
-                                         PetscRealPart(diagonal[i]) > 0);
-  PetscCall(VecRestoreArrayRead(inverse->rhs, &diagonal));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* For the ties as they are now */
+/* For the ties as they are now. Tied rows of pairs that keep their mass take part, but those whose nodes are massless on both sides, since
+   they have other rows too. */
 PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseMass *inverse)
 {
-  const PetscInt n = contact->rows.n;
-  Mat            C, lumped;
-  PC             pc;
+  const PetscInt     n = contact->rows.n;
+  const PetscScalar *diagonal;
+  Mat                C, lumped;
+  PC                 pc;
 
   PetscFunctionBegin;
   inverse->contact = contact;
   PetscCall(PetscMalloc3(n, &inverse->takes_part, n, &inverse->work[0], n, &inverse->work[1]));
   PetscCall(InverseMassAssemble(contact, PETSC_TRUE, &lumped));
   PetscCall(MatCreateVecs(lumped, &inverse->solution, &inverse->rhs));
-  PetscCall(FindRows(contact, lumped, inverse));
+  PetscCall(MatGetDiagonal(lumped, inverse->rhs));
+  PetscCall(VecGetArrayRead(inverse->rhs, &diagonal));
+  for (PetscInt i = 0; i < n; i++)
+    inverse->takes_part[i] = (PetscBool)(contact->rows.tied[i] && contact->pairs[contact->rows.pair[i]].keeps_mass &&
+                                         PetscRealPart(diagonal[i]) > 0);
+  PetscCall(VecRestoreArrayRead(inverse->rhs, &diagonal));
   PetscCall(LeaveOutOthers(contact, inverse, lumped));
   if (type == INVERSE_MASS_ONCE) {
     PetscCall(MatCreateShell(PetscObjectComm((PetscObject)contact), n, n, contact->rows.n_all, contact->rows.n_all, inverse, &C));

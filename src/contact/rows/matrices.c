@@ -80,17 +80,6 @@ static PetscErrorCode ShareColumns(Contact contact, PetscInt b, PetscMPIInt rank
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The second of the two matrices of a whole body, as the first: ranks need not find out anew what they tell each other in products */
-static PetscErrorCode CopyMatrix(Contact contact, PetscInt b)
-{
-  PetscFunctionBegin;
-  PetscCall(MatDestroy(&contact->interfaces[b]));
-  PetscCall(MatDuplicate(contact->spares[b], MAT_DO_NOT_COPY_VALUES, &contact->interfaces[b]));
-  PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
-  PetscCall(MatSetOption(contact->interfaces[b], MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* A matrix for entries in other places than those it has, or of new rows */
 static PetscErrorCode PrepareMatrix(Contact contact, PetscInt b)
 {
@@ -101,8 +90,12 @@ static PetscErrorCode PrepareMatrix(Contact contact, PetscInt b)
   PetscFunctionBegin;
   if (contact->ranks.size > 1) PetscCall(ContactIsAtHome(contact, b, &rank, &at_home));
   whole = (PetscBool)(rank >= 0 && of->n_all);
-  if (whole && of->patterns[0] < 0 && of->patterns[1] >= 0) PetscCall(CopyMatrix(contact, b));
-  else if (!whole || of->patterns[0] < 0) {
+  if (whole && of->patterns[0] < 0 && of->patterns[1] >= 0) { /* ranks need not find out anew what they tell each other in products */
+    PetscCall(MatDestroy(&contact->interfaces[b]));
+    PetscCall(MatDuplicate(contact->spares[b], MAT_DO_NOT_COPY_VALUES, &contact->interfaces[b]));
+    PetscCall(MatSetOption(contact->interfaces[b], MAT_NO_OFF_PROC_ENTRIES, PETSC_TRUE));
+    PetscCall(MatSetOption(contact->interfaces[b], MAT_NEW_NONZERO_LOCATION_ERR, PETSC_TRUE));
+  } else if (!whole || of->patterns[0] < 0) {
     PetscCall(CreateMatrix(contact, b));
     if (!whole || at_home) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(ShareColumns(contact, b, rank));

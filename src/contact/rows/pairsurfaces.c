@@ -146,21 +146,6 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells the surfaces which displacements are prescribed, so that normals stay in planes of symmetry */
-static PetscErrorCode MirrorSurface(Contact contact, PetscInt body, Surface surface)
-{
-  const PetscInt *dofs;
-  PetscInt        n, first;
-  Vec             positions;
-
-  PetscFunctionBegin;
-  PetscCall(BodyGetHeldDofs(contact->bodies[body], &n, &dofs));
-  PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
-  PetscCall(VecGetOwnershipRange(positions, &first, NULL));
-  PetscCall(SurfaceSetMirrors(surface, n, dofs, first));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Two surfaces by which a body touches itself are apart, and the method puts forces on both */
 static PetscErrorCode CheckSelf(Contact contact, const ContactPair *pair)
 {
@@ -212,8 +197,16 @@ PetscErrorCode ContactCreateSurfaces(Contact contact, ContactPair *pair, PetscRe
   PetscCall(CheckSelf(contact, pair));
   PetscCall(SurfaceKeepFacing(pair->surfaces[0], pair->surfaces[1], pair->obstacle, faces[0], faces[1]));
   PetscCall(CheckFacing(contact, pair));
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++)
-    PetscCall(MirrorSurface(contact, pair->body[side], pair->surfaces[side]));
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) { /* normals stay in planes of symmetry */
+    const PetscInt *dofs;
+    PetscInt        n, first;
+    Vec             positions;
+
+    PetscCall(BodyGetHeldDofs(contact->bodies[pair->body[side]], &n, &dofs));
+    PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[side]], &positions));
+    PetscCall(VecGetOwnershipRange(positions, &first, NULL));
+    PetscCall(SurfaceSetMirrors(pair->surfaces[side], n, dofs, first));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -9,25 +9,6 @@
    outer iteration leaves of the gap must not count as penetration in the next free trial */
 #define PENETRATION_TOLERANCE 3e-12
 
-/* Numbers the rows of this rank, pair by pair: a row is on the rank that owns its Dirichlet node */
-static PetscErrorCode CountRows(Contact contact)
-{
-  PetscFunctionBegin;
-  contact->rows.n = 0;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    ContactPair *pair = &contact->pairs[p];
-    TransferRows rows;
-
-    PetscCall(TransferGetRows(pair->transfer, &rows));
-    pair->bonded     = (PetscBool)(pair->bonded || ContactPairTies(pair));
-    pair->components = pair->law == CONTACT_LAW_FRICTIONLESS ? 1 : contact->dim;
-    pair->begin      = contact->rows.n;
-    contact->rows.n += rows.n * pair->components;
-    pair->end = contact->rows.n;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode AllocateRows(Contact contact)
 {
   MPI_Comm    comm = PetscObjectComm((PetscObject)contact);
@@ -66,11 +47,23 @@ static PetscErrorCode AllocateRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Room for the rows of all pairs, whose transfers are known, and their numbers */
+/* Room for the rows of all pairs, whose transfers are known, and their numbers, pair by pair: a row is on the rank that owns its Dirichlet
+   node */
 PetscErrorCode ContactLayOutRows(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(CountRows(contact));
+  contact->rows.n = 0;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+    TransferRows rows;
+
+    PetscCall(TransferGetRows(pair->transfer, &rows));
+    pair->bonded     = (PetscBool)(pair->bonded || ContactPairTies(pair));
+    pair->components = pair->law == CONTACT_LAW_FRICTIONLESS ? 1 : contact->dim;
+    pair->begin      = contact->rows.n;
+    contact->rows.n += rows.n * pair->components;
+    pair->end = contact->rows.n;
+  }
   PetscCall(AllocateRows(contact));
   PetscCall(ContactSetUpTurns(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
