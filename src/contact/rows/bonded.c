@@ -41,35 +41,27 @@ void ContactGetDirection(Contact contact, const ContactPair *pair, const Transfe
   if (!ContactPairTies(pair)) GetFrame(contact->dim, rows->normals + contact->dim * node, k, direction);
 }
 
-/* All rows of a node become ties as they are at the start of the controller step */
-static PetscErrorCode BondNode(Contact contact, const ContactPair *pair, PetscInt first)
-{
-  PetscScalar *start[2];
-
-  PetscFunctionBegin;
-  PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_FALSE, start));
-  for (PetscInt i = first; i < first + pair->components; i++) {
-    contact->rows.tied[i] = contact->rows.opposite[i] = PETSC_TRUE;
-    contact->rows.initial_gap[i]                      = -ContactRowSum(pair, start, i);
-    contact->start.gap[i] = contact->end.gap[i] = 0;
-    contact->start.active[i]                    = PETSC_TRUE;
-    if (i > first) contact->start.force[i] = 0;
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* At the start of a controller step: nodes that were pushed together at the end of the last one stick from now on */
+/* At the start of a controller step: nodes that were pushed together at the end of the last one stick from now on. All of their rows become
+   ties as they are there. */
 PetscErrorCode ContactBond(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
-    int          any  = pair->bonded;
+    PetscScalar *start[2];
+    int          any = pair->bonded;
 
     if (pair->law != CONTACT_LAW_BONDED) continue;
-    for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
-      if (contact->rows.tied[i] || !contact->start.active[i] || contact->start.force[i] <= 0) continue;
-      PetscCall(BondNode(contact, pair, i));
+    PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_FALSE, start));
+    for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
+      if (contact->rows.tied[first] || !contact->start.active[first] || contact->start.force[first] <= 0) continue;
+      for (PetscInt i = first; i < first + pair->components; i++) {
+        contact->rows.tied[i] = contact->rows.opposite[i] = PETSC_TRUE;
+        contact->rows.initial_gap[i]                      = -ContactRowSum(pair, start, i);
+        contact->start.gap[i] = contact->end.gap[i] = 0;
+        contact->start.active[i]                    = PETSC_TRUE;
+        if (i > first) contact->start.force[i] = 0;
+      }
       any = 1;
     }
     PetscCall(ContactOr(contact, &any));

@@ -89,12 +89,17 @@ PetscErrorCode ContactRefreshGaps(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells the transfers which rows are near, and the surfaces which nodes these are about */
-static PetscErrorCode TellSurfaces(Contact contact)
+/* Tells bodies and transfers which rows are near, and the surfaces which nodes these are about */
+static PetscErrorCode Tell(Contact contact)
 {
   PetscBool **nodes, *near;
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    const ContactBodyRows *of = &contact->body_rows[b];
+
+    if (of->n_all) PetscCall(BodySetNearRows(contact->bodies[b], contact->rows.listed ? of->n_near : -1, of->near));
+  }
   PetscCall(PetscMalloc1(contact->n_surfaces, &nodes));
   PetscCall(PetscMalloc1(contact->rows.n + 1, &near));
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
@@ -130,8 +135,6 @@ PetscErrorCode ContactListAllRows(Contact contact)
   if (!contact->body_rows) PetscFunctionReturn(PETSC_SUCCESS); /* no rows have been laid out yet */
   PetscCall(ContactRefreshGaps(contact));
   if (before && !contact->saved.known) PetscCall(ContactSaveRowState(contact));
-  for (PetscInt b = 0; b < contact->n_bodies && before; b++)
-    if (contact->body_rows[b].n_all) PetscCall(BodySetNearRows(contact->bodies[b], -1, NULL));
   contact->rows.listed     = PETSC_FALSE;
   contact->rows.near_reach = PETSC_MAX_REAL;
   contact->rows.n_near     = contact->rows.n;
@@ -141,7 +144,7 @@ PetscErrorCode ContactListAllRows(Contact contact)
     contact->pairs[p].near_end   = contact->pairs[p].end;
   }
   PetscCall(ListBodyRows(contact));
-  if (before) PetscCall(TellSurfaces(contact));
+  if (before) PetscCall(Tell(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,9 +190,6 @@ PetscErrorCode ContactListNearRows(Contact contact, PetscReal reach)
   contact->rows.near_reach = smallest;
   contact->rows.listed     = PETSC_TRUE;
   PetscCall(ListBodyRows(contact));
-  PetscCall(TellSurfaces(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    if (contact->body_rows[b].n_all)
-      PetscCall(BodySetNearRows(contact->bodies[b], contact->body_rows[b].n_near, contact->body_rows[b].near));
+  PetscCall(Tell(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
