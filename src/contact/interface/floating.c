@@ -91,21 +91,6 @@ PetscErrorCode ContactDestroyFloating(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A body that has gone far, driven by what does not get less */
-static PetscErrorCode RefuseUnheld(Contact contact, Body body)
-{
-  const char *name = ((PetscObject)body)->name;
-  char        motion[128];
-
-  PetscFunctionBegin;
-  PetscCall(BodyDescribeDrift(body, sizeof(motion), motion));
-  SETERRQ(
-      PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-      "Body '%s' is static, and neither contact nor ties hold it in the step from time %.9g s: a load, or the push of its partners, makes "
-      "it %s, and nothing stops that; hold it with -%s_boundary_displacement, or let friction or ties do it",
-      name, (double)contact->floating.time, motion, name);
-}
-
 /* The largest sum of the sizes of the contact forces on a body [N] */
 static PetscErrorCode FindLargestForce(Contact contact, PetscReal *largest)
 {
@@ -132,6 +117,7 @@ static PetscErrorCode Measure(Contact contact, ContactSprings *springs, PetscInt
   BodySpringState *state   = &springs->state;
   PetscReal       *stretch = contact->floating.stretch + springs->begin, *last = contact->floating.last + springs->begin;
   PetscReal        most = 0, square = 0, last_square = 0, change = 0, least;
+  char             motion[128];
 
   PetscFunctionBegin;
   PetscCall(BodyMeasureSprings(body, state));
@@ -154,7 +140,14 @@ static PetscErrorCode Measure(Contact contact, ContactSprings *springs, PetscInt
     springs->leap *= LONGER;
     springs->steady = square;
   }
-  if (!*rest && springs->stalls && state->way > (state->linear ? FAR : FAR_NONLINEAR) * state->size) PetscCall(RefuseUnheld(contact, body));
+  if (!*rest && springs->stalls &&
+      state->way > (state->linear ? FAR : FAR_NONLINEAR) * state->size) { /* what drives it does not get less */
+    PetscCall(BodyDescribeDrift(body, sizeof(motion), motion));
+    SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+            "Body '%s' is static, and neither contact nor ties hold it in the step from time %.9g s: a load, or the push of its partners, "
+            "makes it %s, and nothing stops that; hold it with -%s_boundary_displacement, or let friction or ties do it",
+            ((PetscObject)body)->name, (double)contact->floating.time, motion, ((PetscObject)body)->name);
+  }
   PetscCall(PetscInfo(contact, "body '%s': springs stretched by %g m after a way of %g m, step made %" PetscInt_FMT " times\n",
                       ((PetscObject)body)->name, (double)most, (double)state->way, times + 1));
   PetscFunctionReturn(PETSC_SUCCESS);

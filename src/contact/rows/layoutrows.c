@@ -111,27 +111,6 @@ static PetscErrorCode PutBack(Contact contact, const Kept *kept, const PetscInt 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The rows of a body that has other pairs than before */
-static PetscErrorCode ReplaceBody(Contact contact, PetscInt b, const Kept *kept, const PetscInt was[])
-{
-  const ContactBodyRows *of = &contact->body_rows[b];
-  PetscInt              *from;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(of->n, &from));
-  for (PetscInt k = 0; k < of->n; k++) {
-    const PetscInt     i = of->rows[k], p = contact->rows.pair[i];
-    const ContactPair *pair = &contact->pairs[p];
-    const PetscInt     side = pair->body[0] == b ? 0 : 1;
-
-    from[k] = was[p] < 0 ? -1 : kept->pairs[was[p]].begin + i - pair->begin - kept->pairs[was[p]].shift[side];
-  }
-  PetscCall(BodyReplaceInterface(contact->bodies[b], contact->interfaces[b], from));
-  PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
-  PetscCall(PetscFree(from));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The matrices of the bodies that have other pairs than before, and all that these bodies have made of them */
 static PetscErrorCode ReplaceBodies(Contact contact, const PetscBool affected[], const Kept *kept, const PetscInt was[])
 {
@@ -149,8 +128,22 @@ static PetscErrorCode ReplaceBodies(Contact contact, const PetscBool affected[],
   PetscCall(ContactFillMatrices(contact));
   PetscCall(ContactCopyAreas(contact));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    if (affected[b]) PetscCall(ReplaceBody(contact, b, kept, was));
-    contact->body_rows[b].affected = contact->body_rows[b].filled = PETSC_FALSE;
+    ContactBodyRows *of = &contact->body_rows[b];
+    PetscInt        *from; /* per row: its number before, or less than 0 */
+
+    if (affected[b]) {
+      PetscCall(PetscMalloc1(of->n, &from));
+      for (PetscInt k = 0; k < of->n; k++) {
+        const PetscInt     i = of->rows[k], p = contact->rows.pair[i];
+        const ContactPair *pair = &contact->pairs[p], *old = was[p] < 0 ? NULL : &kept->pairs[was[p]];
+
+        from[k] = old ? old->begin + i - pair->begin - old->shift[pair->body[0] == b ? 0 : 1] : -1;
+      }
+      PetscCall(BodyReplaceInterface(contact->bodies[b], contact->interfaces[b], from));
+      PetscCall(BodyGetTraces(contact->bodies[b], &contact->traces[b]));
+      PetscCall(PetscFree(from));
+    }
+    of->affected = of->filled = PETSC_FALSE;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
