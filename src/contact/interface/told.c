@@ -18,7 +18,7 @@ PetscErrorCode ContactSetUpTold(Contact contact)
 
   PetscFunctionBegin;
   told->n = n * (1 + contact->n_obstacles);
-  PetscCall(PetscCalloc2(told->n, &told->pairs, told->n, &told->gone));
+  PetscCall(PetscCalloc3(told->n, &told->pairs, told->n, &told->gone, told->n, &told->states));
   for (PetscInt b = 0; b < n; b++) {
     const char *body = ((PetscObject)contact->bodies[b])->name;
     char        name[256];
@@ -123,18 +123,14 @@ static PetscErrorCode TellStates(Contact contact, ContactPairState states[])
 @*/
 PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairState *state)
 {
-  ContactPairState *states;
-  PetscInt          n;
+  ContactPairState *states = contact->neighbours.come_and_go ? contact->neighbours.told.states : contact->resultants.states;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(state, 3);
   ContactCheckPair(contact, pair);
-  PetscCall(ContactGetNumPairs(contact, &n));
-  PetscCall(PetscMalloc1(n, &states));
   PetscCall(ContactGetPairStates(contact, states));
   *state = states[pair];
-  PetscCall(PetscFree(states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
