@@ -1,8 +1,7 @@
 /* Which rows of held nodes are dropped. Methods that prescribe displacements have no use for any. Where bodies answer to forces such a row
-   is a condition on the partner. Beside rows that are not
-   held, as at the rim of an interface, it may follow from these, since the partner has no more displacements there than they have forces:
-   then its force is not determined. So there it is dropped, see heldrows.c. Farther inside of what is held it stays, unless the partner is
-   held too, so that no force on it moves anything. */
+   is a condition on the partner. Beside rows that are not held, as at the rim of an interface, it may follow from these, since the partner
+   has no more displacements there than they have forces: then its force is not determined. So there it is dropped, see heldrows.c. Farther
+   inside of what is held it stays, unless the partner is held too, so that no force on it moves anything. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
 

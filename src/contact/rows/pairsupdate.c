@@ -53,8 +53,8 @@ static PetscErrorCode MeasureMotion(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What becomes of the rows of a pair in this step, and they where its bodies are. Rows of surfaces that may touch in this step for the
-   first time are built where the surfaces are now: what happens then does not depend on when they were built before. */
+/* Builds the rows of a pair again, or lets them follow its surfaces, where that is needed. Rows of surfaces that may touch in this step for
+   the first time are built where the surfaces are now: what happens then does not depend on when they were built before. */
 static PetscErrorCode RenewPair(Contact contact, PetscInt p, int *updated)
 {
   const PetscReal   *least    = contact->work.motion + CONTACT_MOTION * p;
