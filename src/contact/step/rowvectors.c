@@ -12,7 +12,7 @@ PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper
   stepper->assembly.n_bodies = contact->n_bodies;
   PetscCall(PetscCalloc1(contact->n_bodies, &stepper->assembly.of_body));
   PetscCall(PetscMalloc1(2 * contact->n_pairs, &stepper->laws));
-  PetscCall(PetscCalloc3(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins));
+  PetscCall(PetscCalloc4(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins, n, &stepper->grows));
   PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
                          n, &stepper->given));
   PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)contact), contact->rows.n, PETSC_DETERMINE, &stepper->x));
@@ -29,7 +29,7 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
   PetscCall(VecDestroy(&stepper->f));
   PetscCall(PetscFree4(stepper->rows, stepper->gathered, stepper->of_assembled, stepper->all));
   PetscCall(PetscFree2(stepper->told, stepper->ends));
-  PetscCall(PetscFree3(stepper->touches, stepper->joined, stepper->joins));
+  PetscCall(PetscFree4(stepper->touches, stepper->joined, stepper->joins, stepper->grows));
   PetscCall(PetscFree7(stepper->last, stepper->rate, stepper->lets, stepper->none, stepper->mine, stepper->before, stepper->given));
   PetscCall(PetscFree(stepper->laws));
   PetscCall(LawProblemDestroy(&stepper->problem));

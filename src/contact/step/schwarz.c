@@ -140,7 +140,12 @@ PetscErrorCode ContactStepperAccept(Contact contact)
 
   PetscFunctionBegin;
   if (contact->ties.inverse) PetscCall(ContactStepperEndTies(contact, stepper));
-  for (PetscInt k = 0; k < contact->rows.n_acting; k++) stepper->joined[contact->rows.acting[k]] = stepper->joins[contact->rows.acting[k]];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k];
+
+    stepper->joined[i] = stepper->joins[i];
+    stepper->grows[i]  = contact->end.force[i] - stepper->last[i];
+  }
   PetscCall(ContactStepperAcceptGlue(contact, stepper));
   PetscCall(ContactStepperAcceptSecants(stepper));
   contact->counts.contact_loss += stepper->step_loss;

@@ -116,6 +116,7 @@ struct _ContactStepper {
   PetscBool           has_rigid;  /* bodies whose compliance is another in each step, as they turn */
   /* state between steps, per row of this rank */
   PetscBool *joined;  /* its node has touched first in the last accepted step */
+  PetscReal *grows;   /* by how much its force has grown in that step [N] */
   PetscReal *history; /* of a node, at its first row: ROW_LAW_HISTORY numbers of its law of glue, as the step begins, */
   PetscReal *grown;   /* and at its end */
   /* state of a step, per row of this rank */

@@ -1,5 +1,5 @@
-/* Memory of the contact step, for checkpoints: which nodes have touched first in the last step, as their guess is another one, what laws
-   keep of glued nodes, and what secants have shown. */
+/* Memory of the contact step, for checkpoints: which nodes have touched first in the last step, and how their forces have grown in it, for
+   the guess, what laws keep of glued nodes, and what secants have shown. */
 #include "stepimpl.h"
 #include <checkpoint/statelist.h>
 
@@ -11,6 +11,7 @@ static StateList ListRows(Contact contact, PetscReal *const numbers[2])
 
   return (StateList){.n      = contact->rows.n,
                      .arrays = {{1, .bools = stepper->joined},
+                                {1, stepper->grows},
                                 {stepper->glued ? ROW_LAW_HISTORY : 0, stepper->history},
                                 {stepper->glued ? ROW_LAW_HISTORY : 0, stepper->grown},
                                 {others, numbers ? numbers[0] : NULL},
