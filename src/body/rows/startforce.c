@@ -101,7 +101,9 @@ PetscErrorCode BodyDropStartForce(Body body)
 }
 
 /* Before the first step is accepted: by how much the first state has more energy with the contact forces of that step's start than its
-   record tells, which is made before anybody knows them [J]: not 0 for central differences alone. Collective. */
+   record tells, which is made before anybody knows them [J]: not 0 for central differences alone. Forces that hold the body accelerate it
+   less than it would be without them. Those of a hit, which sets in within the step, accelerate it more, and count as in other steps:
+   not here. Collective. */
 PetscErrorCode BodyNoteStartEnergy(Body body)
 {
   PetscReal with, without;
@@ -112,7 +114,7 @@ PetscErrorCode BodyNoteStartEnergy(Body body)
   PetscCall(VecCopy(body->saved.a, body->work.nodes[1]));
   if (body->start.changed) PetscCall(CopyAnswering(body, body->start.a, body->work.nodes[1]));
   PetscCall(BodySumStaggering(body, body->work.nodes[1], &without));
-  body->start.energy = 0.5 * body->integrator->staggered * PetscSqr(body->time.step) * (without - with);
+  body->start.energy = 0.5 * body->integrator->staggered * PetscSqr(body->time.step) * PetscMax(without - with, 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
