@@ -3,8 +3,6 @@
 
 /* Ends and edges reach this much further, in parts of their length, so that round-off leaves no slit between neighbouring faces */
 #define SLIT 1e-9
-/* Squares of distances that differ by less, relative, are those of one point */
-#define SAME_POINT 1e-9
 /* A segment that is inclined less to a face [rad] lies along it, and does not cross it */
 #define ALONG 1e-6
 
@@ -68,7 +66,7 @@ static void ClosestOfTriangle(const PetscReal *corners[3], const PetscReal x[], 
 /* Takes the closer of two points. On edges and corners of faces the plane farthest from the looking point says on which side this is. */
 void ClosestTake(Closest *closest, const Closest *other)
 {
-  const PetscReal round_off = SAME_POINT * closest->square;
+  const PetscReal round_off = CLOSEST_SAME_POINT * closest->square;
 
   if (other->square > closest->square + round_off) return;
   if (other->square >= closest->square - round_off && PetscAbsReal(other->height) <= PetscAbsReal(closest->height)) return;

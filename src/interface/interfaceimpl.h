@@ -46,6 +46,9 @@ typedef struct {
   PetscReal square, height, size;
 } Closest;
 
+/* Squares of distances that differ by less, relative, are those of one point */
+#define CLOSEST_SAME_POINT 1e-9
+
 /* The plane in which a Dirichlet face is compared with faces of its partner: centroid, unit normal n, and tangents with t0 x t1 = n */
 typedef struct {
   PetscReal origin[3], normal[3], tangents[2][3];

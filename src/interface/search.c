@@ -134,7 +134,7 @@ void TreeFindClosest(const Tree *tree, PetscInt n, const Face faces[], const Pet
     PetscReal  least[2], largest;
 
     BoxDistances(box->bounds, x, &least[0], &largest);
-    if (least[0] > closest->square) continue;
+    if (least[0] > (1 + CLOSEST_SAME_POINT) * closest->square) continue; /* other faces at the same corner say on which side x is */
     if (box->child < 0) {
       for (PetscInt i = box->begin; i < box->end; i++) FaceFindClosest(n, &faces[tree->order[i]], x, closest);
       continue;
