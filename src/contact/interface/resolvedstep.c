@@ -114,13 +114,10 @@ PetscErrorCode ContactGetResolvedStep(Contact contact, PetscReal *step, size_t s
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair    = &contact->pairs[p];
-    PetscBool          inertia = PETSC_TRUE;
     PetscReal          of_pair = 0;
     char               why[256];
 
-    for (PetscInt s = 0; s < (pair->obstacle ? 1 : 2); s++)
-      if (BodyDoes(contact->bodies[pair->body[s]], BodyIsStatic)) inertia = PETSC_FALSE;
-    if (!inertia || ContactPairTies(pair)) continue;
+    if (pair->rests || ContactPairTies(pair)) continue;
     PetscCall(GetPairStep(contact, pair, &of_pair, sizeof(why), why));
     if (of_pair >= *step) continue;
     *step = of_pair;

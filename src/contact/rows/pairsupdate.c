@@ -17,11 +17,8 @@ static PetscErrorCode FollowPair(Contact contact, const ContactPair *pair, Petsc
 
   PetscFunctionBegin;
   *any = PETSC_FALSE;
-  if (pair->obstacle || contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt side = 0; side < 2; side++) {
-    if (BodyDoes(contact->bodies[pair->body[side]], BodyIsStatic)) PetscFunctionReturn(PETSC_SUCCESS);
-    linear = (PetscBool)(linear && BodyDoes(contact->bodies[pair->body[side]], BodyIsLinear));
-  }
+  if (pair->obstacle || pair->rests || contact->held.merger) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt side = 0; side < 2; side++) linear = (PetscBool)(linear && BodyDoes(contact->bodies[pair->body[side]], BodyIsLinear));
   for (PetscInt i = pair->begin; i < pair->end; i += pair->components)
     touches[(i - pair->begin) / pair->components] = contact->start.active[i];
   PetscCall(TransferFollow(pair->transfer, touches, near, linear ? STILL_LINEAR : STILL, (PetscBool)!linear,
