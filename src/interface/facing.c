@@ -126,7 +126,8 @@ static PetscErrorCode GetSupport(MPI_Comm comm, Surface surface, Vec u, PetscInt
   PetscCall(DMGetCoordinatesLocal(surface->dm, &coordinates));
   PetscCall(DMGetLocalSection(surface->dm, &section));
   PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
-  if (u) {
+  if (u && !surface->divided) PetscCall(VecGetArrayRead(u, &values)); /* its nodes are in the order of the section */
+  else if (u) {
     PetscCall(DMGetLocalVector(surface->dm, &local));
     PetscCall(DMGlobalToLocalBegin(surface->dm, u, INSERT_VALUES, local));
     PetscCall(DMGlobalToLocalEnd(surface->dm, u, INSERT_VALUES, local));
@@ -144,7 +145,8 @@ static PetscErrorCode GetSupport(MPI_Comm comm, Surface surface, Vec u, PetscInt
     for (PetscInt i = 0; i < n; i++) support[i] = PetscMax(support[i], Dot(position, directions[i]));
   }
   PetscCall(VecRestoreArrayRead(coordinates, &x));
-  if (u) {
+  if (u && !surface->divided) PetscCall(VecRestoreArrayRead(u, &values));
+  else if (u) {
     PetscCall(VecRestoreArrayRead(local, &values));
     PetscCall(DMRestoreLocalVector(surface->dm, &local));
   }

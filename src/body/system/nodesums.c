@@ -136,3 +136,20 @@ PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *moving, Pe
   PetscCall(PetscArrayzero(turned, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
+
+/* BodySumStaggering - a'Ma, for accelerations of nodes [N m/s^2]. Collective. */
+PetscErrorCode BodySumStaggering(Body body, Vec accelerations, PetscReal *sum)
+{
+  const PetscScalar *a, *inertia;
+
+  PetscFunctionBegin;
+  *sum = 0;
+  PetscCall(BodyMultiplyMass(body, accelerations, body->work.nodes[0]));
+  PetscCall(VecGetArrayRead(accelerations, &a));
+  PetscCall(VecGetArrayRead(body->work.nodes[0], &inertia));
+  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) *sum += PetscRealPart(a[i] * inertia[i]);
+  PetscCall(VecRestoreArrayRead(body->work.nodes[0], &inertia));
+  PetscCall(VecRestoreArrayRead(accelerations, &a));
+  if (body->rows.size > 1) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sum, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
