@@ -23,7 +23,12 @@ PetscErrorCode EnergyScaleAdd(EnergyScale *scale, const Body bodies[], Controlle
     taken += body->damping_work + body->plastic_work;
   }
   if (!frame->step) scale->start = balance;
-  for (PetscInt b = 0; b < frame->n_bodies && frame->step == 1; b++) scale->start += BodyGetStartEnergy(bodies[b]);
+  if (frame->step == 1) {
+    PetscReal held;
+
+    PetscCall(BodySumStartEnergies(frame->n_bodies, bodies, &held));
+    scale->start += held;
+  }
   scale->largest       = PetscMax(scale->largest, PetscMax(PetscMax(kinetic, strain), PetscMax(done, taken)));
   frame->energy_change = balance - scale->start;
   frame->energy_scale  = scale->largest;

@@ -7,7 +7,7 @@
 PETSC_EXTERN PetscErrorCode BodyGetAllMeasures(PetscInt, const Body[], PetscReal[], BodyMeasures[]);
 PETSC_EXTERN PetscErrorCode BodyComputeEnergies(PetscInt, const Body[], PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode BodyGetOwnKinetic(PetscInt, const Body[], const BodyMeasures[], PetscReal *);
-PETSC_EXTERN PetscReal      BodyGetStartEnergy(Body);
+PETSC_EXTERN PetscErrorCode BodySumStartEnergies(PetscInt, const Body[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetLevelEnergy(Body, PetscInt, PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyGetInverted(Body, PetscReal, PetscInt *, PetscReal[3]);
 PETSC_EXTERN PetscErrorCode BodyHasHistory(Body, PetscBool *);

@@ -74,6 +74,7 @@ PetscErrorCode BodyGetLevelEnergy(Body body, PetscInt level, PetscReal *energy)
   *energy = 0;
   if (body->integrator->staggered == 0 || level == body->time.accepted_level) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySumStaggering(body, body->saved.a, &sum));
+  if (body->rows.size > 1) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, &sum, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   *energy = 0.5 * body->integrator->staggered * (PetscSqr(last) - PetscSqr(now)) * sum;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -100,10 +100,8 @@ PetscErrorCode BodyDropStartForce(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Before the first step is accepted: by how much the first state has more energy with the contact forces of that step's start than its
-   record tells, which is made before anybody knows them [J]: not 0 for central differences alone. Forces that hold the body accelerate it
-   less than it would be without them. Those of a hit, which sets in within the step, accelerate it more, and count as in other steps:
-   not here. Collective. */
+/* Before the first step is accepted: by how much the first state has more energy, in this rank's part, with the contact forces of that
+   step's start than its record tells, which is made before anybody knows them [J]: not 0 for central differences alone. Collective. */
 PetscErrorCode BodyNoteStartEnergy(Body body)
 {
   PetscReal with, without;
@@ -114,14 +112,26 @@ PetscErrorCode BodyNoteStartEnergy(Body body)
   PetscCall(VecCopy(body->saved.a, body->work.nodes[1]));
   if (body->start.changed) PetscCall(CopyAnswering(body, body->start.a, body->work.nodes[1]));
   PetscCall(BodySumStaggering(body, body->work.nodes[1], &without));
-  body->start.energy = 0.5 * body->integrator->staggered * PetscSqr(body->time.step) * PetscMax(without - with, 0);
+  body->start.energy = 0.5 * body->integrator->staggered * PetscSqr(body->time.step) * (without - with);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodyGetStartEnergy - this, from the first step on */
-PetscReal BodyGetStartEnergy(Body body)
+/* BodySumStartEnergies - this, of bodies with all ranks, from the first step on. Forces that hold a body accelerate it less than it would
+   be without them. Those of a hit, which sets in within the step, accelerate it more, and count as in other steps: not here. Collective on
+   the communicator of all bodies. */
+PetscErrorCode BodySumStartEnergies(PetscInt n, const Body bodies[], PetscReal *sum)
 {
-  return body->start.energy;
+  PetscReal *energies;
+
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(n, &energies));
+  for (PetscInt b = 0; b < n; b++) energies[b] = bodies[b]->start.energy;
+  if (n && bodies[0]->rows.size > 1)
+    PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, energies, (PetscMPIInt)n, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)bodies[0])));
+  *sum = 0;
+  for (PetscInt b = 0; b < n; b++) *sum += PetscMax(energies[b], 0);
+  PetscCall(PetscFree(energies));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Rows of this rank on which forces act on nodes with mass by their mean over the controller step, for forces that go linearly from l_0 to

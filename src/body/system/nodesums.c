@@ -137,7 +137,7 @@ PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *moving, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* BodySumStaggering - a'Ma, for accelerations of nodes [N m/s^2]. Collective. */
+/* BodySumStaggering - a'Ma of this rank's nodes, for accelerations [N m/s^2]. Collective. */
 PetscErrorCode BodySumStaggering(Body body, Vec accelerations, PetscReal *sum)
 {
   const PetscScalar *a, *inertia;
@@ -150,6 +150,5 @@ PetscErrorCode BodySumStaggering(Body body, Vec accelerations, PetscReal *sum)
   for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) *sum += PetscRealPart(a[i] * inertia[i]);
   PetscCall(VecRestoreArrayRead(body->work.nodes[0], &inertia));
   PetscCall(VecRestoreArrayRead(accelerations, &a));
-  if (body->rows.size > 1) PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sum, 1, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)body)));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
