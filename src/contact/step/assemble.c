@@ -31,8 +31,8 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
     PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
     PetscCall(PetscFree(entries->block));
     PetscCall(PetscFree(entries->own));
-    PetscCall(PetscFree(entries->secants.rows));
-    PetscCall(PetscFree(entries->secants.values));
+    PetscCall(StepperSecantsDestroy(&entries->secants));
+    PetscCall(StepperSecantsDestroy(&entries->kept));
     PetscCall(VecDestroy(&entries->force));
     PetscCall(VecDestroy(&entries->way));
   }

@@ -90,7 +90,6 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
   if (stepper->passes == 1 && at && StepperSecantMultiply(n, entries->own, force, product + n) > 0 && Off(n, gone, product + n) < off) {
     PetscCall(PetscArraymove(secants->values, force, 2 * n));
     PetscCall(StepperSecantsResize(secants, n, 1));
-    secants->n_kept = 0;
     PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
     at        = 0;
     force     = secants->values;

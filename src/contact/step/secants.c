@@ -5,7 +5,7 @@
    a body that flows answers ten times as far as one that does not.
 
    They are kept as long as the body has the same touching rows. A step begins with those of accepted steps of its own size, or with none;
-   its own, behind them, join them when it is accepted, so that a failed step leaves no trace.
+   its own join them when it is accepted, so that a failed step leaves no trace.
 
    C. G. Broyden, IMA Journal of Applied Mathematics 6 (1970) 76-90 and 222-231, and Fletcher, Goldfarb, Shanno in the same year;
    C. G. Broyden, Mathematics of Computation 21 (1967) 368-381, for that of rank one. */
@@ -15,22 +15,46 @@
 #define SURE_WORK 10 /* one of a linear body counts as such where S has told the work of its forces wrong by so many times round-off */
 #define MOST_KEPT 80 /* secants of a body; one more, and the older half of them goes */
 
+PetscErrorCode StepperSecantsDestroy(StepperSecants *secants)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscFree(secants->rows));
+  PetscCall(PetscFree(secants->values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Room for so many secants of n rows; those that there are stay, if they are of as many */
 PetscErrorCode StepperSecantsResize(StepperSecants *secants, PetscInt n, PetscInt n_pairs)
 {
+  const PetscInt size = 2 * n * n_pairs, used = n == secants->n ? 2 * n * PetscMin(n_pairs, secants->n_pairs) : 0;
+
   PetscFunctionBegin;
   if (n > secants->row_room) {
     secants->row_room = 2 * n;
     PetscCall(PetscFree(secants->rows));
     PetscCall(PetscMalloc1(secants->row_room, &secants->rows));
   }
-  if (2 * n * n_pairs > secants->room) {
-    secants->room = 4 * n * n_pairs;
-    PetscCall(PetscRealloc((size_t)secants->room * sizeof(PetscScalar), &secants->values));
+  if (size > secants->room) {
+    PetscScalar *values;
+
+    secants->room = 2 * size;
+    PetscCall(PetscMalloc1(secants->room, &values));
+    PetscCall(PetscArraycpy(values, secants->values, used));
+    PetscCall(PetscFree(secants->values));
+    secants->values = values;
   }
   secants->n       = n;
   secants->n_pairs = n_pairs;
-  secants->n_kept  = PetscMin(secants->n_kept, n_pairs);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* All but the first ones */
+static PetscErrorCode Copy(const StepperSecants *from, PetscInt first, StepperSecants *to)
+{
+  PetscFunctionBegin;
+  PetscCall(StepperSecantsResize(to, from->n, from->n_pairs - first));
+  PetscCall(PetscArraycpy(to->rows, from->rows, from->n));
+  PetscCall(PetscArraycpy(to->values, from->values + 2 * from->n * first, 2 * from->n * to->n_pairs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -42,7 +66,7 @@ PetscErrorCode ContactStepperBeginSecants(Contact contact, ContactStepper *stepp
   for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) {
     StepperEntries *entries = &stepper->assembly.of_body[b];
 
-    PetscCall(StepperSecantsResize(&entries->secants, entries->secants.n, same_size ? entries->secants.n_kept : 0));
+    PetscCall(Copy(&entries->kept, same_size ? 0 : entries->kept.n_pairs, &entries->secants));
     if (!(contact->attempt.again || contact->energy.again) || !entries->n || entries->alone) continue;
     entries->corrected = PETSC_FALSE; /* the attempt before at this step may have corrected it */
     stepper->assembled = -1;
@@ -55,13 +79,11 @@ PetscErrorCode ContactStepperAcceptSecants(ContactStepper *stepper)
   PetscFunctionBegin;
   for (PetscInt b = 0; b < stepper->assembly.n_bodies; b++) {
     StepperEntries *entries = &stepper->assembly.of_body[b];
-    StepperSecants *secants = &entries->secants;
-    const PetscInt  older   = secants->n_pairs > MOST_KEPT ? secants->n_pairs - MOST_KEPT / 2 : 0;
+    const PetscInt  n       = entries->secants.n_pairs;
+    const PetscBool many    = (PetscBool)(n > MOST_KEPT);
 
-    secants->n_pairs -= older;
-    secants->n_kept = entries->follows ? 0 : secants->n_pairs;
-    if (!older) continue;
-    PetscCall(PetscArraymove(secants->values, secants->values + 2 * secants->n * older, 2 * secants->n * secants->n_pairs));
+    PetscCall(Copy(&entries->secants, entries->follows ? n : many ? n - MOST_KEPT / 2 : 0, &entries->kept));
+    if (!many) continue;
     entries->corrected = PETSC_FALSE;
     stepper->assembled = -1;
   }
@@ -73,18 +95,17 @@ PetscErrorCode ContactStepperVisitShared(Contact contact, Checkpoint checkpoint)
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    StepperSecants *kept    = &Stepper(contact)->assembly.of_body[b].secants;
-    PetscInt        size[2] = {kept->n, kept->n_kept};
+    StepperSecants *kept    = &Stepper(contact)->assembly.of_body[b].kept;
+    PetscInt        size[2] = {kept->n, kept->n_pairs};
     char            name[32];
 
     PetscCall(PetscSNPrintf(name, sizeof(name), "secants %" PetscInt_FMT, b));
     PetscCall(CheckpointVisitInts(checkpoint, name, 2, size));
     if (CheckpointLoads(checkpoint)) PetscCall(StepperSecantsResize(kept, size[0], size[1]));
-    kept->n_kept = size[1];
     PetscCall(PetscSNPrintf(name, sizeof(name), "secant rows %" PetscInt_FMT, b));
     PetscCall(CheckpointVisitInts(checkpoint, name, kept->n, kept->rows));
     PetscCall(PetscSNPrintf(name, sizeof(name), "secant values %" PetscInt_FMT, b));
-    PetscCall(CheckpointVisitReals(checkpoint, name, 2 * kept->n * kept->n_kept, kept->values));
+    PetscCall(CheckpointVisitReals(checkpoint, name, 2 * kept->n * kept->n_pairs, kept->values));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

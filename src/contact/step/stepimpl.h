@@ -30,8 +30,7 @@ typedef struct {
 /* Secants of a body: forces on some of its rows, by which two passes differ, and how these rows have gone then */
 typedef struct {
   PetscInt     n, row_room, *rows; /* their numbers among those of the body, ascending */
-  PetscInt     n_pairs, n_kept;    /* those of this step and before it; the first of these, of accepted steps */
-  PetscInt     room;               /* of numbers */
+  PetscInt     n_pairs, room;      /* of numbers */
   PetscScalar *values;             /* per pair, in the order in which they were found: n forces [N], then n ways [m] */
 } StepperSecants;
 
@@ -50,8 +49,8 @@ typedef struct {
   PetscScalar   *own;               /* the same, as the body has it, without secants */
   PetscBool      follows;           /* `own` is as the body has answered in some pass of the step */
   PetscBool      corrected;         /* `block` is `own` corrected by `secants`, and by no others */
-  StepperSecants secants;
-  Vec            force, way; /* work space of products: of all rows of the body, or NULL */
+  StepperSecants secants, kept;     /* of this step and those before it; those of accepted steps */
+  Vec            force, way;        /* work space of products: of all rows of the body, or NULL */
 } StepperEntries;
 
 /* What S is made of, see assemble.c */
@@ -195,6 +194,7 @@ PETSC_INTERN PetscErrorCode ContactStepperAcceptSecants(ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperVisitShared(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactStepperCorrectBlock(Contact, ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode StepperSecantsResize(StepperSecants *, PetscInt, PetscInt);
+PETSC_INTERN PetscErrorCode StepperSecantsDestroy(StepperSecants *);
 PETSC_INTERN PetscReal      StepperSecantMultiply(PetscInt, const PetscScalar[], const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscBool      StepperSecantHolds(PetscInt, const PetscScalar[], const PetscScalar[], PetscReal);
 PETSC_INTERN PetscErrorCode StepperSecantCorrect(StepperEntries *, const PetscScalar[], PetscScalar[], PetscBool, LawProblem *);

@@ -31,7 +31,7 @@ PetscErrorCode ContactStepperVisit(Contact contact, Checkpoint checkpoint)
 /* Secants of a body are of rows that have other numbers now. `numbers`: those that all rows had, on both sides */
 static PetscErrorCode RenumberSecants(Contact contact, PetscInt b, PetscReal *const numbers[2])
 {
-  StepperSecants *kept = &Stepper(contact)->assembly.of_body[b].secants;
+  StepperSecants *kept = &Stepper(contact)->assembly.of_body[b].kept;
   const PetscInt  n    = kept->n;
   PetscInt       *rows, *from, found = 0;
   PetscScalar    *values;
@@ -49,7 +49,7 @@ static PetscErrorCode RenumberSecants(Contact contact, PetscInt b, PetscReal *co
              "The checkpoint has secants of %" PetscInt_FMT " rows of body '%s', and %" PetscInt_FMT " of these rows: it is damaged", n,
              ((PetscObject)contact->bodies[b])->name, found);
   PetscCall(PetscArraycpy(kept->rows, rows, n));
-  for (PetscInt j = 0; j < 2 * kept->n_kept; j++) {
+  for (PetscInt j = 0; j < 2 * kept->n_pairs; j++) {
     PetscCall(PetscArraycpy(values, kept->values + j * n, n));
     for (PetscInt k = 0; k < n; k++) kept->values[j * n + k] = values[from[k]];
   }
