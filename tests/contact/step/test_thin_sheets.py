@@ -98,19 +98,19 @@ def test_crushed_tube(kind, layers, faces, impakt, tmp_path):
     assert -1e-5 <= energy(run)[-1] <= energy(run).max() <= most  # with the work of the plate, whose force is constant in a step
 
 
-FLOWS = 13390, 20451, 21416, 21491  # N/m, of 4 elements in the wall and 120 round, implicit in steps of 20 us
+FLOWS = 13733, 20486, 21384, 21421  # N/m, of 4 elements in the wall and 120 round, implicit in steps of 10 us
 
 
 @pytest.mark.parametrize(("kind", "layers", "faces", "step"), [*long(("I", 1, 60, 1e-5)), *validate(("E", 1, 60, 1e-6), ("I", 2, 120, 1e-5), ("E", 2, 120, 2e-6), ("I", 4, 120, 2e-5))])
 def test_crushed_tube_flows(kind, layers, faces, step, impakt, tmp_path):
     """Two elements in the wall of a tube of J2 against four, to 5 %: measured 1.5, 0.1, 0.2, 0.1 % (I) and 3.0, 0.4, 1.1, -0.1 % (E). One element to 20 %: measured 8, 13, 13 and 14 %, as its
-    two points have 15 % too much moment where all flow. The energy of implicit bodies that flow has an error of
-    the step: 1.3e-4 of the work with 10 us, 9.6e-4 with 20 us; of `mean_dilatation` 1.4e-4 with 20 us."""
+    two points have 15 % too much moment where all flow. Four in steps twice as long: 1.0, 0.1, 0.8, 2.3 %, as nodes come and go in other steps.
+    What implicit bodies lose goes with the step: 3e-5 of the work with 10 us; they gain nothing."""
     run = impakt(crushed(tmp_path / "a.msh", layers, faces, "j2", kind, step=step), timeout=3000)
     parts = closing(run)
-    np.testing.assert_allclose(parts, FLOWS, rtol={1: 0.2, 2: 0.05, 4: 1e-3}[layers])
+    np.testing.assert_allclose(parts, FLOWS, rtol={1: 0.2, 2: 0.05, 4: 0.03}[layers])
     if layers == 1:
         assert 1.1 <= parts[-1] / FLOWS[-1] <= 1.17
     assert ("one element through its thickness" in run.stderr) == (layers == 1)
     assert run.history["body/tube/plastic_work"][-1] > 0.5 * run.history["energy/scale"][-1]
-    assert energy(run).max() <= (1e-8 if kind == "E" else 5e-4)
+    assert energy(run).max() <= 1e-8
