@@ -43,7 +43,7 @@ static PetscInt FindWeights(const Coarse *coarse, const PetscScalar x[], PetscIn
 {
   PetscInt n = 0;
 
-  for (PetscInt corner = 0; corner < 1 << coarse->dim; corner++) {
+  for (PetscInt corner = 0; corner < PetscPowInt(2, coarse->dim); corner++) {
     PetscInt  index  = 0;
     PetscReal weight = 1;
 
