@@ -4,14 +4,20 @@
 /* Faces in a leaf at most, a trade between the numbers of boxes and of faces that are compared */
 #define LEAF 4
 
-/* The middle of a face along axis d, times its number of nodes; and a little of those along the others, by which faces of a plane across
-   that axis differ: PETSc's sort takes n^2 comparisons for n equal numbers */
+/* The middle of a face along axis d, times its number of nodes */
 static PetscReal Middle(PetscInt n, const Face *face, PetscInt d)
 {
   PetscReal sum = 0;
 
-  for (PetscInt k = 0; k < n; k++) sum += face->x[k][d] + 0.1 * face->x[k][(d + 1) % 3] + 0.037 * face->x[k][(d + 2) % 3];
+  for (PetscInt k = 0; k < n; k++) sum += face->x[k][d];
   return sum;
+}
+
+static int CompareMiddles(const void *a, const void *b, void *context)
+{
+  const PetscReal *middles = (const PetscReal *)context, left = middles[*(const PetscInt *)a], right = middles[*(const PetscInt *)b];
+
+  return left < right ? -1 : left > right;
 }
 
 static void BoundFaces(PetscInt n, const Face faces[], const PetscInt order[], Box *box)
@@ -49,7 +55,7 @@ PetscErrorCode TreeCreate(PetscInt face_nodes, PetscInt n, const Face faces[], T
     for (PetscInt d = 1; d < 3; d++)
       if (box->bounds[d] + box->bounds[3 + d] < box->bounds[axis] + box->bounds[3 + axis]) axis = d;
     for (PetscInt i = box->begin; i < box->end; i++) middles[tree->order[i]] = Middle(face_nodes, &faces[tree->order[i]], axis);
-    PetscCall(PetscSortRealWithPermutation(box->end - box->begin, middles, tree->order + box->begin));
+    PetscCall(PetscTimSort(box->end - box->begin, tree->order + box->begin, sizeof(PetscInt), CompareMiddles, middles));
     box->child                       = tree->n_boxes;
     tree->boxes[tree->n_boxes].begin = box->begin;
     tree->boxes[tree->n_boxes++].end = half;
