@@ -66,7 +66,7 @@ typedef struct {
   /* of materials with history */
   PetscInt n_history;                    /* numbers for each point; 0: none */
   PetscInt plastic_strain, plastic_work; /* which of them are the equivalent plastic strain, and plastic work [J/m^3] */
-  PetscInt taken; /* and which the same of the mean of the stresses at both ends of each step, as the trapezoidal rule has it [J/m^3] */
+  PetscInt taken; /* and which the same of the mean of the stresses at both ends of each step, by the trapezoidal rule; 0: there is none */
   /* stress at the end of a step of dt [s] to H, from the history at its start; `end`, unless NULL, becomes the history at its end. A
      negative dt: nothing flows. */
   void (*advance)(const void *data, PetscReal dt, const PetscReal H[9][8], const PetscReal start[][8], PetscReal end[][8],

@@ -114,8 +114,8 @@ SIMD_CLONES static void Advance(const void *data, PetscReal dt, const PetscReal 
   if (!end) return;
   if (largest == 0) {
     for (PetscInt i = 0; i < size; i++)
-      for (int p = 0; p < SIMD_WIDTH; p++)
-        end[i][p] = i >= PLASTIC_STRESS && i < PLASTIC_STRESS + 6 ? M[i - PLASTIC_STRESS][p] : start[i][p];
+      for (int p = 0; p < SIMD_WIDTH; p++) end[i][p] = start[i][p];
+    for (PetscInt part = 0; part < SIMD_PARTS; part++) SymmetricStore(SymmetricGet(M, part), end + PLASTIC_STRESS, part);
     return;
   }
   for (PetscInt part = 0; part < SIMD_PARTS; part++)

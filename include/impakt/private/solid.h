@@ -70,7 +70,7 @@ SIMD_INLINE void SolidStress(const Solid *solid, PetscInt first, PetscInt g, con
 /* Which number of the history of a point is plastic work */
 SIMD_INLINE PetscInt SolidPlasticWork(const Solid *solid)
 {
-  return solid->history->by_ends ? solid->kernels.taken : solid->kernels.plastic_work;
+  return solid->history->by_ends && solid->kernels.taken ? solid->kernels.taken : solid->kernels.plastic_work;
 }
 
 /* And for the stored energy, with the plastic work of materials with history */
