@@ -140,15 +140,8 @@ PetscErrorCode BodySumNodes(Body body, PetscReal *kinetic, PetscReal *moving, Pe
 /* BodySumStaggering - a'Ma of this rank's nodes, for accelerations [N m/s^2]. Collective. */
 PetscErrorCode BodySumStaggering(Body body, Vec accelerations, PetscReal *sum)
 {
-  const PetscScalar *a, *inertia;
-
   PetscFunctionBegin;
-  *sum = 0;
   PetscCall(BodyMultiplyMass(body, accelerations, body->work.nodes[0]));
-  PetscCall(VecGetArrayRead(accelerations, &a));
-  PetscCall(VecGetArrayRead(body->work.nodes[0], &inertia));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes * body->mesh.dim; i++) *sum += PetscRealPart(a[i] * inertia[i]);
-  PetscCall(VecRestoreArrayRead(body->work.nodes[0], &inertia));
-  PetscCall(VecRestoreArrayRead(accelerations, &a));
+  PetscCall(BodyGetLocalDot(accelerations, body->work.nodes[0], sum));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
