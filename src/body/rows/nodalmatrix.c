@@ -256,8 +256,10 @@ static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, BodyForce
     }
     if (layer) {
       PetscCall(BodySetUnit(of_layer, dofs[k]));
+      /* an explicit body has the factors of its layer's balance */
       if (answers) PetscCall(BodyApplyLayerCompliance(body, of_layer, of_layer));
-      else { /* by the factors of its balance */ PetscCall(BodyReadLayer(body, of_layer, body->layer.rhs));
+      else {
+        PetscCall(BodyReadLayer(body, of_layer, body->layer.rhs));
         PetscCall(ConstrainedSolverSolveFree(body->solver, body->layer.rhs, body->layer.solution));
         PetscCall(VecZeroEntries(of_layer));
         PetscCall(BodyWriteLayer(body, body->layer.solution, INSERT_VALUES, of_layer));

@@ -5,7 +5,8 @@
 
      dE = 1/2 (x + l1) dg - 1/2 (x - l0) C (l1 - l0),
 
-   C the compliance of the massless layers: exact for linear bodies under Newmark's rule. Where a group would gain more than its room (room.c),
+   C the compliance of the massless layers: exact for linear bodies under Newmark's rule. Where a group would gain more than its room
+   (room.c),
 
    1. rows that leave start with x = s l0, the largest s in [0, 1] that keeps the energy within the room;
    2. where s = 0 does not, x of all rows goes to l1, where dE = l1 dg - 1/2 (l1 - l0) C (l1 - l0) <= 0. As l1 answers to x, by minus a part

@@ -93,8 +93,8 @@ PetscErrorCode ContactCopyAreas(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gives the bodies whose rows are affected these as the matrices have them now; of `all` rows entries differ, or of those that have changed
- */
+/* Gives the bodies whose rows are affected these as the matrices have them now. Entries of `all` rows differ, or of those that have
+   changed. */
 PetscErrorCode ContactUpdateBodies(Contact contact, PetscBool all)
 {
   ContactRanks *ranks = &contact->ranks;

@@ -34,8 +34,8 @@ static PetscErrorCode RowIsHeld(Contact contact, const ContactPair *pair, PetscI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Marks the rows of held nodes, to be dropped; where bodies answer to forces, if they are at a rim or move nothing. Obstacles move never.
- */
+/* Marks the rows of held nodes, to be dropped; where bodies answer to forces, if they are at a rim or move nothing. Obstacles never
+   move. */
 PetscErrorCode ContactMarkHeldRows(Contact contact)
 {
   const PetscBool merges = (PetscBool)(contact->sideless || contact->dim > 1);

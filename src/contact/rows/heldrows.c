@@ -11,8 +11,8 @@
    The gap of such a row is a mean. If rows may open, the mean must not hide that one of its parts is closed: only rows between parallel
    surfaces are merged.
 
-   Methods that prescribe displacements have no use for a held row, and leave out those without heirs. Where bodies answer to forces, rows of
-   held nodes are dropped at rims alone. Which rows are held: see droppedrows.c. */
+   Methods that prescribe displacements have no use for a held row, and leave out those without heirs. Where bodies answer to forces, rows
+   of held nodes are dropped at rims alone. Which rows are held: see droppedrows.c. */
 #include <contact/parts.h>
 
 /* Edges between a held row and its heirs, where held rows that have none are of use: two at the corner of a rim */

@@ -7,9 +7,9 @@
    the last solution, until the term is nothing: single forces are not unique then, what bodies get of them is (proximal point iteration,
    Rockafellar 1976).
 
-   Sources: L. Qi, J. Sun, A nonsmooth version of Newton's method, Mathematical Programming 58 (1993); S. C. Eisenstat, H. F. Walker, Choosing
-   the forcing terms in an inexact Newton method, SIAM Journal on Scientific Computing 17 (1996); R. T. Rockafellar, Monotone operators and
-   the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976). */
+   Sources: L. Qi, J. Sun, A nonsmooth version of Newton's method, Mathematical Programming 58 (1993); S. C. Eisenstat, H. F. Walker,
+   Choosing the forcing terms in an inexact Newton method, SIAM Journal on Scientific Computing 17 (1996); R. T. Rockafellar, Monotone
+   operators and the proximal point algorithm, SIAM Journal on Control and Optimization 14 (1976). */
 #include "lawimpl.h"
 #include <petsc/private/petscimpl.h>
 #include <sys/optionstext.h>

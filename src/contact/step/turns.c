@@ -272,6 +272,7 @@ PetscErrorCode ContactStepperJoinTurned(Contact contact, ContactStepper *stepper
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs && contact->turns.n; p++) {
     const ContactPair *pair = &contact->pairs[p];
+    const PetscInt     n    = CountTurns(contact, p);
     const PetscReal   *uneven;
     int                joined = 0;
 
@@ -280,7 +281,7 @@ PetscErrorCode ContactStepperJoinTurned(Contact contact, ContactStepper *stepper
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       PetscReal square = 0;
 
-      for (PetscInt k = 0; k < CountTurns(contact, p); k++) square += PetscSqr(uneven[CountTurns(contact, p) * (i - pair->begin) + k]);
+      for (PetscInt k = 0; k < n; k++) square += PetscSqr(uneven[n * (i - pair->begin) + k]);
       if (stepper->touches[i] || !contact->rows.opposite[i]) continue;
       if (2 * LARGEST * contact->turns.edge[p] * PetscSqrtReal(square) <= contact->end.gap[i]) continue;
       stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;

@@ -86,7 +86,6 @@ static PetscErrorCode SetUpMasses(Contact contact, PetscInt b, const PetscReal s
 /* The force at the end of a substep must move its row in that substep */
 static PetscErrorCode CheckBodies(Contact contact)
 {
-
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     const Body  body = contact->bodies[b];
