@@ -226,14 +226,14 @@ typedef struct {
 
 /* What every rank knows of the rows of all ranks */
 typedef struct {
-  PetscMPIInt  size;        /* number of ranks */
-  PetscMPIInt  rank;        /* this one */
-  PetscMPIInt *counts;      /* per rank: number of rows */
-  PetscMPIInt *offsets;     /* per rank: number of its first row */
-  PetscInt    *row_pair;    /* per row of all ranks: number of its pair */
-  PetscInt    *visits;      /* the bodies in the order in which they are integrated where any will do, see ContactOrderVisits() */
-  int         *mine_active; /* work space: what this rank sends of its rows */
-  int         *all_active;  /* work space: what has been gathered of all rows */
+  PetscMPIInt size;        /* number of ranks */
+  PetscMPIInt rank;        /* this one */
+  PetscLayout layout;      /* which rank has which rows */
+  PetscSF     gather;      /* brings numbers of the rows of each rank to all */
+  PetscInt   *row_pair;    /* per row of all ranks: number of its pair */
+  PetscInt   *visits;      /* the bodies in the order in which they are integrated where any will do, see ContactOrderVisits() */
+  int        *mine_active; /* work space: what this rank sends of its rows */
+  int        *all_active;  /* work space: what has been gathered of all rows */
 } ContactRanks;
 
 /* What the forces of each pair amount to */

@@ -102,8 +102,7 @@ PetscErrorCode ContactUpdateBodies(Contact contact, PetscBool all)
   PetscFunctionBegin;
   PetscCall(ContactCopyAreas(contact));
   for (PetscInt i = 0; i < contact->rows.n; i++) ranks->mine_active[i] = all || contact->rows.changed[i] || contact->rows.followed[i];
-  PetscCallMPI(MPI_Allgatherv(ranks->mine_active, (PetscMPIInt)contact->rows.n, MPI_INT, ranks->all_active, ranks->counts, ranks->offsets,
-                              MPI_INT, PetscObjectComm((PetscObject)contact)));
+  PetscCall(ContactGatherRows(contact, MPI_INT, ranks->mine_active, ranks->all_active));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     const PetscInt b = ranks->visits[k];
 

@@ -1,5 +1,6 @@
 /* What all ranks agree on. */
 #include <contact/parts.h>
+#include <petscsf.h>
 
 /* A flag becomes the largest of all ranks: 1 where it is 1 on any */
 PetscErrorCode ContactOr(Contact contact, int *flag)
@@ -18,12 +19,27 @@ PetscErrorCode ContactReduce(Contact contact, PetscInt n, MPI_Datatype type, MPI
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Numbers the rows of all ranks, rank by rank, and prepares their gathering. Collective. */
+PetscErrorCode ContactShareRows(Contact contact)
+{
+  MPI_Comm      comm  = PetscObjectComm((PetscObject)contact);
+  ContactRanks *ranks = &contact->ranks;
+
+  PetscFunctionBegin;
+  PetscCall(PetscLayoutCreateFromSizes(comm, contact->rows.n, PETSC_DETERMINE, 1, &ranks->layout));
+  PetscCall(PetscLayoutGetRange(ranks->layout, &contact->rows.begin, NULL));
+  PetscCall(PetscLayoutGetSize(ranks->layout, &contact->rows.n_all));
+  PetscCall(PetscSFCreate(comm, &ranks->gather));
+  PetscCall(PetscSFSetGraphWithPattern(ranks->gather, ranks->layout, PETSCSF_PATTERN_ALLGATHER));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* A number of each row of all ranks, from those of this rank's rows. Collective. */
-PetscErrorCode ContactGatherRows(Contact contact, const PetscReal mine[], PetscReal all[])
+PetscErrorCode ContactGatherRows(Contact contact, MPI_Datatype type, const void *mine, void *all)
 {
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Allgatherv(mine, (PetscMPIInt)contact->rows.n, MPIU_REAL, all, contact->ranks.counts, contact->ranks.offsets, MPIU_REAL,
-                              PetscObjectComm((PetscObject)contact)));
+  PetscCall(PetscSFBcastBegin(contact->ranks.gather, type, mine, all, MPI_REPLACE));
+  PetscCall(PetscSFBcastEnd(contact->ranks.gather, type, mine, all, MPI_REPLACE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -41,14 +57,14 @@ void ContactPickRows(Contact contact, PetscInt n, const PetscInt rows[], const P
 PetscErrorCode ContactIsAtHome(Contact contact, PetscInt b, PetscMPIInt *rank, PetscBool *at_home)
 {
   const ContactBodyRows *of = &contact->body_rows[b];
-  PetscInt               first;
+  const PetscInt        *first;
 
   PetscFunctionBegin;
   PetscCall(BodyGetMeshRank(contact->bodies[b], rank));
   *at_home = (PetscBool)(*rank >= 0);
   if (*rank < 0 || !of->n_all) PetscFunctionReturn(PETSC_SUCCESS);
-  first    = contact->ranks.offsets[*rank];
-  *at_home = (PetscBool)(of->all[0] >= first && of->all[of->n_all - 1] < first + contact->ranks.counts[*rank]);
+  PetscCall(PetscLayoutGetRanges(contact->ranks.layout, &first));
+  *at_home = (PetscBool)(of->all[0] >= first[*rank] && of->all[of->n_all - 1] < first[*rank + 1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -2,6 +2,7 @@
 #include <contact/parts.h>
 #include <sys/units.h>
 #include <impakt/private/bodymesh.h>
+#include <petscsf.h>
 
 /* Planes count as parallel whose normals have a cosine nearer to 1 */
 #define PARALLEL 1e-8
@@ -11,21 +12,16 @@
 
 static PetscErrorCode AllocateRows(Contact contact)
 {
-  MPI_Comm    comm = PetscObjectComm((PetscObject)contact);
-  PetscMPIInt mine, total = 0;
-  PetscInt    n = contact->rows.n;
+  const PetscInt n = contact->rows.n;
 
   PetscFunctionBegin;
-  PetscCallMPI(MPI_Scan(&n, &contact->rows.begin, 1, MPIU_INT, MPI_SUM, comm));
-  contact->rows.begin -= n;
-  PetscCallMPI(MPI_Allreduce(&n, &contact->rows.n_all, 1, MPIU_INT, MPI_SUM, comm));
+  PetscCall(ContactShareRows(contact));
   PetscCall(PetscCalloc7(n, &contact->rows.pair, n, &contact->rows.initial_gap, n, &contact->rows.area, n, &contact->rows.dof, 3 * n,
                          &contact->rows.normal, n, &contact->rows.opposite, n, &contact->rows.tied));
   PetscCall(PetscCalloc7(n, &contact->end.force, n, &contact->end.gap, n, &contact->start.force, n, &contact->start.gap, n,
                          &contact->end.active, n, &contact->start.active, n, &contact->work.conditions));
-  PetscCall(PetscCalloc5(contact->rows.n_all, &contact->ranks.row_pair, n, &contact->ranks.mine_active, contact->rows.n_all,
-                         &contact->ranks.all_active, contact->ranks.size, &contact->ranks.counts, contact->ranks.size,
-                         &contact->ranks.offsets));
+  PetscCall(PetscCalloc3(contact->rows.n_all, &contact->ranks.row_pair, n, &contact->ranks.mine_active, contact->rows.n_all,
+                         &contact->ranks.all_active));
   PetscCall(PetscCalloc4(n, &contact->ties.holds, n, &contact->ties.distance, 2 * n, &contact->work.entry_counts, n, &contact->work.drift));
   PetscCall(PetscCalloc7(n, &contact->rows.changed, n, &contact->rows.gap_shift, n, &contact->work.last_gap, n, &contact->held.dropped, n,
                          &contact->held.heir, n, &contact->held.merged_gap, n, &contact->work.tilts));
@@ -33,13 +29,9 @@ static PetscErrorCode AllocateRows(Contact contact)
                          &contact->rows.followed, n, &contact->work.flags, n, &contact->work.rest));
   PetscCall(PetscCalloc3(contact->n_pairs, &contact->work.updated, CONTACT_MOTION * contact->n_pairs, &contact->work.motion,
                          contact->n_pairs, &contact->work.off));
-  PetscCall(PetscMPIIntCast(n, &mine));
-  PetscCallMPI(MPI_Allgather(&mine, 1, MPI_INT, contact->ranks.counts, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < contact->ranks.size; total += contact->ranks.counts[r++]) contact->ranks.offsets[r] = total;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) contact->rows.pair[i] = p;
-  PetscCallMPI(MPI_Allgatherv(contact->rows.pair, mine, MPIU_INT, contact->ranks.row_pair, contact->ranks.counts, contact->ranks.offsets,
-                              MPIU_INT, comm));
+  PetscCall(ContactGatherRows(contact, MPIU_INT, contact->rows.pair, contact->ranks.row_pair));
   PetscCall(ContactNumberBodyRows(contact));
   PetscCall(PetscMalloc2(n, &contact->rows.near, n, &contact->rows.acting));
   PetscCall(ContactListAllRows(contact));
@@ -229,8 +221,9 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->rows.opposite, contact->rows.tied));
   PetscCall(PetscFree7(contact->end.force, contact->end.gap, contact->start.force, contact->start.gap, contact->end.active,
                        contact->start.active, contact->work.conditions));
-  PetscCall(PetscFree5(contact->ranks.row_pair, contact->ranks.mine_active, contact->ranks.all_active, contact->ranks.counts,
-                       contact->ranks.offsets));
+  PetscCall(PetscFree3(contact->ranks.row_pair, contact->ranks.mine_active, contact->ranks.all_active));
+  PetscCall(PetscLayoutDestroy(&contact->ranks.layout));
+  PetscCall(PetscSFDestroy(&contact->ranks.gather));
   PetscCall(PetscFree7(contact->rows.changed, contact->rows.gap_shift, contact->work.last_gap, contact->held.dropped, contact->held.heir,
                        contact->held.merged_gap, contact->work.tilts));
   PetscCall(PetscFree6(contact->work.last_force, contact->work.handover, contact->work.intervals, contact->rows.followed,

@@ -42,7 +42,7 @@ PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, co
   const PetscBool alone = (PetscBool)(contact->ranks.size == 1); /* all rows are here */
 
   PetscFunctionBegin;
-  if (!alone) PetscCall(ContactGatherRows(contact, mine, stepper->all));
+  if (!alone) PetscCall(ContactGatherRows(contact, MPIU_REAL, mine, stepper->all));
   for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = (alone ? mine : stepper->all)[stepper->rows[k]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -64,7 +64,7 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
     stepper->mine[i] = stepper->touches[i] ? 1 + contact->rows.tied[ContactFirstRow(contact, i)] : 0; /* which law it has */
   }
   if (!alone) {
-    PetscCall(ContactGatherRows(contact, stepper->mine, stepper->all));
+    PetscCall(ContactGatherRows(contact, MPIU_REAL, stepper->mine, stepper->all));
     touches = stepper->all;
   }
   for (PetscInt k = 0; k < n_look; k++) n += touches[alone ? contact->rows.acting[k] : k] != 0;

@@ -65,7 +65,7 @@ static PetscErrorCode RenumberAllSecants(Contact contact, PetscReal *const mine[
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc2(n_all, &numbers[0], n_all, &numbers[1]));
-  for (PetscInt side = 0; side < 2; side++) PetscCall(ContactGatherRows(contact, mine[side], numbers[side]));
+  for (PetscInt side = 0; side < 2; side++) PetscCall(ContactGatherRows(contact, MPIU_REAL, mine[side], numbers[side]));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(RenumberSecants(contact, b, numbers));
   PetscCall(PetscFree2(numbers[0], numbers[1]));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -46,7 +46,7 @@ static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
   Mat             *C, S;
 
   PetscFunctionBegin;
-  PetscCall(ContactGatherRows(contact, problem->mine, problem->all));
+  PetscCall(ContactGatherRows(contact, MPIU_REAL, problem->mine, problem->all));
   for (PetscInt i = 0; i < contact->rows.n_all; i++) {
     if (kind[i] == 0) continue;
     same               = (PetscBool)(same && n < law->n && problem->rows[n] == i);
@@ -84,7 +84,7 @@ PetscErrorCode ComplementaritySolve(Contact contact, PetscBool active_alone, Com
   PetscCall(TakeRows(contact, problem));
   PetscCall(PetscArrayzero(problem->forces, contact->rows.n));
   if (!law->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactGatherRows(contact, problem->gaps, problem->all));
+  PetscCall(ContactGatherRows(contact, MPIU_REAL, problem->gaps, problem->all));
   for (PetscInt k = 0; k < law->n; k++) {
     law->read[k] = problem->all[problem->rows[k]];
     law->base[k] = law->force[k] = 0;
