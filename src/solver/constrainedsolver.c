@@ -9,15 +9,16 @@
 #include "constrainedsolverimpl.h"
 #include <math.h>
 
-/* Whether columns are kept: on interfaces of few rows, and where to add up those of all rows is half the work of a solution by factors, or
-   less; they take a quarter of the factors' memory then, or less */
+/* How many columns are kept: of all rows where these are few, else so many that to add them up is half the work of a solution by factors;
+   they take a quarter of the factors' memory then */
 static PetscErrorCode ChooseColumns(ConstrainedSolver s)
 {
   PetscInt size;
 
   PetscFunctionBegin;
   PetscCall(VecGetSize(s->rhs, &size));
-  s->keeps = (PetscBool)(s->global <= FEW_ROWS || (s->direct && 2.0 * s->global * size <= 0.5 * s->solve_flops));
+  s->most = s->direct ? (PetscInt)PetscMin(s->global, 0.25 * s->solve_flops / PetscMax(size, 1)) : 0;
+  if (s->global <= FEW_ROWS) s->most = s->global;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

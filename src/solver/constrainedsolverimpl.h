@@ -28,7 +28,7 @@ struct _n_ConstrainedSolver {
   PetscLogDouble solve_flops; /* of one solution with A */
   PetscBool      mumps;       /* all ranks have `factors` of MUMPS, which take many right-hand sides at once */
   /* corrections by stored columns: their changes, all rows on every rank */
-  PetscBool    keeps;  /* columns are kept of all rows whose forces change */
+  PetscInt     most;   /* columns that are kept at most, of rows whose forces change */
   PetscBool    exact;  /* corrections for which columns are missing are solutions, see ConstrainedSolverSetExact() */
   PetscInt     missed; /* corrections for lack of columns by solutions, since rows changed or columns were made */
   PetscScalar *changes;

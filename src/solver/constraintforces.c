@@ -178,19 +178,27 @@ static PetscErrorCode AddColumns(ConstrainedSolver s, Vec x)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the columns of all rows whose force changes are there. Others are made at once where there are few rows, else when as many
-   corrections, by a solution each, have missed them as they take; unless one rank may be doing this without the others. */
+/* Whether the columns of all rows whose force changes are there, and not too many. Others are made at once where there are few rows, else
+   when as many corrections, by a solution each, have missed them as they take, in place of columns of rows whose force stays; unless one
+   rank may be doing this without the others. */
 static PetscErrorCode FindColumns(ConstrainedSolver s, PetscBool *columns)
 {
-  PetscInt missing = 0;
+  PetscInt change = 0, missing = 0, others = 0;
 
   PetscFunctionBegin;
-  for (PetscInt j = 0; j < s->global; j++) missing += s->changes[j] != 0 && !s->fresh[j];
-  *columns = (PetscBool)!missing;
-  if (!missing || s->alone) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt j = 0; j < s->global; j++) {
+    change += s->changes[j] != 0;
+    missing += s->changes[j] != 0 && !s->fresh[j];
+    others += s->changes[j] == 0 && s->columns[j];
+  }
+  *columns = (PetscBool)(!missing && change <= s->most);
+  if (!missing || change > s->most || s->alone) PetscFunctionReturn(PETSC_SUCCESS);
   if (s->global > FEW_ROWS && (s->exact || ++s->missed <= missing)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt j = 0; j < s->global; j++)
+  for (PetscInt j = 0; j < s->global; j++) {
     if (s->changes[j] != 0) PetscCall(ConstrainedSolverMakeColumn(s, j));
+    else if (change + others > s->most) PetscCall(VecDestroy(&s->columns[j]));
+    s->fresh[j] = (PetscBool)(s->fresh[j] && s->columns[j]);
+  }
   s->missed = 0;
   *columns  = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -215,7 +223,7 @@ PetscErrorCode ConstrainedSolverBring(ConstrainedSolver s, const PetscScalar for
 
   PetscFunctionBegin;
   s->by_columns = PETSC_FALSE;
-  if (s->keeps && !s->n) PetscCall(GatherChanges(s, force, &s->by_columns));
+  if (s->most && !s->n) PetscCall(GatherChanges(s, force, &s->by_columns));
   if (s->by_columns) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetArrayWrite(s->row, &row));
   PetscCall(PetscArraycpy(row, force, s->local));
