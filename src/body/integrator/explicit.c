@@ -98,11 +98,12 @@ static PetscBool KnowsForce(Body body)
   return (PetscBool)(GetLayerBalance(body) && !body->rows.n_robin);
 }
 
-/* The displacement is all that the rows depend on: the acceleration, which is zero on massless nodes, is left to Complete() on all ranks */
+/* The displacement is all that the rows depend on, and the layer's force of prescribed ones: the acceleration, which is zero on massless
+   nodes, is left to Complete() on all ranks */
 static PetscErrorCode LeaveIncomplete(Body body, Vec U, Vec A)
 {
   PetscFunctionBegin;
-  if (GetLayerBalance(body)) PetscCall(LayerBalanceGetForce(body, U, body->state.internal_force));
+  if (GetLayerBalance(body) && body->rows.n_prescribed) PetscCall(LayerBalanceGetForce(body, U, body->state.internal_force));
   if (body->held.n && !body->state.incomplete) PetscCall(VecZeroEntries(A)); /* of held nodes it is not */
   else PetscCall(PetscObjectStateIncrease((PetscObject)A));
   body->state.incomplete = PETSC_TRUE;
