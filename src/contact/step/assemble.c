@@ -51,8 +51,8 @@ static PetscReal Least(PetscBool small, PetscInt n, const PetscScalar values[])
   return PetscMax(ZERO, SMALL * largest);
 }
 
-/* Entries of the touching rows of a body, of which each rank has those of its rows, on all ranks. small: without those that are small. */
-static PetscErrorCode GetEntries(Contact contact, StepperEntries *entries, PetscInt b, PetscBool small)
+/* Entries that `rows` has of the touching rows of a body, of which each rank has its own, on all ranks. small: without the small ones. */
+static PetscErrorCode GetEntries(Contact contact, StepperEntries *entries, PetscInt b, Mat rows, PetscBool small)
 {
   const PetscInt first = contact->body_rows[b].begin, end = first + contact->body_rows[b].n;
   PetscInt      *begin = entries->begin, total = 0;
@@ -67,7 +67,7 @@ static PetscErrorCode GetEntries(Contact contact, StepperEntries *entries, Petsc
       PetscInt           n, at = begin[k];
 
       if (row < first || row >= end) continue;
-      PetscCall(MatGetRow(contact->interfaces[b], row, &n, &columns, &values));
+      PetscCall(MatGetRow(rows, row, &n, &columns, &values));
       least = Least(small, n, values);
       for (PetscInt e = 0; e < n; e++) {
         if (PetscAbsScalar(values[e]) <= least) continue;
@@ -75,7 +75,7 @@ static PetscErrorCode GetEntries(Contact contact, StepperEntries *entries, Petsc
         if (fills) entries->values[at++] = values[e];
         else begin[k + 1]++;
       }
-      PetscCall(MatRestoreRow(contact->interfaces[b], row, &n, &columns, &values));
+      PetscCall(MatRestoreRow(rows, row, &n, &columns, &values));
     }
     if (fills) break;
     PetscCall(ContactReduce(contact, entries->n, MPIU_INT, MPI_SUM, begin + 1));
@@ -286,24 +286,34 @@ static PetscErrorCode SumParts(ContactStepper *stepper, PetscBool sparse, Mat *S
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What S is made of, from the bodies */
+/* What S is made of, from the bodies; of products a matrix near S is made, as if each dof of a layer moved alone */
 static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
 {
   StepperAssembly *assembly = &stepper->assembly;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const Body body = contact->bodies[b];
-    Vec        diagonal;
+    StepperEntries *entries = &assembly->of_body[b];
+    const Body      body    = contact->bodies[b];
+    Mat             rows    = contact->interfaces[b], K;
+    Vec             diagonal, of_layer = NULL;
 
-    if (!assembly->of_body[b].n) continue;
+    if (!entries->n) continue;
     PetscCall(BodyGetNodalDiagonal(body, stepper->rules[b]->shape, &diagonal));
-    PetscCall(GetEntries(contact, &assembly->of_body[b], b,
-                         (PetscBool)(BodyDoes(body, BodyIsExplicit) && !BodyDoes(body, BodyIsLinear) && !diagonal)));
-    PetscCall(ListDofs(&assembly->of_body[b]));
-    assembly->of_body[b].alone = (PetscBool)(diagonal != NULL);
-    if (diagonal) PetscCall(ScaleEntries(contact, &assembly->of_body[b], diagonal));
+    if (stepper->products) {
+      PetscCall(BodyGetLayerMatrices(body, &K, &rows));
+      PetscCall(MatCreateVecs(K, &of_layer, NULL));
+      PetscCall(MatGetDiagonal(K, of_layer));
+      PetscCall(VecReciprocal(of_layer));
+      diagonal = of_layer;
+    }
+    PetscCall(
+        GetEntries(contact, entries, b, rows, (PetscBool)(BodyDoes(body, BodyIsExplicit) && !BodyDoes(body, BodyIsLinear) && !diagonal)));
+    PetscCall(ListDofs(entries));
+    entries->alone = (PetscBool)(diagonal != NULL);
+    if (diagonal) PetscCall(ScaleEntries(contact, entries, diagonal));
     else PetscCall(BeginBlock(contact, stepper, b));
+    PetscCall(VecDestroy(&of_layer));
   }
   if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MultiplyRows(stepper->problem.n, assembly));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -323,11 +333,11 @@ PetscErrorCode ContactStepperAssemble(Contact contact, ContactStepper *stepper)
   PetscCall(PetscLogEventBegin(CONTACT_Factor, contact, 0, 0, 0));
   if (!same) PetscCall(ContactStepperListBodyRows(contact, stepper));
   if (!same) PetscCall(ContactStepperChooseProducts(contact, stepper));
-  if (!same && !stepper->products) PetscCall(GetParts(contact, stepper));
+  if (!same) PetscCall(GetParts(contact, stepper));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     if (assembly->of_body[b].n && !assembly->of_body[b].alone) PetscCall(ContactStepperCorrectBlock(contact, stepper, b));
   }
-  if (stepper->products) PetscCall(ContactStepperCreateProducts(contact, stepper, &S, &near));
+  if (stepper->products) PetscCall(ContactStepperCreateProducts(stepper, &S, &near));
   else if (!AnyBody(assembly, PETSC_FALSE) && n > FEW_ROWS) {
     S = assembly->product;
     if (stepper->penalty.any) PetscCall(MatDuplicate(assembly->product, MAT_COPY_VALUES, &S));

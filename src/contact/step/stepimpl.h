@@ -181,7 +181,7 @@ PETSC_INTERN PetscErrorCode ContactStepperAssemble(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperMakeBlock(Contact, ContactStepper *, PetscInt);
 PETSC_INTERN PetscErrorCode ContactStepperChooseProducts(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperCreateShell(ContactStepper *, Mat *);
-PETSC_INTERN PetscErrorCode ContactStepperCreateProducts(Contact, ContactStepper *, Mat *, Mat *);
+PETSC_INTERN PetscErrorCode ContactStepperCreateProducts(ContactStepper *, Mat *, Mat *);
 PETSC_INTERN PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *);
 PETSC_INTERN PetscErrorCode ContactStepperGetFlatHit(Contact, PetscInt, PetscReal *);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpRules(Contact, ContactStepper *);
