@@ -30,9 +30,11 @@ typedef struct {
   PetscBool      solved;      /* there is a solution since the last call */
   PetscBool      by_nodes;    /* Newton's method failed, so that sweeps or secants came in */
   PetscBool      sparse;      /* the matrix of entries is */
-  Vec            x, f;
+  Vec            x, f, y;
   Vec            in, out;            /* the last product with S */
   PetscInt64     product_of;         /* state of the S of that; -1: none */
+  Mat            derivative;         /* of P at the trial forces, times r [N/m] */
+  Mat            shifted;            /* the matrix of entries, less (1 - eps) / r on the diagonal [m/N] */
   Mat            jacobian, operator; /* by entries; products with it, where entries precondition alone, or NULL */
   PetscInt64     jacobian_of;        /* state of the entries that it has; -1: none */
   PetscBool      factored;           /* there are factors of an earlier Jacobian of this pattern */
@@ -48,11 +50,6 @@ PETSC_INTERN PetscErrorCode LawProblemSolve(LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemDestroy(LawProblem *);
 PETSC_INTERN PetscReal      LawProblemGetFrictionResidual(const LawProblem *);
 PETSC_INTERN PetscErrorCode LawProblemIsAmbiguous(const LawProblem *, PetscBool *);
-
-/* The pattern of a sparse matrix; of a dense one there is none */
-typedef struct {
-  const PetscInt *begin, *columns;
-} LawPattern;
 
 /* Whether S has no entries, and is only multiplied with */
 static inline PetscBool LawProblemHasProducts(const LawProblem *problem)
@@ -80,7 +77,5 @@ PETSC_INTERN PetscErrorCode LawProblemLetGo(LawProblem *, PetscReal);
 PETSC_INTERN void           LawProblemFindWeights(LawProblem *);
 PETSC_INTERN void      LawProblemProject(const LawProblem *, PetscInt, const PetscScalar[], const PetscScalar[], PetscReal[], PetscReal[]);
 PETSC_INTERN PetscBool LawProblemIsLagged(const LawProblem *);
-PETSC_INTERN PetscErrorCode LawProblemGetS(const LawProblem *, LawPattern *, const PetscScalar *[]);
-PETSC_INTERN PetscErrorCode LawProblemRestoreS(const LawProblem *, LawPattern *, const PetscScalar *[]);
 PETSC_INTERN PetscErrorCode LawProblemCreateJacobian(LawProblem *);
 PETSC_INTERN PetscReal      LawProblemForceScale(const LawProblem *, const PetscScalar[]);

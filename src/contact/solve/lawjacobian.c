@@ -1,4 +1,4 @@
-/* The Jacobian of the equations of laws, in known patterns and as matrices lie in memory; see lawproblem.c. */
+/* The Jacobian of the equations of laws; see lawproblem.c. */
 #include "lawimpl.h"
 #include <petsc/private/petscimpl.h>
 
@@ -6,84 +6,55 @@
 #define STALE_DENSE  20  /* iterations of the last linear solution beyond which they have grown stale: new ones cost more than 80, */
 #define STALE_SPARSE 5   /* and incomplete ones, where S is products, less than one */
 
-static PetscErrorCode GetPattern(const LawProblem *problem, Mat A, LawPattern *pattern)
-{
-  PetscInt  n;
-  PetscBool done;
-
-  PetscFunctionBegin;
-  pattern->begin = pattern->columns = NULL;
-  if (problem->sparse) PetscCall(MatGetRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &pattern->begin, &pattern->columns, &done));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode RestorePattern(const LawProblem *problem, Mat A, LawPattern *pattern)
-{
-  PetscInt  n;
-  PetscBool done;
-
-  PetscFunctionBegin;
-  if (problem->sparse) PetscCall(MatRestoreRowIJ(A, 0, PETSC_FALSE, PETSC_FALSE, &n, &pattern->begin, &pattern->columns, &done));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The entries of S, or of what is near it, for reading */
-PetscErrorCode LawProblemGetS(const LawProblem *problem, LawPattern *pattern, const PetscScalar *values[])
+/* Room for D r, in blocks of the rows of nodes, which may be others later where the Jacobian is dense */
+static PetscErrorCode CreateDerivative(LawProblem *problem)
 {
   PetscFunctionBegin;
-  PetscCall(GetPattern(problem, problem->entries, pattern));
-  if (problem->sparse) PetscCall(MatSeqAIJGetArrayRead(problem->entries, values));
-  else PetscCall(MatDenseGetArrayRead(problem->entries, values));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  PetscCall(MatDestroy(&problem->derivative));
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, problem->n, problem->n, 2 * ROW_LAW_ROWS - 1, NULL, &problem->derivative));
+  for (PetscInt i = 0, node = 0; i < problem->n; i++) {
+    const PetscInt first = problem->sparse ? problem->begin[node] : PetscMax(i - ROW_LAW_ROWS + 1, 0);
+    const PetscInt end   = problem->sparse ? problem->begin[node + 1] : PetscMin(i + ROW_LAW_ROWS, problem->n);
 
-PetscErrorCode LawProblemRestoreS(const LawProblem *problem, LawPattern *pattern, const PetscScalar *values[])
-{
-  PetscFunctionBegin;
-  if (problem->sparse) PetscCall(MatSeqAIJRestoreArrayRead(problem->entries, values));
-  else PetscCall(MatDenseRestoreArrayRead(problem->entries, values));
-  PetscCall(RestorePattern(problem, problem->entries, pattern));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Adds rows of I - D (I - r (S + eps diag S)) for the rows of one node, D the derivative of P for it. They share their columns. */
-static void AddNode(const LawProblem *problem, PetscInt node, LawPattern of_S, const PetscScalar S[], LawPattern of_J, PetscScalar J[])
-{
-  const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
-  const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
-  const PetscInt  *all        = of_J.columns + of_J.begin[first],
-                 next         = of_J.begin[first + 1] - of_J.begin[first]; /* to the next row of the node */
-
-  J += of_J.begin[first];
-  for (PetscInt l = 0; l < rows; l++) {
-    const PetscInt i  = first + l;
-    PetscInt       at = 0, own;
-
-    for (own = 0; all[own] != i; own++);
-    for (PetscInt e = of_S.begin[i]; e < of_S.begin[i + 1]; e++) {
-      while (all[at] != of_S.columns[e]) at++;
-      for (PetscInt k = 0; k < rows; k++) J[k * next + at] += derivative[k * rows + l] / problem->weight[i] * S[e];
-    }
-    for (PetscInt k = 0; k < rows; k++) J[k * next + own] += (k == l) - derivative[k * rows + l] * (1 - problem->proximal);
+    for (PetscInt j = first; j < end; j++) PetscCall(MatSetValue(problem->derivative, i, j, 0, INSERT_VALUES));
+    node += i + 1 == end;
   }
+  PetscCall(MatAssemblyBegin(problem->derivative, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(problem->derivative, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The same of a dense S for all nodes, column by column, as both matrices lie in memory */
-static void AddNodes(const LawProblem *problem, const PetscScalar S[], PetscScalar J[])
+/* D r, with the derivatives D of P */
+static PetscErrorCode FillDerivative(LawProblem *problem)
 {
-  for (PetscInt column = 0; column < problem->n; column++, S += problem->n, J += problem->n)
-    for (PetscInt node = 0; node < problem->n_nodes; node++) {
-      const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
-      const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
+  PetscFunctionBegin;
+  PetscCall(MatZeroEntries(problem->derivative));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
+    const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
 
-      for (PetscInt l = 0; l < rows; l++) {
-        const PetscInt    i     = first + l;
-        const PetscScalar value = S[i] / problem->weight[i] - (i == column ? 1 - problem->proximal : 0);
+    for (PetscInt k = 0; k < rows; k++)
+      for (PetscInt l = 0; l < rows; l++)
+        PetscCall(
+            MatSetValue(problem->derivative, first + k, first + l, derivative[k * rows + l] / problem->weight[first + l], INSERT_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(problem->derivative, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(problem->derivative, MAT_FINAL_ASSEMBLY));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
-        for (PetscInt k = 0; k < rows; k++) J[first + k] += derivative[k * rows + l] * value;
-        J[i] += i == column;
-      }
-    }
+/* J = I - D (I - r (S + eps diag S)) = I + D r (S - (1 - eps) / r) */
+static PetscErrorCode FillJacobian(const LawProblem *problem, Mat *J)
+{
+  PetscFunctionBegin;
+  PetscCall(MatCopy(problem->entries, problem->shifted, SAME_NONZERO_PATTERN));
+  for (PetscInt i = 0; i < problem->n; i++)
+    PetscCall(MatSetValue(problem->shifted, i, i, -(1 - problem->proximal) * problem->weight[i], ADD_VALUES));
+  PetscCall(MatAssemblyBegin(problem->shifted, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(problem->shifted, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatMatMult(problem->derivative, problem->shifted, MAT_REUSE_MATRIX, PETSC_DETERMINE, J));
+  PetscCall(MatShift(*J, 1));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Whether factors of an earlier Jacobian precondition */
@@ -133,9 +104,8 @@ static PetscErrorCode AreStale(LawProblem *problem, PetscBool *stale)
 static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
 {
   LawProblem        *problem = (LawProblem *)ctx;
-  const PetscScalar *x, *S;
-  PetscScalar       *y = problem->work, *values;
-  LawPattern         of_S, of_J;
+  const PetscScalar *x;
+  PetscScalar       *y     = problem->work;
   PetscBool          other = PETSC_FALSE, stale = PETSC_TRUE;
 
   PetscFunctionBegin;
@@ -145,24 +115,13 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscCall(TakeDerivatives(problem, x, y, &other));
   PetscCall(VecRestoreArrayRead(X, &x));
   if (!other) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(FillDerivative(problem));
   if (LawProblemIsLagged(problem)) { /* what is multiplied with is J as it is, and its entries are for the preconditioner alone */
     PetscCall(AreStale(problem, &stale));
     if (!stale) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(SNESSetLagPreconditioner(snes, LAW_LAG_AFTER_NEXT));
   }
-  PetscCall(MatZeroEntries(P));
-  PetscCall(LawProblemGetS(problem, &of_S, &S));
-  PetscCall(GetPattern(problem, P, &of_J));
-  if (problem->sparse) PetscCall(MatSeqAIJGetArray(P, &values));
-  else PetscCall(MatDenseGetArray(P, &values));
-  if (!problem->sparse) AddNodes(problem, S, values);
-  for (PetscInt node = 0; node < problem->n_nodes && problem->sparse; node++) AddNode(problem, node, of_S, S, of_J, values);
-  if (problem->sparse) PetscCall(MatSeqAIJRestoreArray(P, &values));
-  else PetscCall(MatDenseRestoreArray(P, &values));
-  PetscCall(RestorePattern(problem, P, &of_J));
-  PetscCall(LawProblemRestoreS(problem, &of_S, &S));
-  PetscCall(MatAssemblyBegin(P, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(P, MAT_FINAL_ASSEMBLY));
+  PetscCall(FillJacobian(problem, &P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -171,61 +130,17 @@ static PetscErrorCode Multiply(Mat J, Vec X, Vec Y)
 {
   LawProblem        *problem;
   const PetscScalar *x;
-  PetscScalar       *y, *read;
+  PetscScalar       *y;
 
   PetscFunctionBegin;
   PetscCall(MatShellGetContext(J, &problem));
-  read = problem->work;
   PetscCall(VecGetArrayRead(X, &x));
-  PetscCall(VecGetArrayWrite(Y, &y));
-  PetscCall(LawProblemMultiply(problem, x, read));
-  for (PetscInt node = 0; node < problem->n_nodes; node++) {
-    const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
-    const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
-
-    for (PetscInt k = 0; k < rows; k++) {
-      y[first + k] = x[first + k];
-      for (PetscInt l = 0; l < rows; l++) {
-        const PetscInt i = first + l;
-
-        y[first + k] -= derivative[k * rows + l] * ((1 - problem->proximal) * x[i] - read[i] / problem->weight[i]);
-      }
-    }
-  }
-  PetscCall(VecRestoreArrayWrite(Y, &y));
+  PetscCall(VecGetArrayWrite(problem->y, &y));
+  PetscCall(LawProblemMultiply(problem, x, problem->work));
+  for (PetscInt i = 0; i < problem->n; i++) y[i] = problem->work[i] - (1 - problem->proximal) * problem->weight[i] * x[i];
+  PetscCall(VecRestoreArrayWrite(problem->y, &y));
   PetscCall(VecRestoreArrayRead(X, &x));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A sparse Jacobian has the entries of S in all rows of a node where any has them, and those of the rows of one node */
-static PetscErrorCode SetPattern(LawProblem *problem)
-{
-  PetscInt          *begin, *columns, room = 0;
-  const PetscScalar *S;
-  LawPattern         of_S;
-
-  PetscFunctionBegin;
-  PetscCall(LawProblemGetS(problem, &of_S, &S));
-  for (PetscInt node = 0; node < problem->n_nodes; node++) {
-    const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
-
-    room += (end - first) * (of_S.begin[end] - of_S.begin[first] + end - first);
-  }
-  PetscCall(PetscMalloc2(problem->n + 1, &begin, room, &columns));
-  begin[0] = 0;
-  for (PetscInt node = 0; node < problem->n_nodes; node++) {
-    const PetscInt first = problem->begin[node], end = problem->begin[node + 1];
-    PetscInt       n = of_S.begin[end] - of_S.begin[first], *mine = columns + begin[first];
-
-    PetscCall(PetscArraycpy(mine, of_S.columns + of_S.begin[first], n));
-    for (PetscInt i = first; i < end; i++) mine[n++] = i;
-    PetscCall(PetscSortRemoveDupsInt(&n, mine));
-    for (PetscInt i = first; i < end; i++) begin[i + 1] = begin[i] + n;
-    for (PetscInt i = first + 1; i < end; i++) PetscCall(PetscArraycpy(columns + begin[i], mine, n));
-  }
-  PetscCall(LawProblemRestoreS(problem, &of_S, &S));
-  PetscCall(MatSeqAIJSetPreallocationCSR(problem->jacobian, begin, columns, NULL));
-  PetscCall(PetscFree2(begin, columns));
+  PetscCall(MatMultAdd(problem->derivative, problem->y, X, Y));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -233,11 +148,10 @@ PetscErrorCode LawProblemCreateJacobian(LawProblem *problem)
 {
   PetscFunctionBegin;
   PetscCall(MatDestroy(&problem->jacobian));
-  PetscCall(MatCreate(PETSC_COMM_SELF, &problem->jacobian));
-  PetscCall(MatSetSizes(problem->jacobian, problem->n, problem->n, problem->n, problem->n));
-  PetscCall(MatSetType(problem->jacobian, problem->sparse ? MATSEQAIJ : MATSEQDENSE));
-  if (problem->sparse) PetscCall(SetPattern(problem));
-  else PetscCall(MatSetUp(problem->jacobian));
+  PetscCall(MatDestroy(&problem->shifted));
+  PetscCall(CreateDerivative(problem));
+  PetscCall(MatDuplicate(problem->entries, MAT_DO_NOT_COPY_VALUES, &problem->shifted));
+  PetscCall(MatMatMult(problem->derivative, problem->shifted, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &problem->jacobian));
   PetscCall(MatDestroy(&problem->operator));
   if (LawProblemIsLagged(problem)) {
     PetscCall(MatCreateShell(PETSC_COMM_SELF, problem->n, problem->n, problem->n, problem->n, problem, &problem->operator));

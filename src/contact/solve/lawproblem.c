@@ -27,9 +27,11 @@
 /* f = lambda - P(lambda - r y) */
 static PetscErrorCode Miss(LawProblem *problem, const PetscScalar x[], PetscScalar f[])
 {
-  PetscScalar *y = problem->work;
+  PetscScalar       *y     = problem->work;
+  const PetscScalar *dense = NULL;
 
   PetscFunctionBegin;
+  if (!problem->sparse) PetscCall(MatDenseGetArrayRead(problem->entries, &dense));
   PetscCall(LawProblemRead(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
@@ -135,24 +137,30 @@ PetscErrorCode LawProblemLetGo(LawProblem *problem, PetscReal gap)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* y += a S_.i, which is a row of S too */
-static void AddColumn(const LawProblem *problem, LawPattern of_S, const PetscScalar S[], PetscInt i, PetscScalar a, PetscScalar y[])
+/* y += a S_.i, which is a row of a sparse S too; `dense`: entries of one that is not */
+static PetscErrorCode AddColumn(const LawProblem *problem, const PetscScalar dense[], PetscInt i, PetscScalar a, PetscScalar y[])
 {
-  if (of_S.begin)
-    for (PetscInt e = of_S.begin[i]; e < of_S.begin[i + 1]; e++) y[of_S.columns[e]] += a * S[e];
-  else
-    for (PetscInt j = 0; j < problem->n; j++) y[j] += a * S[i * problem->n + j];
+  PetscInt           n;
+  const PetscInt    *rows;
+  const PetscScalar *values;
+
+  PetscFunctionBegin;
+  for (PetscInt j = 0; j < problem->n && dense; j++) y[j] += a * dense[i * problem->n + j];
+  if (dense) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(MatGetRow(problem->entries, i, &n, &rows, &values));
+  for (PetscInt e = 0; e < n; e++) y[rows[e]] += a * values[e];
+  PetscCall(MatRestoreRow(problem->entries, i, &n, &rows, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* One sweep: the rows of each node, one node after the other */
 PetscErrorCode LawProblemSweep(LawProblem *problem, PetscScalar x[])
 {
-  PetscScalar       *y = problem->work;
-  const PetscScalar *S;
-  LawPattern         of_S;
+  PetscScalar       *y     = problem->work;
+  const PetscScalar *dense = NULL;
 
   PetscFunctionBegin;
-  PetscCall(LawProblemGetS(problem, &of_S, &S));
+  if (!problem->sparse) PetscCall(MatDenseGetArrayRead(problem->entries, &dense));
   PetscCall(LawProblemRead(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
@@ -168,11 +176,11 @@ PetscErrorCode LawProblemSweep(LawProblem *problem, PetscScalar x[])
         if (change == 0) continue;
         x[first + k] = force[k];
         moves        = 1;
-        AddColumn(problem, of_S, S, first + k, change, y);
+        PetscCall(AddColumn(problem, dense, first + k, change, y));
       }
     }
   }
-  PetscCall(LawProblemRestoreS(problem, &of_S, &S));
+  if (dense) PetscCall(MatDenseRestoreArrayRead(problem->entries, &dense));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -194,10 +202,13 @@ static PetscErrorCode DestroySolvers(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(SNESDestroy(&problem->newton));
   PetscCall(SNESDestroy(&problem->nodes));
+  PetscCall(MatDestroy(&problem->derivative));
+  PetscCall(MatDestroy(&problem->shifted));
   PetscCall(MatDestroy(&problem->jacobian));
   PetscCall(MatDestroy(&problem->operator));
   PetscCall(VecDestroy(&problem->x));
   PetscCall(VecDestroy(&problem->f));
+  PetscCall(VecDestroy(&problem->y));
   PetscCall(VecDestroy(&problem->in));
   PetscCall(VecDestroy(&problem->out));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -208,6 +219,7 @@ static PetscErrorCode CreateVecs(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->x));
   PetscCall(VecDuplicate(problem->x, &problem->f));
+  PetscCall(VecDuplicate(problem->x, &problem->y));
   PetscCall(VecDuplicate(problem->x, &problem->in));
   PetscCall(VecDuplicate(problem->x, &problem->out));
   PetscFunctionReturn(PETSC_SUCCESS);

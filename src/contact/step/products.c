@@ -102,6 +102,9 @@ PetscErrorCode ContactStepperCreateProducts(ContactStepper *stepper, Mat *S, Mat
   PetscCall(MatNorm(*near, NORM_INFINITY, &largest));
   PetscCall(MatFilter(*near, SMALL * largest, PETSC_TRUE, PETSC_TRUE));
   PetscCall(MatSetOption(*near, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE)); /* rows that are held have no entries */
+  for (PetscInt k = 0; k < stepper->problem.n; k++) PetscCall(MatSetValue(*near, k, k, 0, ADD_VALUES));
+  PetscCall(MatAssemblyBegin(*near, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(*near, MAT_FINAL_ASSEMBLY));
   PetscCall(ContactStepperAddSprings(stepper, *near));
   PetscCall(LawProblemMatchTrace(*S, *near));
   PetscFunctionReturn(PETSC_SUCCESS);
