@@ -76,8 +76,7 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
     alternation->offset[i] = *unknowns;
     *unknowns += alternation->room[contact->rows.pair[i]];
   }
-  PetscCall(PetscMalloc2(contact->rows.n, &alternation->left, 2 * contact->rows.n, &alternation->stall.force));
-  PetscCall(PetscMalloc1(contact->rows.n, &alternation->row_work));
+  PetscCall(PetscMalloc2(contact->rows.n, &alternation->left, contact->rows.n, &alternation->row_work));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -179,8 +178,7 @@ static PetscErrorCode ContactDestroy_Alternation(Contact contact)
   PetscCall(PetscFree5(alternation->levels[0], alternation->levels[1], alternation->trace, alternation->room, alternation->kinematic));
   PetscCall(PetscFree2(alternation->exchange, alternation->offset));
   PetscCall(PetscFree3(alternation->weight, alternation->mass[0], alternation->mass[1]));
-  PetscCall(PetscFree2(alternation->left, alternation->stall.force));
-  PetscCall(PetscFree(alternation->row_work));
+  PetscCall(PetscFree2(alternation->left, alternation->row_work));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

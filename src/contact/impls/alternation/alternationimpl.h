@@ -63,11 +63,6 @@ typedef struct {
   PetscInt *left;             /* per row: 1 once it has left in this step, 2 once it has joined again */
   PetscBool cycled;           /* one has joined again */
   PetscReal change, position; /* of the last sweep: the body with the worst ratio */
-  struct {
-    PetscInt     sweeps, steady; /* of this iteration; of these the last ones with steady forces and no smaller change of position */
-    PetscReal    least;          /* change of position in this iteration [m] */
-    PetscScalar *force;          /* of the rows after the last sweep, and room for those of this one [N] */
-  } stall;
   PetscBool converged;
   /* work space */
   PetscScalar *row_work; /* one for each row */

@@ -5,12 +5,6 @@
 #include <impakt/private/bodymass.h>
 #include <impakt/private/bodysweeps.h>
 
-/* An iteration has come to round-off if, after STALL_FROM sweeps, STEADY_SWEEPS sweeps in a row change forces by at most STEADY_FORCE of
-   them, and positions by no less than an earlier sweep. An iteration that converges, however slowly, has no such sweeps. */
-#define STALL_FROM    3
-#define STEADY_FORCE  1e-6
-#define STEADY_SWEEPS 4
-
 /* Forces of this rank's rows at the end of the controller step, from the bodies' traces [N] */
 PetscErrorCode AlternationGetForces(Contact contact, PetscScalar force[])
 {
@@ -79,34 +73,6 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the change of position is round-off, which no sweep makes smaller. Where a body that is hardly held, by a soft spring or its
-   inertia in a long step, touches a stiff one, the round-off of forces moves it by more than the tolerance. */
-static PetscErrorCode FindStall(Contact contact)
-{
-  Alternation *alternation = (Alternation *)contact->data;
-  PetscScalar *last = alternation->stall.force, *now = last + contact->rows.n;
-  PetscReal    sums[2] = {0, 0}, part;
-
-  PetscFunctionBegin;
-  if (++alternation->stall.sweeps < STALL_FROM) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(AlternationGetForces(contact, now));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    sums[0] += PetscSqr(now[i] - last[i]);
-    sums[1] += PetscSqr(now[i]);
-    last[i] = now[i];
-  }
-  PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_SUM, sums));
-  part = sums[1] > 0 ? PetscSqrtReal(sums[0] / sums[1]) : PETSC_INFINITY;
-  if (alternation->stall.sweeps > STALL_FROM && alternation->change >= alternation->stall.least && part <= STEADY_FORCE)
-    alternation->stall.steady++;
-  else alternation->stall.steady = 0;
-  alternation->stall.least = PetscMin(alternation->stall.least, alternation->change);
-  PetscCall(PetscInfo(contact, "change of position %g m, the least before %g m; of forces %g in parts of them\n",
-                      (double)alternation->change, (double)alternation->stall.least, (double)part));
-  if (alternation->stall.steady >= STEADY_SWEEPS) alternation->converged = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Compares the change of position with the tolerances, and notes the worst one */
 PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
 {
@@ -127,7 +93,6 @@ PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
     alternation->position = position;
   }
   alternation->change = worst;
-  if (!alternation->converged) PetscCall(FindStall(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -12,8 +12,6 @@ static PetscErrorCode SolveActive(Contact contact)
   PetscCall(ContactSetConditions(contact, alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN ? CONDITIONS_SCHWARZ
                                                                                                               : CONDITIONS_ROBIN));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  alternation->stall.sweeps = alternation->stall.steady = 0;
-  alternation->stall.least                              = PETSC_MAX_REAL;
   PetscCall(SNESSolve(alternation->snes, NULL, alternation->x));
   PetscCall(AlternationCheckConverged(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
