@@ -8,15 +8,11 @@
    begins: friction goes on from where the spring is, and its slip is that of the spring's foot (Wriggers 2006, section 5.2).
 
    The augmented Lagrangian (Uzawa's iteration) has the forces of the last solution of the law as m, until springs give by no more than a
-   tolerance. Each such round makes what they give smaller by 1 / (1 + K W), with the compliance W of the bodies. Where W is small for some
-   mode of the rows, the changes d_k of the forces come to be parallel, each rho times the last. Then the sum of all that would follow,
-   rho / (1 - rho) d_k, is added at once, as in Aitken's process for vectors (A. J. Macleod, Communications in Applied Numerical Methods 2
-   (1986) 385-392). Forces still push alone, and the rounds that follow decide: nothing hangs on a poor guess but their number. */
+   tolerance. Each such round makes what they give smaller by 1 / (1 + K W), with the compliance W of the bodies, and has springs ten times
+   as stiff as the last, so that few rounds are enough where W is small for some mode of the rows, or the springs are soft. */
 #include "stepimpl.h"
 
-#define PARALLEL 0.1    /* changes are parallel where what is left of one beside the other is this part of it */
-#define KNOWN    3      /* changes that are known, at least, before forces are extrapolated */
-#define SLOWEST  0.9999 /* changes that would follow are added where each is this part of the last, at most */
+#define STIFFER 10 /* springs in the next round */
 
 /* Stiffness of dampers over a step, on a unit of area [N/m^3] */
 static PetscReal OfDampers(Contact contact, const ContactStepper *stepper)
@@ -74,7 +70,7 @@ PetscErrorCode ContactStepperSetUpSprings(Contact contact, ContactStepper *stepp
   if (!stepper->penalty.any) PetscFunctionReturn(PETSC_SUCCESS);
   stepper->problem.regular = PETSC_TRUE;
   if (!stepper->penalty.rounds) contact->ops->stored = StoredEnergy;
-  PetscCall(PetscCalloc4(contact->n_pairs, &springs->stiffness, n, &springs->softness, n, &springs->multiplier, n, &springs->change));
+  PetscCall(PetscCalloc3(contact->n_pairs, &springs->stiffness, n, &springs->softness, n, &springs->multiplier));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -84,8 +80,9 @@ PetscErrorCode ContactStepperListSprings(Contact contact, ContactStepper *steppe
   StepperSprings *springs = &stepper->springs;
 
   PetscFunctionBegin;
-  springs->rounds = springs->known = 0;
-  springs->give                    = 0;
+  springs->rounds = 0;
+  springs->give   = 0;
+  if (stepper->penalty.rounds) stepper->assembled = -1; /* the last step has left it with stiffer ones */
   for (PetscInt k = 0; k < 2 && stepper->penalty.any; k++) {
     for (PetscInt j = 0; j < contact->rows.n_acting; j++) {
       const PetscInt  i       = contact->rows.acting[j];
@@ -118,32 +115,6 @@ void ContactStepperReadSprings(ContactStepper *stepper)
     stepper->problem.read[i] += springs->softness[i] * (stepper->problem.base[i] - springs->multiplier[i]);
 }
 
-/* The next m: the forces found, or where their changes lead */
-static void TakeForces(LawProblem *problem, StepperSprings *springs)
-{
-  PetscReal sums[3] = {0, 0, 0}, ratio;
-
-  for (PetscInt i = 0; i < problem->n; i++) {
-    const PetscReal change = PetscRealPart(problem->force[i] - springs->multiplier[i]), last = PetscRealPart(springs->change[i]);
-
-    sums[0] += change * change;
-    sums[1] += change * last;
-    sums[2] += last * last;
-    springs->change[i]     = change;
-    springs->multiplier[i] = problem->force[i];
-  }
-  if (++springs->known < KNOWN || !(sums[1] > 0)) return;
-  ratio = sums[1] / sums[2];
-  if (ratio > SLOWEST || sums[0] - ratio * sums[1] > PetscSqr(PARALLEL) * sums[0]) return;
-  for (PetscInt node = 0; node < problem->n_nodes; node++)
-    for (PetscInt i = problem->begin[node]; i < problem->begin[node + 1]; i++) {
-      springs->multiplier[i] += ratio / (1 - ratio) * springs->change[i];
-      if (i == problem->begin[node] && !problem->law[node]->pulls)
-        springs->multiplier[i] = PetscMax(PetscRealPart(springs->multiplier[i]), 0);
-    }
-  springs->known = 0;
-}
-
 /* After the law has been solved: whether it is to be solved again, with the forces found as m */
 PetscErrorCode ContactStepperImproveSprings(ContactStepper *stepper, PetscBool *again)
 {
@@ -157,9 +128,13 @@ PetscErrorCode ContactStepperImproveSprings(ContactStepper *stepper, PetscBool *
   for (PetscInt i = 0; i < problem->n; i++)
     springs->give = PetscMax(springs->give, PetscAbsScalar(springs->softness[i] * (problem->force[i] - springs->multiplier[i])));
   if (springs->give <= stepper->penalty.tolerance || springs->rounds >= stepper->penalty.rounds - 1) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt i = 0; i < problem->n; i++) problem->read[i] += springs->softness[i] * springs->multiplier[i];
-  TakeForces(problem, springs);
-  for (PetscInt i = 0; i < problem->n; i++) problem->read[i] -= springs->softness[i] * springs->multiplier[i];
+  for (PetscInt i = 0; i < problem->n; i++) {
+    problem->read[i] -= springs->softness[i] * (problem->base[i] - springs->multiplier[i]);
+    springs->multiplier[i] = problem->force[i];
+    springs->softness[i] /= STIFFER;
+  }
+  ContactStepperReadSprings(stepper);
+  stepper->assembled = -1;
   springs->rounds++;
   *again = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

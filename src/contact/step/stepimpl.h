@@ -91,10 +91,10 @@ typedef struct {
 
 /* The same, for the rows that there are; see springs.c */
 typedef struct {
-  PetscReal   *stiffness;                      /* per pair [N/m^3] */
-  PetscScalar *softness, *multiplier, *change; /* per touching row of all ranks: 1/K [m/N], m, and its last change [N] */
-  PetscInt     rounds, known;                  /* of this step; changes of m that are known */
-  PetscReal    give;                           /* by how much springs of the augmented Lagrangian give after the last round [m] */
+  PetscReal   *stiffness;             /* per pair [N/m^3] */
+  PetscScalar *softness, *multiplier; /* per touching row of all ranks: 1/K [m/N], m [N] */
+  PetscInt     rounds;                /* of this step */
+  PetscReal    give;                  /* by how much springs of the augmented Lagrangian give after the last round [m] */
 } StepperSprings;
 
 struct _ContactStepper {
