@@ -7,7 +7,7 @@
 
    Level: beginner
 
-.seealso: `ObstacleCreate()`, `ObstacleSetPlane()`, `ObstacleSetFromOptions()`, `ContactAddObstacle()`
+.seealso: `ObstacleCreate()`, `ObstacleSetShape()`, `ObstacleSetFromOptions()`, `ContactAddObstacle()`
 S*/
 typedef struct _p_Obstacle *Obstacle;
 
@@ -31,12 +31,10 @@ PETSC_EXTERN const char *const ObstacleTypes[];
 PETSC_EXTERN PetscErrorCode ObstacleInitializePackage(void);
 PETSC_EXTERN PetscErrorCode ObstacleCreate(MPI_Comm, const char[], Obstacle *);
 PETSC_EXTERN PetscErrorCode ObstacleCreateFromOptions(MPI_Comm, const char[], Obstacle *);
-PETSC_EXTERN PetscErrorCode ObstacleSetPlane(Obstacle, const PetscReal[], const PetscReal[]);
-PETSC_EXTERN PetscErrorCode ObstacleSetSphere(Obstacle, const PetscReal[], PetscReal);
-PETSC_EXTERN PetscErrorCode ObstacleSetCylinder(Obstacle, const PetscReal[], const PetscReal[], PetscReal);
+PETSC_EXTERN PetscErrorCode ObstacleSetShape(Obstacle, ObstacleType, const PetscReal[], const PetscReal[], PetscReal);
 PETSC_EXTERN PetscErrorCode ObstacleSetVelocity(Obstacle, const char[]);
 PETSC_EXTERN PetscErrorCode ObstacleGetVelocity(Obstacle, const PetscReal[], PetscReal, PetscReal[], PetscBool *);
 PETSC_EXTERN PetscErrorCode ObstacleSetFromOptions(Obstacle);
-PETSC_EXTERN PetscErrorCode ObstacleGetType(Obstacle, ObstacleType *);
+PETSC_EXTERN PetscErrorCode ObstacleGetShape(Obstacle, ObstacleType *, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode ObstacleView(Obstacle, PetscViewer);
 PETSC_EXTERN PetscErrorCode ObstacleDestroy(Obstacle *);

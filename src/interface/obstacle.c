@@ -22,8 +22,7 @@ const char *const ObstacleTypes[] = {"plane", "sphere", "cylinder", "ObstacleTyp
 
   Level: beginner
 
-.seealso: `Obstacle`, `ObstacleSetPlane()`, `ObstacleSetSphere()`, `ObstacleSetCylinder()`, `ObstacleSetFromOptions()`,
-          `ContactAddObstacle()`
+.seealso: `Obstacle`, `ObstacleSetShape()`, `ObstacleSetFromOptions()`, `ContactAddObstacle()`
 @*/
 PetscErrorCode ObstacleCreate(MPI_Comm comm, const char name[], Obstacle *obstacle)
 {
@@ -40,117 +39,53 @@ PetscErrorCode ObstacleCreate(MPI_Comm comm, const char name[], Obstacle *obstac
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `direction` and `radius` may be missing */
-static PetscErrorCode SetShape(Obstacle obstacle, ObstacleType type, const PetscReal point[], const PetscReal direction[], PetscReal radius)
+/*@
+  ObstacleSetShape - makes an obstacle everything behind a plane, a solid sphere, or a solid cylinder without ends
+
+  Logically Collective
+
+  Input Parameters:
++ obstacle  - the `Obstacle`
+. type      - the shape; a cylinder is a disc in two dimensions, where its axis is across the plane
+. point     - a point of the plane or of the axis, or the centre, 3 numbers [m]
+. direction - of a plane its normal, away from what is solid, of a cylinder its axis, or `NULL` for 0,0,1; 3 numbers, of any length
+- radius    - of a sphere or a cylinder [m]
+
+  Options Database Keys:
++ -<obstacle>_obstacle_type (plane|sphere|cylinder)        - the shape
+. -<obstacle>_point x,y,z                                  - the point
+. -<obstacle>_normal x,y,z, or -<obstacle>_axis x,y,z      - the direction
+- -<obstacle>_radius r                                     - the radius
+
+  Level: beginner
+
+.seealso: `Obstacle`, `ObstacleGetShape()`
+@*/
+PetscErrorCode ObstacleSetShape(Obstacle obstacle, ObstacleType type, const PetscReal point[], const PetscReal direction[],
+                                PetscReal radius)
 {
-  PetscReal length = 0;
+  const PetscReal across[3] = {0, 0, 1};
+  PetscReal       length    = 0;
 
   PetscFunctionBegin;
+  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
+  PetscValidLogicalCollectiveEnum(obstacle, type, 2);
+  PetscAssertPointer(point, 3);
+  if (!direction) direction = across;
   for (PetscInt d = 0; d < 3; d++) {
     obstacle->point[d]     = point[d];
-    obstacle->direction[d] = direction ? direction[d] : 0;
-    length += PetscSqr(obstacle->direction[d]);
+    obstacle->direction[d] = type == OBSTACLE_SPHERE ? 0 : direction[d];
+    length += PetscSqr(direction[d]);
   }
-  PetscCheck(!direction || (length > 0 && length < PETSC_MAX_REAL), PetscObjectComm((PetscObject)obstacle), PETSC_ERR_ARG_OUTOFRANGE,
+  PetscCheck(length > 0 && length < PETSC_MAX_REAL, PetscObjectComm((PetscObject)obstacle), PETSC_ERR_ARG_OUTOFRANGE,
              "Obstacle '%s': a vector of length %g has no direction", ((PetscObject)obstacle)->name, (double)PetscSqrtReal(length));
   PetscCheck(type == OBSTACLE_PLANE || (radius > 0 && radius < PETSC_MAX_REAL), PetscObjectComm((PetscObject)obstacle),
              PETSC_ERR_ARG_OUTOFRANGE, "Obstacle '%s': a radius of %g%s must be positive", ((PetscObject)obstacle)->name, (double)radius,
              UnitsOf((PetscObject)obstacle, UNIT_LENGTH));
-  for (PetscInt d = 0; d < 3 && direction; d++) obstacle->direction[d] /= PetscSqrtReal(length);
+  for (PetscInt d = 0; d < 3; d++) obstacle->direction[d] /= PetscSqrtReal(length);
   obstacle->type     = type;
   obstacle->radius   = radius;
   obstacle->complete = PETSC_TRUE;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ObstacleSetPlane - makes an obstacle everything behind a plane
-
-  Logically Collective
-
-  Input Parameters:
-+ obstacle - the `Obstacle`
-. point    - a point of the plane, 3 numbers [m]
-- normal   - away from what is solid, 3 numbers, of any length
-
-  Options Database Keys:
-+ -<obstacle>_obstacle_type plane - the shape
-. -<obstacle>_point x,y,z         - the point
-- -<obstacle>_normal x,y,z        - the normal
-
-  Level: beginner
-
-.seealso: `Obstacle`, `ObstacleSetSphere()`, `ObstacleSetCylinder()`
-@*/
-PetscErrorCode ObstacleSetPlane(Obstacle obstacle, const PetscReal point[], const PetscReal normal[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
-  PetscAssertPointer(point, 2);
-  PetscAssertPointer(normal, 3);
-  PetscCall(SetShape(obstacle, OBSTACLE_PLANE, point, normal, 0));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ObstacleSetSphere - makes an obstacle a solid sphere
-
-  Logically Collective
-
-  Input Parameters:
-+ obstacle - the `Obstacle`
-. centre   - 3 numbers [m]
-- radius   - [m]
-
-  Options Database Keys:
-+ -<obstacle>_obstacle_type sphere - the shape
-. -<obstacle>_point x,y,z          - the centre
-- -<obstacle>_radius r             - the radius
-
-  Level: beginner
-
-.seealso: `Obstacle`, `ObstacleSetPlane()`, `ObstacleSetCylinder()`
-@*/
-PetscErrorCode ObstacleSetSphere(Obstacle obstacle, const PetscReal centre[], PetscReal radius)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
-  PetscAssertPointer(centre, 2);
-  PetscValidLogicalCollectiveReal(obstacle, radius, 3);
-  PetscCall(SetShape(obstacle, OBSTACLE_SPHERE, centre, NULL, radius));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
-  ObstacleSetCylinder - makes an obstacle a solid cylinder without ends; a disc in two dimensions, where its axis is across the plane
-
-  Logically Collective
-
-  Input Parameters:
-+ obstacle - the `Obstacle`
-. point    - a point of the axis, 3 numbers [m]
-. axis     - 3 numbers, of any length; `NULL` for 0,0,1
-- radius   - [m]
-
-  Options Database Keys:
-+ -<obstacle>_obstacle_type cylinder - the shape
-. -<obstacle>_point x,y,z            - the point
-. -<obstacle>_axis x,y,z             - the axis
-- -<obstacle>_radius r               - the radius
-
-  Level: beginner
-
-.seealso: `Obstacle`, `ObstacleSetPlane()`, `ObstacleSetSphere()`
-@*/
-PetscErrorCode ObstacleSetCylinder(Obstacle obstacle, const PetscReal point[], const PetscReal axis[], PetscReal radius)
-{
-  const PetscReal across[3] = {0, 0, 1};
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
-  PetscAssertPointer(point, 2);
-  PetscValidLogicalCollectiveReal(obstacle, radius, 4);
-  PetscCall(SetShape(obstacle, OBSTACLE_CYLINDER, point, axis ? axis : across, radius));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -160,46 +95,36 @@ PetscErrorCode ObstacleSetUp(Obstacle obstacle)
   PetscFunctionBegin;
   PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
   PetscCheck(obstacle->complete, PetscObjectComm((PetscObject)obstacle), PETSC_ERR_ARG_WRONGSTATE,
-             "Obstacle '%s' has no shape: call ObstacleSetPlane(), ObstacleSetSphere(), ObstacleSetCylinder() or ObstacleSetFromOptions()",
-             ((PetscObject)obstacle)->name);
+             "Obstacle '%s' has no shape: call ObstacleSetShape() or ObstacleSetFromOptions()", ((PetscObject)obstacle)->name);
   PetscCall(PetscObjectViewFromOptions((PetscObject)obstacle, NULL, "-obstacle_view"));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /*@
-  ObstacleGetType - the shape of an obstacle
+  ObstacleGetShape - the shape of an obstacle, and where it is
 
   Not Collective
 
   Input Parameter:
 . obstacle - the `Obstacle`
 
-  Output Parameter:
-. type - the `ObstacleType`
+  Output Parameters:
++ type      - the `ObstacleType`
+. point     - a point of the plane or of the axis of the cylinder, or the centre of the sphere, 3 numbers [m]; or `NULL`
+- direction - unit normal of the plane or direction of the cylinder, zeros for a sphere, 3 numbers; or `NULL`
 
   Level: intermediate
 
-.seealso: `Obstacle`
+.seealso: `Obstacle`, `ObstacleSetShape()`
 @*/
-PetscErrorCode ObstacleGetType(Obstacle obstacle, ObstacleType *type)
+PetscErrorCode ObstacleGetShape(Obstacle obstacle, ObstacleType *type, PetscReal point[], PetscReal direction[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
   PetscAssertPointer(type, 2);
   *type = obstacle->type;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* A point of the plane or of the axis of the cylinder, or the centre of the sphere [m]; unit normal of the plane or direction of the
-   cylinder, zeros for a sphere. 3 numbers each. Not collective. */
-PetscErrorCode ObstacleGetPlace(Obstacle obstacle, PetscReal point[], PetscReal direction[])
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
-  PetscAssertPointer(point, 2);
-  PetscAssertPointer(direction, 3);
-  PetscCall(PetscArraycpy(point, obstacle->point, 3));
-  PetscCall(PetscArraycpy(direction, obstacle->direction, 3));
+  if (point) PetscCall(PetscArraycpy(point, obstacle->point, 3));
+  if (direction) PetscCall(PetscArraycpy(direction, obstacle->direction, 3));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

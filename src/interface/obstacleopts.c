@@ -3,7 +3,7 @@
 #include <petsc/private/petscimpl.h>
 #include <sys/units.h>
 
-/* Three numbers, or as many as there are dimensions; the rest is 0. An option that is not given is an error where it is needed. */
+/* Three numbers, or as many as there are dimensions; the rest is 0 */
 static PetscErrorCode CheckVector(Obstacle obstacle, const char option[], const char meaning[], PetscBool set, PetscInt n,
                                   const PetscReal values[])
 {
@@ -18,14 +18,6 @@ static PetscErrorCode CheckVector(Obstacle obstacle, const char option[], const 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode CheckDirection(Obstacle obstacle, const char option[], const PetscReal values[])
-{
-  PetscFunctionBegin;
-  PetscCheck(PetscSqr(values[0]) + PetscSqr(values[1]) + PetscSqr(values[2]) > 0, PetscObjectComm((PetscObject)obstacle),
-             PETSC_ERR_USER_INPUT, "-%s%s is the zero vector; it must have a direction", ((PetscObject)obstacle)->prefix, option);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /*@
   ObstacleSetFromOptions - shape and place of an obstacle from the options that begin with its name
 
@@ -36,37 +28,38 @@ static PetscErrorCode CheckDirection(Obstacle obstacle, const char option[], con
 
   Options Database Keys:
 + -<obstacle>_obstacle_type (plane|sphere|cylinder) - its shape
-- -<obstacle>_point, ...                            - its place and direction, see the setters, and options/README.md for defaults
+- -<obstacle>_point, ...                            - its place and direction, see the setter, and options/README.md for defaults
 
   Level: beginner
 
-.seealso: `Obstacle`, `ObstacleSetPlane()`, `ObstacleSetSphere()`, `ObstacleSetCylinder()`
+.seealso: `Obstacle`, `ObstacleSetShape()`
 @*/
 PetscErrorCode ObstacleSetFromOptions(Obstacle obstacle)
 {
   static const struct {
-    const char *setter, *point;
-  } words[]            = {{"ObstacleSetPlane", "a point of the plane"},
-                          {"ObstacleSetSphere", "the centre of the sphere"},
-                          {"ObstacleSetCylinder", "a point of the axis"}};
+    const char *point, *option, *direction; /* what the point is; the option of the direction, and what that is */
+  } words[]            = {{"a point of the plane", "normal", "the outward normal of the plane"},
+                          {"the centre of the sphere", NULL, NULL},
+                          {"a point of the axis", "axis", "the direction of the cylinder"}};
   PetscEnum   type     = (PetscEnum)OBSTACLE_PLANE;
   PetscReal   point[3] = {0, 0, 0}, direction[3] = {0, 0, 0}, radius = 0;
   PetscInt    n = 3, n_direction = 3;
   char        velocity[PETSC_MAX_OPTION_NAME];
-  PetscBool   set, has_velocity, has_point, has_direction = PETSC_FALSE, has_radius = PETSC_FALSE;
-  const char *prefix;
+  PetscBool   set, has_velocity, has_point, has_direction = PETSC_FALSE, plane;
+  const char *prefix, *option;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(obstacle, OBSTACLE_CLASSID, 1);
   prefix = ((PetscObject)obstacle)->prefix;
   PetscObjectOptionsBegin((PetscObject)obstacle);
-  PetscCall(PetscOptionsEnum("-obstacle_type", "Shape of the obstacle", "ObstacleSetPlane", ObstacleTypes, type, &type, &set));
-  PetscCall(PetscOptionsRealArray("-point", "Where it is [m]", words[type].setter, point, &n, &has_point));
-  if (type != (PetscEnum)OBSTACLE_SPHERE)
-    PetscCall(PetscOptionsRealArray(type == (PetscEnum)OBSTACLE_PLANE ? "-normal" : "-axis", "Its direction", words[type].setter, direction,
-                                    &n_direction, &has_direction));
-  if (type != (PetscEnum)OBSTACLE_PLANE)
-    PetscCall(PetscOptionsReal("-radius", "Its radius [m]", words[type].setter, radius, &radius, &has_radius));
+  PetscCall(PetscOptionsEnum("-obstacle_type", "Shape of the obstacle", "ObstacleSetShape", ObstacleTypes, type, &type, &set));
+  plane  = (PetscBool)(type == (PetscEnum)OBSTACLE_PLANE);
+  option = words[type].option;
+  PetscCall(PetscOptionsRealArray("-point", "Where it is [m]", "ObstacleSetShape", point, &n, &has_point));
+  if (option)
+    PetscCall(
+        PetscOptionsRealArray(plane ? "-normal" : "-axis", "Its direction", "ObstacleSetShape", direction, &n_direction, &has_direction));
+  if (!plane) PetscCall(PetscOptionsReal("-radius", "Its radius [m]", "ObstacleSetShape", radius, &radius, NULL));
   PetscCall(PetscOptionsString("-velocity", "Velocity of its surface along itself [m/s]", "ObstacleSetVelocity", "", velocity,
                                sizeof(velocity), &has_velocity));
   PetscOptionsEnd();
@@ -74,24 +67,15 @@ PetscErrorCode ObstacleSetFromOptions(Obstacle obstacle)
              "-%sobstacle_type is missing: obstacle '%s' is a plane, a sphere or a cylinder", prefix, ((PetscObject)obstacle)->name);
   if (has_velocity) PetscCall(ObstacleSetVelocity(obstacle, velocity));
   PetscCall(CheckVector(obstacle, "point", words[type].point, has_point, n, point));
-  if (type == (PetscEnum)OBSTACLE_PLANE) {
-    PetscCall(CheckVector(obstacle, "normal", "the outward normal of the plane", has_direction, n_direction, direction));
-    PetscCall(CheckDirection(obstacle, "normal", direction));
-    PetscCall(ObstacleSetPlane(obstacle, point, direction));
-    PetscFunctionReturn(PETSC_SUCCESS);
+  if (plane || has_direction) {
+    PetscCall(CheckVector(obstacle, option, words[type].direction, has_direction, n_direction, direction));
+    PetscCheck(direction[0] != 0 || direction[1] != 0 || direction[2] != 0, PetscObjectComm((PetscObject)obstacle), PETSC_ERR_USER_INPUT,
+               "-%s%s is the zero vector; it must have a direction", prefix, option);
   }
-  PetscCheck(has_radius && radius > 0 && radius < PETSC_MAX_REAL, PetscObjectComm((PetscObject)obstacle), PETSC_ERR_USER_INPUT,
+  PetscCheck(plane || (radius > 0 && radius < PETSC_MAX_REAL), PetscObjectComm((PetscObject)obstacle), PETSC_ERR_USER_INPUT,
              "-%sradius %g%s: obstacle '%s' needs a positive radius", prefix, (double)radius, UnitsOf((PetscObject)obstacle, UNIT_LENGTH),
              ((PetscObject)obstacle)->name);
-  if (type == (PetscEnum)OBSTACLE_SPHERE) {
-    PetscCall(ObstacleSetSphere(obstacle, point, radius));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  if (has_direction) {
-    PetscCall(CheckVector(obstacle, "axis", "the direction of the cylinder", has_direction, n_direction, direction));
-    PetscCall(CheckDirection(obstacle, "axis", direction));
-  }
-  PetscCall(ObstacleSetCylinder(obstacle, point, has_direction ? direction : NULL, radius));
+  PetscCall(ObstacleSetShape(obstacle, (ObstacleType)type, point, has_direction ? direction : NULL, radius));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

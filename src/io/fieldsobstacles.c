@@ -64,8 +64,7 @@ static PetscErrorCode FindGrid(Obstacle obstacle, PetscInt dim, const PetscReal 
   PetscInt  first = 0;
 
   PetscFunctionBegin;
-  PetscCall(ObstacleGetType(obstacle, &grid->type));
-  PetscCall(ObstacleGetPlace(obstacle, point, n));
+  PetscCall(ObstacleGetShape(obstacle, &grid->type, point, n));
   PetscCall(ObstacleGetGap(obstacle, point, &distance, normal));
   radius = -distance;
   if (grid->type == OBSTACLE_SPHERE) n[2] = 1;

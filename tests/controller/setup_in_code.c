@@ -213,15 +213,16 @@ static void plate(void **state)
   ok(ControllerGetContact(controller, &contact));
   ok(ObstacleCreate(PETSC_COMM_WORLD, "floor", &floor_plane));
   refused(PETSC_ERR_ARG_WRONGSTATE, "'floor'|no shape", ContactAddObstacle(contact, floor_plane));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "'floor'|no direction", ObstacleSetPlane(floor_plane, point, (const PetscReal[]){0, 0, 0}));
-  ok(ObstacleSetPlane(floor_plane, point, normal));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "'floor'|no direction",
+          ObstacleSetShape(floor_plane, OBSTACLE_PLANE, point, (const PetscReal[]){0, 0, 0}, 0));
+  ok(ObstacleSetShape(floor_plane, OBSTACLE_PLANE, point, normal, 0));
   ok(ContactAddObstacle(contact, floor_plane));
   refused(PETSC_ERR_USER_INPUT, "'floor' is the name of an obstacle already", ContactAddObstacle(contact, floor_plane));
   ok(ObstacleDestroy(&floor_plane));
   ok(ObstacleCreate(PETSC_COMM_WORLD, "plate", &disc));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "radius of 0. m", ObstacleSetSphere(disc, centre, 0));
-  ok(ObstacleSetCylinder(disc, centre, NULL, 1.15));
-  ok(ObstacleGetType(disc, &type));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "radius of 0. m", ObstacleSetShape(disc, OBSTACLE_SPHERE, centre, NULL, 0));
+  ok(ObstacleSetShape(disc, OBSTACLE_CYLINDER, centre, NULL, 1.15));
+  ok(ObstacleGetShape(disc, &type, NULL, NULL));
   assert_int_equal(type, OBSTACLE_CYLINDER);
   refused(PETSC_ERR_USER_INPUT, "'plate' is the name of a body already", ContactAddObstacle(contact, disc));
   ok(PetscObjectSetName((PetscObject)disc, "disc"));
@@ -273,7 +274,7 @@ static void laws_of_pairs(void **state)
   ok(ControllerSetTimes(controller, 0, 4e-3, 1e-4));
   ok(ControllerGetContact(controller, &contact));
   ok(ObstacleCreate(PETSC_COMM_WORLD, "floor", &floor_plane));
-  ok(ObstacleSetPlane(floor_plane, point, normal));
+  ok(ObstacleSetShape(floor_plane, OBSTACLE_PLANE, point, normal, 0));
   ok(ContactAddObstacle(contact, floor_plane));
   ok(ObstacleDestroy(&floor_plane));
   ok(ContactSetType(contact, CONTACT_FORCE));

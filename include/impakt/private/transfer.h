@@ -68,7 +68,6 @@ typedef struct {
 #define TRANSFER_MOTION 7
 
 PETSC_EXTERN PetscErrorCode ObstacleSetUp(Obstacle);
-PETSC_EXTERN PetscErrorCode ObstacleGetPlace(Obstacle, PetscReal[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode ObstacleGetGap(Obstacle, const PetscReal[], PetscReal *, PetscReal[]);
 
 PETSC_EXTERN PetscErrorCode TransferCreate(MPI_Comm, Surface, Surface, Obstacle, const TransferOptions *, Transfer *);

@@ -127,7 +127,7 @@ static PetscErrorCode AdviseObstacle(const ContactPair *pair, size_t size, char 
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)pair->obstacle, &name));
-  PetscCall(ObstacleGetType(pair->obstacle, &type));
+  PetscCall(ObstacleGetShape(pair->obstacle, &type, NULL, NULL));
   if (type == OBSTACLE_PLANE)
     PetscCall(PetscSNPrintf(advice, size, "-%s_normal may point the wrong way (it points from what is solid to where bodies are)", name));
   else PetscCall(PetscSNPrintf(advice, size, "what is solid is the inside, so that a body cannot be in '%s'", name));

@@ -15,8 +15,7 @@ static PetscErrorCode CheckObstacle(Contact contact, const ContactPair *pair)
 
   PetscFunctionBegin;
   PetscCall(PetscObjectGetName((PetscObject)pair->obstacle, &name));
-  PetscCall(ObstacleGetType(pair->obstacle, &type));
-  PetscCall(ObstacleGetPlace(pair->obstacle, point, direction));
+  PetscCall(ObstacleGetShape(pair->obstacle, &type, point, direction));
   PetscCall(ObstacleGetVelocity(pair->obstacle, NULL, 0, NULL, &moves));
   PetscCall(BodyGetDM(contact->bodies[pair->body[0]], &dm));
   PetscCall(DMGetBoundingBox(dm, lower, upper));

@@ -22,7 +22,7 @@ static PetscErrorCode LaysAhead(Contact contact, const ContactPair *pair, PetscB
     if (!BodyDoes(body, BodyIsLinear) && !BodyDoes(body, BodyIsRigid)) *ahead = ContactPairStartsAnew(contact, pair);
   }
   if (!pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ObstacleGetType(pair->obstacle, &type));
+  PetscCall(ObstacleGetShape(pair->obstacle, &type, NULL, NULL));
   *ahead = (PetscBool)(type != OBSTACLE_PLANE);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -137,8 +137,7 @@ static PetscErrorCode CheckPlanes(Contact contact)
       for (PetscInt k = 0; k < 2 && planes; k++) {
         ObstacleType type;
 
-        PetscCall(ObstacleGetType(pairs[k]->obstacle, &type));
-        PetscCall(ObstacleGetPlace(pairs[k]->obstacle, points[k], normals[k]));
+        PetscCall(ObstacleGetShape(pairs[k]->obstacle, &type, points[k], normals[k]));
         planes = (PetscBool)(type == OBSTACLE_PLANE);
       }
       for (PetscInt d = 0; d < 3 && planes; d++) along += normals[0][d] * normals[1][d];
