@@ -86,7 +86,7 @@ static PetscReal LargestProduct(const PetscReal a[], PetscReal bounds[2][3])
 }
 
 /* Whether a face may see any face of the partner. Two faces see each other if their normals are opposed, and if each lies before the plane
-   of the other, or behind that plane by no more than `depth`, by which the bodies overlap [m]. */
+   of the other, or behind that plane by no more than `depth`, by which the surfaces overlap [m]. */
 static PetscBool SeesGroups(const PetscReal x[], const PetscReal normal[], Directions *others, PetscReal depth)
 {
   for (PetscInt g = 0; g < GROUPS; g++) {
@@ -112,43 +112,13 @@ static PetscErrorCode SeesObstacle(Obstacle obstacle, const PetscReal x[], const
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* How far the whole body of a surface reaches along each direction n: the largest n . x of all its nodes, displaced by u [m] */
-static PetscErrorCode GetSupport(MPI_Comm comm, Surface surface, Vec u, PetscInt n, const PetscReal directions[][3], PetscReal support[])
+/* How far a surface reaches along each direction n: the largest n . x of its nodes [m] */
+static PetscErrorCode GetSupport(MPI_Comm comm, const SurfaceData *data, PetscInt n, const PetscReal directions[][3], PetscReal support[])
 {
-  const PetscInt     dim = surface->data.dim;
-  PetscSection       coordinate_section, section;
-  const PetscScalar *x, *values = NULL;
-  PetscInt           vstart, vend;
-  Vec                coordinates, local = NULL;
-
   PetscFunctionBegin;
-  PetscCall(DMGetCoordinateSection(surface->dm, &coordinate_section));
-  PetscCall(DMGetCoordinatesLocal(surface->dm, &coordinates));
-  PetscCall(DMGetLocalSection(surface->dm, &section));
-  PetscCall(DMPlexGetDepthStratum(surface->dm, 0, &vstart, &vend));
-  if (u && !surface->divided) PetscCall(VecGetArrayRead(u, &values)); /* its nodes are in the order of the section */
-  else if (u) {
-    PetscCall(DMGetLocalVector(surface->dm, &local));
-    PetscCall(DMGlobalToLocalBegin(surface->dm, u, INSERT_VALUES, local));
-    PetscCall(DMGlobalToLocalEnd(surface->dm, u, INSERT_VALUES, local));
-    PetscCall(VecGetArrayRead(local, &values));
-  }
-  PetscCall(VecGetArrayRead(coordinates, &x));
-  for (PetscInt i = 0; i < n; i++) support[i] = -PETSC_MAX_REAL;
-  for (PetscInt v = vstart; v < vend; v++) {
-    PetscReal position[3] = {0};
-    PetscInt  offset, at;
-
-    PetscCall(PetscSectionGetOffset(coordinate_section, v, &offset));
-    PetscCall(PetscSectionGetOffset(section, v, &at));
-    for (PetscInt d = 0; d < dim; d++) position[d] = PetscRealPart(x[offset + d]) + (u ? PetscRealPart(values[at + d]) : 0);
-    for (PetscInt i = 0; i < n; i++) support[i] = PetscMax(support[i], Dot(position, directions[i]));
-  }
-  PetscCall(VecRestoreArrayRead(coordinates, &x));
-  if (u && !surface->divided) PetscCall(VecRestoreArrayRead(u, &values));
-  else if (u) {
-    PetscCall(VecRestoreArrayRead(local, &values));
-    PetscCall(DMRestoreLocalVector(surface->dm, &local));
+  for (PetscInt i = 0; i < n; i++) {
+    support[i] = -PETSC_MAX_REAL;
+    for (PetscInt k = 0; k < data->n_nodes; k++) support[i] = PetscMax(support[i], Dot(data->positions + 3 * k, directions[i]));
   }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, support, (PetscMPIInt)n, MPIU_REAL, MPIU_MAX, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -165,10 +135,10 @@ static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, P
   }
 }
 
-/* The directions of both surfaces, and an upper bound of the depth by which the convex hulls of two bodies overlap [m]: the least of the
-   depths along the mean normals of the groups and along the axes. If the depth along any direction is negative, the bodies are apart
-   (theorem of separating axes). */
-static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, Directions directions[2], PetscReal *overlap)
+/* The directions of both surfaces, and an upper bound of the depth by which their convex hulls overlap [m]: the least of the depths along
+   the mean normals of the groups and along the axes. If the depth along any direction is negative, the surfaces are apart (theorem of
+   separating axes). */
+static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Surface b, Directions directions[2], PetscReal *overlap)
 {
   PetscReal *support[2];
   PetscReal(*list)[3];
@@ -182,10 +152,10 @@ static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface 
     for (PetscInt d = 0; d < 3; d++) list[n][d] = d == side / 2 ? (side % 2 ? 1 : -1) : 0;
   AddDirections(&directions[0], 1, &n, list);
   AddDirections(&directions[1], -1, &n, list);
-  PetscCall(GetSupport(comm, a, u_a, n, (const PetscReal(*)[3])list, support[0]));
+  PetscCall(GetSupport(comm, &a->data, n, (const PetscReal(*)[3])list, support[0]));
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt d = 0; d < 3; d++) list[i][d] = -list[i][d];
-  PetscCall(GetSupport(comm, b, u_b, n, (const PetscReal(*)[3])list, support[1]));
+  PetscCall(GetSupport(comm, &b->data, n, (const PetscReal(*)[3])list, support[1]));
   *overlap = PETSC_MAX_REAL;
   for (PetscInt i = 0; i < n; i++) *overlap = PetscMin(*overlap, support[0][i] + support[1][i]);
   *overlap = PetscMax(*overlap, 0) * (1 + OVERLAP_MARGIN) + OVERLAP_FLOOR * PetscMax(directions[0].extent, directions[1].extent);
@@ -193,22 +163,9 @@ static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Upper bound of the overlap of two bodies under displacements u, and its part for round-off [m]; collective on ranks of both */
-PetscErrorCode SurfaceComputeOverlap(MPI_Comm comm, Surface a, Vec u_a, Surface b, Vec u_b, PetscReal *overlap, PetscReal *round_off)
-{
-  Directions *directions;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(2, &directions));
-  PetscCall(ComputeOverlap(comm, a, u_a, b, u_b, directions, overlap));
-  *round_off = OVERLAP_FLOOR * PetscMax(directions[0].extent, directions[1].extent);
-  PetscCall(PetscFree(directions));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Restricts surfaces to the faces that see the partner, `b` or the obstacle, the other one being NULL; `keep_a`, `keep_b`: which of both
    are restricted. In the reference positions, a face sees another one if their normals are opposed and each lies before the plane of the
-   other, or behind it by no more than the bodies overlap. Faces of the partner are compared in groups of similar direction: all faces
+   other, or behind it by no more than the surfaces overlap. Faces of the partner are compared in groups of similar direction: all faces
    that see one are kept, and maybe some more. A surface may end up without any face. */
 PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscBool keep_a, PetscBool keep_b)
 {
@@ -224,7 +181,7 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
   if (!keep_a && !keep_b) PetscFunctionReturn(PETSC_SUCCESS);
   if (b) {
     PetscCall(PetscMalloc1(2, &directions));
-    PetscCall(ComputeOverlap(PetscObjectComm((PetscObject)a->dm), a, NULL, b, NULL, directions, &depth));
+    PetscCall(ComputeOverlap(PetscObjectComm((PetscObject)a->dm), a, b, directions, &depth));
   }
   for (PetscInt side = 0; side < 2; side++) {
     if (!surfaces[side] || !wanted[side]) continue;

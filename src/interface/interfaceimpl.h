@@ -217,7 +217,6 @@ PETSC_INTERN PetscErrorCode SurfaceFindEdges(Surface, PetscSF);
 PETSC_INTERN void           SurfaceMirrorNormal(Surface, PetscInt, PetscReal[]);
 PETSC_INTERN PetscErrorCode SurfaceClearNodes(Surface);
 PETSC_INTERN PetscErrorCode SurfaceKeepFaces(Surface, const PetscBool[]);
-PETSC_INTERN PetscErrorCode SurfaceComputeOverlap(MPI_Comm, Surface, Vec, Surface, Vec, PetscReal *, PetscReal *);
 
 PETSC_INTERN PetscErrorCode TransferIntegrate(Transfer, PetscReal, PetscReal, PetscInt[], PetscReal[], PetscReal[], PetscReal[], PetscInt *,
                                               Share *[]);

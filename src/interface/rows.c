@@ -4,8 +4,10 @@
 /* The least part of a node's area that is covered if the node has a row: weights are divided by the covered area, which has round-off */
 #define COVERED 1e-6
 /* Weights, normals, gaps [of the face] and areas [relative] of a row that differ by less are the last build's: round-off, no slip */
-#define SAME  1e-10
-#define PRUNE 1e-12 /* smaller weights are round-off, and would only fill the matrices */
+#define SAME 1e-10
+/* Gaps of surfaces that only touch are round-off, which is smaller [of the face] */
+#define TOUCHING 1e-6
+#define PRUNE    1e-12 /* smaller weights are round-off, and would only fill the matrices */
 /* In a rebuild, partners are looked for this far behind at least [parts of the smallest face] */
 #define LEAST_DEPTH 0.5
 /* Gaps are along normals, which may be oblique to the shortest way out of an overlap: this many times as long, at 60 degrees */
@@ -170,7 +172,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
   }
   PetscCall(PetscFree4(weights, partners, normals, smooth));
   set->rest[row]     = transfer->goes_on[row] ? 1 : 0;
-  set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind, set->bow[row]));
+  set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind + TOUCHING * data->sizes[row], set->bow[row]));
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
   set->gap[row] = present + (TransferSplitRow(transfer, set, row, data->reference, transfer->column_reference, across) -
                              TransferSplitRow(transfer, set, row, data->positions, transfer->column_x, across));
@@ -258,36 +260,21 @@ static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], Petsc
   }
 }
 
-/* How deep the bodies are inside each other at any point [m] */
-static PetscErrorCode FindDeepest(Transfer transfer, const Vec u[2], PetscReal *deepest)
+/* How far behind a node its partner may be [m]: as far as the bodies are inside each other, not their hulls. One may be in a hollow of the
+   other, and faces farther behind a node be on the far sides of both bodies. */
+static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal *behind)
 {
+  const Vec     u[2]     = {u_dirichlet, u_neumann};
+  const Surface whole[2] = {transfer->options.boundaries[0], transfer->options.boundaries[1]};
   SurfaceDepth *depths;
   PetscInt      n;
 
   PetscFunctionBegin;
-  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceUpdate(transfer->options.boundaries[side], u[side]));
-  PetscCall(SurfacesFindDepths(transfer->comm, 2, transfer->options.boundaries, 0, NULL, &n, &depths));
-  *deepest = 0;
-  for (PetscInt i = 0; i < n; i++) *deepest = PetscMax(*deepest, depths[i].depth);
+  *behind = transfer->built ? LEAST_DEPTH * transfer->numbers.smallest_size : 0;
+  for (PetscInt side = 0; side < 2; side++) PetscCall(SurfaceUpdate(whole[side], u[side]));
+  PetscCall(SurfacesFindDepths(transfer->comm, 2, whole, 0, NULL, &n, &depths));
+  for (PetscInt i = 0; i < n; i++) *behind = PetscMax(*behind, OBLIQUE * depths[i].depth);
   PetscCall(PetscFree(depths));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* How far behind a node its partner may be: as far as the bodies overlap [m]. Where their hulls do by more than a face, one may be in a
-   hollow of the other, and faces farther behind a node be on the far sides of both bodies. */
-static PetscErrorCode GetDepth(Transfer transfer, Vec u_dirichlet, Vec u_neumann, PetscReal *behind)
-{
-  PetscReal least = transfer->built ? LEAST_DEPTH * transfer->numbers.smallest_size : 0, round_off, deepest = 0;
-
-  PetscFunctionBegin;
-  PetscCall(SurfaceComputeOverlap(transfer->comm, transfer->dirichlet, u_dirichlet, transfer->neumann, u_neumann, behind, &round_off));
-  if (transfer->dim == 1) PetscFunctionReturn(PETSC_SUCCESS);
-  *behind *= OBLIQUE;
-  if (*behind > PetscMax(least, OBLIQUE * round_off) && transfer->options.boundaries[0]) {
-    PetscCall(FindDeepest(transfer, (const Vec[2]){u_dirichlet, u_neumann}, &deepest));
-    *behind = PetscMin(*behind, OBLIQUE * (deepest + round_off));
-  }
-  *behind = PetscMax(*behind, least);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -25,6 +25,10 @@ PetscErrorCode TransferCreate(MPI_Comm comm, Surface dirichlet, Surface neumann,
   t->dim       = dirichlet->data.dim;
   t->n         = dirichlet->data.n_owned;
   t->options   = *options;
+  if (!options->boundaries[0]) { /* the surfaces are the whole boundaries */
+    t->options.boundaries[0] = dirichlet;
+    t->options.boundaries[1] = neumann;
+  }
   if (neumann && t->dim > 1) {
     PetscCall(ImpaktCite(CITE_DUAL_MORTAR));
     PetscCall(ImpaktCite(CITE_SEGMENTS));

@@ -5,7 +5,7 @@
 
 typedef struct {
   DM           dm[2];
-  Surface      surface[2];
+  Surface      surface[2], whole[2];
   Transfer     transfer;
   TransferRows rows;
   PetscInt     n;                 /* rows of all ranks that have something opposite */
@@ -20,15 +20,18 @@ static PetscReal sum_of(PetscReal mine)
 
 static void bars_create(const char *const lower[], const char *const upper[], const char *const names[], PetscReal near, Bars *bars)
 {
-  PetscReal sums[4] = {0};
-  PetscBool rebuilt;
+  PetscReal       sums[4] = {0};
+  TransferOptions options = bounds;
+  PetscBool       rebuilt;
 
   for (PetscInt side = 0; side < 2; side++) {
     bars->dm[side] = CreateBoxMesh(side ? "neumann" : "dirichlet", 1, side ? "3" : "4", lower[side], upper[side], PETSC_TRUE);
     ok(SurfaceCreate(bars->dm[side], names[side], &bars->surface[side]));
+    ok(SurfaceCreate(bars->dm[side], NULL, &bars->whole[side]));
+    options.boundaries[side] = bars->whole[side];
   }
   ok(SurfaceKeepFacing(bars->surface[0], bars->surface[1], NULL, (PetscBool)!names[0], (PetscBool)!names[1]));
-  ok(TransferCreate(PETSC_COMM_WORLD, bars->surface[0], bars->surface[1], NULL, &bounds, &bars->transfer));
+  ok(TransferCreate(PETSC_COMM_WORLD, bars->surface[0], bars->surface[1], NULL, &options, &bars->transfer));
   ok(TransferUpdate(bars->transfer, NULL, NULL, near, &rebuilt));
   assert_true(rebuilt);
   ok(TransferGetRows(bars->transfer, &bars->rows));
@@ -50,6 +53,7 @@ static void bars_destroy(Bars *bars)
   ok(TransferDestroy(&bars->transfer));
   for (PetscInt side = 0; side < 2; side++) {
     ok(SurfaceDestroy(&bars->surface[side]));
+    ok(SurfaceDestroy(&bars->whole[side]));
     ok(DMDestroy(&bars->dm[side]));
   }
 }

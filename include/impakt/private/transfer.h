@@ -61,7 +61,8 @@ typedef struct {
   PetscBool   turns;         /* gaps can be turned, see TransferBalance(); not with an owner */
   PetscBool   owned;         /* one rank has all of both surfaces, and alone knows what an update finds; updates are not collective */
   PetscMPIInt owner;         /* that rank */
-  Surface     boundaries[2]; /* whole boundaries of both bodies, by which it is known how deep these lie inside each other; borrowed */
+  Surface     boundaries[2]; /* of the whole bodies, by which it is known how deep these lie inside each other; borrowed; NULL: they
+                               are the surfaces */
 } TransferOptions;
 
 /* Numbers by which the motion of the surfaces is told, see TransferMeasureMotion() */

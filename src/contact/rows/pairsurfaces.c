@@ -267,7 +267,7 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     inertia = (PetscBool)(inertia && !BodyDoes(contact->bodies[pair->body[side]], BodyIsStatic));
     linear  = (PetscBool)(linear && BodyDoes(contact->bodies[pair->body[side]], BodyIsLinear));
-    if (!pair->obstacle && contact->dim > 1) PetscCall(ContactGetBoundary(contact, pair->body[side], &options.boundaries[side]));
+    if (!pair->obstacle) PetscCall(ContactGetBoundary(contact, pair->body[side], &options.boundaries[side]));
     if (contact->setup) PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
   }
   pair->rests    = (PetscBool)!inertia;
