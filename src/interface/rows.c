@@ -3,8 +3,6 @@
 
 /* The least part of a node's area that is covered if the node has a row: weights are divided by the covered area, which has round-off */
 #define COVERED 1e-6
-/* Weights, normals, gaps [of the face] and areas [relative] of a row that differ by less are the last build's: round-off, no slip */
-#define SAME 1e-10
 /* Gaps of surfaces that only touch are round-off, which is smaller [of the face] */
 #define TOUCHING 1e-6
 #define PRUNE    1e-12 /* smaller weights are round-off, and would only fill the matrices */
@@ -57,7 +55,7 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
   PetscFunctionBegin;
   if (n_shares > 1) PetscCall(PetscTimSort(n_shares, shares, sizeof(Share), ShareCompare, NULL)); /* which reads the first even of none */
   for (PetscInt row = 0; row < n; row++) {
-    const PetscBool covered = (PetscBool)(lumped[row] > COVERED * areas[row] || (keep[row] && lumped[row] > 0));
+    const PetscBool covered = (PetscBool)(lumped[row] > COVERED * areas[row] || keep[row]);
 
     set->offsets[row] = count;
     while (share < n_shares && shares[share].row == row) {
@@ -199,12 +197,14 @@ static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt
     if (!transfer->keep[(*shares)[i].row]) all[count++] = (*shares)[i];
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (!transfer->keep[row] && !transfer->goes_on[row]) continue;
-    if (transfer->keep[row]) lumped[row] = old->area[row];
+    if (transfer->keep[row]) lumped[row] = 1; /* its weights have been divided by its area already */
     for (PetscInt i = old->offsets[row]; i < old->offsets[row + 1]; i++) {
       all[count] = old->shares[i];
-      all[count].value *= lumped[row];
-      all[count].goal = transfer->keep[row] ? all[count].goal * lumped[row] : 0;
-      for (PetscInt d = 0; d < 3; d++) all[count].slope[d] *= transfer->keep[row] ? lumped[row] : 0;
+      if (!transfer->keep[row]) {
+        all[count].value *= lumped[row];
+        all[count].goal = 0;
+        for (PetscInt d = 0; d < 3; d++) all[count].slope[d] = 0;
+      }
       count++;
     }
   }
@@ -214,50 +214,30 @@ static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Copies the gap and the normal of a row that is to stay as it is; its weights have been copied by KeepShares() */
+/* Copies a row that is to stay as it is; its weights have been copied by KeepShares() */
 static void KeepRow(Transfer transfer, PetscInt row, RowSet *set)
 {
+  const RowSet *old = &transfer->rows;
+
   set->opposite[row] = PETSC_TRUE;
-  set->gap[row]      = transfer->rows.gap[row];
-  set->rest[row]     = transfer->rows.rest[row];
-  set->bow[row]      = transfer->rows.bow[row];
-  for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = transfer->rows.normals[transfer->dim * row + d];
-  for (PetscInt d = 0; d < 3; d++) set->partner[3 * row + d] = transfer->rows.partner[3 * row + d];
+  set->beyond[row]   = old->beyond[row];
+  set->gap[row]      = old->gap[row];
+  set->area[row]     = old->area[row];
+  set->rest[row]     = old->rest[row];
+  set->bow[row]      = old->bow[row];
+  for (PetscInt d = 0; d < transfer->dim; d++) set->normals[transfer->dim * row + d] = old->normals[transfer->dim * row + d];
+  for (PetscInt d = 0; d < 3; d++) set->partner[3 * row + d] = old->partner[3 * row + d];
 }
 
-/* Whether a row is the same in both sets, but for round-off */
-static PetscBool SameRow(PetscInt dim, PetscReal size, const RowSet *a, const RowSet *b, PetscInt row)
+/* Takes rows that have been built. Those that neither stay nor have been without a partner, and still are, have changed. */
+static PetscErrorCode TakeRows(Transfer transfer, RowSet *set)
 {
-  const PetscInt n = a->offsets[row + 1] - a->offsets[row];
-
-  if (a->opposite[row] != b->opposite[row] || a->beyond[row] != b->beyond[row]) return PETSC_FALSE;
-  if (b->beyond[row] && b->opposite[row] && PetscAbsReal(a->gap[row] - b->gap[row]) > SAME * size) return PETSC_FALSE;
-  for (PetscInt d = 0; d < dim; d++)
-    if (PetscAbsReal(a->normals[dim * row + d] - b->normals[dim * row + d]) > SAME) return PETSC_FALSE;
-  if (!a->opposite[row]) return PETSC_TRUE;
-  if (n != b->offsets[row + 1] - b->offsets[row] || PetscAbsReal(a->area[row] - b->area[row]) > SAME * PetscAbsReal(a->area[row]))
-    return PETSC_FALSE;
-  for (PetscInt j = 0; j < n; j++) {
-    const Share *left = &a->shares[a->offsets[row] + j], *right = &b->shares[b->offsets[row] + j];
-
-    if (left->dof != right->dof || PetscAbsReal(left->value - right->value) > SAME) return PETSC_FALSE;
-  }
-  return PETSC_TRUE;
-}
-
-/* Marks the rows that have changed. Those that have not keep their numbers to the last bit. */
-static void CompareRows(PetscInt dim, PetscInt n, const PetscReal sizes[], PetscBool first, const PetscBool goes_on[], const RowSet *old,
-                        RowSet *set)
-{
-  for (PetscInt row = 0; row < n; row++) {
-    set->changed[row] = (PetscBool)(first || goes_on[row] || !SameRow(dim, sizes[row], old, set, row));
-    if (set->changed[row]) continue;
-    set->gap[row]  = old->gap[row];
-    set->area[row] = old->area[row];
-    for (PetscInt d = 0; d < dim; d++) set->normals[dim * row + d] = old->normals[dim * row + d];
-    for (PetscInt j = 0; set->opposite[row] && j < set->offsets[row + 1] - set->offsets[row]; j++)
-      set->shares[set->offsets[row] + j].value = old->shares[old->offsets[row] + j].value;
-  }
+  PetscFunctionBegin;
+  for (PetscInt row = 0; row < transfer->n; row++)
+    set->changed[row] = (PetscBool)(!transfer->built || (!transfer->keep[row] && (set->opposite[row] || transfer->rows.opposite[row])));
+  PetscCall(RowSetDestroy(&transfer->rows));
+  transfer->rows = *set;
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* How far behind a node its partner may be [m]: as far as the bodies are inside each other, not their hulls. One may be in a hollow of the
@@ -326,15 +306,13 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(RowSetGetColumns(&set, transfer->neumann->smooth, transfer->column_normals));
   PetscCall(RowSetGetColumns(&set, neumann->normals, transfer->column_moved)); /* free until bodies move again */
   for (PetscInt row = 0; row < transfer->n; row++) {
-    set.beyond[row] = (PetscBool)(transfer->keep[row] ? transfer->rows.beyond[row] : marks[row] == MARK_BEYOND);
+    set.beyond[row] = (PetscBool)(marks[row] == MARK_BEYOND);
     set.area[row]   = lumped[row];
     if (transfer->keep[row]) KeepRow(transfer, row, &set);
     else PetscCall(FinishRow(transfer, row, ends[row], seen + 3 * row, near, behind, &set));
     if (!set.opposite[row]) set.area[row] = 0;
   }
-  CompareRows(transfer->dim, transfer->n, dirichlet->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
-  PetscCall(RowSetDestroy(&transfer->rows));
-  transfer->rows = set;
+  PetscCall(TakeRows(transfer, &set));
   PetscCall(PetscFree4(marks, lumped, ends, seen));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -354,7 +332,6 @@ PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
 
     if (transfer->keep[row]) {
       KeepRow(transfer, row, &set);
-      set.area[row] = transfer->rows.area[row];
       continue;
     }
     PetscCall(ObstacleGetGap(transfer->obstacle, x, &distance, gradient));
@@ -366,8 +343,6 @@ PetscErrorCode TransferBuildObstacleRows(Transfer transfer, PetscReal near)
       if (set.opposite[row]) set.gap[row] -= gradient[d] * (x[d] - reference[d]);
     }
   }
-  CompareRows(dim, transfer->n, data->sizes, (PetscBool)!transfer->built, transfer->goes_on, &transfer->rows, &set);
-  PetscCall(RowSetDestroy(&transfer->rows));
-  transfer->rows = set;
+  PetscCall(TakeRows(transfer, &set));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

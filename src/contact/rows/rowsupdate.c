@@ -31,8 +31,8 @@ PetscBool ContactPairStartsAnew(Contact contact, const ContactPair *pair)
 
 /* A row that is built again compares the faceted surfaces at other points, and its gap jumps. To close this jump within one step would be a
    blow out of nothing. So its gap is shifted: that of a row in contact such that it goes on from where it was, that of any other row that
-   would begin inside the partner such that it begins at zero. The shift stays until the row is open. Between bodies without inertia there
-   are no blows, and gaps are not shifted. `before` are the gaps before the rebuild. */
+   would begin inside the partner such that it begins at zero, or as deep as it was. The shift stays until the row is open. Between bodies
+   without inertia there are no blows, and gaps are not shifted. `before` are the gaps before the rebuild. */
 static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
 {
   PetscFunctionBegin;
@@ -53,7 +53,7 @@ static PetscErrorCode ShiftGaps(Contact contact, const PetscReal before[])
       if (!contact->rows.opposite[i]) contact->rows.gap_shift[i] = 0;
       else
         contact->rows.gap_shift[i] = pushes ? RemainingShift(before[i] - contact->end.gap[i], rows.size[node], rows.slip[node])
-                                            : PetscMax(-contact->end.gap[i], 0);
+                                            : PetscMax(PetscMin(before[i], 0) - contact->end.gap[i], 0);
       contact->rows.initial_gap[i] += contact->rows.gap_shift[i];
       contact->end.gap[i] += contact->rows.gap_shift[i];
       contact->start.gap[i] = contact->end.gap[i];
