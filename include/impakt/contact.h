@@ -67,7 +67,7 @@ PETSC_EXTERN PetscClassId CONTACT_CLASSID;
 
    Level: intermediate
 
-.seealso: `ContactGetPairState()`
+.seealso: `ContactGetPairStates()`
 S*/
 typedef struct {
   PetscReal force;   /* resultant of the normal contact forces, compression positive [N] */
@@ -195,6 +195,5 @@ PETSC_EXTERN PetscErrorCode ContactDestroy(Contact *);
 
 PETSC_EXTERN PetscErrorCode ContactGetNumPairs(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetPair(Contact, PetscInt, const char *[], Body *, Body *);
-PETSC_EXTERN PetscErrorCode ContactGetPairState(Contact, PetscInt, ContactPairState *);
 PETSC_EXTERN PetscErrorCode ContactGetPairStates(Contact, ContactPairState[]);
 PETSC_EXTERN PetscErrorCode ContactGetCounts(Contact, ContactCounts *);

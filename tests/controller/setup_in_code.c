@@ -361,15 +361,14 @@ static void options_come_over_the_program(void **state)
 
 static void what_comes_too_late_is_refused(void **state)
 {
-  const PetscInt   faces[1] = {4};
-  const PetscReal  lower[1] = {0}, upper[1] = {1}, zero[1] = {0};
-  Material         m  = material(MATERIAL_LINEAR_ELASTIC, 1, 1, 0);
-  DM               dm = box(1, faces, lower, upper);
-  ContactPairState end;
-  Controller       controller;
-  Contact          contact;
-  Body             b;
-  Vec              positions;
+  const PetscInt  faces[1] = {4};
+  const PetscReal lower[1] = {0}, upper[1] = {1}, zero[1] = {0};
+  Material        m  = material(MATERIAL_LINEAR_ELASTIC, 1, 1, 0);
+  DM              dm = box(1, faces, lower, upper);
+  Controller      controller;
+  Contact         contact;
+  Body            b;
+  Vec             positions;
 
   (void)state;
   ok(ControllerCreate(PETSC_COMM_WORLD, &controller));
@@ -409,7 +408,7 @@ static void what_comes_too_late_is_refused(void **state)
   refused(PETSC_ERR_ARG_WRONGSTATE, "'bar'|BodySetInitialState()", BodySetInitialVelocity(b, zero));
   ok(ControllerGetContact(controller, &contact));
   refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetLaw()|before ContactSetUp()", ContactSetLaw(contact, -1, "tied"));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 0; there are 0", ContactGetPairState(contact, 0, &end));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 0; there are 0", ContactGetPair(contact, 0, NULL, NULL, NULL));
   refused(PETSC_ERR_ARG_OUTOFRANGE, "interval of 0 steps must be positive", ControllerSetMonitorInterval(controller, 0));
   ok(BodyGetReferencePositions(b, &positions));
   ok(BodyDestroy(&b));

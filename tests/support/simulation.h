@@ -104,16 +104,18 @@ static inline void SimulationRepeat(Simulation *simulation, const char options[]
 /* One controller step with all its parts, see ContactGetParts(), and the only pair at its end */
 static inline ContactPairState Step(Simulation *simulation)
 {
-  ContactPairState pair;
-  PetscInt         parts;
+  ContactPairState pairs[16];
+  PetscInt         parts, n;
 
+  ok(ContactGetNumPairs(simulation->contact, &n));
+  assert_in_range(n, 1, 16);
   ok(ContactGetParts(simulation->contact, &parts));
   for (PetscInt part = 0; part < parts; part++) {
     ok(ContactStep(simulation->contact));
     ok(ContactAccept(simulation->contact));
   }
-  ok(ContactGetPairState(simulation->contact, 0, &pair));
-  return pair;
+  ok(ContactGetPairStates(simulation->contact, pairs));
+  return pairs[0];
 }
 
 static inline PetscReal Momentum(Simulation *simulation, PetscInt body)

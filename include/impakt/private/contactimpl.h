@@ -362,9 +362,8 @@ typedef struct {
 /* What is told of pairs that come and go, see src/contact/interface/told.c */
 typedef struct {
   PetscInt          n;
-  ContactPair      *pairs;  /* their names and bodies */
-  ContactPairState *gone;   /* what pairs that have gone have done, of all ranks */
-  ContactPairState *states; /* work space */
+  ContactPair      *pairs; /* their names and bodies */
+  ContactPairState *gone;  /* what pairs that have gone have done, of all ranks */
 } ContactTold;
 
 /* How deep bodies are inside each other, see src/contact/interface/overlap.c */

@@ -18,7 +18,7 @@ PetscErrorCode ContactSetUpTold(Contact contact)
 
   PetscFunctionBegin;
   told->n = n * (1 + contact->n_obstacles);
-  PetscCall(PetscCalloc3(told->n, &told->pairs, told->n, &told->gone, told->n, &told->states));
+  PetscCall(PetscCalloc2(told->n, &told->pairs, told->n, &told->gone));
   for (PetscInt b = 0; b < n; b++) {
     const char *body = ((PetscObject)contact->bodies[b])->name;
     char        name[256];
@@ -106,35 +106,6 @@ static PetscErrorCode TellStates(Contact contact, ContactPairState states[])
 }
 
 /*@
-  ContactGetPairState - forces, gap and active nodes of a pair at the end of the last step
-
-  Collective
-
-  Input Parameters:
-+ contact - the `Contact`, set up
-- pair    - 0 to the number of pairs - 1
-
-  Output Parameter:
-. state - see `ContactPairState`
-
-  Level: intermediate
-
-.seealso: `Contact`, `ContactGetPairStates()`, `ContactStep()`
-@*/
-PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairState *state)
-{
-  ContactPairState *states = contact->neighbours.come_and_go ? contact->neighbours.told.states : contact->resultants.states;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(state, 3);
-  ContactCheckPair(contact, pair);
-  PetscCall(ContactGetPairStates(contact, states));
-  *state = states[pair];
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/*@
   ContactGetPairStates - forces, gaps and active nodes of all pairs at the end of the last step
 
   Collective
@@ -147,7 +118,7 @@ PetscErrorCode ContactGetPairState(Contact contact, PetscInt pair, ContactPairSt
 
   Level: intermediate
 
-.seealso: `Contact`, `ContactGetPairState()`, `ContactGetNumPairs()`, `ContactStep()`
+.seealso: `Contact`, `ContactGetNumPairs()`, `ContactStep()`
 @*/
 PetscErrorCode ContactGetPairStates(Contact contact, ContactPairState states[])
 {

@@ -223,6 +223,6 @@ PetscErrorCode ContactDestroyNeighbours(Contact contact)
   PetscCall(PetscFree(neighbours->found));
   PetscCall(PetscFree(neighbours->living));
   for (PetscInt p = 0; p < neighbours->told.n; p++) PetscCall(PetscFree(neighbours->told.pairs[p].name));
-  PetscCall(PetscFree3(neighbours->told.pairs, neighbours->told.gone, neighbours->told.states));
+  PetscCall(PetscFree2(neighbours->told.pairs, neighbours->told.gone));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

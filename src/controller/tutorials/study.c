@@ -61,7 +61,7 @@ static PetscErrorCode Run(const DM meshes[], PetscReal modulus, PetscReal *force
   PetscCall(ContactAddPair(contact, "left:right"));
   PetscCall(ControllerSetFromOptions(controller));
   PetscCall(ControllerSolve(controller));
-  PetscCall(ContactGetPairState(contact, 0, &state));
+  PetscCall(ContactGetPairStates(contact, &state));
   *force = state.force;
   PetscCall(ControllerDestroy(&controller));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -253,7 +253,7 @@ static void simulate(const Pairing *pairing, const char mass[], PetscInt steps, 
   for (PetscInt k = 0; k < steps; k++) {
     ok(ContactStep(contact));
     ok(ContactAccept(contact));
-    ok(ContactGetPairState(contact, 0, &state));
+    ok(ContactGetPairStates(contact, &state));
     assert_int_equal(state.active, 1); /* in contact from the first step on */
     assert_true(state.force > 0);
   }

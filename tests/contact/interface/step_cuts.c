@@ -53,7 +53,7 @@ static void Note(Simulation *simulation, PetscInt step, Record *record)
     values[record->n++] = measures.momentum[0];
     values[record->n++] = measures.damping_work;
   }
-  ok(ContactGetPairState(simulation->contact, 0, &pair));
+  ok(ContactGetPairStates(simulation->contact, &pair));
   values[record->n++] = pair.force;
 }
 
