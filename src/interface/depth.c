@@ -12,11 +12,10 @@
 static PetscErrorCode FindPairs(ProbeSearch *search)
 {
   PetscReal *mine;
-  PetscInt   max = 0, *order;
-  PetscReal *lower;
+  PetscInt   max = 0;
 
   PetscFunctionBegin;
-  PetscCall(PetscMalloc3(6 * search->n, &mine, search->n, &order, search->n, &lower));
+  PetscCall(PetscMalloc1(6 * search->n, &mine));
   PetscCall(PetscMalloc2(6 * search->n * search->n_ranks, &search->boxes, 6 * search->n, &search->whole));
   for (PetscInt s = 0; s < search->n; s++) BoxFind(search->surfaces[s]->data.n_nodes, search->surfaces[s]->data.positions, mine + 6 * s);
   PetscCallMPI(
@@ -25,16 +24,8 @@ static PetscErrorCode FindPairs(ProbeSearch *search)
     search->whole[k] = PETSC_MAX_REAL;
     for (PetscMPIInt r = 0; r < search->n_ranks; r++) search->whole[k] = PetscMin(search->whole[k], search->boxes[6 * search->n * r + k]);
   }
-  for (PetscInt s = 0; s < search->n; s++) {
-    order[s] = s;
-    lower[s] = search->whole[6 * s];
-  }
-  PetscCall(PetscSortRealWithPermutation(search->n, lower, order));
-  for (PetscInt i = 0; i < search->n; i++)
-    for (PetscInt j = i + 1; j < search->n; j++) {
-      const PetscInt a = order[i], b = order[j];
-
-      if (search->whole[6 * b] > -search->whole[6 * a + 3]) break; /* all others begin beyond the end of this one */
+  for (PetscInt a = 0; a < search->n; a++)
+    for (PetscInt b = a + 1; b < search->n; b++) {
       if (!BoxesMeet(search->whole + 6 * a, search->whole + 6 * b)) continue;
       if (search->n_pairs + 2 > max) {
         max = 2 * max + 16;
@@ -43,7 +34,7 @@ static PetscErrorCode FindPairs(ProbeSearch *search)
       search->pairs[search->n_pairs++] = (SurfaceDepth){.surfaces = {a, b}};
       search->pairs[search->n_pairs++] = (SurfaceDepth){.surfaces = {b, a}};
     }
-  PetscCall(PetscFree3(mine, order, lower));
+  PetscCall(PetscFree(mine));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
