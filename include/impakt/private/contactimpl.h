@@ -369,7 +369,6 @@ typedef struct {
 /* How deep bodies are inside each other, see src/contact/interface/overlap.c */
 typedef struct {
   Surface      *boundaries; /* per body: all of its faces; NULL until they are asked for */
-  MPI_Comm      own, comm;  /* on which all ranks call together alone, so that PETSc counts its messages alike; PETSc's own of that */
   PetscInt      n_allowed;
   SurfaceDepth *allowed; /* overlaps of the start that are there on purpose; of infinite depth where nothing counts */
 } ContactOverlaps;

@@ -91,8 +91,6 @@ PetscErrorCode ContactGetBoundary(Contact contact, PetscInt body, Surface *bound
 /* How deep each body is in any other, and in any obstacle, where they are now; the body with the lower number comes first */
 static PetscErrorCode FindDepths(Contact contact, PetscInt *n, SurfaceDepth *depths[])
 {
-  ContactOverlaps *overlaps = &contact->overlaps;
-
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     Surface boundary = NULL;
@@ -102,12 +100,8 @@ static PetscErrorCode FindDepths(Contact contact, PetscInt *n, SurfaceDepth *dep
     PetscCall(BodyGetSolution(contact->bodies[b], &u, NULL, NULL));
     PetscCall(SurfaceUpdate(boundary, u));
   }
-  if (!overlaps->comm) { /* a rank that integrates a body by itself creates objects by itself, on the communicator of all */
-    PetscCallMPI(MPI_Comm_dup(PetscObjectComm((PetscObject)contact), &overlaps->own));
-    PetscCall(PetscCommDuplicate(overlaps->own, &overlaps->comm, NULL));
-  }
-  PetscCall(
-      SurfacesFindDepths(overlaps->comm, contact->n_bodies, overlaps->boundaries, contact->n_obstacles, contact->obstacles, n, depths));
+  PetscCall(SurfacesFindDepths(PetscObjectComm((PetscObject)contact), contact->n_bodies, contact->overlaps.boundaries, contact->n_obstacles,
+                               contact->obstacles, n, depths));
   for (PetscInt i = 0; i < *n; i++) {
     PetscInt *of = (*depths)[i].surfaces;
 
@@ -266,10 +260,6 @@ PetscErrorCode ContactDestroyOverlaps(Contact contact)
   for (PetscInt b = 0; b < contact->n_bodies && contact->overlaps.boundaries; b++)
     PetscCall(SurfaceDestroy(&contact->overlaps.boundaries[b]));
   PetscCall(PetscFree(contact->overlaps.boundaries));
-  if (contact->overlaps.comm) {
-    PetscCall(PetscCommDestroy(&contact->overlaps.comm));
-    PetscCallMPI(MPI_Comm_free(&contact->overlaps.own));
-  }
   PetscCall(PetscFree(contact->overlaps.allowed));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
