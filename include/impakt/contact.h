@@ -156,7 +156,7 @@ typedef struct {
   const char *takes; /* what energy contact takes by its rule, which lets it gain none, and what makes that less; or NULL */
 } ContactTraits;
 
-/* What ContactFieldsCompute() gives for each node */
+/* What ContactGetFields() gives for each node */
 #define CONTACT_FIELDS_FORCE         0  /* three components [N] */
 #define CONTACT_FIELDS_PRESSURE      3  /* [Pa] */
 #define CONTACT_FIELDS_GAP           4  /* [m] */
@@ -166,15 +166,6 @@ typedef struct {
 #define CONTACT_FIELDS_SLIP_DISTANCE 10 /* that it has slid in contact so far [m] */
 #define CONTACT_FIELDS_FRICTION_LOSS 11 /* energy that friction has taken so far, per area [J/m^2] */
 #define CONTACT_FIELDS_SIZE          12
-
-/*S
-   ContactFields - contact forces, pressures, gaps and active nodes of bodies, node by node
-
-   Level: intermediate
-
-.seealso: `ContactGetPairStates()`
-S*/
-typedef struct _n_ContactFields *ContactFields;
 
 PETSC_EXTERN PetscErrorCode ContactInitializePackage(void);
 PETSC_EXTERN PetscErrorCode ContactRegister(const char[], PetscErrorCode (*)(Contact));

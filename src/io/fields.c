@@ -136,7 +136,7 @@ PetscErrorCode FieldsCreate(Controller controller, const char path[], PetscInt *
   }
   if (!blocks) f->set &= ~(1u << FIELDS_BLOCK);
   PetscCall(CheckSpace(f));
-  if (n_pairs) PetscCall(ContactFieldsCreate(contact, &f->contact));
+  if (n_pairs) f->contact = contact;
   PetscCall(CreateBuffers(f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -314,7 +314,6 @@ PetscErrorCode FieldsDestroy(Fields *fields)
   if (f->failed) PetscCall(PetscPopErrorHandler());
   if (!f->failed) PetscCall(error);
   PetscCall(OutputFileRelease(&f->held));
-  PetscCall(ContactFieldsDestroy(&f->contact));
   PetscCall(FieldsMeshDestroy(&f->mesh));
   PetscCall(PetscFree(f->obstacles));
   PetscCall(PetscFree(f->times));

@@ -165,7 +165,7 @@ static PetscErrorCode WriteContact(Fields fields)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < mesh->n_bodies; b++) {
-    PetscCall(ContactFieldsCompute(fields->contact, b, fields->nodal + CONTACT_FIELDS_SIZE * first));
+    PetscCall(ContactGetFields(fields->contact, b, fields->nodal + CONTACT_FIELDS_SIZE * first));
     first += (size_t)mesh->nodes.count[b];
   }
   for (FieldsKind kind = FIELDS_FIRST_OF_CONTACT; kind < FIELDS_PER_FRAME; kind++) {

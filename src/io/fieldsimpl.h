@@ -13,7 +13,7 @@ struct _n_Fields {
   PetscInt        interval, n_frames; /* controller steps from frame to frame; frames of the whole run */
   FieldsMesh      mesh;
   FieldsSet       set;                      /* fields of each frame */
-  ContactFields   contact;                  /* NULL if no bodies can touch */
+  Contact         contact;                  /* borrowed; NULL if no bodies can touch */
   Contact         problem;                  /* has the obstacles; borrowed */
   PetscInt        n_obstacles;              /* that are shown */
   ObstacleGrid   *obstacles;                /* their surfaces; NULL until the file is begun */
@@ -22,7 +22,7 @@ struct _n_Fields {
   PetscReal      *times;                    /* their times [s] */
   PetscReal      *stress;                   /* xx, yy, zz, xy, yz, xz of each cell of this rank [Pa] */
   PetscReal      *plastic;                  /* equivalent plastic strain of each cell of this rank; NULL where nothing flows */
-  PetscReal      *nodal;                    /* of each node of this rank, what ContactFieldsCompute() gives */
+  PetscReal      *nodal;                    /* of each node of this rank, what ContactGetFields() gives */
   void           *buffer;                   /* one field of a frame, in the file's precision */
   hid_t           file;                     /* -1 until it is begun */
   PetscBool       failed;                   /* a frame could not be written */

@@ -162,6 +162,8 @@ typedef struct {
   PetscReal near_reach;        /* others are farther away than this, of all ranks [m] */
 } ContactRows;
 
+#define CONTACT_CARRIED 8 /* kinds of values that ContactGetFields() carries from rows to nodes */
+
 /* The rows of a body: those of the pairs that it is in */
 typedef struct {
   PetscInt   n;                 /* of this rank */
@@ -172,6 +174,7 @@ typedef struct {
   PetscInt   n_near, *near;     /* its rows near contact: their places in `rows`, ascending */
   PetscInt   n_acting, *acting; /* those that act, the same */
   PetscReal *area;              /* as that of rows; the body borrows it */
+  Vec of_rows, *of_nodes; /* work space of ContactGetFields(), a vector of rows and CONTACT_CARRIED of displacements; NULL until used */
   /* its matrix in contact->interfaces, and the spare one */
   PetscBool  affected;    /* rows have got new entries in this attempt at a controller step */
   PetscBool  rewritten;   /* they have in any attempt at it */

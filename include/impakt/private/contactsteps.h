@@ -24,8 +24,6 @@ PETSC_EXTERN PetscErrorCode ContactGetOverlapName(Contact, const ContactOverlap 
 PETSC_EXTERN PetscErrorCode ContactGetPairObstacle(Contact, PetscInt, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetNumObstacles(Contact, PetscInt *);
 PETSC_EXTERN PetscErrorCode ContactGetObstacle(Contact, PetscInt, Obstacle *);
-PETSC_EXTERN PetscErrorCode ContactFieldsCreate(Contact, ContactFields *);
-PETSC_EXTERN PetscErrorCode ContactFieldsDestroy(ContactFields *);
-PETSC_EXTERN PetscErrorCode ContactFieldsCompute(ContactFields, PetscInt, PetscReal[]);
+PETSC_EXTERN PetscErrorCode ContactGetFields(Contact, PetscInt, PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactGetOverlaps(Contact, ContactOverlap[]);
 PETSC_EXTERN PetscErrorCode ContactGetPairNormal(Contact, PetscInt, PetscReal[]);

@@ -16,58 +16,8 @@ typedef enum {
   CARRY_GAP,
   CARRY_SLIDING_AREA,
   CARRY_SLIP_DISTANCE,
-  CARRY_FRICTION_LOSS,
-  N_CARRIED
+  CARRY_FRICTION_LOSS
 } Carried;
-
-struct _n_ContactFields {
-  Contact   contact;  /* borrowed */
-  Vec      *rows;     /* per body: one number for each row of it */
-  Vec      *nodes;    /* per body: N_CARRIED vectors of its displacements' layout */
-  PetscReal smallest; /* smaller areas are round-off [m^2] */
-  PetscInt  layouts;  /* how often pairs had come or gone when room was made for the rows */
-};
-
-static PetscErrorCode MakeRoom(ContactFields f)
-{
-  Contact   contact = f->contact;
-  PetscReal largest = 0;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(VecDestroy(&f->rows[b]));
-    PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)contact), contact->body_rows[b].n, PETSC_DETERMINE, &f->rows[b]));
-  }
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    largest = PetscMax(largest, contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]]);
-  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_MAX, &largest));
-  f->smallest = NO_AREA * largest;
-  f->layouts  = contact->neighbours.layouts;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What is needed to compute nodal fields of a contact that has been set up, and outlives them. Collective. */
-PetscErrorCode ContactFieldsCreate(Contact contact, ContactFields *fields)
-{
-  ContactFields f;
-
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(fields, 2);
-  PetscCheck(contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetUp() first");
-  PetscCall(PetscNew(&f));
-  *fields    = f;
-  f->contact = contact;
-  PetscCall(PetscCalloc2(contact->n_bodies, &f->rows, N_CARRIED * contact->n_bodies, &f->nodes));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    Vec positions;
-
-    PetscCall(BodyGetReferencePositions(contact->bodies[b], &positions));
-    for (PetscInt k = 0; k < N_CARRIED; k++) PetscCall(VecDuplicate(positions, &f->nodes[N_CARRIED * b + k]));
-  }
-  PetscCall(MakeRoom(f));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* What row i carries of one kind. `along` is the component of the node's normal along the row: 1 but for tied nodes, which have a row for
    each axis, so that the areas they carry point along the normal as those of other nodes do. */
@@ -96,15 +46,15 @@ static PetscReal RowValue(Contact contact, PetscInt i, PetscReal along, Carried 
 }
 
 /* Carries values of one kind to the nodes of a body as the forces of its rows act on them */
-static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
+static PetscErrorCode Carry(Contact contact, PetscInt b, Carried kind)
 {
-  Contact      contact = fields->contact;
-  PetscScalar *values;
+  const ContactBodyRows *of = &contact->body_rows[b];
+  PetscScalar           *values;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(fields->rows[b], &values));
-  for (PetscInt j = 0; j < contact->body_rows[b].n; j++) {
-    const PetscInt     i    = contact->body_rows[b].rows[j];
+  PetscCall(VecGetArrayWrite(of->of_rows, &values));
+  for (PetscInt j = 0; j < of->n; j++) {
+    const PetscInt     i    = of->rows[j];
     const ContactPair *pair = &contact->pairs[contact->rows.pair[i]];
     const PetscInt     node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
     PetscReal          along = k == 0;
@@ -117,8 +67,8 @@ static PetscErrorCode Carry(ContactFields fields, PetscInt b, Carried kind)
     }
     values[j] = RowValue(contact, i, along, kind);
   }
-  PetscCall(VecRestoreArrayWrite(fields->rows[b], &values));
-  PetscCall(MatMultTranspose(contact->interfaces[b], fields->rows[b], fields->nodes[N_CARRIED * b + kind]));
+  PetscCall(VecRestoreArrayWrite(of->of_rows, &values));
+  PetscCall(MatMultTranspose(contact->interfaces[b], of->of_rows, of->of_nodes[kind]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -155,50 +105,48 @@ static void FrictionOf(PetscInt dim, PetscInt dof, PetscReal smallest, const Pet
    of its row, a Neumann node means of the rows that act on it, weighed by the areas that they bring there: the pressure is
    sum_i P_ij f_i / sum_i P_ij A_i, so that it is uniform on both sides if it is on one. It touches if any of them does. A node on several
    contact surfaces has the mean of their values. Collective. */
-PetscErrorCode ContactFieldsCompute(ContactFields fields, PetscInt body, PetscReal values[])
+PetscErrorCode ContactGetFields(Contact contact, PetscInt body, PetscReal values[])
 {
-  Contact            contact = fields->contact;
-  const PetscScalar *carried[N_CARRIED];
-  Vec               *nodes = fields->nodes + N_CARRIED * body;
+  const PetscScalar *carried[CONTACT_CARRIED];
+  ContactBodyRows   *of;
+  PetscReal          smallest = 0; /* smaller areas are round-off [m^2] */
   PetscInt           dim, n;
   Carried            n_carried;
 
   PetscFunctionBegin;
-  PetscAssertPointer(fields, 1);
+  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
+  PetscCheck(contact->setup, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_WRONGSTATE, "Call ContactSetUp() first");
   PetscCheck(body >= 0 && body < contact->n_bodies, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
              "There is no body %" PetscInt_FMT "; there are %" PetscInt_FMT, body, contact->n_bodies);
-  if (fields->layouts != contact->neighbours.layouts) PetscCall(MakeRoom(fields));
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    smallest = PetscMax(smallest, NO_AREA * contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]]);
+  PetscCall(ContactReduce(contact, 1, MPIU_REAL, MPIU_MAX, &smallest));
   PetscCall(BodyGetDimension(contact->bodies[body], &dim));
-  PetscCall(VecGetLocalSize(nodes[0], &n));
-  PetscCall(ContactRefreshGaps(contact));
-  n_carried = contact->friction.slip ? N_CARRIED : CARRY_SLIDING_AREA;
-  for (Carried k = 0; k < n_carried; k++) {
-    PetscCall(Carry(fields, body, k));
-    PetscCall(VecGetArrayRead(nodes[k], &carried[k]));
+  of = &contact->body_rows[body];
+  if (!of->of_rows) {
+    Vec positions;
+
+    PetscCall(BodyGetReferencePositions(contact->bodies[body], &positions));
+    PetscCall(VecDuplicateVecs(positions, CONTACT_CARRIED, &of->of_nodes));
+    PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)contact), of->n, PETSC_DETERMINE, &of->of_rows));
   }
+  PetscCall(ContactRefreshGaps(contact));
+  n_carried = contact->friction.slip ? CONTACT_CARRIED : CARRY_SLIDING_AREA;
+  for (Carried k = 0; k < n_carried; k++) {
+    PetscCall(Carry(contact, body, k));
+    PetscCall(VecGetArrayRead(of->of_nodes[k], &carried[k]));
+  }
+  PetscCall(VecGetLocalSize(of->of_nodes[0], &n));
   for (PetscInt dof = 0; dof < n; dof += dim, values += CONTACT_FIELDS_SIZE) {
     const PetscScalar *area = carried[CARRY_AREA] + dof;
 
     for (PetscInt d = 0; d < 3; d++) values[CONTACT_FIELDS_FORCE + d] = d < dim ? PetscRealPart(carried[CARRY_FORCE][dof + d]) : 0;
-    values[CONTACT_FIELDS_PRESSURE] = Ratio(dim, carried[CARRY_FORCE] + dof, area, fields->smallest, 0);
-    values[CONTACT_FIELDS_GAP]      = Ratio(dim, carried[CARRY_GAP] + dof, carried[CARRY_GAP_AREA] + dof, fields->smallest, NAN);
-    values[CONTACT_FIELDS_ACTIVE] = PetscAbsReal(Ratio(dim, carried[CARRY_ACTIVE_AREA] + dof, area, fields->smallest, 0)) > NOT_ACTIVE ? 1
-                                                                                                                                       : 0;
+    values[CONTACT_FIELDS_PRESSURE] = Ratio(dim, carried[CARRY_FORCE] + dof, area, smallest, 0);
+    values[CONTACT_FIELDS_GAP]      = Ratio(dim, carried[CARRY_GAP] + dof, carried[CARRY_GAP_AREA] + dof, smallest, NAN);
+    values[CONTACT_FIELDS_ACTIVE]   = PetscAbsReal(Ratio(dim, carried[CARRY_ACTIVE_AREA] + dof, area, smallest, 0)) > NOT_ACTIVE ? 1 : 0;
     for (PetscInt k = CONTACT_FIELDS_TRACTION; k < CONTACT_FIELDS_SIZE; k++) values[k] = 0;
-    if (n_carried == N_CARRIED) FrictionOf(dim, dof, fields->smallest, carried, values);
+    if (n_carried == CONTACT_CARRIED) FrictionOf(dim, dof, smallest, carried, values);
   }
-  for (Carried k = 0; k < n_carried; k++) PetscCall(VecRestoreArrayRead(nodes[k], &carried[k]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Frees what ContactFieldsCreate() made. Collective. */
-PetscErrorCode ContactFieldsDestroy(ContactFields *fields)
-{
-  PetscFunctionBegin;
-  if (!*fields) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < N_CARRIED * (*fields)->contact->n_bodies; k++) PetscCall(VecDestroy(&(*fields)->nodes[k]));
-  for (PetscInt b = 0; b < (*fields)->contact->n_bodies; b++) PetscCall(VecDestroy(&(*fields)->rows[b]));
-  PetscCall(PetscFree2((*fields)->rows, (*fields)->nodes));
-  PetscCall(PetscFree(*fields));
+  for (Carried k = 0; k < n_carried; k++) PetscCall(VecRestoreArrayRead(of->of_nodes[k], &carried[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -48,6 +48,8 @@ PetscErrorCode ContactDestroyBodyRows(Contact contact)
   for (PetscInt b = 0; contact->body_rows && b < contact->n_bodies; b++) {
     PetscCall(PetscFree4(contact->body_rows[b].rows, contact->body_rows[b].area, contact->body_rows[b].near, contact->body_rows[b].acting));
     PetscCall(PetscFree(contact->body_rows[b].all));
+    PetscCall(VecDestroy(&contact->body_rows[b].of_rows));
+    PetscCall(VecDestroyVecs(CONTACT_CARRIED, &contact->body_rows[b].of_nodes));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -47,7 +47,7 @@ static void CheckPair(const ContactPairState *pair)
 }
 
 /* Sums over the nodes of a body, and its uniform pressure and gap at x = face in the reference configuration */
-static void CheckFace(Simulation *simulation, ContactFields fields, PetscInt b, PetscReal face, PetscInt sign, const ContactPairState *pair)
+static void CheckFace(Simulation *simulation, PetscInt b, PetscReal face, PetscInt sign, const ContactPairState *pair)
 {
   PetscReal          values[MAX_NODES * CONTACT_FIELDS_SIZE], sums[4] = {0};
   const PetscScalar *x;
@@ -57,7 +57,7 @@ static void CheckFace(Simulation *simulation, ContactFields fields, PetscInt b, 
   ok(BodyGetReferencePositions(simulation->bodies[b], &positions));
   ok(VecGetLocalSize(positions, &n));
   assert_in_range(n, 0, 2 * MAX_NODES);
-  ok(ContactFieldsCompute(fields, b, values));
+  ok(ContactGetFields(simulation->contact, b, values));
   ok(VecGetArrayRead(positions, &x));
   for (PetscInt i = 0; i < n / 2; i++) {
     const PetscReal *node = values + CONTACT_FIELDS_SIZE * i, *force = node + CONTACT_FIELDS_FORCE;
@@ -86,13 +86,11 @@ static void CheckFace(Simulation *simulation, ContactFields fields, PetscInt b, 
 
 static void forces_gaps_and_pressures(void **state)
 {
-  Simulation   *simulation = (Simulation *)*state;
-  ContactFields fields;
-  PetscBool     touched[2] = {PETSC_FALSE, PETSC_FALSE}, apart = PETSC_FALSE;
+  Simulation *simulation = (Simulation *)*state;
+  PetscBool   touched[2] = {PETSC_FALSE, PETSC_FALSE}, apart = PETSC_FALSE;
 
   AddPlates("");
   ok(SimulationCreate(simulation));
-  ok(ContactFieldsCreate(simulation->contact, &fields));
   for (PetscInt step = 0; step <= STEPS; step++) {
     ContactPairState pairs[2];
 
@@ -103,15 +101,13 @@ static void forces_gaps_and_pressures(void **state)
     ok(ContactGetPairStates(simulation->contact, pairs));
     for (PetscInt p = 0; p < 2; p++) {
       CheckPair(&pairs[p]);
-      CheckFace(simulation, fields, p, 0.901 * p + 0.9, -1, &pairs[p]);
-      CheckFace(simulation, fields, p + 1, 0.901 * (p + 1), 1, &pairs[p]);
+      CheckFace(simulation, p, 0.901 * p + 0.9, -1, &pairs[p]);
+      CheckFace(simulation, p + 1, 0.901 * (p + 1), 1, &pairs[p]);
       if (pairs[p].force > 1e-3) touched[p] = PETSC_TRUE;
     }
     if (pairs[0].active && !pairs[1].active) apart = PETSC_TRUE;
   }
   assert_true(touched[0] && touched[1] && apart);
-  ok(ContactFieldsDestroy(&fields));
-  assert_null(fields);
 }
 
 /* What the bodies get from each other is the change of their momenta. The trapezoidal rule is Newmark's with gamma = 1/2 in an
@@ -142,20 +138,17 @@ static void impulses_are_changes_of_momentum(void **state)
 /* Not before there is anything to compute from, not of bodies that there are not */
 static void misuse_is_refused(void **state)
 {
-  Simulation   *simulation = (Simulation *)*state;
-  PetscReal     values[1];
-  ContactFields fields;
-  Contact       contact;
+  Simulation *simulation = (Simulation *)*state;
+  PetscReal   values[1];
+  Contact     contact;
 
   AddPlates("");
   ok(SimulationCreate(simulation));
   ok(ContactCreate(PETSC_COMM_WORLD, &contact));
-  refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetUp() first", ContactFieldsCreate(contact, &fields));
+  refused(PETSC_ERR_ARG_WRONGSTATE, "ContactSetUp() first", ContactGetFields(contact, 0, values));
   ok(ContactDestroy(&contact));
-  ok(ContactFieldsCreate(simulation->contact, &fields));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no body 3; there are 3", ContactFieldsCompute(fields, 3, values));
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no body -1", ContactFieldsCompute(fields, -1, values));
-  ok(ContactFieldsDestroy(&fields));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no body 3; there are 3", ContactGetFields(simulation->contact, 3, values));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no body -1", ContactGetFields(simulation->contact, -1, values));
 }
 
 #define STRETCHED                                                                                                                          \

@@ -74,28 +74,26 @@ static PetscInt any_follows(Contact contact)
   return any;
 }
 
-static void count_step(Simulation *simulation, ContactFields fields, PetscReal *values[], ContactPairState *state)
+static void count_step(Simulation *simulation, PetscReal *values[], ContactPairState *state)
 {
   *state = Step(simulation);
   for (PetscInt b = 0; b < simulation->n_bodies; b++) {
     BodyMeasures measures;
 
     ok(BodyGetMeasures(simulation->bodies[b], &measures));
-    ok(ContactFieldsCompute(fields, b, values[b]));
+    ok(ContactGetFields(simulation->contact, b, values[b]));
   }
 }
 
 static Counted count(Simulation *simulation, PetscInt dim, const char integrators[], const char method[])
 {
-  Counted       counted = {0};
-  ContactFields fields;
-  PetscReal    *values[2];
+  Counted    counted = {0};
+  PetscReal *values[2];
 
   AddOptions("-bodies a,b -contact_pairs a.xmax:b.xmin -time_step 0.01 -time_end 1 -progress false");
   AddOptions(blocks[dim - 2]);
   AddOptions(integrators);
   SimulationRepeat(simulation, method);
-  ok(ContactFieldsCreate(simulation->contact, &fields));
   for (PetscInt b = 0; b < 2; b++) {
     PetscInt n;
     Vec      positions;
@@ -110,7 +108,7 @@ static Counted count(Simulation *simulation, PetscInt dim, const char integrator
     ContactCounts    counts[2];
 
     ok(ContactGetCounts(simulation->contact, &counts[0]));
-    count_step(simulation, fields, values, &state);
+    count_step(simulation, values, &state);
     ok(ContactGetCounts(simulation->contact, &counts[1]));
     if (step == FREE_STEP) {
       assert_int_equal(state.active, 0);
@@ -126,7 +124,6 @@ static Counted count(Simulation *simulation, PetscInt dim, const char integrator
     counted.steps++;
   }
   for (PetscInt b = 0; b < 2; b++) ok(PetscFree(values[b]));
-  ok(ContactFieldsDestroy(&fields));
   assert_true(allocations + petsc_allocations > 1000); /* both are counted */
   return counted;
 }
