@@ -6,9 +6,10 @@ PetscErrorCode ControllerSetUpSupports(Controller controller)
 {
   PetscInt           n_obstacles, most = 0, next = 0, n;
   ControllerSupport *support;
+  const Obstacle    *obstacles;
 
   PetscFunctionBegin;
-  PetscCall(ContactGetNumObstacles(controller->contact, &n_obstacles));
+  PetscCall(ContactGetObstacles(controller->contact, &n_obstacles, &obstacles));
   controller->n_supports = n_obstacles;
   for (PetscInt b = 0; b < controller->n_bodies; b++) {
     PetscCall(BodyGetNumReactions(controller->bodies[b], &n));
@@ -25,11 +26,8 @@ PetscErrorCode ControllerSetUpSupports(Controller controller)
     }
   }
   for (PetscInt o = 0; o < n_obstacles; o++, next++) {
-    Obstacle obstacle;
-
     support[next].body = -1;
-    PetscCall(ContactGetObstacle(controller->contact, o, &obstacle));
-    PetscCall(PetscObjectGetName((PetscObject)obstacle, &support[next].name));
+    PetscCall(PetscObjectGetName((PetscObject)obstacles[o], &support[next].name));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -67,7 +65,7 @@ static PetscErrorCode AddPairs(Controller controller, ControllerSupport support[
 
   PetscFunctionBegin;
   PetscCall(ContactGetNumPairs(controller->contact, &n_pairs));
-  PetscCall(ContactGetNumObstacles(controller->contact, &n_obstacles));
+  PetscCall(ContactGetObstacles(controller->contact, &n_obstacles, NULL));
   for (o = 0; o < n_obstacles; o++)
     for (PetscInt d = 0; d < 3; d++) support[o].force[d] = support[o].moment[d] = 0;
   for (PetscInt p = 0; p < n_pairs; p++) {

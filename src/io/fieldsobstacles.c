@@ -155,7 +155,7 @@ PetscErrorCode FieldsObstaclesCheckPath(Contact contact, const char fields[])
   PetscInt n;
 
   PetscFunctionBegin;
-  PetscCall(ContactGetNumObstacles(contact, &n));
+  PetscCall(ContactGetObstacles(contact, &n, NULL));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(XdmfGetPath(fields, XDMF_OBSTACLES, sizeof(path), path));
   PetscCall(OutputFileCheck(PetscObjectComm((PetscObject)contact), "-output_fields, beside it,", path));
@@ -165,24 +165,23 @@ PetscErrorCode FieldsObstaclesCheckPath(Contact contact, const char fields[])
 /* Surfaces of all obstacles within the space of the bodies. `grids`: n of them, to be freed; `contact` must outlive them. Collective */
 PetscErrorCode FieldsObstaclesFind(Contact contact, PetscInt n_bodies, const Body bodies[], PetscInt *n, ObstacleGrid *grids[])
 {
-  PetscReal centre[3], diagonal = 0;
-  PetscInt  n_obstacles, dim;
+  const Obstacle *obstacles;
+  PetscReal       centre[3], diagonal = 0;
+  PetscInt        n_obstacles, dim;
 
   PetscFunctionBegin;
   *n     = 0;
   *grids = NULL;
-  PetscCall(ContactGetNumObstacles(contact, &n_obstacles));
+  PetscCall(ContactGetObstacles(contact, &n_obstacles, &obstacles));
   if (!n_obstacles) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetDimension(bodies[0], &dim));
   PetscCall(FindBox(n_bodies, bodies, centre, &diagonal));
   PetscCall(PetscMalloc1(n_obstacles, grids));
   for (PetscInt o = 0; o < n_obstacles; o++) {
     ObstacleGrid *grid = *grids + *n;
-    Obstacle      obstacle;
 
-    PetscCall(ContactGetObstacle(contact, o, &obstacle));
-    PetscCall(FindGrid(obstacle, dim, centre, SIZE * diagonal, grid));
-    PetscCall(PetscObjectGetName((PetscObject)obstacle, &grid->name));
+    PetscCall(FindGrid(obstacles[o], dim, centre, SIZE * diagonal, grid));
+    PetscCall(PetscObjectGetName((PetscObject)obstacles[o], &grid->name));
     if (grid->segments) (*n)++;
   }
   PetscFunctionReturn(PETSC_SUCCESS);

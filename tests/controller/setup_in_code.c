@@ -550,7 +550,7 @@ static void supports_and_probes(void **state)
   const char              *name;
   PetscReal                force[3], moment[3], position[6], displacement[6], velocity[6], stress[12], wall;
   PetscInt                 n, i;
-  Obstacle                 obstacle;
+  const Obstacle          *obstacles;
 
   ok(ControllerSolve(simulation->controller));
   ok(ControllerGetSupports(simulation->controller, &n, &supports));
@@ -570,12 +570,10 @@ static void supports_and_probes(void **state)
   refused(PETSC_ERR_ARG_OUTOFRANGE, "'bar'|no surface 1", BodyGetReactionSurface(simulation->bodies[0], 1, &name));
   ok(BodyGetReactions(simulation->bodies[0], force, moment));
   near(force[0], supports[0].force[0], 0);
-  ok(ContactGetNumObstacles(simulation->contact, &n));
+  ok(ContactGetObstacles(simulation->contact, &n, &obstacles));
   assert_int_equal(n, 1);
-  ok(ContactGetObstacle(simulation->contact, 0, &obstacle));
-  ok(PetscObjectGetName((PetscObject)obstacle, &name));
+  ok(PetscObjectGetName((PetscObject)obstacles[0], &name));
   assert_string_equal(name, "wall");
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no obstacle 1", ContactGetObstacle(simulation->contact, 1, &obstacle));
   ok(ContactGetPairObstacle(simulation->contact, 0, &i));
   assert_int_equal(i, 0);
   refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 1", ContactGetPairObstacle(simulation->contact, 1, &i));

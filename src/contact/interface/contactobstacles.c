@@ -60,25 +60,14 @@ PetscErrorCode ContactAddObstacle(Contact contact, Obstacle obstacle)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The number of obstacles */
-PetscErrorCode ContactGetNumObstacles(Contact contact, PetscInt *n)
+/* The obstacles, in the order in which they were added, and their number; `obstacles` may be NULL, and belong to the contact */
+PetscErrorCode ContactGetObstacles(Contact contact, PetscInt *n, const Obstacle *obstacles[])
 {
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(n, 2);
   *n = contact->n_obstacles;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* An obstacle by its number, in the order in which they were added; owned by the contact */
-PetscErrorCode ContactGetObstacle(Contact contact, PetscInt i, Obstacle *obstacle)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(obstacle, 3);
-  PetscCheck(i >= 0 && i < contact->n_obstacles, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_OUTOFRANGE,
-             "There is no obstacle %" PetscInt_FMT "; there are %" PetscInt_FMT, i, contact->n_obstacles);
-  *obstacle = contact->obstacles[i];
+  if (obstacles) *obstacles = contact->obstacles;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
