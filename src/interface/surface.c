@@ -253,12 +253,3 @@ PetscErrorCode SurfaceGetData(Surface surface, const SurfaceData **data)
   *data = &surface->data;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/* Points of the mesh of the nodes that this rank has, those that it owns first; owned by the surface */
-PetscErrorCode SurfaceGetVertices(Surface surface, PetscInt *n, const PetscInt *vertices[])
-{
-  PetscFunctionBegin;
-  *n        = surface->data.n_nodes;
-  *vertices = surface->data.vertices;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -58,4 +58,3 @@ PETSC_EXTERN PetscErrorCode SurfacesFindDepths(MPI_Comm, PetscInt, const Surface
                                                SurfaceDepth *[]);
 PETSC_EXTERN PetscErrorCode SurfaceDestroy(Surface *);
 PETSC_EXTERN PetscErrorCode SurfaceGetData(Surface, const SurfaceData **);
-PETSC_EXTERN PetscErrorCode SurfaceGetVertices(Surface, PetscInt *, const PetscInt *[]);

@@ -73,13 +73,12 @@ static PetscErrorCode ChooseMass(Contact contact)
     PetscBool chooses = PETSC_FALSE;
 
     if (BodyChoosesMass(contact->bodies[b])) {
-      const PetscInt *vertices;
-      PetscInt        n_vertices;
-      Surface         boundary;
+      const SurfaceData *data;
+      Surface            boundary;
 
       PetscCall(ContactCreateSurface(contact, b, NULL, &boundary));
-      PetscCall(SurfaceGetVertices(boundary, &n_vertices, &vertices));
-      PetscCall(BodyChooseMass(contact->bodies[b], n_vertices, vertices, &chooses));
+      PetscCall(SurfaceGetData(boundary, &data));
+      PetscCall(BodyChooseMass(contact->bodies[b], data->n_nodes, data->vertices, &chooses));
       PetscCall(SurfaceDestroy(&boundary));
     }
     if (chooses && kept == n) kept = b;

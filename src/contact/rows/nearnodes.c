@@ -20,14 +20,13 @@ PetscErrorCode ContactCreateFacing(Contact contact, const ContactPair *pair, Sur
 /* Tells a body whose far nodes keep their mass which of the nodes of a pair may touch: those that face the partner at the start */
 PetscErrorCode ContactMarkNearNodes(Contact contact, const ContactPair *pair, PetscInt side)
 {
-  const PetscInt *vertices;
-  PetscInt        n;
-  Surface         surfaces[2];
+  const SurfaceData *data;
+  Surface            surfaces[2];
 
   PetscFunctionBegin;
   PetscCall(ContactCreateFacing(contact, pair, surfaces));
-  PetscCall(SurfaceGetVertices(surfaces[side], &n, &vertices));
-  PetscCall(BodySetContactNodes(contact->bodies[pair->body[side]], n, vertices));
+  PetscCall(SurfaceGetData(surfaces[side], &data));
+  PetscCall(BodySetContactNodes(contact->bodies[pair->body[side]], data->n_nodes, data->vertices));
   for (PetscInt s = 0; s < 2; s++) PetscCall(SurfaceDestroy(&surfaces[s]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

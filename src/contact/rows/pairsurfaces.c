@@ -9,13 +9,13 @@ PetscErrorCode ContactMarkNodes(Contact contact, const ContactPair *pair)
 {
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
-    const PetscInt *vertices;
-    PetscInt        n, body = pair->body[side];
+    const Body         body = contact->bodies[pair->body[side]];
+    const SurfaceData *data;
 
-    PetscCall(SurfaceGetVertices(pair->surfaces[side], &n, &vertices));
+    PetscCall(SurfaceGetData(pair->surfaces[side], &data));
     if (!pair->keeps_mass || contact->sideless) {
-      if (BodyDoes(contact->bodies[body], BodyGetMassRedistributeNear)) PetscCall(ContactMarkNearNodes(contact, pair, side));
-      else PetscCall(BodySetContactNodes(contact->bodies[body], n, vertices));
+      if (BodyDoes(body, BodyGetMassRedistributeNear)) PetscCall(ContactMarkNearNodes(contact, pair, side));
+      else PetscCall(BodySetContactNodes(body, data->n_nodes, data->vertices));
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -127,12 +127,12 @@ PetscErrorCode ContactTakeFirstNeighbours(Contact contact, PetscReal *extent)
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const PetscInt *vertices;
-    PetscInt        n, dim;
+    const SurfaceData *data;
+    PetscInt           dim;
 
     PetscCall(AppendSurface(contact, b, NULL, PETSC_TRUE));
-    PetscCall(SurfaceGetVertices(contact->surfaces[b].surface, &n, &vertices));
-    PetscCall(BodySetContactNodes(contact->bodies[b], n, vertices));
+    PetscCall(SurfaceGetData(contact->surfaces[b].surface, &data));
+    PetscCall(BodySetContactNodes(contact->bodies[b], data->n_nodes, data->vertices));
     PetscCall(GrowExtent(contact->bodies[b], &dim, extent));
     PetscCall(BodyGetScale(contact->bodies[b], BODY_CONTACT_ELEMENT_SIZE, &contact->neighbours.edge[b]));
   }
