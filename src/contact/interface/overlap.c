@@ -49,32 +49,22 @@ PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether a pair is that of two bodies, in ascending order, or of a body and an obstacle, whose number is beyond those of bodies */
-static PetscBool IsPairOf(Contact contact, const ContactPair *pair, PetscInt body, PetscInt other)
+/* Whether a body may touch another one of a higher number, or an obstacle, which is counted after all bodies; and whether pairs tie them:
+   of those that are no pair, whether all pairs tie */
+static PetscBool MayTouch(Contact contact, PetscInt body, PetscInt other, PetscBool *tied)
 {
-  if (other >= contact->n_bodies)
-    return (PetscBool)(pair->body[0] == body && pair->obstacle == contact->obstacles[other - contact->n_bodies]);
-  return (PetscBool)(!pair->obstacle && PetscMin(pair->body[0], pair->body[1]) == body && PetscMax(pair->body[0], pair->body[1]) == other);
-}
+  PetscBool touch = contact->neighbours.come_and_go, tie = PETSC_FALSE;
 
-/* Whether a body may touch another, or an obstacle: `other` counts obstacles after all bodies */
-static PetscBool MayTouch(Contact contact, PetscInt body, PetscInt other)
-{
-  if (contact->neighbours.come_and_go) return PETSC_TRUE;
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (IsPairOf(contact, &contact->pairs[p], body, other)) return PETSC_TRUE;
-  return PETSC_FALSE;
-}
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactPair *pair    = &contact->pairs[p];
+    const PetscInt     partner = ContactPairPartner(contact, pair);
 
-/* Whether the pairs of two bodies tie them; of bodies that are no pair, whether all pairs do */
-static PetscBool AreTied(Contact contact, PetscInt body, PetscInt other)
-{
-  PetscBool tied = PETSC_FALSE;
-
-  if (!MayTouch(contact, body, other)) return ContactAllPairsTie(contact);
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (IsPairOf(contact, &contact->pairs[p], body, other) && ContactPairTies(&contact->pairs[p])) tied = PETSC_TRUE;
-  return tied;
+    if (PetscMin(pair->body[0], partner) != body || PetscMax(pair->body[0], partner) != other) continue;
+    touch = PETSC_TRUE;
+    tie   = (PetscBool)(tie || ContactPairTies(pair));
+  }
+  *tied = touch ? tie : ContactAllPairsTie(contact);
+  return touch;
 }
 
 /* The whole boundary of a body, not moved */
@@ -167,9 +157,10 @@ static PetscErrorCode RefuseOverlaps(Contact contact, PetscBool of_state, PetscI
   }
   for (PetscInt i = 0; i < n && !refused && !of_state; i++) {
     const PetscInt *of = depths[i].surfaces;
+    PetscBool       tied;
 
-    if (AreTied(contact, of[0], of[1])) continue;
-    if (depths[i].depth > NO_START * depths[i].size && of[1] < contact->n_bodies && MayTouch(contact, of[0], of[1])) refused = &depths[i];
+    if (!MayTouch(contact, of[0], of[1], &tied) || tied || of[1] >= contact->n_bodies) continue;
+    if (depths[i].depth > NO_START * depths[i].size) refused = &depths[i];
   }
   if (inside) PetscCall(ContactRefuseInside(contact, inside, depth));
   if (refused) PetscCall(RefuseOverlap(contact, refused));
@@ -191,13 +182,11 @@ PetscErrorCode ContactStartOverlaps(Contact contact, PetscBool of_state)
   PetscCall(RefuseOverlaps(contact, of_state, n, depths));
   for (PetscInt i = 0; i < n; i++) {
     const PetscInt *of = depths[i].surfaces;
+    PetscBool       tied, touch = MayTouch(contact, of[0], of[1], &tied);
 
     if (depths[i].depth == 0) continue;
-    if (!AreTied(contact, of[0], of[1])) {
-      if (depths[i].depth <= CONTACT_OVERLAP * depths[i].size) continue;
-      if (of[1] < contact->n_bodies && MayTouch(contact, of[0], of[1])) continue;
-      depths[i].depth = PETSC_MAX_REAL;
-    } else if (!MayTouch(contact, of[0], of[1])) depths[i].depth = PETSC_MAX_REAL;
+    if (!tied && (depths[i].depth <= CONTACT_OVERLAP * depths[i].size || (touch && of[1] < contact->n_bodies))) continue;
+    if (!tied || !touch) depths[i].depth = PETSC_MAX_REAL;
     depths[overlaps->n_allowed++] = depths[i];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -221,7 +210,7 @@ PetscErrorCode ContactGetOverlaps(Contact contact, ContactOverlap overlaps[])
     const PetscInt *of      = depths[i].surfaces;
     ContactOverlap *overlap = &overlaps[of[0]];
     PetscReal       depth   = depths[i].depth;
-    PetscBool       pair;
+    PetscBool       pair, tied;
 
     for (PetscInt k = 0; k < contact->overlaps.n_allowed; k++) {
       const SurfaceDepth *allowed = &contact->overlaps.allowed[k];
@@ -229,7 +218,7 @@ PetscErrorCode ContactGetOverlaps(Contact contact, ContactOverlap overlaps[])
       if (allowed->surfaces[0] == of[0] && allowed->surfaces[1] == of[1]) depth = PetscMin(depth, depths[i].depth - allowed->depth);
     }
     if (depth <= PetscMax(overlap->part * depths[i].size, contact->options.tolerance)) continue;
-    pair = MayTouch(contact, of[0], of[1]);
+    pair = MayTouch(contact, of[0], of[1], &tied);
     if (!pair && of[1] >= contact->n_bodies) continue; /* planes go on where no body is meant to touch them */
     overlap->other = of[1];
     overlap->depth = depths[i].depth;
