@@ -4,34 +4,19 @@
 #include <sys/units.h>
 #include <impakt/private/bodymesh.h>
 
-/* Diameter of the ball about the mean of a body's nodes that has all of them in it [m]: the length of a bar, however it lies in space */
+/* Diagonal of the box of a body's nodes [m]: the length of a bar, however it lies in space */
 static PetscErrorCode GetExtent(Body body, PetscReal *extent)
 {
-  PetscReal          center[4] = {0}, radius = 0; /* the mean of the nodes, and their number */
-  PetscInt           dim, n, n_nodes;
-  const PetscScalar *x;
-  Vec                coordinates;
-  DM                 dm;
+  PetscReal lower[3], upper[3], square = 0;
+  PetscInt  dim;
+  DM        dm;
 
   PetscFunctionBegin;
   PetscCall(BodyGetDM(body, &dm));
   PetscCall(DMGetCoordinateDim(dm, &dim));
-  PetscCall(DMGetCoordinates(dm, &coordinates));
-  PetscCall(VecGetLocalSize(coordinates, &n));
-  PetscCall(VecGetArrayRead(coordinates, &x));
-  n_nodes   = n / dim;
-  center[3] = (PetscReal)n_nodes;
-  for (PetscInt i = 0; i < n; i++) center[i % dim] += PetscRealPart(x[i]);
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, center, 4, MPIU_REAL, MPIU_SUM, PetscObjectComm((PetscObject)dm)));
-  for (PetscInt i = 0; i < n; i += dim) {
-    PetscReal square = 0;
-
-    for (PetscInt d = 0; d < dim; d++) square += PetscSqr(PetscRealPart(x[i + d]) - center[d] / center[3]);
-    radius = PetscMax(radius, PetscSqrtReal(square));
-  }
-  PetscCall(VecRestoreArrayRead(coordinates, &x));
-  PetscCallMPI(MPI_Allreduce(MPI_IN_PLACE, &radius, 1, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)dm)));
-  *extent = 2 * radius;
+  PetscCall(DMGetBoundingBox(dm, lower, upper));
+  for (PetscInt d = 0; d < dim; d++) square += PetscSqr(upper[d] - lower[d]);
+  *extent = PetscSqrtReal(square);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
