@@ -137,7 +137,7 @@ static PetscErrorCode MarkFollowers(Transfer transfer, const PetscBool touches[]
   const RowSet *set = &transfer->rows;
 
   PetscFunctionBegin;
-  if (!transfer->columns_present) PetscCall(TransferBringColumns(transfer));
+  PetscCall(TransferBringColumns(transfer));
   for (PetscInt k = 0; k < (transfer->some_near ? transfer->n_near : transfer->n); k++) {
     const PetscInt row = transfer->some_near ? transfer->near[k] : k, n = set->offsets[row + 1] - set->offsets[row];
 

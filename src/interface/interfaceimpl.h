@@ -156,7 +156,6 @@ struct _p_Transfer {
   Follow          follow;
   PetscReal      *column_x, *column_normals;       /* of the columns: present positions and normals, */
   PetscReal      *column_moved, *column_reference; /* motion in the last step, positions in the mesh */
-  PetscBool       columns_present;                 /* positions and normals are those of the last update */
   Balance         balance;
   PetscInt        builds; /* how often rows have been built */
   TransferSaved   saved;

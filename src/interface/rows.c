@@ -273,7 +273,6 @@ PetscErrorCode TransferSetUpColumns(Transfer transfer, RowSet *rows, PetscBool c
   PetscInt n;
 
   PetscFunctionBegin;
-  transfer->columns_present = PETSC_FALSE;
   if (!transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS);
   if (connects) PetscCall(ConnectColumns(transfer->comm, transfer->neumann->data.n_owned, transfer->n, rows));
   n = 3 * rows->n_columns;

@@ -19,7 +19,6 @@ static PetscErrorCode HasSlipped(Transfer transfer, PetscBool *slipped)
   PetscFunctionBegin;
   *slipped = PETSC_FALSE;
   PetscCall(TransferBringColumns(transfer));
-  transfer->columns_present = PETSC_TRUE;
   for (PetscInt k = 0; k < (transfer->some_near ? transfer->n_near : transfer->n); k++) {
     const PetscInt  row  = transfer->some_near ? transfer->near[k] : k;
     const PetscReal size = data->sizes[row];
@@ -112,8 +111,7 @@ PetscErrorCode TransferMeasureMotion(Transfer transfer, PetscReal near, PetscRea
   PetscCheck(near >= 0, transfer->comm, PETSC_ERR_ARG_OUTOFRANGE, "Partners are looked for within %g m, which must not be negative",
              (double)near);
   for (PetscInt k = 0; k < 6; k++) least[k] = transfer->obstacle ? 0 : PETSC_MAX_REAL; /* obstacles do not move */
-  least[6]                  = 0;
-  transfer->columns_present = PETSC_FALSE;
+  least[6] = 0;
   if (transfer->idle && transfer->built) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscArrayzero(transfer->keep, transfer->n));
   if (transfer->built) PetscCall(PetscArrayzero(transfer->rows.changed, transfer->n));
