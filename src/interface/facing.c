@@ -102,16 +102,6 @@ static PetscBool SeesGroups(const PetscReal x[], const PetscReal normal[], Direc
   return PETSC_FALSE;
 }
 
-static PetscErrorCode SeesObstacle(Obstacle obstacle, const PetscReal x[], const PetscReal normal[], PetscBool *sees)
-{
-  PetscReal distance, gradient[3];
-
-  PetscFunctionBegin;
-  PetscCall(ObstacleGetGap(obstacle, x, &distance, gradient));
-  *sees = (PetscBool)(Dot(normal, gradient) < OPPOSED);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* How far a surface reaches along each direction n: the largest n . x of its nodes [m] */
 static PetscErrorCode GetSupport(MPI_Comm comm, const SurfaceData *data, PetscInt n, const PetscReal directions[][3], PetscReal support[])
 {
@@ -188,11 +178,11 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
     PetscCall(PetscMalloc1(surfaces[side]->data.n_faces, &keep[side]));
     for (PetscInt f = 0; f < surfaces[side]->data.n_faces; f++) {
       const PetscReal *normal = surfaces[side]->data.face_normals + 3 * f;
-      PetscReal        x[3];
+      PetscReal        x[3], distance, gradient[3];
 
       Centroid(&surfaces[side]->data, f, x);
-      if (b) keep[side][f] = SeesGroups(x, normal, &directions[1 - side], depth);
-      else PetscCall(SeesObstacle(obstacle, x, normal, &keep[side][f]));
+      if (obstacle) PetscCall(ObstacleGetGap(obstacle, x, &distance, gradient));
+      keep[side][f] = obstacle ? (PetscBool)(Dot(normal, gradient) < OPPOSED) : SeesGroups(x, normal, &directions[1 - side], depth);
     }
   }
   for (PetscInt side = 0; side < 2; side++) {
