@@ -30,7 +30,6 @@ PETSC_EXTERN const char *const ObstacleTypes[];
 
 PETSC_EXTERN PetscErrorCode ObstacleInitializePackage(void);
 PETSC_EXTERN PetscErrorCode ObstacleCreate(MPI_Comm, const char[], Obstacle *);
-PETSC_EXTERN PetscErrorCode ObstacleCreateFromOptions(MPI_Comm, const char[], Obstacle *);
 PETSC_EXTERN PetscErrorCode ObstacleSetShape(Obstacle, ObstacleType, const PetscReal[], const PetscReal[], PetscReal);
 PETSC_EXTERN PetscErrorCode ObstacleSetVelocity(Obstacle, const char[]);
 PETSC_EXTERN PetscErrorCode ObstacleGetVelocity(Obstacle, const PetscReal[], PetscReal, PetscReal[], PetscBool *);

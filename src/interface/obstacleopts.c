@@ -78,29 +78,3 @@ PetscErrorCode ObstacleSetFromOptions(Obstacle obstacle)
   PetscCall(ObstacleSetShape(obstacle, (ObstacleType)type, point, has_direction ? direction : NULL, radius));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-/*@C
-  ObstacleCreateFromOptions - creates a rigid obstacle as the options describe it
-
-  Collective
-
-  Input Parameters:
-+ comm - communicator
-- name - its name, which is the prefix of its options
-
-  Output Parameter:
-. obstacle - the `Obstacle`, also where an error comes up, `NULL` or to be destroyed
-
-  Level: intermediate
-
-.seealso: `Obstacle`, `ObstacleCreate()`, `ObstacleSetFromOptions()`
-@*/
-PetscErrorCode ObstacleCreateFromOptions(MPI_Comm comm, const char name[], Obstacle *obstacle)
-{
-  PetscFunctionBegin;
-  PetscAssertPointer(obstacle, 3);
-  *obstacle = NULL;
-  PetscCall(ObstacleCreate(comm, name, obstacle));
-  PetscCall(ObstacleSetFromOptions(*obstacle));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}

@@ -371,19 +371,23 @@ static void distances(void **state)
   (void)state;
   AddOptions("-p_obstacle_type plane -p_point 1,2,3 -p_normal 0,3,4 -s_obstacle_type sphere -s_point 1,0,0 -s_radius 2 -c_obstacle_type "
              "cylinder -c_point 0,0,5 -c_axis 0,2,0 -c_radius 1 -d_obstacle_type cylinder -d_point 1,1 -d_radius 0.5");
-  ok(ObstacleCreateFromOptions(PETSC_COMM_WORLD, "p", &obstacle));
+  ok(ObstacleCreate(PETSC_COMM_WORLD, "p", &obstacle));
+  ok(ObstacleSetFromOptions(obstacle));
   check(obstacle, (PetscReal[3]){7, 7, 3}, 3, (PetscReal[3]){0, 0.6, 0.8}); /* 0.6 (7 - 2) */
   check(obstacle, (PetscReal[3]){0, 2, -2}, -4, (PetscReal[3]){0, 0.6, 0.8});
   ok(ObstacleDestroy(&obstacle));
   assert_null(obstacle);
-  ok(ObstacleCreateFromOptions(PETSC_COMM_WORLD, "s", &obstacle));
+  ok(ObstacleCreate(PETSC_COMM_WORLD, "s", &obstacle));
+  ok(ObstacleSetFromOptions(obstacle));
   check(obstacle, (PetscReal[3]){1, 3, 4}, 3, (PetscReal[3]){0, 0.6, 0.8});
   check(obstacle, (PetscReal[3]){0, 0, 0}, -1, (PetscReal[3]){-1, 0, 0});
   ok(ObstacleDestroy(&obstacle));
-  ok(ObstacleCreateFromOptions(PETSC_COMM_WORLD, "c", &obstacle));
+  ok(ObstacleCreate(PETSC_COMM_WORLD, "c", &obstacle));
+  ok(ObstacleSetFromOptions(obstacle));
   check(obstacle, (PetscReal[3]){3, 100, 9}, 4, (PetscReal[3]){0.6, 0, 0.8});
   ok(ObstacleDestroy(&obstacle));
-  ok(ObstacleCreateFromOptions(PETSC_COMM_WORLD, "d", &obstacle));
+  ok(ObstacleCreate(PETSC_COMM_WORLD, "d", &obstacle));
+  ok(ObstacleSetFromOptions(obstacle));
   check(obstacle, (PetscReal[3]){1, 3, 0}, 1.5, (PetscReal[3]){0, 1, 0});
   ok(ObstacleDestroy(&obstacle));
 }
@@ -401,10 +405,11 @@ static void bad_values_are_refused(void **state)
 
   (void)state;
   for (size_t i = 0; i < sizeof(options) / sizeof(options[0]); i++) {
-    PetscOptions own      = options_begin("%s", options[i][0]);
-    Obstacle     obstacle = NULL;
+    PetscOptions own = options_begin("%s", options[i][0]);
+    Obstacle     obstacle;
 
-    refused(PETSC_ERR_USER_INPUT, options[i][1], ObstacleCreateFromOptions(PETSC_COMM_WORLD, "floor", &obstacle));
+    ok(ObstacleCreate(PETSC_COMM_WORLD, "floor", &obstacle));
+    refused(PETSC_ERR_USER_INPUT, options[i][1], ObstacleSetFromOptions(obstacle));
     ok(ObstacleDestroy(&obstacle));
     options_drop(own);
   }
@@ -431,7 +436,8 @@ static void rows_over_obstacles(void **state)
     Vec                u, change;
     Mat                matrix;
 
-    ok(ObstacleCreateFromOptions(PETSC_COMM_WORLD, disc ? "disc" : "floor", &obstacle));
+    ok(ObstacleCreate(PETSC_COMM_WORLD, disc ? "disc" : "floor", &obstacle));
+    ok(ObstacleSetFromOptions(obstacle));
     ok(SurfaceCreate(dm, NULL, &surface));
     ok(SurfaceKeepFacing(surface, NULL, obstacle, PETSC_TRUE, PETSC_FALSE));
     ok(SurfaceGetData(surface, &data));

@@ -90,7 +90,8 @@ static PetscErrorCode ReadObstacles(Contact contact)
     Obstacle obstacle = NULL;
 
     error = ContactCheckObstacleName(contact, names[o]);
-    if (!error) error = ObstacleCreateFromOptions(PetscObjectComm((PetscObject)contact), names[o], &obstacle);
+    if (!error) error = ObstacleCreate(PetscObjectComm((PetscObject)contact), names[o], &obstacle);
+    if (!error) error = ObstacleSetFromOptions(obstacle);
     if (!error) error = ContactAddObstacle(contact, obstacle);
     PetscCall(ObstacleDestroy(&obstacle));
   }
