@@ -223,7 +223,6 @@ PETSC_INTERN PetscErrorCode TransferBuildRows(Transfer, Vec, Vec, PetscReal);
 PETSC_INTERN PetscErrorCode RowSetGetColumns(const RowSet *, const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscErrorCode TransferSetUpColumns(Transfer, RowSet *, PetscBool);
 PETSC_INTERN void           TransferListState(Transfer, StateList[2]);
-PETSC_INTERN PetscErrorCode TransferDestroySaved(Transfer);
 PETSC_INTERN PetscErrorCode TransferSetUpTurns(Transfer);
 PETSC_INTERN PetscReal      TransferPresentGap(Transfer, PetscInt);
 PETSC_INTERN PetscReal      TransferSplitRow(const Transfer, const RowSet *, PetscInt, const PetscReal[], const PetscReal[], PetscReal[]);

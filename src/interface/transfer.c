@@ -56,7 +56,8 @@ PetscErrorCode TransferDestroy(Transfer *transfer)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(RowSetDestroy(&(*transfer)->rows));
-  PetscCall(TransferDestroySaved(*transfer));
+  PetscCall(RowSetDestroy(&(*transfer)->saved.rows));
+  for (PetscInt side = 0; side < 2; side++) PetscCall(PetscFree((*transfer)->saved.state[side]));
   PetscCall(PetscFree5((*transfer)->built_x[0], (*transfer)->built_x[1], (*transfer)->built_slip, (*transfer)->slip, (*transfer)->keep));
   PetscCall(PetscFree2((*transfer)->followed, (*transfer)->goes_on));
   PetscCall(PetscFree((*transfer)->near));

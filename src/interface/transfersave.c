@@ -97,13 +97,3 @@ PetscErrorCode TransferRestore(Transfer transfer)
   saved->same       = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
-
-PetscErrorCode TransferDestroySaved(Transfer transfer)
-{
-  TransferSaved *saved = &transfer->saved;
-
-  PetscFunctionBegin;
-  PetscCall(RowSetDestroy(&saved->rows));
-  for (PetscInt side = 0; side < 2; side++) PetscCall(PetscFree(saved->state[side]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
