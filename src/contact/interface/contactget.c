@@ -162,29 +162,26 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
 static PetscErrorCode SumNodes(const ContactSurface *surface, Body body, PetscReal sums[7])
 {
   const SurfaceData *data;
-  const PetscScalar *x, *u, *v;
-  Vec                positions, displacements, velocities;
+  const PetscScalar *u, *v;
+  Vec                displacements, velocities;
   PetscInt           first;
 
   PetscFunctionBegin;
   PetscCall(SurfaceGetData(surface->surface, &data));
-  PetscCall(BodyGetReferencePositions(body, &positions));
   PetscCall(BodyGetSolution(body, &displacements, &velocities, NULL));
-  PetscCall(VecGetOwnershipRange(positions, &first, NULL));
-  PetscCall(VecGetArrayRead(positions, &x));
+  PetscCall(VecGetOwnershipRange(displacements, &first, NULL));
   PetscCall(VecGetArrayRead(displacements, &u));
   PetscCall(VecGetArrayRead(velocities, &v));
   for (PetscInt i = 0; i < data->n_owned; i++)
     for (PetscInt d = 0; d < data->dim; d++) {
       const PetscInt dof = data->dofs[i] - first + d;
 
-      sums[d] += PetscRealPart(x[dof] + u[dof]);
+      sums[d] += data->reference[3 * i + d] + PetscRealPart(u[dof]);
       sums[3 + d] += PetscRealPart(v[dof]);
     }
   sums[6] = (PetscReal)data->n_owned;
   PetscCall(VecRestoreArrayRead(velocities, &v));
   PetscCall(VecRestoreArrayRead(displacements, &u));
-  PetscCall(VecRestoreArrayRead(positions, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

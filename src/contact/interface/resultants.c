@@ -125,9 +125,10 @@ PetscBool ContactHasTouched(Contact contact, const ContactPair *pair)
 static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, PetscReal moment[])
 {
   const Body         body = contact->bodies[pair->body[0]];
-  const PetscScalar *reference, *displacement, *parts = NULL;
+  const SurfaceData *data;
+  const PetscScalar *displacement, *parts = NULL;
   TransferRows       rows;
-  Vec                positions, u, of_parts;
+  Vec                u, of_parts;
 
   PetscFunctionBegin;
   if (BodyDoes(body, BodyGetAxisymmetric)) PetscFunctionReturn(PETSC_SUCCESS); /* around a ring moments are in balance */
@@ -136,23 +137,21 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
     PetscCall(ContactGetPartForces(contact, &of_parts));
     PetscCall(VecGetArrayRead(of_parts, &parts));
   }
-  PetscCall(BodyGetReferencePositions(body, &positions));
+  PetscCall(SurfaceGetData(pair->surfaces[0], &data));
   PetscCall(BodyGetSolution(body, &u, NULL, NULL));
-  PetscCall(VecGetArrayRead(positions, &reference));
   PetscCall(VecGetArrayRead(u, &displacement));
   for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
-    const PetscInt  i = contact->rows.acting[k], dof = contact->rows.dof[i];
+    const PetscInt  i = contact->rows.acting[k], node = (i - pair->begin) / pair->components, dof = contact->rows.dof[i];
     const PetscReal force = parts ? PetscRealPart(parts[i]) : contact->end.force[i];
     PetscReal       x[3]  = {0}, normal[3];
 
     if (parts) ContactGetDirection(contact, pair, &rows, i, normal);
     else PetscCall(PetscArraycpy(normal, contact->rows.normal + 3 * i, 3));
-    for (PetscInt d = 0; d < contact->dim; d++) x[d] = PetscRealPart(reference[dof + d] + displacement[dof + d]);
+    for (PetscInt d = 0; d < contact->dim; d++) x[d] = data->reference[3 * node + d] + PetscRealPart(displacement[dof + d]);
     for (PetscInt d = 0; d < 3; d++) moment[d] += force * (x[(d + 1) % 3] * normal[(d + 2) % 3] - x[(d + 2) % 3] * normal[(d + 1) % 3]);
   }
   if (parts) PetscCall(VecRestoreArrayRead(of_parts, &parts));
   PetscCall(VecRestoreArrayRead(u, &displacement));
-  PetscCall(VecRestoreArrayRead(positions, &reference));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
