@@ -4,20 +4,15 @@
 /* The effective matrix with the artificial springs of a body that contact alone holds; its held dofs eliminated */
 static PetscErrorCode AssembleMatrix(Body body, Vec u)
 {
-  BodyImplicit  *implicit = (BodyImplicit *)body->integrator->data;
-  const PetscInt level    = body->time.level;
-  const Vec      point    = implicit->points[level];
-  ElementHistory before;
-  Mat            A;
+  const BodyImplicit  *implicit = (const BodyImplicit *)body->integrator->data;
+  const ElementHistory before   = body->model.element->history;
+  Mat                  A;
 
   PetscFunctionBegin;
   PetscCall(BodyBeginAssembly(body, implicit->matrix, &A));
-  implicit->deformed[level] = (PetscBool)(u != NULL);
-  if (u && u != point) PetscCall(VecCopy(u, point));
-  if (u && u != point && body->history) PetscCall(BodyHistoryCopyStart(body, implicit->history[level], &implicit->history_step[level]));
-  if (u && body->history) BodyHistoryUse(body, implicit->history[level], implicit->history_step[level], &before);
+  body->model.element->history.end = NULL;
   PetscCall(BodyAssembleTangent(body, u, NULL, A));
-  if (u && body->history) BodyHistoryLookBack(body, &before);
+  BodyHistoryLookBack(body, &before);
   if (implicit->shift > 0) PetscCall(BodyAddMassMatrix(body, implicit->shift, A));
   PetscCall(BodyAddDampingMatrix(body, u, implicit->shift_velocity, A));
   PetscCall(BodyAddSpringStiffness(body, A));
@@ -30,6 +25,7 @@ static PetscErrorCode AssembleMatrix(Body body, Vec u)
 PetscErrorCode BodyImplicitRefactor(Body body, Vec u)
 {
   PetscFunctionBegin;
+  ((BodyImplicit *)body->integrator->data)->iterated = PETSC_TRUE;
   PetscCall(AssembleMatrix(body, u));
   PetscCall(ConstrainedSolverRefactor(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -83,13 +79,6 @@ PetscErrorCode BodyImplicitCreateSolver(Body body, Vec u)
   SetShifts(body);
   PetscCall(BodyCreateMatrix(body, NULL, &implicit->matrix));
   implicit->matrices[body->time.level] = implicit->matrix;
-  if (!body->model.linear) PetscCall(BodyCreateVec(body, &implicit->points[body->time.level]));
-  if (body->history) {
-    PetscInt size;
-
-    PetscCall(BodyHistoryCreateBuffer(body, body->model.element->count, &size, &implicit->memory[body->time.level],
-                                      &implicit->history[body->time.level]));
-  }
   PetscCall(AssembleMatrix(body, u));
   PetscCall(SetNearNullSpace(body, implicit->matrix));
   PetscCall(ConstrainedSolverBegin(implicit->matrix, body->rows.free_matrix, body->mesh.dim, ((PetscObject)body)->prefix,
@@ -117,32 +106,14 @@ PetscErrorCode BodyImplicitSetLevel(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Matrix and factors of a nonlinear body anew, at the saved displacement */
+/* Factors of the last iteration of Newton's method in a substep of a nonlinear body or, where it took none, those at its start: what is
+   made of them depends on that substep alone. Of a local body its rank alone knows of iterations. Collective. */
 PetscErrorCode BodyImplicitRenew(Body body)
 {
-  PetscFunctionBegin;
-  PetscCall(BodyImplicitRefactor(body, body->saved.u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* For a checkpoint: where a nonlinear body's matrix, in use until Newton's next iteration, was linearised, at a level of cut steps */
-PetscErrorCode BodyImplicitVisit(Body body, PetscInt level, Checkpoint checkpoint)
-{
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  PetscBool     deformed = implicit->deformed[level];
 
   PetscFunctionBegin;
-  PetscCall(CheckpointVisitBools(checkpoint, "linearised", 1, &deformed));
-  if (!deformed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CheckpointVisitVec(checkpoint, "linearised at", implicit->points[level]));
-  if (body->history) {
-    size_t size;
-
-    (void)BodyHistoryGetSaved(body, &size);
-    PetscCall(CheckpointVisitReals(checkpoint, "linearised from", (PetscInt)size, implicit->history[level]));
-    PetscCall(CheckpointVisitReals(checkpoint, "linearised step", 1, &implicit->history_step[level]));
-  }
-  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(BodyImplicitRefactor(body, implicit->points[level]));
+  if (body->local) PetscCallMPI(MPI_Bcast(&implicit->iterated, 1, MPI_C_BOOL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  if (!implicit->iterated) PetscCall(BodyImplicitRefactor(body, body->saved.u));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -51,6 +51,7 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
 
   PetscFunctionBegin;
   (void)ts;
+  ((BodyImplicit *)body->integrator->data)->iterated = PETSC_FALSE;
   PetscCall(VecCopy(body->state.a, A0));
   PetscCall(VecWAXPY(X1, body->time.step, V0, X0));
   PetscCall(BodyImplicitPrescribe(body, X1));

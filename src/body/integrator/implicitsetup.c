@@ -1,32 +1,11 @@
 /* What all integrators on TSALPHA2 have in common: their operations, set-up, and what is put aside for steps that are made again. */
 #include "implicitimpl.h"
 
-/* Where the matrix of whole controller steps was linearised last, to another vector or back; the first number tells whether it was */
-static PetscErrorCode CopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
-{
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-
-  PetscFunctionBegin;
-  if (back) {
-    /* a displacement of earlier steps goes with the history of these steps, which is not there any more */
-    if (numbers[0] != 0) PetscCall(BodyImplicitRefactor(body, body->history ? body->saved.u : point));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  numbers[0] = implicit->deformed[0];
-  numbers[1] = 0;
-  if (implicit->deformed[0]) PetscCall(VecCopy(implicit->points[0], point));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Its rank alone knows where a local body was linearised last, and has these factors; before all ranks hold rows, all do */
+/* Its rank alone knows which factors a local body has; before all ranks hold rows, all do */
 static PetscErrorCode Agree(Body body)
 {
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-
   PetscFunctionBegin;
-  if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCallMPI(MPI_Bcast(&implicit->deformed[body->time.level], 1, MPI_C_BOOL, body->mesh.owner, PetscObjectComm((PetscObject)body)));
-  PetscCall(ConstrainedSolverForgetColumns(body->solver));
+  if (!body->model.linear) PetscCall(ConstrainedSolverForgetColumns(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,8 +22,6 @@ PetscErrorCode BodyImplicitCreate(BodyIntegrator integrator)
   integrator->ops.setlevel       = BodyImplicitSetLevel;
   integrator->ops.renew          = BodyImplicitRenew;
   integrator->ops.checksubstep   = BodyImplicitCheckSubstep;
-  integrator->ops.visit          = BodyImplicitVisit;
-  integrator->ops.copypoint      = CopyPoint;
   integrator->ops.agree          = Agree;
   integrator->ops.destroy        = BodyImplicitDestroy;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -95,17 +72,13 @@ PetscErrorCode BodyImplicitSetUp(Body body, BodyResidualFn *residual, BodyPredic
 PetscErrorCode BodyImplicitDestroy(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  Vec          *vecs[]   = {&implicit->stage_u, &implicit->stage_v, &implicit->stage_a};
+  Vec          *vecs[]   = {&implicit->stage_u, &implicit->stage_v, &implicit->stage_a, &implicit->stiffness};
 
   PetscFunctionBegin;
   for (size_t i = 0; i < sizeof(vecs) / sizeof(vecs[0]); i++) PetscCall(VecDestroy(vecs[i]));
   for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&implicit->lead[k]));
   PetscCall(BodyImplicitDestroyOwnStep(body));
-  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
-    PetscCall(MatDestroy(&implicit->matrices[k]));
-    PetscCall(VecDestroy(&implicit->points[k]));
-    PetscCall(PetscFree(implicit->memory[k]));
-  }
+  for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) PetscCall(MatDestroy(&implicit->matrices[k]));
   PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

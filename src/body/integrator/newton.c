@@ -54,8 +54,7 @@ static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
   PetscFunctionBegin;
   PetscCall(GetNorm(body, body->state.internal_force, &force));
   /* the internal force is a sum of displacements times stiffnesses, which may cancel: a body that moves as a whole has none */
-  PetscCall(MatGetDiagonal(implicit->matrix, product));
-  PetscCall(ProductNorm(body, product, U, product, &stiffness));
+  PetscCall(ProductNorm(body, implicit->stiffness, U, product, &stiffness));
   if (inertia) {
     PetscCall(GetNorm(body, inertia, &mass));
     /* the acceleration is a difference of displacements and of dt times the velocity, over dt^2: either may be zero */
@@ -109,10 +108,11 @@ PetscErrorCode BodyImplicitComputeUnitStrainForce(Body body)
   PetscFunctionBegin;
   PetscCall(BodyCreateMatrix(body, NULL, &tangent));
   PetscCall(BodyAssembleTangent(body, NULL, NULL, tangent));
-  PetscCall(MatGetDiagonal(tangent, body->work.nodes[0]));
+  PetscCall(BodyCreateVec(body, &implicit->stiffness));
+  PetscCall(MatGetDiagonal(tangent, implicit->stiffness));
   PetscCall(MatDestroy(&tangent));
   PetscCall(GetShortestEdges(body, body->work.nodes[1]));
-  PetscCall(ProductNorm(body, body->work.nodes[0], body->work.nodes[1], body->work.nodes[0], &implicit->unit_strain));
+  PetscCall(ProductNorm(body, implicit->stiffness, body->work.nodes[1], body->work.nodes[0], &implicit->unit_strain));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -25,6 +25,7 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   PetscFunctionBegin;
   (void)ts;
   (void)V0;
+  ((BodyImplicit *)body->integrator->data)->iterated = PETSC_FALSE;
   PetscCall(VecCopy(body->state.a, A0));
   PetscCall(VecCopy(X0, X1));
   PetscCall(BodyImplicitPrescribe(body, X1));

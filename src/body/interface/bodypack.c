@@ -31,13 +31,7 @@ static PetscErrorCode VisitVecs(Body body, const char name[], PetscInt n_vecs, c
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the next controller step, which begins whole, goes on with what a nonlinear body remembers of whole steps: see steplevel.c */
-static PetscBool GoesOn(Body body)
-{
-  return (PetscBool)(!body->model.linear && body->time.accepted_level == 0);
-}
-
-/* Where the factors of a nonlinear body have been made; loading, where they are made again, unless the saved run would make new ones */
+/* Where the factors of a nonlinear layer have been made; loading, where they are made again */
 static PetscErrorCode VisitPoint(Body body, Tables tables)
 {
   const PetscBool loads              = TablesLoads(tables);
@@ -46,11 +40,6 @@ static PetscErrorCode VisitPoint(Body body, Tables tables)
 
   PetscFunctionBegin;
   if (body->model.linear || !body->integrator->ops.copypoint) PetscFunctionReturn(PETSC_SUCCESS);
-  /* factors that are not made anew where steps change their length go on: those of a massless layer */
-  if (loads && !GoesOn(body) && body->integrator->ops.renew) {
-    PetscCall((*body->integrator->ops.renew)(body));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
   PetscCall(VecDuplicate(body->state.u, &point));
   PetscCall(VecZeroEntries(point));
   if (!loads) PetscCall((*body->integrator->ops.copypoint)(body, PETSC_FALSE, point, numbers));

@@ -1,6 +1,6 @@
 /* The state of a body, for checkpoints: what the next controller step begins with, bit for bit. Beside displacement, velocity and
-   acceleration these are the waveforms at its rows, what its solvers hold, where their matrices were linearised, and the compliance that is
-   known, level by level of cut steps. The rows themselves are loaded before, by those who own their matrices. */
+   acceleration these are the waveforms at its rows, what its solvers hold, where the matrix of a layer was linearised, and the compliance
+   that is known, level by level of cut steps. The rows themselves are loaded before, by those who own their matrices. */
 #include <petscsf.h>
 #include <body/rows/complianceimpl.h>
 #include <sys/bytesum.h>
@@ -70,10 +70,9 @@ static BodyLevel GetLevel(Body body, PetscInt k)
 static PetscErrorCode VisitLevel(Body body, PetscInt k, Checkpoint checkpoint)
 {
   BodyLevel level, first;
-  PetscBool made;
 
   PetscFunctionBegin;
-  if (CheckpointLoads(checkpoint) && k != body->time.level) PetscCall(BodyTakeLevel(body, k, &made));
+  if (CheckpointLoads(checkpoint) && k != body->time.level) PetscCall(BodyTakeLevel(body, k));
   level = GetLevel(body, k);
   first = GetLevel(body, 0);
   if (body->integrator->ops.visit) PetscCall((*body->integrator->ops.visit)(body, k, checkpoint));
@@ -85,8 +84,7 @@ static PetscErrorCode VisitLevel(Body body, PetscInt k, Checkpoint checkpoint)
 /* All levels that there have been; then the one that was present is present again */
 static PetscErrorCode VisitLevels(Body body, Checkpoint checkpoint)
 {
-  PetscInt  present = body->time.level;
-  PetscBool made;
+  PetscInt present = body->time.level;
 
   PetscFunctionBegin;
   PetscCall(CheckpointVisitInts(checkpoint, "level", 1, &present));
@@ -96,7 +94,7 @@ static PetscErrorCode VisitLevels(Body body, Checkpoint checkpoint)
     PetscCall(CheckpointVisitBools(checkpoint, "level exists", 1, &exists));
     if (exists) PetscCall(VisitLevel(body, k, checkpoint));
   }
-  if (CheckpointLoads(checkpoint) && present != body->time.level) PetscCall(BodyTakeLevel(body, present, &made));
+  if (CheckpointLoads(checkpoint) && present != body->time.level) PetscCall(BodyTakeLevel(body, present));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

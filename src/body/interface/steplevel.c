@@ -1,9 +1,7 @@
 /* Controller steps that are cut in halves. At level k the controller step is that of the set-up over 2^k, and so is each substep, whose
    number stays. A body keeps what depends on the step, effective matrix with factors and compliance of nodes, for each level apart.
 
-   A failed step must leave no trace: a cut run ends with the bits of one that makes the same steps and none that fail. Factors that a
-   nonlinear body has of earlier steps at a level go on if the last accepted step was of that level, else they are made anew at the saved
-   state: a level at which a step has failed comes up again after steps of another level only. */
+   A failed step must leave no trace: a cut run ends with the bits of one that makes the same steps and none that fail. */
 #include <body/rows/complianceimpl.h>
 
 /* All rows free, so that no solver has rows to hold: conditions come with the next step */
@@ -18,7 +16,7 @@ static PetscErrorCode FreeRows(Body body)
 }
 
 /* The compliance of a level, and its solver where that depends on the step, in place of those of the level before */
-PetscErrorCode BodyTakeLevel(Body body, PetscInt number, PetscBool *made)
+PetscErrorCode BodyTakeLevel(Body body, PetscInt number)
 {
   BodyLevel *level = &body->levels[number];
 
@@ -29,7 +27,6 @@ PetscErrorCode BodyTakeLevel(Body body, PetscInt number, PetscBool *made)
   body->time.controller_step                = body->time.whole_step / PetscPowRealInt(2, number);
   body->time.step                           = body->time.controller_step / body->time.substeps;
   PetscCall(BodyRestore(body));
-  *made = (PetscBool)!level->compliance;
   if (level->compliance) {
     body->compliance = level->compliance;
     body->solver     = level->solver;
@@ -46,8 +43,6 @@ PetscErrorCode BodyTakeLevel(Body body, PetscInt number, PetscBool *made)
    level factors the effective matrix of a linear implicit body, which is kept. Collective. */
 PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
 {
-  PetscBool made;
-
   PetscFunctionBegin;
   PetscCheck(body->setup, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONGSTATE, "Call after BodySetUp()");
   PetscCheck(level >= 0 && level <= STEP_MAX_CUTS, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_OUTOFRANGE,
@@ -56,10 +51,8 @@ PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
     PetscCall(BodyRestore(body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(BodyTakeLevel(body, level, &made));
+  PetscCall(BodyTakeLevel(body, level));
   PetscCall(FreeRows(body));
-  if (!body->model.linear && !made && body->time.accepted_level != level && body->integrator->ops.renew)
-    PetscCall((*body->integrator->ops.renew)(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -15,8 +15,8 @@ typedef struct {
                                                            solver in place of BodySetRowsOfLevels() */
   PetscErrorCode (*setlevel)(Body); /* (NULL) the controller step is cut in halves another number of times, body->time.level: matrix and
                                        solver are those of this level, made where there are none yet */
-  PetscErrorCode (*renew)(Body);    /* (NULL) of a nonlinear body: matrix and factors anew, at the saved displacement */
-  PetscErrorCode (*step)(Body);     /* (NULL) makes a substep in place of TSStep(); may be set in setup() */
+  PetscErrorCode (*renew)(Body); /* of a body that uses Newton's method: factors of its last iteration in this substep, or at its start */
+  PetscErrorCode (*step)(Body);  /* (NULL) makes a substep in place of TSStep(); may be set in setup() */
   PetscErrorCode (*checksubstep)(
       Body); /* (NULL) after TSStep(): notes in the body's failure where, and why, the equations of the substep were not solved */
   /* (NULL) after TSStep(): velocity and acceleration of massless, held and prescribed nodes, and what else the TS leaves undone */
@@ -33,7 +33,7 @@ typedef struct {
   PetscErrorCode (*visit)(Body, PetscInt, Checkpoint);
   PetscErrorCode (*agree)(Body); /* (NULL) of a local body whose rows are to be prescribed, or whose state is to be saved: all ranks get to
                                     know what one of them remembers of the steps that it has made alone */
-  /* (NULL) of a nonlinear body: where its factors for whole steps were made, and two numbers, to a vector; (true) back, with factors */
+  /* (NULL) of a nonlinear layer: where its factors were made, and two numbers, to a vector; (true) back, with factors */
   PetscErrorCode (*copypoint)(Body, PetscBool, Vec, PetscReal[2]);
   /* (NULL) columns of some displacements of any rank, into a compliance, for the step from the saved state, without making it */
   PetscErrorCode (*nodalcolumns)(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);

@@ -132,6 +132,7 @@ PetscErrorCode NodalMatrixRenew(Body body, BodyForceShape shape, PetscInt n, Pet
   *renewed = (PetscBool)(*kind != (PetscInt)chosen);
   if (*renewed) PetscCall(NodalMatrixDestroy(nodal));
   *kind = chosen;
+  if (chosen == BY_BODY && body->integrator->uses_newton) PetscCall((*body->integrator->ops.renew)(body));
   if (chosen == BY_STEPS || *nodal) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscNew(nodal));
   (*nodal)->kind = chosen;

@@ -187,24 +187,6 @@ void BodyHistoryLookBack(Body body, const ElementHistory *before)
   body->model.element->history = *before;
 }
 
-/* BodyHistoryCopyStart - what all elements of this rank answer from at present, and how long their step is */
-PetscErrorCode BodyHistoryCopyStart(Body body, PetscReal start[], PetscReal *step)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArraycpy(start, body->model.element->history.start, body->history->size));
-  *step = body->model.element->history.step;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* BodyHistoryUse - elements answer for a step from another history, of all elements, as BodyHistoryCopyStart() has given it */
-void BodyHistoryUse(Body body, const PetscReal start[], PetscReal step, ElementHistory *before)
-{
-  *before                            = body->model.element->history;
-  body->model.element->history.start = start;
-  body->model.element->history.end   = NULL;
-  body->model.element->history.step  = step;
-}
-
 /* BodyHistoryCreateBuffer - room for the history of all elements, or of `n` of them; NULL where the material has none */
 PetscErrorCode BodyHistoryCreateBuffer(Body body, PetscInt n, PetscInt *size, char **memory, PetscReal **buffer)
 {
