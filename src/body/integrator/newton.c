@@ -1,6 +1,7 @@
 /* The equations of one substep of a body on TSALPHA2, with inertia or without, and how those of a nonlinear one are solved: by Newton's
    method with the factors of the effective matrix. A linear body needs but one solution, see linearstep.c. */
 #include "implicitimpl.h"
+#include <impakt/private/bodymesh.h>
 #include <sys/petsccompat.h>
 
 /* Newton's method for a nonlinear body has converged where the residual is below this part of the forces that it is the balance of, or
@@ -68,42 +69,12 @@ static PetscErrorCode NoteTerms(Body body, Vec U, Vec inertia)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Per dof: the length of the shortest edge of this rank's elements at its node [m] */
-static PetscErrorCode GetShortestEdges(Body body, Vec edges)
-{
-  const PetscInt n = body->model.element->nodes, dim = body->mesh.dim;
-  PetscReal     *shortest;
-  PetscScalar   *array;
-
-  PetscFunctionBegin;
-  PetscCall(PetscMalloc1(body->mesh.local_nodes, &shortest));
-  for (PetscInt node = 0; node < body->mesh.local_nodes; node++) shortest[node] = PETSC_MAX_REAL;
-  for (PetscInt e = 0; e < body->model.element->count; e++) {
-    const PetscInt *nodes = body->mesh.connectivity + e * n;
-
-    for (PetscInt a = 0; a < n; a++)
-      for (PetscInt b = 0; b < a; b++) {
-        PetscReal square = 0;
-
-        for (PetscInt d = 0; d < dim; d++)
-          square += PetscSqr(body->mesh.coordinates[nodes[a] * dim + d] - body->mesh.coordinates[nodes[b] * dim + d]);
-        shortest[nodes[a]] = PetscMin(shortest[nodes[a]], PetscSqrtReal(square));
-        shortest[nodes[b]] = PetscMin(shortest[nodes[b]], PetscSqrtReal(square));
-      }
-  }
-  PetscCall(VecGetArrayWrite(edges, &array));
-  for (PetscInt i = 0; i < body->mesh.owned_nodes * dim; i++) array[i] = shortest[i / dim];
-  PetscCall(VecRestoreArrayWrite(edges, &array));
-  PetscCall(PetscFree(shortest));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Forces of displacements of the size of an element [N]: stresses of a nonlinear material have the round-off of strains of size 1 */
 PetscErrorCode BodyImplicitComputeUnitStrainForce(Body body)
 {
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-
-  Mat tangent;
+  PetscReal     size;
+  Mat           tangent;
 
   PetscFunctionBegin;
   PetscCall(BodyCreateMatrix(body, NULL, &tangent));
@@ -111,8 +82,9 @@ PetscErrorCode BodyImplicitComputeUnitStrainForce(Body body)
   PetscCall(BodyCreateVec(body, &implicit->stiffness));
   PetscCall(MatGetDiagonal(tangent, implicit->stiffness));
   PetscCall(MatDestroy(&tangent));
-  PetscCall(GetShortestEdges(body, body->work.nodes[1]));
-  PetscCall(ProductNorm(body, implicit->stiffness, body->work.nodes[1], body->work.nodes[0], &implicit->unit_strain));
+  PetscCall(BodyGetScale(body, BODY_ELEMENT_SIZE, &size));
+  PetscCall(VecNorm(implicit->stiffness, NORM_2, &implicit->unit_strain));
+  implicit->unit_strain *= size;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
