@@ -25,40 +25,6 @@ static PetscErrorCode CanKeepMass(Contact contact, const ContactPair *pair, Pets
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether all pairs of a body keep their mass, and whether any does */
-static void GetPairsOfBody(Contact contact, PetscInt b, PetscBool *all, PetscBool *any)
-{
-  *all = PETSC_TRUE;
-  *any = PETSC_FALSE;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    if (contact->pairs[p].body[0] != b && contact->pairs[p].body[1] != b) continue;
-    *all = (PetscBool)(*all && contact->pairs[p].keeps_mass);
-    *any = (PetscBool)(*any || contact->pairs[p].keeps_mass);
-  }
-}
-
-/* A body with mass by choice takes velocities and accelerations from partners with another rule: none of its pairs keeps mass then */
-static PetscErrorCode LeaveOutMixed(Contact contact)
-{
-  PetscBool changed = PETSC_TRUE;
-
-  PetscFunctionBegin;
-  while (changed) {
-    changed = PETSC_FALSE;
-    for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      PetscBool all, any, chosen, massless;
-
-      GetPairsOfBody(contact, b, &all, &any);
-      PetscCall(BodyMassIsChosen(contact->bodies[b], &chosen, &massless));
-      if (!any || all || massless) continue;
-      for (PetscInt p = 0; p < contact->n_pairs; p++)
-        if (contact->pairs[p].body[0] == b || contact->pairs[p].body[1] == b) contact->pairs[p].keeps_mass = PETSC_FALSE;
-      changed = PETSC_TRUE;
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The forces of explicit bodies act in the step that follows: methods that find forces solve their ties at once, or nodes are massless */
 static PetscErrorCode LeaveOutExplicit(Contact contact)
 {
@@ -75,7 +41,7 @@ static PetscErrorCode LeaveOutExplicit(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Bodies that answer to forces do so by one rule in each set: there all pairs keep their mass, or none */
+/* In each set of bodies all pairs keep their mass, or none: nodes of a body go by one rule, whoever its partners are */
 static PetscErrorCode LeaveOutSets(Contact contact)
 {
   PetscInt  *set;
@@ -99,13 +65,10 @@ PetscErrorCode ContactChooseTiedMass(Contact contact)
   if (!ContactAllPairsTie(contact) || !(contact->prescribes || contact->impulses)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(CanKeepMass(contact, &contact->pairs[p], &contact->pairs[p].keeps_mass));
   PetscCall(LeaveOutExplicit(contact));
-  PetscCall(contact->impulses ? LeaveOutSets(contact) : LeaveOutMixed(contact));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscBool all, any;
-
-    GetPairsOfBody(contact, b, &all, &any);
-    PetscCall(BodySetTiedMass(contact->bodies[b], any));
-  }
+  PetscCall(LeaveOutSets(contact));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    for (PetscInt side = 0; side < 2 && contact->pairs[p].keeps_mass; side++)
+      PetscCall(BodySetTiedMass(contact->bodies[contact->pairs[p].body[side]], PETSC_TRUE));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
