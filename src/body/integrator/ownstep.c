@@ -18,34 +18,24 @@ struct _BodyOwnStep {
   BodyPredictorFn *predictor;
 };
 
-/* The array of a vector of this rank to one that is laid out as those of the body; `writes`: what is done to that is meant for it */
-static PetscErrorCode Lend(struct _BodyOwnStep *own, PetscInt k, PetscBool writes, Vec vec)
+/* The array of a vector of this rank to one that is laid out as those of the body */
+static PetscErrorCode Lend(struct _BodyOwnStep *own, PetscInt k, Vec vec)
 {
-  const PetscScalar *read;
-  PetscScalar       *array;
+  const PetscScalar *array;
 
   PetscFunctionBegin;
-  if (writes) {
-    PetscCall(VecGetArray(vec, &array));
-    read = array;
-  } else PetscCall(VecGetArrayRead(vec, &read));
-  PetscCall(VecPlaceArray(own->lent[k], read));
+  PetscCall(VecGetArrayRead(vec, &array));
+  PetscCall(VecPlaceArray(own->lent[k], array));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* `writes`: what has been done to the vector laid out as those of the body was meant for that of this rank */
 static PetscErrorCode TakeBack(struct _BodyOwnStep *own, PetscInt k, PetscBool writes, Vec vec)
 {
-  const PetscScalar *read;
-  PetscScalar       *array;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(own->lent[k], &read));
-  array = (PetscScalar *)read;
-  PetscCall(VecRestoreArrayRead(own->lent[k], &read));
   PetscCall(VecResetArray(own->lent[k]));
-  read = array;
-  if (writes) PetscCall(VecRestoreArray(vec, &array));
-  else PetscCall(VecRestoreArrayRead(vec, &read));
+  PetscCall(VecRestoreArrayRead(vec, NULL));
+  if (writes) PetscCall(PetscObjectStateIncrease((PetscObject)vec));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -60,7 +50,7 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   Vec                  vecs[] = {U, V, A, F};
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < LENT; k++) PetscCall(Lend(own, k, (PetscBool)(k > 0), vecs[k]));
+  for (PetscInt k = 0; k < LENT; k++) PetscCall(Lend(own, k, vecs[k]));
   PetscCall((*own->residual)(ts, t, own->lent[0], own->lent[1], own->lent[2], own->lent[3], ctx));
   for (PetscInt k = 0; k < LENT; k++) PetscCall(TakeBack(own, k, (PetscBool)(k > 0), vecs[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -72,7 +62,7 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   Vec                  vecs[] = {X0, V0, A0, X1};
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < LENT; k++) PetscCall(Lend(own, k, (PetscBool)(k > 1), vecs[k]));
+  for (PetscInt k = 0; k < LENT; k++) PetscCall(Lend(own, k, vecs[k]));
   PetscCall((*own->predictor)(ts, own->lent[0], own->lent[1], own->lent[2], own->lent[3], ctx));
   for (PetscInt k = 0; k < LENT; k++) PetscCall(TakeBack(own, k, (PetscBool)(k > 1), vecs[k]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -88,7 +78,7 @@ PetscErrorCode BodyImplicitLinearize(Body body, Vec U)
     PetscCall(BodyImplicitRefactor(body, U));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Lend(implicit->own, 0, PETSC_FALSE, U));
+  PetscCall(Lend(implicit->own, 0, U));
   PetscCall(BodyImplicitRefactor(body, implicit->own->lent[0]));
   PetscCall(TakeBack(implicit->own, 0, PETSC_FALSE, U));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -102,8 +92,8 @@ static PetscErrorCode ApplySolver(PC pc, Vec b, Vec x)
   PetscFunctionBegin;
   PetscCall(PCShellGetContext(pc, &body));
   own = OwnStep(body);
-  PetscCall(Lend(own, 0, PETSC_FALSE, b));
-  PetscCall(Lend(own, 1, PETSC_TRUE, x));
+  PetscCall(Lend(own, 0, b));
+  PetscCall(Lend(own, 1, x));
   PetscCall(ConstrainedSolverSolve(body->solver, own->lent[0], own->lent[1]));
   PetscCall(TakeBack(own, 1, PETSC_TRUE, x));
   PetscCall(TakeBack(own, 0, PETSC_FALSE, b));
