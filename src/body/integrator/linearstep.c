@@ -104,37 +104,16 @@ PetscErrorCode BodyImplicitMoveEnd(Body body, Vec du)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u, v and a += du times these parts */
-SIMD_CLONES static void AddChange(PetscInt n, PetscReal part, PetscReal to_velocity, PetscReal to_acceleration, const PetscScalar du[],
-                                  PetscScalar u[], PetscScalar v[], PetscScalar a[])
-{
-#pragma omp simd
-  for (PetscInt i = 0; i < n; i++) {
-    u[i] += part * du[i];
-    v[i] += part * to_velocity * du[i];
-    a[i] += part * to_acceleration * du[i];
-  }
-}
-
 /* Moves the displacement at the end of the one substep of a linear body: A du = part B^T df with prescribed rows at B du = dx, A being the
    effective matrix; and velocity and acceleration with it. With a part other than 1 no row is prescribed. */
 PetscErrorCode BodyImplicitCorrect(Body body, const PetscScalar displacement[], PetscReal part, PetscReal to_velocity,
                                    PetscReal to_acceleration, Vec du)
 {
-  const PetscScalar *change;
-  PetscScalar       *u, *v, *a;
-
   PetscFunctionBegin;
   PetscCall(ConstrainedSolverCorrect(body->solver, displacement, du));
-  PetscCall(VecGetArrayRead(du, &change));
-  PetscCall(VecGetArray(body->state.u, &u));
-  PetscCall(VecGetArray(body->state.v, &v));
-  PetscCall(VecGetArray(body->state.a, &a));
-  AddChange(body->mesh.owned_nodes * body->mesh.dim, part, to_velocity, to_acceleration, change, u, v, a);
-  PetscCall(VecRestoreArray(body->state.a, &a));
-  PetscCall(VecRestoreArray(body->state.v, &v));
-  PetscCall(VecRestoreArray(body->state.u, &u));
-  PetscCall(VecRestoreArrayRead(du, &change));
+  PetscCall(VecAXPY(body->state.u, part, du));
+  PetscCall(VecAXPY(body->state.v, part * to_velocity, du));
+  PetscCall(VecAXPY(body->state.a, part * to_acceleration, du));
   body->state.force_known = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
