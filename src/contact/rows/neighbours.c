@@ -1,6 +1,6 @@
 /* Which bodies are near each other, and near which obstacles. Of many pairs that the program has chosen those alone have rows whose bodies
-   are near: pairs come and go. Boxes about all bodies are sorted along the longest axis and compared with those that they overlap there, so
-   that nobody looks at all pairs. That is done again when the bodies may have used up the distance up to which pairs were taken, by the way
+   are near: pairs come and go. Boxes about all bodies are sorted along x and compared with those that they overlap there, so that nobody
+   looks at all pairs. That is done again when the bodies may have used up the distance up to which pairs were taken, by the way
    that the two fastest of them can make towards each other. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
@@ -75,25 +75,6 @@ static PetscReal BoxDistance(const PetscReal a[], const PetscReal b[])
   return PetscSqrtReal(square);
 }
 
-static PetscInt LongestAxis(Contact contact)
-{
-  const PetscReal *boxes   = contact->neighbours.boxes;
-  PetscReal        longest = -1;
-  PetscInt         axis    = 0;
-
-  for (PetscInt d = 0; d < contact->dim; d++) {
-    PetscReal lower = PETSC_MAX_REAL, upper = -PETSC_MAX_REAL;
-
-    for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      lower = PetscMin(lower, boxes[6 * b + d]);
-      upper = PetscMax(upper, boxes[6 * b + d]);
-    }
-    if (upper - lower > longest) axis = d;
-    longest = PetscMax(longest, upper - lower);
-  }
-  return axis;
-}
-
 /* Takes a pair whose boxes are near enough, `edge` being that of its larger contact elements [m] */
 static PetscErrorCode Consider(Contact contact, PetscInt first, PetscInt second, PetscReal distance, PetscReal near, PetscReal edge,
                                PetscInt *n)
@@ -128,19 +109,18 @@ PetscErrorCode ContactNoteNeighbours(Contact contact, PetscInt n, const PetscInt
 static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
 {
   ContactNeighbours *neighbours = &contact->neighbours;
-  const PetscInt     axis       = LongestAxis(contact);
   PetscReal          largest    = 0;
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    neighbours->lower[b]  = neighbours->boxes[6 * b + axis];
+    neighbours->lower[b]  = neighbours->boxes[6 * b];
     neighbours->sorted[b] = b;
     largest               = PetscMax(largest, neighbours->edge[b]);
   }
   PetscCall(PetscSortRealWithArrayInt(contact->n_bodies, neighbours->lower, neighbours->sorted));
   for (PetscInt k = 0; k < contact->n_bodies; k++) {
     const PetscInt  a     = neighbours->sorted[k];
-    const PetscReal until = -neighbours->boxes[6 * a + 3 + axis] + near + DROPPED * largest;
+    const PetscReal until = -neighbours->boxes[6 * a + 3] + near + DROPPED * largest;
 
     for (PetscInt l = k + 1; l < contact->n_bodies && neighbours->lower[l] <= until; l++) {
       const PetscInt  b = neighbours->sorted[l], first = neighbours->place[a] < neighbours->place[b] ? a : b, second = a + b - first;
