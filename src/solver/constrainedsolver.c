@@ -161,13 +161,6 @@ PetscErrorCode ConstrainedSolverDestroy(ConstrainedSolver *solver)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode ConstrainedSolverGetKSP(ConstrainedSolver solver, KSP *ksp)
-{
-  PetscFunctionBegin;
-  *ksp = solver->ksp;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ConstrainedSolverGetMatrices(ConstrainedSolver s, Mat *A, Mat *B)
 {
   PetscFunctionBegin;

@@ -17,7 +17,6 @@ PETSC_INTERN PetscErrorCode     ConstrainedSolverGetMatrices(ConstrainedSolver, 
 PETSC_INTERN PetscErrorCode     ConstrainedSolverChoose(KSP, Mat, PetscInt);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverChooseMUMPS(PC);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverAdjust(KSP);
-PETSC_INTERN PetscErrorCode     ConstrainedSolverGetKSP(ConstrainedSolver, KSP *);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetConstraints(ConstrainedSolver, const PetscBool[], const PetscReal[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverSetRows(ConstrainedSolver, Mat, const PetscMPIInt[]);
 PETSC_INTERN PetscErrorCode     ConstrainedSolverReplaceRows(ConstrainedSolver, Mat);

@@ -39,7 +39,7 @@ typedef struct {
   char      *memory;  /* of the history */
   PetscReal *history; /* that the elements of the layer had then, and the length of their step; NULL where the material has none */
   PetscReal  step;
-  PetscInt   number; /* of these factors, counted as they are made */
+  PetscInt   number; /* of these factors, counted as they are made from those before */
   PetscInt   rounds; /* that the last balance with them took */
 } Factors;
 
@@ -47,8 +47,7 @@ struct _n_LayerBalance {
   LayerRows rows;
   PetscReal reach;      /* norm of the reference positions of all nodes [m] */
   Factors   now, aside; /* the latter: of the saved state */
-  PetscInt  n_made;
-  PetscInt  n_history; /* numbers of that history */
+  PetscInt  n_history;  /* numbers of that history */
 };
 
 /* What factors are made from, from one place to another */
@@ -70,12 +69,10 @@ typedef struct {
 
 static PetscErrorCode Refactor(LayerBalance layer, Body body)
 {
-  KSP ksp;
   Mat K;
 
   PetscFunctionBegin;
-  PetscCall(ConstrainedSolverGetKSP(body->solver, &ksp));
-  PetscCall(KSPGetOperators(ksp, &K, NULL));
+  PetscCall(ConstrainedSolverGetMatrices(body->solver, &K, NULL));
   PetscCall(BodyAssembleLayer(body, layer->now.point, layer->now.history, layer->now.step, NULL, K));
   PetscCall(ConstrainedSolverRefactor(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -87,7 +84,7 @@ static PetscErrorCode RefactorAt(LayerBalance layer, Body body, Vec u)
   PetscFunctionBegin;
   PetscCall(BodyGatherLayer(body, u, layer->now.point));
   PetscCall(BodyLayerCopyHistory(body, layer->now.history, &layer->now.step));
-  layer->now.number = ++layer->n_made;
+  layer->now.number++;
   layer->now.rounds = 0;
   PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -112,7 +109,7 @@ PetscErrorCode LayerBalanceSave(Body body)
 PetscErrorCode LayerBalanceAgree(Body body)
 {
   LayerBalance    layer    = GetLayerBalance(body);
-  PetscInt *const values[] = {&layer->n_made, &layer->now.number, &layer->now.rounds, &layer->aside.number, &layer->aside.rounds};
+  PetscInt *const values[] = {&layer->now.number, &layer->now.rounds, &layer->aside.number, &layer->aside.rounds};
   PetscInt        told[PETSC_STATIC_ARRAY_LENGTH(values)];
 
   PetscFunctionBegin;
@@ -297,8 +294,8 @@ PetscErrorCode LayerBalanceCopyPoint(Body body, PetscBool back, Vec point, Petsc
 
   PetscFunctionBegin;
   if (back) {
-    layer->n_made = layer->now.number = (PetscInt)numbers[0];
-    layer->now.rounds                 = (PetscInt)numbers[1];
+    layer->now.number = (PetscInt)numbers[0];
+    layer->now.rounds = (PetscInt)numbers[1];
     if (!layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
     /* a displacement of earlier steps goes with the history of these steps: with that of now there are factors where the body is now */
     PetscCall(BodyGatherLayer(body, body->history ? body->saved.u : point, layer->now.point));
@@ -320,7 +317,6 @@ PetscErrorCode LayerBalanceVisit(Body body, PetscInt level, Checkpoint checkpoin
 
   PetscFunctionBegin;
   if (level || body->model.linear) PetscFunctionReturn(PETSC_SUCCESS); /* one for all levels */
-  PetscCall(CheckpointVisitInts(checkpoint, "layer factors", 1, &layer->n_made));
   PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.number));
   PetscCall(CheckpointVisitInts(checkpoint, "layer rounds", 1, &layer->now.rounds));
   PetscCall(CheckpointVisitVec(checkpoint, "layer point", layer->now.point));
