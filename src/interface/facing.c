@@ -86,7 +86,7 @@ static PetscReal LargestProduct(const PetscReal a[], PetscReal bounds[2][3])
 }
 
 /* Whether a face may see any face of the partner. Two faces see each other if their normals are opposed, and if each lies before the plane
-   of the other, or behind that plane by no more than `depth`, by which the surfaces overlap [m]. */
+   of the other, or behind that plane by no more than `depth`, by which the bodies overlap [m]. */
 static PetscBool SeesGroups(const PetscReal x[], const PetscReal normal[], Directions *others, PetscReal depth)
 {
   for (PetscInt g = 0; g < GROUPS; g++) {
@@ -102,14 +102,26 @@ static PetscBool SeesGroups(const PetscReal x[], const PetscReal normal[], Direc
   return PETSC_FALSE;
 }
 
-/* How far a surface reaches along each direction n: the largest n . x of its nodes [m] */
-static PetscErrorCode GetSupport(MPI_Comm comm, const SurfaceData *data, PetscInt n, const PetscReal directions[][3], PetscReal support[])
+/* How far the whole body of a surface reaches along each direction n: the largest n . x of all its nodes [m] */
+static PetscErrorCode GetSupport(MPI_Comm comm, Surface surface, PetscInt n, const PetscReal directions[][3], PetscReal support[])
 {
+  const PetscInt     dim = surface->data.dim;
+  const PetscScalar *x;
+  PetscInt           size;
+  Vec                coordinates;
+
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < n; i++) {
-    support[i] = -PETSC_MAX_REAL;
-    for (PetscInt k = 0; k < data->n_nodes; k++) support[i] = PetscMax(support[i], Dot(data->positions + 3 * k, directions[i]));
+  PetscCall(DMGetCoordinatesLocal(surface->dm, &coordinates));
+  PetscCall(VecGetLocalSize(coordinates, &size));
+  PetscCall(VecGetArrayRead(coordinates, &x));
+  for (PetscInt i = 0; i < n; i++) support[i] = -PETSC_MAX_REAL;
+  for (PetscInt at = 0; at < size; at += dim) {
+    PetscReal position[3] = {0};
+
+    for (PetscInt d = 0; d < dim; d++) position[d] = PetscRealPart(x[at + d]);
+    for (PetscInt i = 0; i < n; i++) support[i] = PetscMax(support[i], Dot(position, directions[i]));
   }
+  PetscCall(VecRestoreArrayRead(coordinates, &x));
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, support, (PetscMPIInt)n, MPIU_REAL, MPIU_MAX, comm));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -125,9 +137,9 @@ static void AddDirections(Directions *directions, PetscReal sign, PetscInt *n, P
   }
 }
 
-/* The directions of both surfaces, and an upper bound of the depth by which their convex hulls overlap [m]: the least of the depths along
-   the mean normals of the groups and along the axes. If the depth along any direction is negative, the surfaces are apart (theorem of
-   separating axes). */
+/* The directions of both surfaces, and an upper bound of the depth by which the convex hulls of two bodies overlap [m]: the least of the
+   depths along the mean normals of the groups and along the axes. If the depth along any direction is negative, the bodies are apart
+   (theorem of separating axes). */
 static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Surface b, Directions directions[2], PetscReal *overlap)
 {
   PetscReal *support[2];
@@ -142,10 +154,10 @@ static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Surface b, Direct
     for (PetscInt d = 0; d < 3; d++) list[n][d] = d == side / 2 ? (side % 2 ? 1 : -1) : 0;
   AddDirections(&directions[0], 1, &n, list);
   AddDirections(&directions[1], -1, &n, list);
-  PetscCall(GetSupport(comm, &a->data, n, (const PetscReal(*)[3])list, support[0]));
+  PetscCall(GetSupport(comm, a, n, (const PetscReal(*)[3])list, support[0]));
   for (PetscInt i = 0; i < n; i++)
     for (PetscInt d = 0; d < 3; d++) list[i][d] = -list[i][d];
-  PetscCall(GetSupport(comm, &b->data, n, (const PetscReal(*)[3])list, support[1]));
+  PetscCall(GetSupport(comm, b, n, (const PetscReal(*)[3])list, support[1]));
   *overlap = PETSC_MAX_REAL;
   for (PetscInt i = 0; i < n; i++) *overlap = PetscMin(*overlap, support[0][i] + support[1][i]);
   *overlap = PetscMax(*overlap, 0) * (1 + OVERLAP_MARGIN) + OVERLAP_FLOOR * PetscMax(directions[0].extent, directions[1].extent);
@@ -155,7 +167,7 @@ static PetscErrorCode ComputeOverlap(MPI_Comm comm, Surface a, Surface b, Direct
 
 /* Restricts surfaces to the faces that see the partner, `b` or the obstacle, the other one being NULL; `keep_a`, `keep_b`: which of both
    are restricted. In the reference positions, a face sees another one if their normals are opposed and each lies before the plane of the
-   other, or behind it by no more than the surfaces overlap. Faces of the partner are compared in groups of similar direction: all faces
+   other, or behind it by no more than the bodies overlap. Faces of the partner are compared in groups of similar direction: all faces
    that see one are kept, and maybe some more. A surface may end up without any face. */
 PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscBool keep_a, PetscBool keep_b)
 {
