@@ -51,8 +51,10 @@ static const struct {
     {"lagrange_snes_", "forces are found as with -contact_type schwarz, whose options are -schwarz_snes_..."},
     {"penalty_snes_", "forces are found as with -contact_type schwarz, whose options are -schwarz_snes_..."},
     {"schwarz_condense", "sweeps advance the bodies themselves"},
+    {"schwarz_convergence", "plain alternation is tested by positions, others by how far both sides are apart"},
     {"schwarz_dense_limit", "matrices are as the bodies need them"},
     {"schwarz_interface_", "there is no such solver"},
+    {"schwarz_recheck", "nodes that are pulled always leave contact within the step"},
     {"schwarz_sweep", "in each sweep the second body of a pair takes the reactions of the first, as with multiplicative"},
 };
 

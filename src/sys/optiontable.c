@@ -292,12 +292,8 @@ static const KnownOption options[] = {
      "side"},
     {"alternation", OPTION_OF_RUN, "schwarz_impedance_parameter", "z",
      "impedance of impedance conditions [N s/m^3; 2-D N s/m^2; 1-D N s/m], default that of plane waves in the Neumann side"},
-    {"alternation", OPTION_OF_RUN, "schwarz_predictor", "last|trial|extrapolate|inelastic",
+    {"alternation", OPTION_OF_RUN, "schwarz_predictor", "last|inelastic",
      "where the first sweep of a controller step starts from, default inelastic"},
-    {"alternation", OPTION_OF_RUN, "schwarz_convergence", "auto|position|mismatch",
-     "what change of position is compared with the tolerance, default auto"},
-    {"alternation", OPTION_OF_RUN, "schwarz_recheck", "true|false",
-     "whether tensile nodes leave contact within the controller step, default true"},
     {"alternation", OPTION_OF_RUN, "contact_swap_sides", "true|false",
      "whether Dirichlet and Neumann side change places with every controller step, default false"},
 

@@ -164,8 +164,8 @@ static PetscErrorCode ReadRowSides(Contact contact)
 /* The first option given that the alternation alone has; it chooses the alternation */
 static PetscErrorCode TakeAlternation(Contact contact, size_t size, char type[])
 {
-  const char *const names[] = {"-schwarz_transmission", "-schwarz_traction",    "-schwarz_traction_waveform", "-schwarz_predictor",
-                               "-schwarz_relaxation",   "-schwarz_convergence", "-schwarz_recheck",           "-contact_swap_sides"};
+  const char *const names[] = {"-schwarz_transmission", "-schwarz_traction",   "-schwarz_traction_waveform",
+                               "-schwarz_predictor",    "-schwarz_relaxation", "-contact_swap_sides"};
   PetscBool         schwarz, given = PETSC_FALSE;
 
   PetscFunctionBegin;

@@ -6,12 +6,11 @@
 #include <sys/units.h>
 #include <impakt/private/bodysweeps.h>
 
-static const char *const ConvergenceTests[] = {"auto", "position", "mismatch", "SchwarzConvergence", "SCHWARZ_CONVERGENCE_", NULL};
-static const char *const Relaxations[]      = {"fixed", "aitken", "SchwarzRelaxation", "SCHWARZ_RELAXATION_", NULL};
-static const char *const Transmissions[]    = {"dirichlet_neumann",     "robin", "impedance", "SchwarzTransmission",
-                                               "SCHWARZ_TRANSMISSION_", NULL};
-static const char *const Predictors[]       = {"last", "trial", "extrapolate", "inelastic", "SchwarzPredictor", "SCHWARZ_PREDICTOR_", NULL};
-static const char *const Waveforms[]        = {"linear", "constant", "SchwarzWaveform", "SCHWARZ_WAVEFORM_", NULL};
+static const char *const Relaxations[]   = {"fixed", "aitken", "SchwarzRelaxation", "SCHWARZ_RELAXATION_", NULL};
+static const char *const Transmissions[] = {"dirichlet_neumann",     "robin", "impedance", "SchwarzTransmission",
+                                            "SCHWARZ_TRANSMISSION_", NULL};
+static const char *const Predictors[]    = {"last", "inelastic", "SchwarzPredictor", "SCHWARZ_PREDICTOR_", NULL};
+static const char *const Waveforms[]     = {"linear", "constant", "SchwarzWaveform", "SCHWARZ_WAVEFORM_", NULL};
 
 static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
 {
@@ -42,11 +41,7 @@ static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
                              &alternation->swap, NULL));
   PetscCall(PetscOptionsEnum("-schwarz_relaxation", "Relaxation of nrichardson", "ContactSetFromOptions", Relaxations,
                              (PetscEnum)alternation->relaxation, (PetscEnum *)&alternation->relaxation, NULL));
-  PetscCall(PetscOptionsEnum("-schwarz_convergence", "What change of position is tested", "ContactSetFromOptions", ConvergenceTests,
-                             (PetscEnum)alternation->convergence, (PetscEnum *)&alternation->convergence, NULL));
   PetscCall(ContactReadUnconverged(contact));
-  PetscCall(PetscOptionsBool("-schwarz_recheck", "Let tensile nodes leave contact within the step", "ContactSetFromOptions",
-                             alternation->recheck, &alternation->recheck, NULL));
   PetscOptionsEnd();
   PetscCheck(!set || alternation->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-schwarz_robin_parameter %g must be positive", (double)alternation->robin_parameter);
@@ -212,7 +207,6 @@ PetscErrorCode ContactCreate_Alternation(Contact contact)
   PetscCall(PetscNew(&alternation));
   alternation->traction        = BODY_TRACTION_INTERNAL;
   alternation->predictor       = SCHWARZ_PREDICTOR_INELASTIC;
-  alternation->recheck         = PETSC_TRUE;
   contact->prescribes          = PETSC_TRUE;
   contact->data                = alternation;
   contact->ops->setfromoptions = ContactSetFromOptions_Alternation;

@@ -6,14 +6,9 @@
    by a stiffness, or traction and velocity, weighted by an impedance */
 typedef enum { SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN, SCHWARZ_TRANSMISSION_ROBIN, SCHWARZ_TRANSMISSION_IMPEDANCE } SchwarzTransmission;
 
-/* Where the first sweep of a controller step starts from: where the contact nodes were at its start, go without contact, go with their
-   velocity, or go with the common velocity after an inelastic collision */
-typedef enum {
-  SCHWARZ_PREDICTOR_LAST,
-  SCHWARZ_PREDICTOR_TRIAL,
-  SCHWARZ_PREDICTOR_EXTRAPOLATE,
-  SCHWARZ_PREDICTOR_INELASTIC
-} SchwarzPredictor;
+/* Where the first sweep of a controller step starts from: where the contact nodes were at its start, or go with the common velocity after
+   an inelastic collision */
+typedef enum { SCHWARZ_PREDICTOR_LAST, SCHWARZ_PREDICTOR_INELASTIC } SchwarzPredictor;
 
 /* How the traction of a partner with longer substeps varies in the course of them: linearly, which keeps momentum, or not at all */
 typedef enum { SCHWARZ_WAVEFORM_LINEAR, SCHWARZ_WAVEFORM_CONSTANT } SchwarzWaveform;
@@ -21,13 +16,8 @@ typedef enum { SCHWARZ_WAVEFORM_LINEAR, SCHWARZ_WAVEFORM_CONSTANT } SchwarzWavef
 /* Relaxation of the plain alternation, by a given factor, or by Aitken's from the last two residuals */
 typedef enum { SCHWARZ_RELAXATION_FIXED, SCHWARZ_RELAXATION_AITKEN } SchwarzRelaxation;
 
-/* What is compared with the tolerances of the outer iteration: position, for fixed relaxation, or mismatch; that of all nodes of every body
-   from one sweep to the next (Hoy, Tezaur, Mota); what one more plain sweep would bring at contact nodes */
-typedef enum { SCHWARZ_CONVERGENCE_AUTO, SCHWARZ_CONVERGENCE_POSITION, SCHWARZ_CONVERGENCE_MISMATCH } SchwarzConvergence;
-
 typedef struct {
   /* options */
-  SchwarzConvergence  convergence;
   SchwarzRelaxation   relaxation;
   BodyTractionType    traction;
   SchwarzTransmission transmission;
@@ -35,12 +25,14 @@ typedef struct {
   SchwarzWaveform     waveform;
   PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
   PetscReal           impedance;       /* N s/m for each unit of area; 0: that of plane waves in the Neumann side */
-  PetscBool           recheck;         /* tensile reactions leave the active set within the step */
   PetscBool           swap;            /* sides change with every controller step */
   PetscReal           atol, rtol;      /* on the change of position [m], relative */
   /* chosen at set-up */
   PetscBool mass_prescribed; /* contact nodes of a Dirichlet side have mass: they take velocity and acceleration from their partner */
   PetscReal controller_step; /* [s]; of the present level */
+  PetscBool
+      by_position; /* what is compared with the tolerances is the change of position of all nodes of every body from one sweep to
+                      the next (Hoy, Tezaur, Mota), for fixed relaxation; else what one more plain sweep would bring at contact nodes */
   /* unknowns of the outer iteration */
   SNES      snes;
   Vec       x, residual;

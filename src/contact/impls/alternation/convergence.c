@@ -77,7 +77,7 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
 PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
 {
   Alternation    *alternation = (Alternation *)contact->data;
-  const PetscBool mismatch    = (PetscBool)(alternation->convergence == SCHWARZ_CONVERGENCE_MISMATCH);
+  const PetscBool mismatch    = (PetscBool)!alternation->by_position;
   PetscReal       worst       = -1;
 
   PetscFunctionBegin;

@@ -118,8 +118,6 @@ PetscErrorCode AlternationSetUpOuterSolver(Contact contact, PetscInt unknowns)
     PetscCall(SNESLineSearchShellSetApply(line_search, ApplyAitken, contact));
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
-  if (alternation->convergence == SCHWARZ_CONVERGENCE_AUTO)
-    alternation->convergence = richardson && alternation->relaxation == SCHWARZ_RELAXATION_FIXED ? SCHWARZ_CONVERGENCE_POSITION
-                                                                                                 : SCHWARZ_CONVERGENCE_MISMATCH;
+  alternation->by_position = (PetscBool)(richardson && alternation->relaxation == SCHWARZ_RELAXATION_FIXED);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

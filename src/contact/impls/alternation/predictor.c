@@ -11,8 +11,8 @@ PetscReal AlternationOffset(Contact contact, PetscInt i, PetscReal part)
   return contact->rows.initial_gap[i] - contact->start.gap[i] * left;
 }
 
-/* Predicted displacement of the Neumann side of row i */
-static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time, PetscReal part, PetscScalar *displacement)
+/* Predicted displacement of the Neumann side of row i, at a time in the step */
+static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time, PetscScalar *displacement)
 {
   const Alternation *alternation = (const Alternation *)contact->data;
   const ContactPair *pair        = &contact->pairs[contact->rows.pair[i]];
@@ -26,35 +26,22 @@ static PetscErrorCode PredictNeumann(Contact contact, PetscInt i, PetscReal time
   PetscCall(TraceGetLevel(dirichlet->velocity, 0, &other));
   *displacement = u[k];
   if (pair->obstacle) PetscFunctionReturn(PETSC_SUCCESS);
-  if (alternation->predictor == SCHWARZ_PREDICTOR_EXTRAPOLATE) *displacement += time * v[k];
   if (alternation->predictor == SCHWARZ_PREDICTOR_INELASTIC) {
     const PetscReal m_d = alternation->mass[pair->dirichlet][i], m_n = alternation->mass[1 - pair->dirichlet][i];
 
     *displacement += time * (m_n * v[k] - m_d * other[i - DirichletShift(pair)]) / (m_d + m_n);
   }
-  if (alternation->predictor == SCHWARZ_PREDICTOR_TRIAL) {
-    PetscInt levels;
-
-    /* a level of the trace: it has as many as the unknowns, or these are its last one alone */
-    PetscCall(TraceGetSizes(neumann->displacement, NULL, &levels));
-    PetscCall(TraceGetLevel(neumann->displacement, (PetscInt)PetscFloorReal(part * levels + 0.5), &u));
-    *displacement = u[k];
-  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Start of the outer iteration, and inputs of the first sweep. The bodies' conditions are free afterwards, if it needed a trial. */
+/* Start of the outer iteration, and inputs of the first sweep */
 PetscErrorCode AlternationPredict(Contact contact)
 {
   Alternation *alternation = (Alternation *)contact->data;
   PetscScalar *x;
 
   PetscFunctionBegin;
-  if (alternation->predictor == SCHWARZ_PREDICTOR_TRIAL) { /* for where contact nodes go */
-    PetscCall(ContactSetConditions(contact, CONDITIONS_FREE));
-    PetscCall(ContactIntegrateBodies(contact));
-  } else
-    for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodyResetTraces(contact->bodies[b]));
   PetscCall(VecZeroEntries(alternation->x));
   PetscCall(VecGetArray(alternation->x, &x));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
@@ -67,7 +54,7 @@ PetscErrorCode AlternationPredict(Contact contact)
       const PetscReal part     = (PetscReal)level / levels;
       PetscScalar     position = 0;
 
-      PetscCall(PredictNeumann(contact, i, level * width, part, &position));
+      PetscCall(PredictNeumann(contact, i, level * width, &position));
       position = -position - AlternationOffset(contact, i, part);
       if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) unknown[level - 1] = position;
       else unknown[level - 1] = force + alternation->weight[i] * position;

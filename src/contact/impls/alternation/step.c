@@ -32,8 +32,7 @@ static PetscErrorCode ChangeSet(Contact contact, PetscBool *changed)
     PetscBool *active = &contact->end.active[i];
     PetscInt  *left   = &alternation->left[i];
 
-    if (*active ? alternation->recheck && contact->end.force[i] < 0 && !contact->rows.tied[i] && *left < 2
-                : contact->end.gap[i] < -contact->options.tolerance) {
+    if (*active ? contact->end.force[i] < 0 && !contact->rows.tied[i] && *left < 2 : contact->end.gap[i] < -contact->options.tolerance) {
       if (*active || *left) ++*left;
       any     = PetscMax(any, PetscMax(1, (int)*left));
       *active = (PetscBool) !*active;
