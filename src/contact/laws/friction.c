@@ -184,14 +184,12 @@ PetscErrorCode ContactComputeSlips(Contact contact)
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    const PetscBool    all  = contact->friction.by_speed;
-    const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, last = all ? pair->near_end : pair->acts_end;
     PetscScalar       *start[2], *end[2];
 
     PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_FALSE, start));
     PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_TRUE, end));
-    for (PetscInt k = all ? pair->near_begin : pair->acts_begin; k < last; k++) {
-      const PetscInt i = rows[k], first = i - pair->shift[0], second = i - pair->shift[1];
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
+      const PetscInt i = contact->rows.near[k], first = i - pair->shift[0], second = i - pair->shift[1];
 
       contact->friction.slip[i] = PetscRealPart((end[0][first] - start[0][first]) + (end[1][second] - start[1][second])) +
                                   contact->friction.drive[i];
@@ -207,12 +205,12 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
 
   PetscFunctionBegin;
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_acting; k++) friction->step_loss[contact->rows.acting[k]] = 0;
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) friction->step_loss[contact->rows.near[k]] = 0;
   PetscCall(PetscArrayzero(friction->pair_step, contact->n_pairs));
   PetscCall(PetscArrayzero(friction->pair_work, contact->n_pairs));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactAddWork(contact, b, start_force, friction->step_loss, NULL));
-  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
-    const PetscInt  i    = contact->rows.acting[k];
+  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
+    const PetscInt  i    = contact->rows.near[k];
     const PetscReal work = -0.5 * (start_force[i] + contact->end.force[i]) * friction->drive[i];
 
     if (!ContactHasForce(contact, i, start_force)) continue;
@@ -241,14 +239,12 @@ PetscErrorCode ContactAcceptFriction(Contact contact)
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    const PetscBool    all  = contact->friction.by_speed;
-    const PetscInt    *rows = all ? contact->rows.near : contact->rows.acting, end = all ? pair->near_end : pair->acts_end;
 
     friction->pair_loss[p] += friction->pair_step[p];
     friction->pair_driven[p] += friction->pair_work[p];
     if (pair->law != CONTACT_LAW_FRICTION) continue;
-    for (PetscInt k = all ? pair->near_begin : pair->acts_begin; k < end; k += pair->components) {
-      const PetscInt first = rows[k];
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+      const PetscInt first = contact->rows.near[k];
       PetscReal      way   = 0;
 
       for (PetscInt i = first + 1; i < first + pair->components; i++) {
