@@ -384,7 +384,6 @@ typedef struct {
   PetscReal                *boxes;             /* per body: lower corner, and the upper one with its sign changed [m] */
   PetscReal                 near;              /* how far apart bodies may touch in a step, when pairs were looked for last [m] */
   PetscReal                 room_left;         /* by which bodies that are no pair may come nearer until they are looked for again [m] */
-  PetscInt                  layouts;           /* how often pairs have come or gone */
   PetscInt                  room, *found;      /* pairs found, by ContactNumberPair() */
   PetscInt                  n_living, *living; /* those that have rows, ascending */
   PetscReal                *lower;             /* work space, per body */

@@ -50,28 +50,21 @@ PetscErrorCode ContactSetUpTold(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds what a pair has done so far to what is told. What has no direction counts with the rows' body alone, so that sums are right. */
-static void AddDone(ContactPairState *sum, PetscInt sign, const ContactPairState *state)
+/* Adds the state of a pair to what is told. What has no direction counts with the rows' body alone, so that sums are right. */
+static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairState *state)
 {
-  for (PetscInt d = 0; d < 3; d++) sum->impulse[d] += sign * state->impulse[d];
+  sum->gap     = PetscMin(sum->gap, state->gap);
+  sum->tension = PetscMax(sum->tension, state->tension);
+  for (PetscInt d = 0; d < 3; d++) {
+    sum->impulse[d] += sign * state->impulse[d];
+    sum->force_vector[d] += sign * state->force_vector[d];
+    sum->moment[d] += sign * state->moment[d];
+  }
   if (sign < 0) return;
   sum->normal_impulse += state->normal_impulse;
   sum->beyond_impulse += state->beyond_impulse;
   sum->friction_loss += state->friction_loss;
   sum->obstacle_work += state->obstacle_work;
-}
-
-/* The same, and what the pair does now */
-static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairState *state)
-{
-  AddDone(sum, sign, state);
-  sum->gap     = PetscMin(sum->gap, state->gap);
-  sum->tension = PetscMax(sum->tension, state->tension);
-  for (PetscInt d = 0; d < 3; d++) {
-    sum->force_vector[d] += sign * state->force_vector[d];
-    sum->moment[d] += sign * state->moment[d];
-  }
-  if (sign < 0) return;
   sum->force += state->force;
   sum->active += state->active;
   sum->area += state->area;
@@ -79,17 +72,17 @@ static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairStat
 }
 
 /* Adds the state of a pair to those that are told of its bodies, or of its body and the obstacle */
-static void Tell(Contact contact, const ContactPair *pair, const ContactPairState *state, ContactPairState told[],
-                 void (*add)(ContactPairState *, PetscInt, const ContactPairState *))
+static void Tell(Contact contact, const ContactPair *pair, const ContactPairState *state, ContactPairState told[])
 {
-  if (pair->obstacle) (*add)(&told[ObstaclePlace(contact, pair->body[0], ContactPairPartner(contact, pair) - contact->n_bodies)], 1, state);
-  for (PetscInt side = 0; side < 2 && !pair->obstacle; side++) (*add)(&told[pair->body[side]], side ? -1 : 1, state);
+  if (pair->obstacle)
+    AddState(&told[ObstaclePlace(contact, pair->body[0], ContactPairPartner(contact, pair) - contact->n_bodies)], 1, state);
+  for (PetscInt side = 0; side < 2 && !pair->obstacle; side++) AddState(&told[pair->body[side]], side ? -1 : 1, state);
 }
 
-/* A pair goes: what it has done stays with its bodies */
+/* A pair goes: what it has done stays with its bodies. It has no force any more, and TellStates() forgets its gap. */
 void ContactTakeLeave(Contact contact, const ContactPair *pair, const ContactPairState *state)
 {
-  Tell(contact, pair, state, contact->neighbours.told.gone, AddDone);
+  Tell(contact, pair, state, contact->neighbours.told.gone);
 }
 
 /* States of all that is told; collective */
@@ -101,7 +94,7 @@ static PetscErrorCode TellStates(Contact contact, ContactPairState states[])
   PetscCall(ContactComputePairStates(contact, contact->resultants.states));
   PetscCall(PetscArraycpy(states, told->gone, told->n));
   for (PetscInt p = 0; p < told->n; p++) states[p].gap = CONTACT_NO_GAP;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) Tell(contact, &contact->pairs[p], &contact->resultants.states[p], states, AddState);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) Tell(contact, &contact->pairs[p], &contact->resultants.states[p], states);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

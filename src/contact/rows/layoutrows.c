@@ -170,7 +170,6 @@ PetscErrorCode ContactReplacePairs(Contact contact, PetscInt n, const PetscInt l
   PetscCall(ReplaceBodies(contact, affected, &kept, was));
   PetscCall(ContactSetUpObstacleTraces(contact));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, setup);
-  contact->neighbours.layouts++;
   PetscCall(PetscFree4(kept.rows, kept.sums, kept.goes_on, kept.states));
   PetscCall(PetscFree(kept.pairs));
   PetscCall(PetscFree2(was, affected));
