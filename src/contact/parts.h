@@ -195,6 +195,7 @@ enum { MOTION_TOUCHES = TRANSFER_MOTION, MOTION_CLOSES, CONTACT_MOTION };
 enum { ROWS_STAY, ROWS_FOLLOWED, ROWS_REBUILT };
 
 PETSC_INTERN PetscErrorCode ContactUpdatePairs(Contact);
+PETSC_INTERN PetscErrorCode ContactLookAtNodes(const SurfaceData *, Vec, PetscReal[4], const PetscReal[3], PetscReal *);
 PETSC_INTERN PetscErrorCode ContactMeasureReach(Contact, PetscReal *);
 PETSC_INTERN PetscReal      ContactPairReach(Contact, const ContactPair *);
 PETSC_INTERN PetscReal      ContactRowReach(Contact, const ContactPair *, const PetscReal[]);

@@ -400,7 +400,7 @@ typedef struct {
 
 /* Work space. What goes to a body has an entry for each row of that body, and room for all of this rank. */
 typedef struct {
-  PetscReal     *traces;        /* seven numbers per body, see ContactGetBodyTraces() */
+  PetscReal     *traces;        /* eight numbers per body, see ContactGetBodyTraces() */
   int           *hands_over;    /* per body: it begins the step with forces along other rows than it ends it with */
   PetscBool     *flags;         /* to a body */
   PetscReal     *last_gap;      /* per row */

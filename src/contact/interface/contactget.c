@@ -158,33 +158,6 @@ PetscErrorCode ContactGetCounts(Contact contact, ContactCounts *counts)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds up the positions and velocities of this rank's nodes of a surface, three numbers each, and how many these are */
-static PetscErrorCode SumNodes(const ContactSurface *surface, Body body, PetscReal sums[7])
-{
-  const SurfaceData *data;
-  const PetscScalar *u, *v;
-  Vec                displacements, velocities;
-  PetscInt           first;
-
-  PetscFunctionBegin;
-  PetscCall(SurfaceGetData(surface->surface, &data));
-  PetscCall(BodyGetSolution(body, &displacements, &velocities, NULL));
-  PetscCall(VecGetOwnershipRange(displacements, &first, NULL));
-  PetscCall(VecGetArrayRead(displacements, &u));
-  PetscCall(VecGetArrayRead(velocities, &v));
-  for (PetscInt i = 0; i < data->n_owned; i++)
-    for (PetscInt d = 0; d < data->dim; d++) {
-      const PetscInt dof = data->dofs[i] - first + d;
-
-      sums[d] += data->reference[3 * i + d] + PetscRealPart(u[dof]);
-      sums[3 + d] += PetscRealPart(v[dof]);
-    }
-  sums[6] = (PetscReal)data->n_owned;
-  PetscCall(VecRestoreArrayRead(velocities, &v));
-  PetscCall(VecRestoreArrayRead(displacements, &u));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Mean position [m] and velocity [m/s] of the contact nodes of each body in its first pair: 3 numbers each. Collective. */
 PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], PetscReal velocities[])
 {
@@ -195,17 +168,24 @@ PetscErrorCode ContactGetBodyTraces(Contact contact, PetscReal positions[], Pets
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(positions, 2);
   PetscAssertPointer(velocities, 3);
-  PetscCall(PetscArrayzero(sums, 7 * n));
+  PetscCall(PetscArrayzero(sums, 8 * n));
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
-    const PetscInt b = contact->surfaces[s].body;
+    PetscReal         *of = sums + 8 * contact->surfaces[s].body;
+    const SurfaceData *data;
+    Vec                u, v;
 
-    if (contact->surfaces[s].first) PetscCall(SumNodes(&contact->surfaces[s], contact->bodies[b], sums + 7 * b));
+    if (!contact->surfaces[s].first) continue;
+    PetscCall(SurfaceGetData(contact->surfaces[s].surface, &data));
+    PetscCall(BodyGetSolution(contact->bodies[contact->surfaces[s].body], &u, &v, NULL));
+    PetscCall(ContactLookAtNodes(data, u, of, NULL, NULL));
+    PetscCall(ContactLookAtNodes(data, v, of + 4, NULL, NULL));
+    for (PetscInt i = 0; i < 3 * data->n_owned; i++) of[i % 3] += data->reference[i];
   }
-  PetscCall(ContactReduce(contact, 7 * n, MPIU_REAL, MPIU_SUM, sums));
-  for (PetscInt b = 0; b < n; b++, sums += 7)
+  PetscCall(ContactReduce(contact, 8 * n, MPIU_REAL, MPIU_SUM, sums));
+  for (PetscInt b = 0; b < n; b++, sums += 8)
     for (PetscInt d = 0; d < 3; d++) {
-      positions[3 * b + d]  = sums[d] / PetscMax(sums[6], 1);
-      velocities[3 * b + d] = sums[3 + d] / PetscMax(sums[6], 1);
+      positions[3 * b + d]  = sums[d] / PetscMax(sums[3], 1);
+      velocities[3 * b + d] = sums[4 + d] / PetscMax(sums[7], 1);
     }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,7 +17,7 @@ static PetscErrorCode AllocateBodies(Contact contact)
   PetscCall(PetscCalloc1(n, &contact->overlaps.boundaries));
   PetscCall(
       PetscCalloc5(n + 1, &contact->traces, n, &contact->interfaces, n, &contact->spares, n, &contact->order, n, &contact->body_rows));
-  PetscCall(PetscCalloc4(n, &contact->ends, n, &contact->ahead, n, &contact->work.hands_over, 7 * n, &contact->work.traces));
+  PetscCall(PetscCalloc4(n, &contact->ends, n, &contact->ahead, n, &contact->work.hands_over, 8 * n, &contact->work.traces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

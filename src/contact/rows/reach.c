@@ -13,7 +13,7 @@ static PetscReal Norm(const PetscReal v[3])
 }
 
 /* Adds vectors of a surface's nodes on this rank, and their number, to `sum`; NULL: the most by which one of them differs from `mean` */
-static PetscErrorCode LookAtNodes(const SurfaceData *data, Vec vec, PetscReal sum[4], const PetscReal mean[3], PetscReal *most)
+PetscErrorCode ContactLookAtNodes(const SurfaceData *data, Vec vec, PetscReal sum[4], const PetscReal mean[3], PetscReal *most)
 {
   const PetscInt     dim = data->dim;
   const PetscScalar *values;
@@ -79,9 +79,9 @@ PetscErrorCode ContactMeasureReach(Contact contact, PetscReal *reach)
       PetscCall(SurfaceGetData(contact->surfaces[s].surface, &data));
       PetscCall(BodyGetSolution(contact->bodies[b], NULL, &velocity, &acceleration));
       /* one body alone moves in the frame of its obstacles */
-      if (!pass && n > 1) PetscCall(LookAtNodes(data, velocity, mean + 4 * b, NULL, NULL));
-      if (pass) PetscCall(LookAtNodes(data, velocity, NULL, mean + 4 * b, &spread[b]));
-      if (pass && gains) PetscCall(LookAtNodes(data, acceleration, NULL, none, &contact->reach.acceleration[b]));
+      if (!pass && n > 1) PetscCall(ContactLookAtNodes(data, velocity, mean + 4 * b, NULL, NULL));
+      if (pass) PetscCall(ContactLookAtNodes(data, velocity, NULL, mean + 4 * b, &spread[b]));
+      if (pass && gains) PetscCall(ContactLookAtNodes(data, acceleration, NULL, none, &contact->reach.acceleration[b]));
     }
     if (!pass) PetscCall(ContactReduce(contact, 4 * n, MPIU_REAL, MPIU_SUM, mean));
     for (PetscInt i = 0; i < 4 * n && !pass; i++)
