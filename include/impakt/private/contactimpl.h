@@ -303,7 +303,6 @@ typedef struct {
 
 /* Friction, see src/contact/laws/README.md. Arrays have a number for each row: what concerns a node is at its first one. */
 typedef struct {
-  PetscBool  by_speed;                /* bounds depend on the speed at which nodes slide: so slips count before they touch */
   PetscReal *slip;                    /* of rows across the normal: in the present step [m] */
   PetscReal *drive;                   /* the same: the part of it that the surface of an obstacle goes along itself [m] */
   PetscReal *step_loss;               /* the same: energy that the present step loses by friction [J] */

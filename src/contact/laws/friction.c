@@ -39,14 +39,6 @@ PetscErrorCode ContactSetUpFriction(Contact contact)
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || (!contact->n_pairs && !contact->neighbours.come_and_go))
     PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(DestroyRows(friction));
-  for (PetscInt g = 0; g < contact->n_laws; g++) {
-    PetscReal rests[2], flies[2];
-
-    if (!contact->laws[g].law.bound) continue;
-    (*contact->laws[g].law.bound)(contact->laws[g].parameters, 0, rests);
-    (*contact->laws[g].law.bound)(contact->laws[g].parameters, PETSC_MAX_REAL, flies);
-    if (rests[0] != flies[0] || rests[1] != flies[1]) friction->by_speed = PETSC_TRUE;
-  }
   PetscCall(PetscCalloc7(PetscMax(n, 1), &friction->slip, n, &friction->drive, n, &friction->step_loss, n, &friction->loss, n,
                          &friction->distance, n, &friction->speed, n, &friction->slides));
   PetscCall(PetscCalloc4(contact->n_pairs, &friction->pair_step, contact->n_pairs, &friction->pair_loss, contact->n_pairs,
