@@ -144,6 +144,7 @@ PETSC_INTERN const char    *ContactNameLaw(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactReadLaw(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactReadLawParameters(Contact);
 PETSC_INTERN PetscErrorCode ContactViewLawParameters(Contact, PetscViewer);
+PETSC_INTERN PetscErrorCode ContactCreateLaws(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckLaws(Contact);
 PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN void           ContactHoldTogether(Contact);

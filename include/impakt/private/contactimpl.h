@@ -8,9 +8,8 @@
 #include <petscksp.h>
 #include <petsc/private/petscimpl.h>
 
-typedef struct _n_Checkpoint     *Checkpoint;      /* src/checkpoint/checkpoint.h */
-typedef struct _n_Tables         *Tables;          /* src/checkpoint/tables.h */
-typedef struct _n_ContactNamedLaw ContactNamedLaw; /* src/contact/laws/pairlaws.h */
+typedef struct _n_Checkpoint *Checkpoint; /* src/checkpoint/checkpoint.h */
+typedef struct _n_Tables     *Tables;     /* src/checkpoint/tables.h */
 
 #define CONTACT_LAW_PARAMETERS 4 /* of a law of glue or friction, at most */
 
@@ -80,7 +79,7 @@ typedef struct {
   PetscInt    intervals;  /* of the controller step, between whose ends its force is linear */
   PetscBool   own_law;    /* it has a law of its own */
   ContactLaw  law;        /* what its surfaces do to each other */
-  PetscInt    named;      /* that of glue or friction, in contact->laws */
+  PetscInt    named;      /* that of glue or friction, see src/contact/laws/pairlaws.c */
   PetscReal   parameters[CONTACT_LAW_PARAMETERS]; /* its own; less than 0: those of all pairs */
 } ContactPair;
 
@@ -128,7 +127,7 @@ typedef struct {
   PetscReal            energy_excess;    /* part of the energy that contact may bring out of nothing in the whole run */
   PetscReal            tolerance;        /* depth that does not yet count as penetration [m] */
   PetscReal            tie_distance;     /* gap or overlap up to which nodes are tied [parts of a face] */
-  PetscInt             named;            /* law of glue or friction of pairs that have none of their own, in contact->laws */
+  PetscInt             named;            /* law of glue or friction of pairs that have none of their own */
 } ContactOptions;
 
 /* The size of the problem, of which default tolerances are parts, see ContactSetUpScales() */
@@ -458,8 +457,7 @@ struct _p_Contact {
   ContactAttempt    attempt;
   ContactFloating   floating;
   ContactFriction   friction;
-  PetscInt          n_laws;
-  ContactNamedLaw  *laws; /* of glue and friction, that have been named, see src/contact/laws/pairlaws.h */
+  PetscReal        *law_parameters; /* of each law of glue or friction, of pairs that have none of their own; less than 0: not set */
   ContactWork       work;
   ContactNeighbours neighbours;
   ContactReach      reach;

@@ -39,6 +39,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
       PetscHeaderCreate(*contact, CONTACT_CLASSID, "Contact", "Contact between bodies", "Contact", comm, ContactDestroy, ContactView));
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
   PetscCallMPI(MPI_Comm_rank(comm, &(*contact)->ranks.rank));
+  PetscCall(ContactCreateLaws(*contact));
   (*contact)->attempt.failed = PETSC_INT_MAX;
   (*contact)->options        = (ContactOptions){
       .separation       = PETSC_TRUE,
@@ -234,7 +235,7 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));
   PetscCall(ContactDestroyFriction(c));
-  PetscCall(PetscFree(c->laws));
+  PetscCall(PetscFree(c->law_parameters));
   PetscCall(PetscHeaderDestroy(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -43,7 +43,6 @@ static PetscErrorCode RegisterAll(void)
   PetscCall(ContactRegister(CONTACT_PENALTY, ContactCreate_Penalty));
   PetscCall(ContactRegister(CONTACT_LAGRANGE, ContactCreate_Lagrange));
   PetscCall(ContactRegister(CONTACT_AUGMENTED_LAGRANGIAN, ContactCreate_AugmentedLagrangian));
-  PetscCall(RowLawRegisterAll());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,7 +50,6 @@ static PetscErrorCode Empty(void)
 {
   PetscFunctionBegin;
   PetscCall(PetscFunctionListDestroy(&ContactList));
-  PetscCall(RowLawDestroyList());
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

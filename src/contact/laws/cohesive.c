@@ -106,28 +106,21 @@ static void Grow(PetscInt n, const RowLawGlue *glue, const PetscReal gap[], Pets
     history[0] = PetscMax(history[0], 1 - Softening(parameters) * (FailsAt(parameters) - opening) / (parameters[STIFFNESS] * opening));
 }
 
-PetscErrorCode RowLawCreate_cohesive(RowLaw *law)
-{
-  PetscFunctionBegin;
-  law->reads        = ROW_LAW_READS_MEAN;
-  law->pulls        = PETSC_TRUE;
-  law->project      = Project;
-  law->n_parameters = 3;
-
-  law->parameters[STIFFNESS] = (RowLawParameter){
-      .name = "stiffness",
-      .what = "stiffness of unbroken glue per unit of area",
-      .unit = UNIT_STIFFNESS_ON_AREA,
-      .hint =
-          "a layer of the modulus E and the thickness t has E/t; 50 E/h, with the height h of the part that is glued, hardly gives way"};
-  law->parameters[STRENGTH]  = (RowLawParameter){.name = "strength", .what = "largest traction of glue that breaks", .unit = UNIT_STRESS};
-  law->parameters[TOUGHNESS] = (RowLawParameter){
-      .name = "toughness", .what = "energy that breaking takes per unit of area", .unit = UNIT_ENERGY_ON_AREA};
-
-  law->check     = Check;
-  law->stiffness = Stiffness;
-  law->softening = Softening;
-  law->n_history = 1;
-  law->grow      = Grow;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+const RowLaw RowLawCohesive = {
+    .name         = "cohesive",
+    .reads        = ROW_LAW_READS_MEAN,
+    .pulls        = PETSC_TRUE,
+    .project      = Project,
+    .n_parameters = 3,
+    .parameters = {[STIFFNESS] = {.name = "stiffness",
+                                  .what = "stiffness of unbroken glue per unit of area",
+                                  .unit = UNIT_STIFFNESS_ON_AREA,
+                                  .hint = "a layer of the modulus E and the thickness t has E/t; 50 E/h, with the height h of the part "
+                                          "that is glued, hardly gives way"},
+                   [STRENGTH]  = {.name = "strength", .what = "largest traction of glue that breaks", .unit = UNIT_STRESS},
+                   [TOUGHNESS] = {.name = "toughness", .what = "energy that breaking takes per unit of area", .unit = UNIT_ENERGY_ON_AREA}},
+    .check      = Check,
+    .stiffness  = Stiffness,
+    .softening  = Softening,
+    .n_history  = 1,
+    .grow       = Grow};

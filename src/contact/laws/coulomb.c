@@ -18,25 +18,21 @@ static void Bound(const PetscReal mu[], PetscReal speed, PetscReal limit[2])
   limit[1] = mu[KINETIC] < 0 ? mu[STATIC] : mu[KINETIC] + (mu[STATIC] - mu[KINETIC]) * PetscExpReal(-mu[DECAY] * speed);
 }
 
-PetscErrorCode RowLawCreate_coulomb(RowLaw *law)
-{
-  PetscFunctionBegin;
-  PetscCall(RowLawCreate_unilateral(law));
-  law->check        = Check;
-  law->bound        = Bound;
-  law->n_parameters = 3;
-
-  law->parameters[STATIC] = (RowLawParameter){
-      .name = "friction", .what = "coefficient of friction", .unit = UNIT_ONE, .may_be_zero = PETSC_TRUE};
-  law->parameters[KINETIC] = (RowLawParameter){.name        = "friction_kinetic",
-                                               .what        = "coefficient of fast sliding",
-                                               .unit        = UNIT_ONE,
-                                               .may_be_zero = PETSC_TRUE,
-                                               .optional    = PETSC_TRUE};
-  law->parameters[DECAY]   = (RowLawParameter){
-      .name = "friction_decay", .what = "decay to that with the speed of sliding", .unit = UNIT_SLOWNESS, .optional = PETSC_TRUE};
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+const RowLaw RowLawCoulomb = {
+    .name         = "coulomb",
+    .n_parameters = 3,
+    .parameters   = {[STATIC]  = {.name = "friction", .what = "coefficient of friction", .unit = UNIT_ONE, .may_be_zero = PETSC_TRUE},
+                     [KINETIC] = {.name        = "friction_kinetic",
+                                  .what        = "coefficient of fast sliding",
+                                  .unit        = UNIT_ONE,
+                                  .may_be_zero = PETSC_TRUE,
+                                  .optional    = PETSC_TRUE},
+                     [DECAY]   = {.name     = "friction_decay",
+                                  .what     = "decay to that with the speed of sliding",
+                                  .unit     = UNIT_SLOWNESS,
+                                  .optional = PETSC_TRUE}},
+    .check        = Check,
+    .bound        = Bound};
 
 /* By how much the forces on the n rows of a node, that along its normal first, miss the law where these open by `opened` [m]: de Saxce's
    residual. With the slip s, v = (g + mu |s|, s) and the compliance c of the normal row that is c |f - P(f - v/c)|, P being the projection

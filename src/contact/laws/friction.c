@@ -17,7 +17,7 @@ void ContactGetFrictionLimit(Contact contact, const ContactPair *pair, PetscReal
   PetscReal parameters[ROW_LAW_PARAMETERS];
 
   ContactGetLawParameters(contact, pair, parameters);
-  (*contact->laws[pair->named].law.bound)(parameters, speed, limit);
+  (*RowLaws[pair->named]->bound)(parameters, speed, limit);
 }
 
 static PetscErrorCode DestroyRows(ContactFriction *friction)

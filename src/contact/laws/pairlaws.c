@@ -4,6 +4,9 @@
 
 #define MOST_LAWS 64
 
+#define ROW_LAW_ADDRESS(law) &RowLaw##law,
+const RowLaw *const RowLaws[] = {ROW_LAWS(ROW_LAW_ADDRESS) NULL};
+
 const char *const ContactLaws[] = {"frictionless", "tied", "bonded", "glue", "friction", "ContactLaw", "CONTACT_LAW_", NULL};
 
 /* The name that users give to the law of a pair; NULL: to that of pairs that have none of their own */
@@ -12,7 +15,7 @@ const char *ContactNameLaw(Contact contact, const ContactPair *pair)
   const ContactLaw law   = pair ? pair->law : contact->options.law;
   const PetscInt   named = pair ? pair->named : contact->options.named;
 
-  return law >= CONTACT_LAW_GLUE ? contact->laws[named].name : ContactLaws[law];
+  return law >= CONTACT_LAW_GLUE ? RowLaws[named]->name : ContactLaws[law];
 }
 
 /* Ends with an error where any pair has friction; `why`: what is in its way, and what to choose */
@@ -27,36 +30,37 @@ PetscErrorCode ContactRefuseFriction(Contact contact, const char why[])
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_SUP, "-contact_law %s: %s", ContactNameLaw(contact, pair), why);
 }
 
-/* The names of all laws that users may choose: those of the enumeration, then those of the registry with parameters, which owns them */
-static PetscErrorCode ListLaws(const char *names[MOST_LAWS], PetscInt *n)
+/* The names of all laws that users may choose: those of the enumeration, then those with parameters */
+static void ListLaws(const char *names[MOST_LAWS], PetscInt *n)
 {
-  PetscInt more;
-
-  PetscFunctionBegin;
   for (*n = 0; *n < CONTACT_LAW_GLUE; (*n)++) names[*n] = ContactLaws[*n];
-  PetscCall(RowLawListNamed(MOST_LAWS - *n, names + *n, &more));
-  *n += more;
-  PetscFunctionReturn(PETSC_SUCCESS);
+  for (const RowLaw *const *law = RowLaws; *law; law++) names[(*n)++] = (*law)->name;
 }
 
-/* The number of a law with parameters among those that have been named */
-static PetscErrorCode TakeLaw(Contact contact, const char name[], PetscInt *named)
+/* The number of a law among all, or the error of one that is none */
+static PetscErrorCode FindLaw(Contact contact, const char law[], PetscInt *found)
 {
-  ContactNamedLaw *found;
+  const char *names[MOST_LAWS];
+  char        known[1024] = "";
+  PetscInt    n;
+  PetscBool   same = PETSC_FALSE;
 
   PetscFunctionBegin;
-  for (*named = 0; *named < contact->n_laws; (*named)++) {
-    PetscBool same;
-
-    PetscCall(PetscStrcmp(contact->laws[*named].name, name, &same));
+  ListLaws(names, &n);
+  for (*found = 0; *found < n; (*found)++) {
+    PetscCall(PetscStrcmp(names[*found], law, &same));
     if (same) PetscFunctionReturn(PETSC_SUCCESS);
+    PetscCall(NamesAppend(known, sizeof(known), ", ", names[*found]));
   }
-  PetscCall(PetscRealloc((size_t)(contact->n_laws + 1) * sizeof(ContactNamedLaw), &contact->laws));
-  found = &contact->laws[contact->n_laws];
-  PetscCall(RowLawCreate(name, &found->law));
-  PetscCall(PetscStrncpy(found->name, name, sizeof(found->name)));
-  for (PetscInt k = 0; k < ROW_LAW_PARAMETERS; k++) found->parameters[k] = -1;
-  contact->n_laws++;
+  SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown contact law '%s'; known: %s", law, known);
+}
+
+/* Room for the parameters that pairs have which have none of their own */
+PetscErrorCode ContactCreateLaws(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscMalloc1(ROW_LAW_PARAMETERS * PETSC_STATIC_ARRAY_LENGTH(RowLaws), &contact->law_parameters));
+  for (size_t k = 0; k < ROW_LAW_PARAMETERS * PETSC_STATIC_ARRAY_LENGTH(RowLaws); k++) contact->law_parameters[k] = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,10 +87,8 @@ static PetscErrorCode TakeLaw(Contact contact, const char name[], PetscInt *name
 @*/
 PetscErrorCode ContactSetLaw(Contact contact, PetscInt pair, const char law[])
 {
-  const char *names[MOST_LAWS];
-  PetscInt    n, chosen, named = 0;
-  PetscBool   same = PETSC_FALSE;
-  ContactLaw  kind;
+  PetscInt   chosen, named = 0;
+  ContactLaw kind;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
@@ -94,18 +96,11 @@ PetscErrorCode ContactSetLaw(Contact contact, PetscInt pair, const char law[])
   PetscAssertPointer(law, 3);
   ContactCheckNotSetUp(contact);
   if (pair >= 0) ContactCheckPair(contact, pair);
-  PetscCall(ListLaws(names, &n));
-  for (chosen = 0; chosen < n && !same; chosen += !same) PetscCall(PetscStrcmp(names[chosen], law, &same));
-  if (!same) {
-    char known[1024] = "";
-
-    for (PetscInt k = 0; k < n; k++) PetscCall(NamesAppend(known, sizeof(known), ", ", names[k]));
-    SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE, "Unknown contact law '%s'; known: %s", law, known);
-  }
+  PetscCall(FindLaw(contact, law, &chosen));
   kind = (ContactLaw)chosen;
   if (chosen >= CONTACT_LAW_GLUE) {
-    PetscCall(TakeLaw(contact, law, &named));
-    kind = contact->laws[named].law.bound ? CONTACT_LAW_FRICTION : CONTACT_LAW_GLUE;
+    named = chosen - CONTACT_LAW_GLUE;
+    kind  = RowLaws[named]->bound ? CONTACT_LAW_FRICTION : CONTACT_LAW_GLUE;
   }
   if (pair < 0) {
     contact->options.law   = kind;
@@ -149,7 +144,7 @@ PetscErrorCode ContactGetPairLaw(Contact contact, PetscInt pair, ContactLaw *law
 PetscBool ContactGlueBreaks(Contact contact)
 {
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (contact->pairs[p].law == CONTACT_LAW_GLUE && contact->laws[contact->pairs[p].named].law.n_history) return PETSC_TRUE;
+    if (contact->pairs[p].law == CONTACT_LAW_GLUE && RowLaws[contact->pairs[p].named]->n_history) return PETSC_TRUE;
   return PETSC_FALSE;
 }
 
@@ -160,13 +155,13 @@ static const char *UnitOf(Contact contact, const RowLawParameter *parameter)
 }
 
 /* The option of a parameter of a law; of a pair unless that is NULL */
-static PetscErrorCode NameOption(const ContactNamedLaw *law, PetscInt k, const ContactPair *pair, char option[PETSC_MAX_PATH_LEN])
+static PetscErrorCode NameOption(const RowLaw *law, PetscInt k, const ContactPair *pair, char option[PETSC_MAX_PATH_LEN])
 {
-  const PetscBool bare = (PetscBool)(law->law.bound != NULL);
+  const PetscBool bare = (PetscBool)(law->bound != NULL);
 
   PetscFunctionBegin;
   PetscCall(PetscSNPrintf(option, PETSC_MAX_PATH_LEN, "-contact_%s%s%s%s%s", bare ? "" : law->name, bare ? "" : "_",
-                          law->law.parameters[k].name, pair ? "_" : "", pair ? pair->name : ""));
+                          law->parameters[k].name, pair ? "_" : "", pair ? pair->name : ""));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -195,8 +190,8 @@ static PetscErrorCode NameOption(const ContactNamedLaw *law, PetscInt k, const C
 @*/
 PetscErrorCode ContactSetLawParameter(Contact contact, PetscInt pair, const char law[], const char parameter[], PetscReal value)
 {
-  const MPI_Comm         comm = PetscObjectComm((PetscObject)contact);
-  const ContactNamedLaw *named;
+  const MPI_Comm         comm  = PetscObjectComm((PetscObject)contact);
+  const RowLaw          *named = NULL;
   const RowLawParameter *found;
   PetscInt               number, k;
   PetscBool              same = PETSC_FALSE;
@@ -209,33 +204,33 @@ PetscErrorCode ContactSetLawParameter(Contact contact, PetscInt pair, const char
   PetscAssertPointer(parameter, 4);
   PetscValidLogicalCollectiveReal(contact, value, 5);
   ContactCheckNotSetUp(contact);
-  PetscCall(TakeLaw(contact, law, &number));
-  named = &contact->laws[number];
-  for (k = 0; k < named->law.n_parameters && !same; k += !same) PetscCall(PetscStrcmp(named->law.parameters[k].name, parameter, &same));
+  PetscCall(FindLaw(contact, law, &number));
+  number -= CONTACT_LAW_GLUE;
+  if (number >= 0) named = RowLaws[number];
+  for (k = 0; named && k < named->n_parameters && !same; k += !same) PetscCall(PetscStrcmp(named->parameters[k].name, parameter, &same));
   PetscCheck(same, comm, PETSC_ERR_ARG_OUTOFRANGE, "-contact_law %s has no parameter '%s'", law, parameter);
   if (pair >= 0) {
     ContactCheckPair(contact, pair);
-    PetscCheck(!named->law.parameters[k].optional, comm, PETSC_ERR_ARG_OUTOFRANGE, "'%s' of the law %s is the same for all pairs",
-               parameter, law);
+    PetscCheck(!named->parameters[k].optional, comm, PETSC_ERR_ARG_OUTOFRANGE, "'%s' of the law %s is the same for all pairs", parameter,
+               law);
     PetscCheck(contact->pairs[pair].law >= CONTACT_LAW_GLUE && contact->pairs[pair].named == number, comm, PETSC_ERR_ARG_WRONGSTATE,
                "Pair %s does not have the law %s: call ContactSetLaw() first", contact->pairs[pair].name, law);
   }
-  found = &named->law.parameters[k];
+  found = &named->parameters[k];
   PetscCall(NameOption(named, k, pair < 0 ? NULL : &contact->pairs[pair], option));
   PetscCheck((value > 0 || (found->may_be_zero && value == 0)) && value < PETSC_INFINITY, comm, PETSC_ERR_ARG_OUTOFRANGE,
              "%s %g%s must %s, and be finite%s%s", option, (double)value, UnitOf(contact, found),
              found->may_be_zero ? "not be negative" : "be positive", found->hint ? "; " : "", found->hint ? found->hint : "");
-  (pair < 0 ? contact->laws[number].parameters : contact->pairs[pair].parameters)[k] = value;
+  (pair < 0 ? contact->law_parameters + ROW_LAW_PARAMETERS * number : contact->pairs[pair].parameters)[k] = value;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The parameters of a pair, or of those to come (NULL); less than 0: not set */
 void ContactGetLawParameters(Contact contact, const ContactPair *pair, PetscReal parameters[])
 {
-  const ContactNamedLaw *named = &contact->laws[pair ? pair->named : contact->options.named];
+  const PetscReal *of_all = contact->law_parameters + ROW_LAW_PARAMETERS * (pair ? pair->named : contact->options.named);
 
-  for (PetscInt k = 0; k < ROW_LAW_PARAMETERS; k++)
-    parameters[k] = pair && pair->parameters[k] >= 0 ? pair->parameters[k] : named->parameters[k];
+  for (PetscInt k = 0; k < ROW_LAW_PARAMETERS; k++) parameters[k] = pair && pair->parameters[k] >= 0 ? pair->parameters[k] : of_all[k];
 }
 
 /* The law of a pair from the options, or, before the pairs are known, that of all pairs (`pair` -1) */
@@ -248,7 +243,7 @@ PetscErrorCode ContactReadLaw(Contact contact, PetscInt pair)
 
   PetscFunctionBegin;
   if (pair >= 0) PetscCall(PetscSNPrintf(option, sizeof(option), "-contact_law_%s", contact->pairs[pair].name));
-  PetscCall(ListLaws(names, &n));
+  ListLaws(names, &n);
   PetscObjectOptionsBegin((PetscObject)contact);
   PetscCall(PetscOptionsEList(option, "What the surfaces do to each other", "ContactSetLaw", names, n,
                               ContactNameLaw(contact, pair < 0 ? NULL : &contact->pairs[pair]), &chosen, &set));
@@ -261,14 +256,14 @@ PetscErrorCode ContactReadLaw(Contact contact, PetscInt pair)
 PetscErrorCode ContactReadLawParameters(Contact contact)
 {
   PetscFunctionBegin;
-  for (PetscInt g = 0; g < contact->n_laws; g++) {
-    const ContactNamedLaw *law = &contact->laws[g];
+  for (PetscInt g = 0; RowLaws[g]; g++) {
+    const RowLaw *law = RowLaws[g];
 
-    for (PetscInt k = 0; k < law->law.n_parameters; k++)
-      for (PetscInt p = -1; p < (law->law.parameters[k].optional ? 0 : contact->n_pairs); p++) {
+    for (PetscInt k = 0; k < law->n_parameters; k++)
+      for (PetscInt p = -1; p < (law->parameters[k].optional ? 0 : contact->n_pairs); p++) {
         const ContactPair *pair  = p < 0 ? NULL : &contact->pairs[p];
         PetscBool          used  = (PetscBool)(contact->options.law >= CONTACT_LAW_GLUE && contact->options.named == g), set;
-        PetscReal          value = law->parameters[k];
+        PetscReal          value = contact->law_parameters[ROW_LAW_PARAMETERS * g + k];
         char               option[PETSC_MAX_PATH_LEN];
 
         for (PetscInt q = 0; q < contact->n_pairs && !used; q++)
@@ -277,9 +272,9 @@ PetscErrorCode ContactReadLawParameters(Contact contact)
         if (!used) continue;
         PetscCall(NameOption(law, k, pair, option));
         PetscObjectOptionsBegin((PetscObject)contact);
-        PetscCall(PetscOptionsReal(option, law->law.parameters[k].what, "ContactSetLawParameter", value, &value, &set));
+        PetscCall(PetscOptionsReal(option, law->parameters[k].what, "ContactSetLawParameter", value, &value, &set));
         PetscOptionsEnd();
-        if (set) PetscCall(ContactSetLawParameter(contact, p, law->name, law->law.parameters[k].name, value));
+        if (set) PetscCall(ContactSetLawParameter(contact, p, law->name, law->parameters[k].name, value));
       }
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -288,16 +283,16 @@ PetscErrorCode ContactReadLawParameters(Contact contact)
 /* Whether the law of a pair, or of those to come (NULL), has its parameters, and these go together */
 static PetscErrorCode CheckParameters(Contact contact, const ContactPair *pair)
 {
-  const MPI_Comm         comm = PetscObjectComm((PetscObject)contact);
-  const ContactNamedLaw *law  = &contact->laws[pair ? pair->named : contact->options.named];
-  PetscReal              parameters[ROW_LAW_PARAMETERS];
-  const char            *wrong = NULL;
+  const MPI_Comm comm = PetscObjectComm((PetscObject)contact);
+  const RowLaw  *law  = RowLaws[pair ? pair->named : contact->options.named];
+  PetscReal      parameters[ROW_LAW_PARAMETERS];
+  const char    *wrong = NULL;
 
   PetscFunctionBegin;
   if ((pair ? pair->law : contact->options.law) < CONTACT_LAW_GLUE) PetscFunctionReturn(PETSC_SUCCESS);
   ContactGetLawParameters(contact, pair, parameters);
-  for (PetscInt k = 0; k < law->law.n_parameters; k++) {
-    const RowLawParameter *parameter = &law->law.parameters[k];
+  for (PetscInt k = 0; k < law->n_parameters; k++) {
+    const RowLawParameter *parameter = &law->parameters[k];
     char                   of_all[PETSC_MAX_PATH_LEN], of_pair[PETSC_MAX_PATH_LEN];
 
     PetscCall(NameOption(law, k, NULL, of_all));
@@ -307,7 +302,7 @@ static PetscErrorCode CheckParameters(Contact contact, const ContactPair *pair)
                parameter->what, pair ? pair->name : "that may come", UnitOf(contact, parameter)[0] ? ", in" : "",
                UnitOf(contact, parameter), of_all, of_pair, parameter->hint ? "; " : "", parameter->hint ? parameter->hint : "");
   }
-  if (law->law.check) wrong = (*law->law.check)(parameters);
+  if (law->check) wrong = (*law->check)(parameters);
   PetscCheck(!wrong, comm, PETSC_ERR_USER_INPUT, "-contact_law %s of the pair %s: %s", law->name, pair ? pair->name : "that may come",
              wrong);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -322,8 +317,8 @@ PetscErrorCode ContactViewLawParameters(Contact contact, PetscViewer viewer)
 
     if (pair->law < CONTACT_LAW_GLUE) continue;
     ContactGetLawParameters(contact, pair, parameters);
-    for (PetscInt k = 0; k < contact->laws[pair->named].law.n_parameters; k++) {
-      const RowLawParameter *parameter = &contact->laws[pair->named].law.parameters[k];
+    for (PetscInt k = 0; k < RowLaws[pair->named]->n_parameters; k++) {
+      const RowLawParameter *parameter = &RowLaws[pair->named]->parameters[k];
 
       if (parameters[k] >= 0)
         PetscCall(PetscViewerASCIIPrintf(viewer, "  %s of %s: %g%s\n", parameter->what, pair->name, (double)parameters[k],

@@ -1,5 +1,5 @@
 /* Laws of the one contact step: the relation between the forces on the rows of a node and what these rows read. A law is a projection,
-   lambda = P(lambda - r y), with its derivative; y is what it reads. Nobody asks for the name of a law.
+   lambda = P(lambda - r y), with its derivative; y is what it reads.
 
    Laws of glue and of friction have parameters that users give. Users name them in -contact_law, and their parameters in
    -contact_<law>_<parameter>, of friction in -contact_<parameter>. Glue has a stiffness, and may have numbers that it keeps of each node,
@@ -40,6 +40,7 @@ typedef struct {
 } RowLawGlue;
 
 typedef struct {
+  const char *name; /* that users give to it; NULL: none */
   RowLawReads reads;
   PetscBool   pulls; /* it pulls as well as pushes, and its rows across the normal stick */
   /* P(p) of the rows of a node, and dP_i/dp_j at [i * n + j]; the force across the normal is at most limit[0] [N], and limit[1] times the
@@ -58,20 +59,14 @@ typedef struct {
                PetscReal history[]); /* what these are after a step with such a gap */
 } RowLaw;
 
-PETSC_INTERN PetscErrorCode RowLawRegisterAll(void);
-PETSC_INTERN PetscErrorCode RowLawDestroyList(void);
-PETSC_INTERN PetscErrorCode RowLawCreate(const char[], RowLaw *);
-PETSC_INTERN PetscErrorCode RowLawListNamed(PetscInt, const char *[], PetscInt *);
-PETSC_INTERN PetscReal      CoulombGetResidual(PetscInt, PetscReal, PetscReal, const PetscScalar[], const PetscScalar[]);
+PETSC_INTERN PetscReal CoulombGetResidual(PetscInt, PetscReal, PetscReal, const PetscScalar[], const PetscScalar[]);
 
-/* The laws that Impakt brings. To add one: its file, and a line here. */
+/* Laws that users name, in the order in which they are told. To add one: its file, and a line here. */
 #define ROW_LAWS(LAW)                                                                                                                      \
-  LAW(cohesive)                                                                                                                            \
-  LAW(coulomb)                                                                                                                             \
-  LAW(hold)                                                                                                                                \
-  LAW(spring)                                                                                                                              \
-  LAW(tie)                                                                                                                                 \
-  LAW(unilateral)
+  LAW(Cohesive)                                                                                                                            \
+  LAW(Coulomb)                                                                                                                             \
+  LAW(Spring)
 
-#define ROW_LAW_DECLARE(law) PETSC_INTERN PetscErrorCode RowLawCreate_##law(RowLaw *);
+#define ROW_LAW_DECLARE(law) extern const RowLaw RowLaw##law;
 ROW_LAWS(ROW_LAW_DECLARE)
+extern const RowLaw RowLawHold, RowLawTie, RowLawUnilateral, *const RowLaws[]; /* the last: those that users name, then NULL */

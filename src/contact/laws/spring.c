@@ -20,17 +20,14 @@ static void Project(PetscInt n, const PetscReal limit[2], const RowLawGlue *glue
   }
 }
 
-PetscErrorCode RowLawCreate_spring(RowLaw *law)
-{
-  PetscFunctionBegin;
-  law->reads         = ROW_LAW_READS_MEAN;
-  law->pulls         = PETSC_TRUE;
-  law->project       = Project;
-  law->stiffness     = Stiffness;
-  law->n_parameters  = 1;
-  law->parameters[0] = (RowLawParameter){.name = "stiffness",
-                                         .what = "stiffness of springs per unit of area",
-                                         .unit = UNIT_STIFFNESS_ON_AREA,
-                                         .hint = "glue of the modulus E and the thickness t has about E/t; -contact_law tied is rigid"};
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+const RowLaw RowLawSpring = {
+    .name         = "spring",
+    .reads        = ROW_LAW_READS_MEAN,
+    .pulls        = PETSC_TRUE,
+    .project      = Project,
+    .stiffness    = Stiffness,
+    .n_parameters = 1,
+    .parameters   = {{.name = "stiffness",
+                      .what = "stiffness of springs per unit of area",
+                      .unit = UNIT_STIFFNESS_ON_AREA,
+                      .hint = "glue of the modulus E and the thickness t has about E/t; -contact_law tied is rigid"}}};

@@ -12,19 +12,5 @@ static void Project(PetscInt n, const PetscReal limit[2], const RowLawGlue *glue
   }
 }
 
-PetscErrorCode RowLawCreate_tie(RowLaw *law)
-{
-  PetscFunctionBegin;
-  law->reads   = ROW_LAW_READS_END;
-  law->pulls   = PETSC_TRUE;
-  law->project = Project;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode RowLawCreate_hold(RowLaw *law)
-{
-  PetscFunctionBegin;
-  PetscCall(RowLawCreate_tie(law));
-  law->reads = ROW_LAW_READS_CLOSED;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+const RowLaw RowLawTie  = {.reads = ROW_LAW_READS_END, .pulls = PETSC_TRUE, .project = Project};
+const RowLaw RowLawHold = {.reads = ROW_LAW_READS_CLOSED, .pulls = PETSC_TRUE, .project = Project};

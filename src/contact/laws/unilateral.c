@@ -27,10 +27,4 @@ static void Project(PetscInt n, const PetscReal limit[2], const RowLawGlue *glue
   }
 }
 
-PetscErrorCode RowLawCreate_unilateral(RowLaw *law)
-{
-  PetscFunctionBegin;
-  law->reads   = ROW_LAW_READS_CLOSED;
-  law->project = Project;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+const RowLaw RowLawUnilateral = {.reads = ROW_LAW_READS_CLOSED, .project = Project};

@@ -11,7 +11,7 @@ PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper
   stepper->answer            = BodyApplyCompliance;
   stepper->assembly.n_bodies = contact->n_bodies;
   PetscCall(PetscCalloc1(contact->n_bodies, &stepper->assembly.of_body));
-  PetscCall(PetscMalloc1(2 * contact->n_pairs, &stepper->laws));
+  PetscCall(PetscMalloc1(contact->n_pairs, &stepper->laws));
   PetscCall(PetscCalloc4(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins, n, &stepper->grows));
   PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
                          n, &stepper->given));
@@ -78,7 +78,7 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
     /* the rows of a node follow each other, and touch all together */
     if (!problem->n_nodes || n - problem->begin[problem->n_nodes - 1] == pair->components ||
         contact->ranks.row_pair[i] != contact->ranks.row_pair[stepper->rows[n - 1]]) {
-      problem->law[problem->n_nodes]     = &stepper->laws[2 * contact->ranks.row_pair[i] + (touches[i] > 1)];
+      problem->law[problem->n_nodes]     = touches[i] > 1 ? stepper->laws[contact->ranks.row_pair[i]] : &RowLawUnilateral;
       problem->begin[problem->n_nodes++] = n;
     }
     stepper->rows[n++] = i;

@@ -34,27 +34,6 @@ static PetscErrorCode SetFromOptions(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The laws of the nodes of each pair: while they may open, and once they are held */
-static PetscErrorCode ChooseLaws(Contact contact, ContactStepper *stepper)
-{
-  const char *const names[][2] = {[CONTACT_LAW_FRICTIONLESS] = {"unilateral", "hold"},
-                                  [CONTACT_LAW_TIED]         = {"unilateral", "tie"},
-                                  [CONTACT_LAW_BONDED]       = {"unilateral", "tie"},
-                                  [CONTACT_LAW_FRICTION]     = {"unilateral", "hold"}};
-
-  PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt held = 0; held < 2; held++) {
-      const ContactLaw law = contact->pairs[p].law;
-
-      PetscCall(RowLawCreate(law != CONTACT_LAW_GLUE ? names[law][held]
-                             : held                  ? ContactNameLaw(contact, &contact->pairs[p])
-                                                     : "unilateral",
-                             &stepper->laws[2 * p + held]));
-    }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* ContactStepperSetUp - what a step needs of the rows there are; options have been read */
 PetscErrorCode ContactStepperSetUp(Contact contact)
 {
@@ -77,7 +56,12 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperSetUpRules(contact, stepper));
   stepper->has_rigid = ContactHasRigid(contact);
-  PetscCall(ChooseLaws(contact, stepper));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    const ContactLaw law  = contact->pairs[p].law;
+    const PetscBool  ties = (PetscBool)(law == CONTACT_LAW_TIED || law == CONTACT_LAW_BONDED);
+
+    stepper->laws[p] = law == CONTACT_LAW_GLUE ? RowLaws[contact->pairs[p].named] : ties ? &RowLawTie : &RowLawHold;
+  }
   PetscCall(ContactStepperSetUpGlue(contact, stepper));
   contact->rows.lists = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++)

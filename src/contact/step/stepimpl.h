@@ -109,7 +109,7 @@ struct _ContactStepper {
   Contact             contact;
   LawProblem          problem;
   const ContactRule **rules;      /* per body: that of its set */
-  RowLaw             *laws;       /* two per pair: of nodes that may open, and of those that are held */
+  const RowLaw      **laws;       /* per pair: of nodes that are held; those that may open have the unilateral one */
   PetscBool           glued;      /* a law is of glue */
   PetscReal          *parameters; /* ROW_LAW_PARAMETERS per pair: of its glue */
   PetscBool           has_rigid;  /* bodies whose compliance is another in each step, as they turn */
@@ -243,5 +243,5 @@ static inline PetscReal ContactStepperTimes(Contact contact, const ContactSteppe
 
 static inline const RowLaw *ContactStepperLaw(Contact contact, const ContactStepper *stepper, PetscInt i)
 {
-  return &stepper->laws[2 * contact->rows.pair[i] + contact->rows.tied[ContactFirstRow(contact, i)]];
+  return contact->rows.tied[ContactFirstRow(contact, i)] ? stepper->laws[contact->rows.pair[i]] : &RowLawUnilateral;
 }

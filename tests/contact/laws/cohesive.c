@@ -14,15 +14,7 @@
 #define CLOSE 1e-12
 #define STEP  1e-7 /* of differences of numbers of size 1 to 100: cuts 1e-12, and divides round-off of 1e-14 to 1e-7 */
 
-static RowLaw          law;
 static const PetscReal parameters[] = {K, S, G};
-
-static void take_law(void **state)
-{
-  (void)state;
-  ok(ContactInitializePackage());
-  ok(RowLawCreate("cohesive", &law));
-}
 
 /* A node whose first row is along the normal; r is beyond the slope of the law, as LawProblem has it */
 static RowLawGlue Node(PetscReal r, PetscReal damage, PetscReal least)
@@ -49,7 +41,7 @@ static PetscReal Damage(PetscReal damage, PetscInt n, const PetscReal gap[])
   const RowLawGlue node  = Node(1, damage, 0);
   PetscReal        grown = damage;
 
-  law.grow(n, &node, gap, &grown);
+  RowLawCohesive.grow(n, &node, gap, &grown);
   return grown;
 }
 
@@ -63,7 +55,7 @@ static void CheckForce(PetscReal damage, PetscInt n, const PetscReal gap[])
     PetscReal        p[ROW_LAW_ROWS], force[ROW_LAW_ROWS], derivative[ROW_LAW_ROWS * ROW_LAW_ROWS];
 
     for (PetscInt i = 0; i < n; i++) p[i] = -AREA * (Traction(grown, gap[i]) + weights[w] * gap[i]);
-    law.project(n, NULL, &node, p, force, derivative);
+    RowLawCohesive.project(n, NULL, &node, p, force, derivative);
     for (PetscInt i = 0; i < n; i++) near(force[i], -AREA * Traction(grown, gap[i]), CLOSE * (1 + weights[w]));
   }
 }
@@ -77,8 +69,8 @@ static void loading_follows_the_two_lines(void **state)
     near(Traction(damage, gap[0]), Envelope(gap[0]), CLOSE);
     for (PetscInt n = 1; n <= 3; n++) CheckForce(0, n, gap);
   }
-  near(law.stiffness(parameters, (PetscReal[]){0.25}), 75, CLOSE);
-  near(law.softening(parameters), S / (FAILS - BEGIN), CLOSE);
+  near(RowLawCohesive.stiffness(parameters, (PetscReal[]){0.25}), 75, CLOSE);
+  near(RowLawCohesive.softening(parameters), S / (FAILS - BEGIN), CLOSE);
 }
 
 /* Below the largest opening the traction goes to the origin and back, and damage stays to the last bit */
@@ -135,7 +127,7 @@ static void compression(void **state)
   (void)state;
   assert_true(Damage(0, 1, pushed) == 0);
   CheckForce(0, 1, pushed);
-  law.project(2, NULL, &node, p, force, derivative);
+  RowLawCohesive.project(2, NULL, &node, p, force, derivative);
   near(force[0], 7 + AREA * r * least, CLOSE);
   near(force[1], -AREA * 0.1 * K * 0.01, CLOSE);
   near(derivative[0], 1, CLOSE);
@@ -188,7 +180,7 @@ static void derivatives_are_those_of_differences(void **state)
     node.normal[1] = 0;
     node.normal[2] = 0.8;
     for (PetscInt i = 0; i < 3; i++) p[i] = 12 * Random(&seed);
-    law.project(3, NULL, &node, p, force, derivative);
+    RowLawCohesive.project(3, NULL, &node, p, force, derivative);
     for (PetscInt j = 0; j < 3; j++) {
       PetscBool smooth = PETSC_TRUE;
 
@@ -196,7 +188,7 @@ static void derivatives_are_those_of_differences(void **state)
         PetscReal moved[3] = {p[0], p[1], p[2]}, there[3];
 
         moved[j] += side ? STEP : -STEP;
-        law.project(3, NULL, &node, moved, there, unused);
+        RowLawCohesive.project(3, NULL, &node, moved, there, unused);
         for (PetscInt i = 0; i < 3; i++) sides[side][i] = (there[i] - force[i]) / (side ? STEP : -STEP);
       }
       for (PetscInt i = 0; i < 3; i++) smooth = (PetscBool)(smooth && PetscAbsReal(sides[0][i] - sides[1][i]) < 1e-5);
@@ -228,7 +220,7 @@ static void secants_find_what_breaks_at_once(void **state)
     for (PetscInt k = 0; k < n * n; k++) B[k] = Random(&seed);
     for (PetscInt node = 0; node <= n; node++) problem.begin[node] = node;
     for (PetscInt node = 0; node < n; node++) {
-      problem.law[node]  = &law;
+      problem.law[node]  = &RowLawCohesive;
       problem.glue[node] = Node(1, 0, -10);
       problem.base[node] = problem.force[node] = 0;
       problem.read[node]                       = 1.5 * (1 + Random(&seed));
@@ -261,15 +253,14 @@ static void secants_find_what_breaks_at_once(void **state)
 static void parameters_go_together(void **state)
 {
   (void)state;
-  assert_null(law.check(parameters));
-  assert_non_null(law.check((PetscReal[]){1.9, 2, 1})); /* k below s^2/2G = 2 */
-  assert_int_equal(law.n_parameters, 3);
+  assert_null(RowLawCohesive.check(parameters));
+  assert_non_null(RowLawCohesive.check((PetscReal[]){1.9, 2, 1})); /* k below s^2/2G = 2 */
+  assert_int_equal(RowLawCohesive.n_parameters, 3);
 }
 
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(take_law), /* first */
       cmocka_unit_test(loading_follows_the_two_lines),
       cmocka_unit_test(unloading_goes_to_the_origin),
       cmocka_unit_test(what_has_failed_stays_so),

@@ -9,15 +9,6 @@
 #define MANY  520  /* so many that factors of dense Jacobians are kept */
 #define CLOSE 1e-9 /* solutions have round-off of 1e-13 times the condition of S, which is at most 1e3 here: measured 2e-12 */
 
-static RowLaw unilateral, tie; /* see take_laws() */
-
-static void take_laws(void **state)
-{
-  (void)state;
-  ok(RowLawCreate_unilateral(&unilateral));
-  ok(RowLawCreate_tie(&tie));
-}
-
 /* S by columns */
 static PetscScalar *entries(const LawProblem *problem)
 {
@@ -149,7 +140,7 @@ static void without_friction_it_is_the_one_solution(void **state)
       PetscInt    found = 0;
       PetscBool   solved;
 
-      Fill(&problem, &unilateral, n, 1, n, 0.01, seed, B);
+      Fill(&problem, &RowLawUnilateral, n, 1, n, 0.01, seed, B);
       for (PetscInt i = 0; i < n; i++) problem.force[i] = seed % 2; /* from no forces, and from any */
       solved = solve(&problem);
       assert_true(solved);
@@ -185,7 +176,7 @@ static void base_is_where_readings_were_taken(void **state)
     PetscScalar first[4];
     PetscBool   solved;
 
-    Fill(&problem, &unilateral, 4, 1, 4, 0.1, seed, B);
+    Fill(&problem, &RowLawUnilateral, 4, 1, 4, 0.1, seed, B);
     solved = solve(&problem);
     assert_true(solved);
     for (PetscInt i = 0; i < 4; i++) first[i] = problem.force[i];
@@ -213,7 +204,7 @@ static void with_friction_the_law_holds(void **state)
       for (unsigned seed = 1; seed <= 100; seed++) {
         PetscBool solved;
 
-        Fill(&problem, &unilateral, ROWS, rows, ROWS + 4, 0.5, seed, B);
+        Fill(&problem, &RowLawUnilateral, ROWS, rows, ROWS + 4, 0.5, seed, B);
         for (PetscInt k = 0; k < 2 * problem.n_nodes; k++) problem.limit[k] = limits[l][k % 2];
         solved = solve(&problem);
         if (!solved) {
@@ -237,7 +228,7 @@ static void a_node_sticks_and_slips_as_by_hand(void **state)
 
   (void)state;
   for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(readings); k++) {
-    Fill(&problem, &unilateral, 2, 2, 1, 0, 1, B);
+    Fill(&problem, &RowLawUnilateral, 2, 2, 1, 0, 1, B);
     entries(&problem)[0] = entries(&problem)[3] = 1;
     entries(&problem)[1] = entries(&problem)[2] = 0;
     problem.limit[1]                            = 0.3;
@@ -262,7 +253,7 @@ static void ties_are_linear_equations(void **state)
       PetscScalar x[ROWS];
       PetscBool   solved;
 
-      Fill(&problem, &tie, 6, rows, 6, 0.1, seed, B);
+      Fill(&problem, &RowLawTie, 6, rows, 6, 0.1, seed, B);
       solved = solve(&problem);
       assert_true(solved && !problem.by_nodes);
       assert_true(SolveRows(&problem, (1 << 6) - 1, x));
@@ -283,8 +274,8 @@ static void nodes_have_laws_of_their_own(void **state)
     for (PetscInt open = 0; open < 2; open++) {
       PetscBool solved;
 
-      Fill(&problem, &unilateral, 3, 1, 3, 0.1, seed, B);
-      problem.law[1] = &tie;
+      Fill(&problem, &RowLawUnilateral, 3, 1, 3, 0.1, seed, B);
+      problem.law[1] = &RowLawTie;
       if (open) problem.read[0] = problem.read[2] = 100;
       solved = solve(&problem);
       assert_true(solved);
@@ -304,7 +295,7 @@ static void nodes_have_laws_of_their_own(void **state)
    rows that stand once */
 static void doubled_rows_give_bodies_the_same(void **state)
 {
-  const RowLaw *const laws[] = {&unilateral, &tie};
+  const RowLaw *const laws[] = {&RowLawUnilateral, &RowLawTie};
   LawProblem          once = {0}, twice = {0};
 
   (void)state;
@@ -362,7 +353,7 @@ static void ExampleOfCurtis(PetscBool products)
   PetscReal         B[3];
   Mat               near_S, shell;
 
-  Fill(&problem, &unilateral, 3, 1, 1, 0, 1, B);
+  Fill(&problem, &RowLawUnilateral, 3, 1, 1, 0, 1, B);
   for (PetscInt k = 0; k < 9; k++) entries(&problem)[k] = S[k];
   for (PetscInt i = 0; i < 3; i++) problem.read[i] = read[i];
   if (products) { /* S itself is what is near it */
@@ -398,7 +389,7 @@ static void what_has_no_solution_is_not_solved(void **state)
 
   (void)state;
   for (PetscInt law = 0; law < 2; law++) {
-    Fill(&problem, law ? &tie : &unilateral, 2, 1, 1, 0, 1, B);
+    Fill(&problem, law ? &RowLawTie : &RowLawUnilateral, 2, 1, 1, 0, 1, B);
     entries(&problem)[0] = entries(&problem)[3] = 1;
     entries(&problem)[1] = entries(&problem)[2] = -1;
     problem.read[0] = problem.read[1] = -1;
@@ -407,7 +398,7 @@ static void what_has_no_solution_is_not_solved(void **state)
     assert_true(problem.iterations < 100000); /* sweeps are limited: 5120, Newton's method between them */
   }
   entries(&problem)[0] = NAN;
-  problem.law[0] = problem.law[1] = &unilateral;
+  problem.law[0] = problem.law[1] = &RowLawUnilateral;
   solved                          = solve(&problem);
   assert_false(solved);
   entries(&problem)[0] = 1;
@@ -426,7 +417,7 @@ static void a_row_that_nothing_moves_sets_no_scale(void **state)
   resize(&problem, 2);
   problem.n_nodes = 2;
   for (PetscInt i = 0; i < 2; i++) {
-    problem.law[i]   = &unilateral;
+    problem.law[i]   = &RowLawUnilateral;
     problem.begin[i] = i;
     problem.base[i] = problem.force[i] = problem.limit[2 * i] = problem.limit[2 * i + 1] = 0;
   }
@@ -448,7 +439,7 @@ static void a_node_that_has_gone_away_has_no_force(void **state)
   PetscReal  B[2]    = {0};
 
   (void)state;
-  Fill(&problem, &unilateral, 2, 1, 1, 1, 1, B);
+  Fill(&problem, &RowLawUnilateral, 2, 1, 1, 1, 1, B);
   problem.read[0]    = 1e-6;
   problem.read[1]    = 1e-16;
   problem.resolution = 1e-15;
@@ -472,7 +463,7 @@ static void units_do_not_matter(void **state)
     PetscScalar first[ROWS];
     PetscBool   solved;
 
-    Fill(&problem, &unilateral, 8, 2, 8, 0.1, seed, B);
+    Fill(&problem, &RowLawUnilateral, 8, 2, 8, 0.1, seed, B);
     for (PetscInt node = 0; node < 4; node++) problem.limit[2 * node + 1] = 0.3;
     solved = solve(&problem);
     assert_true(solved);
@@ -528,7 +519,7 @@ static void SolveChain(LawProblem *problem, Mat S, PetscBool products, unsigned 
   problem->n_nodes = NODES;
   for (PetscInt node = 0; node <= NODES; node++) problem->begin[node] = 3 * node;
   for (PetscInt node = 0; node < NODES; node++) {
-    problem->law[node]           = &unilateral;
+    problem->law[node]           = &RowLawUnilateral;
     problem->limit[2 * node]     = 0;
     problem->limit[2 * node + 1] = 0.4;
   }
@@ -595,7 +586,7 @@ static void a_large_dense_S_has_the_solution_of_a_sparse_one(void **state)
     ok(LawProblemResize(&problems[k], MANY));
     problems[k].n_nodes = MANY;
     for (PetscInt i = 0; i <= MANY; i++) problems[k].begin[i] = i;
-    for (PetscInt i = 0; i < MANY; i++) problems[k].law[i] = &unilateral;
+    for (PetscInt i = 0; i < MANY; i++) problems[k].law[i] = &RowLawUnilateral;
     for (PetscInt i = 0; i < 2 * MANY; i++) problems[k].limit[i] = 0;
     if (k) ok(MatCreateSeqAIJ(PETSC_COMM_SELF, MANY, MANY, 3, NULL, &S));
     else ok(MatCreateSeqDense(PETSC_COMM_SELF, MANY, MANY, NULL, &S));
@@ -623,7 +614,6 @@ static void a_large_dense_S_has_the_solution_of_a_sparse_one(void **state)
 int main(int argc, char **argv)
 {
   const struct CMUnitTest tests[] = {
-      cmocka_unit_test(take_laws), /* first */
       cmocka_unit_test(without_friction_it_is_the_one_solution),
       cmocka_unit_test(base_is_where_readings_were_taken),
       cmocka_unit_test(with_friction_the_law_holds),

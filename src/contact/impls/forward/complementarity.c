@@ -7,8 +7,6 @@ PetscErrorCode ComplementarityCreate(Contact contact, Complementarity *problem)
   const PetscInt n = contact->rows.n;
 
   PetscFunctionBegin;
-  PetscCall(RowLawCreate("unilateral", &problem->open));
-  PetscCall(RowLawCreate("tie", &problem->held));
   PetscCall(PetscCalloc4(n, &problem->gaps, n, &problem->forces, n, &problem->active, n, &problem->mine));
   PetscCall(PetscMalloc2(contact->rows.n_all, &problem->rows, contact->rows.n_all, &problem->all));
   PetscCall(LawProblemSetUp(&problem->problem));
@@ -58,7 +56,7 @@ static PetscErrorCode TakeRows(Contact contact, Complementarity *problem)
   law->begin[n] = n;
   for (PetscInt k = 0; k < n; k++) {
     law->begin[k] = k;
-    law->law[k]   = kind[problem->rows[k]] > 1 ? &problem->held : &problem->open;
+    law->law[k]   = kind[problem->rows[k]] > 1 ? &RowLawTie : &RowLawUnilateral;
   }
   PetscCall(PetscArrayzero(law->limit, 2 * n));
   if (same || !n) PetscFunctionReturn(PETSC_SUCCESS);

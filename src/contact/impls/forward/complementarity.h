@@ -7,7 +7,6 @@
 typedef struct {
   Mat        compliance; /* C, of all rows */
   LawProblem problem;    /* the same on every rank */
-  RowLaw     open, held; /* of rows that push, and of those that pull as well */
   PetscInt  *rows;       /* of the problem, by their numbers among those of all ranks, ascending */
   PetscBool  current;    /* the problem has the C that there is, of these rows */
   PetscReal *gaps;       /* per row of this rank: what comes in [m, or m/s] */
