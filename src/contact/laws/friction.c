@@ -20,8 +20,10 @@ void ContactGetFrictionLimit(Contact contact, const ContactPair *pair, PetscReal
   (*RowLaws[pair->named]->bound)(parameters, speed, limit);
 }
 
-static PetscErrorCode DestroyRows(ContactFriction *friction)
+PetscErrorCode ContactDestroyFriction(Contact contact)
 {
+  ContactFriction *friction = &contact->friction;
+
   PetscFunctionBegin;
   PetscCall(PetscFree7(friction->slip, friction->drive, friction->step_loss, friction->loss, friction->distance, friction->speed,
                        friction->slides));
@@ -38,18 +40,11 @@ PetscErrorCode ContactSetUpFriction(Contact contact)
   PetscFunctionBegin;
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION) || (!contact->n_pairs && !contact->neighbours.come_and_go))
     PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(DestroyRows(friction));
+  PetscCall(ContactDestroyFriction(contact));
   PetscCall(PetscCalloc7(PetscMax(n, 1), &friction->slip, n, &friction->drive, n, &friction->step_loss, n, &friction->loss, n,
                          &friction->distance, n, &friction->speed, n, &friction->slides));
   PetscCall(PetscCalloc4(contact->n_pairs, &friction->pair_step, contact->n_pairs, &friction->pair_loss, contact->n_pairs,
                          &friction->pair_work, contact->n_pairs, &friction->pair_driven));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-PetscErrorCode ContactDestroyFriction(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(DestroyRows(&contact->friction));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -27,11 +27,9 @@
 /* f = lambda - P(lambda - r y) */
 static PetscErrorCode Miss(LawProblem *problem, const PetscScalar x[], PetscScalar f[])
 {
-  PetscScalar       *y     = problem->work;
-  const PetscScalar *dense = NULL;
+  PetscScalar *y = problem->work;
 
   PetscFunctionBegin;
-  if (!problem->sparse) PetscCall(MatDenseGetArrayRead(problem->entries, &dense));
   PetscCall(LawProblemRead(problem, x, y));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first;
