@@ -204,6 +204,7 @@ PETSC_INTERN PetscErrorCode ContactUpdateRows(Contact);
 PETSC_INTERN PetscBool      ContactPairStartsAnew(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactListAllRows(Contact);
 PETSC_INTERN PetscErrorCode ContactListNearRows(Contact, PetscReal);
+PETSC_INTERN void           ContactListActingRows(Contact, const PetscBool[]);
 PETSC_INTERN PetscErrorCode ContactRefreshGaps(Contact);
 PETSC_INTERN PetscErrorCode ContactGetPairTraces(Contact, const ContactPair *, PetscInt, PetscBool, PetscScalar *[2]);
 PETSC_INTERN PetscErrorCode ContactComputeRates(Contact, PetscInt, PetscBool, PetscScalar[]);

@@ -70,6 +70,7 @@ typedef struct {
   PetscInt    components;  /* rows of each node: 1, along its normal, or as many as space has dimensions */
   PetscInt    begin, end;  /* rows of this rank: begin to end - 1 */
   PetscInt    near_begin, near_end; /* of them those near contact, in rows.near */
+  PetscInt    acts_begin, acts_end; /* of these those that act, in rows.acting */
   PetscInt    shift[2];             /* row i of this rank has the number i - shift[side] among those of the body on that side */
   PetscReal   normal[3];            /* mean outward normal of the body that has the rows */
   PetscBool   bonded;     /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
@@ -152,25 +153,27 @@ typedef struct {
   PetscBool *followed;    /* it has followed the surfaces, and has new entries too */
   PetscReal *gap_shift;   /* added to its gap when it was built again [m] */
   /* those that may touch, see src/contact/rows/nearrows.c */
-  PetscBool lists;      /* the method looks at no others */
-  PetscBool listed;     /* there may be others */
-  PetscInt  n_near;     /* of this rank */
-  PetscInt *near;       /* their numbers, ascending: all rows of a node, or none */
-  PetscReal near_reach; /* others are farther away than this, of all ranks [m] */
+  PetscBool lists;             /* the method looks at no others */
+  PetscBool listed;            /* there may be others */
+  PetscInt  n_near;            /* of this rank */
+  PetscInt *near;              /* their numbers, ascending: all rows of a node, or none */
+  PetscInt  n_acting, *acting; /* near rows of nodes that touch in the step, or had a force in it or the last one, or all of them */
+  PetscReal near_reach;        /* others are farther away than this, of all ranks [m] */
 } ContactRows;
 
 #define CONTACT_CARRIED 8 /* kinds of values that ContactGetFields() carries from rows to nodes */
 
 /* The rows of a body: those of the pairs that it is in */
 typedef struct {
-  PetscInt   n;             /* of this rank */
-  PetscInt   begin;         /* the first of them has this number among those of the body on all ranks */
-  PetscInt   n_all;         /* of all ranks */
-  PetscInt  *rows;          /* their numbers among the rows of this rank, ascending */
-  PetscInt  *all;           /* of those of all ranks: their numbers among the rows of all ranks, ascending */
-  PetscInt   n_near, *near; /* its rows near contact: their places in `rows`, ascending */
-  PetscReal *area;          /* as that of rows; the body borrows it */
-  Vec of_rows, *of_nodes;   /* work space of ContactGetFields(), a vector of rows and CONTACT_CARRIED of displacements; NULL until used */
+  PetscInt   n;                 /* of this rank */
+  PetscInt   begin;             /* the first of them has this number among those of the body on all ranks */
+  PetscInt   n_all;             /* of all ranks */
+  PetscInt  *rows;              /* their numbers among the rows of this rank, ascending */
+  PetscInt  *all;               /* of those of all ranks: their numbers among the rows of all ranks, ascending */
+  PetscInt   n_near, *near;     /* its rows near contact: their places in `rows`, ascending */
+  PetscInt   n_acting, *acting; /* those that act, the same */
+  PetscReal *area;              /* as that of rows; the body borrows it */
+  Vec of_rows, *of_nodes; /* work space of ContactGetFields(), a vector of rows and CONTACT_CARRIED of displacements; NULL until used */
   /* its matrix in contact->interfaces, and the spare one */
   PetscBool  affected;    /* rows have got new entries in this attempt at a controller step */
   PetscBool  rewritten;   /* they have in any attempt at it */

@@ -43,9 +43,9 @@ PetscErrorCode ContactAddWork(Contact contact, PetscInt b, const PetscReal start
   PetscInt               substeps;
 
   PetscFunctionBegin;
-  for (PetscInt j = 0; j < of->n_near; j++) {
-    last[of->near[j]] = start_force[of->rows[of->near[j]]];
-    any               = (PetscBool)(any || ContactHasForce(contact, of->rows[of->near[j]], start_force));
+  for (PetscInt j = 0; j < of->n_acting; j++) {
+    last[of->acting[j]] = start_force[of->rows[of->acting[j]]];
+    any                 = (PetscBool)(any || ContactHasForce(contact, of->rows[of->acting[j]], start_force));
   }
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
@@ -57,8 +57,8 @@ PetscErrorCode ContactAddWork(Contact contact, PetscInt b, const PetscReal start
     PetscCall(TraceGetLevel(u, level - 1, &before));
     PetscCall(TraceGetLevel(u, level, &after));
     PetscCall(BodyGetRowForces(contact->bodies[b], level, now));
-    for (PetscInt j = 0; j < of->n_near; j++) {
-      const PetscInt  k = of->near[j], i = of->rows[k];
+    for (PetscInt j = 0; j < of->n_acting; j++) {
+      const PetscInt  k = of->acting[j], i = of->rows[k];
       const PetscBool across  = ContactRowRubs(contact, i);
       const PetscBool by_mean = (PetscBool)(properties.by_mean && properties.by_mean[k]); /* one force in all substeps */
       const PetscReal work    = 0.5 * (last[k] + now[k]) * PetscRealPart(after[k] - (by_mean ? first : before)[k]);

@@ -179,8 +179,8 @@ PetscErrorCode ContactAccept(Contact contact)
     for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactGapStride(pair))
       contact->start.gap[contact->rows.near[k]] = contact->end.gap[contact->rows.near[k]];
   }
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     contact->start.force[i]  = contact->end.force[i];
     contact->start.active[i] = contact->end.active[i];

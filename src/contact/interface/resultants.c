@@ -69,8 +69,8 @@ static PetscErrorCode SumForces(Contact contact, const ContactPair *pair, const 
   PetscFunctionBegin;
   PetscCall(TransferGetRows(pair->transfer, &rows));
   PetscCall(PetscArrayzero(sums, N_FORCES));
-  for (PetscInt j = pair->near_begin; j < pair->near_end; j++) {
-    const PetscInt i = contact->rows.near[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+  for (PetscInt j = pair->acts_begin; j < pair->acts_end; j++) {
+    const PetscInt i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
 
     if (row[i] == 0) continue; /* as most are */
     for (PetscInt d = 0; d < 3; d++) sums[d] += row[i] * contact->rows.normal[3 * i + d];
@@ -140,8 +140,8 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscCall(SurfaceGetData(pair->surfaces[0], &data));
   PetscCall(BodyGetSolution(body, &u, NULL, NULL));
   PetscCall(VecGetArrayRead(u, &displacement));
-  for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-    const PetscInt  i = contact->rows.near[k], node = (i - pair->begin) / pair->components, dof = contact->rows.dof[i];
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
+    const PetscInt  i = contact->rows.acting[k], node = (i - pair->begin) / pair->components, dof = contact->rows.dof[i];
     const PetscReal force = parts ? PetscRealPart(parts[i]) : contact->end.force[i];
     PetscReal       x[3]  = {0}, normal[3];
 
@@ -174,8 +174,8 @@ static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], Pet
   for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactGapStride(pair))
     maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[contact->rows.near[k]]);
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  for (PetscInt j = pair->near_begin; j < pair->near_end; j++) {
-    const PetscInt  i = contact->rows.near[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
+  for (PetscInt j = pair->acts_begin; j < pair->acts_end; j++) {
+    const PetscInt  i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
     const PetscReal along = ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0;
 
     normal = (k ? normal : 0) + along * contact->end.force[i];

@@ -192,12 +192,12 @@ PetscErrorCode ContactComputeFrictionLoss(Contact contact, const PetscReal start
 
   PetscFunctionBegin;
   if (!friction->slip) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) friction->step_loss[contact->rows.near[k]] = 0;
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) friction->step_loss[contact->rows.acting[k]] = 0;
   PetscCall(PetscArrayzero(friction->pair_step, contact->n_pairs));
   PetscCall(PetscArrayzero(friction->pair_work, contact->n_pairs));
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(ContactAddWork(contact, b, start_force, friction->step_loss, NULL));
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt  i    = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt  i    = contact->rows.acting[k];
     const PetscReal work = -0.5 * (start_force[i] + contact->end.force[i]) * friction->drive[i];
 
     if (!ContactHasForce(contact, i, start_force)) continue;

@@ -30,7 +30,7 @@ PetscErrorCode ContactNumberBodyRows(Contact contact)
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].shift[1] = 0; /* obstacles have the traces of all rows */
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscCall(PetscMalloc3(of[b].n, &of[b].rows, of[b].n, &of[b].area, of[b].n, &of[b].near));
+    PetscCall(PetscMalloc4(of[b].n, &of[b].rows, of[b].n, &of[b].area, of[b].n, &of[b].near, of[b].n, &of[b].acting));
     for (PetscInt k = 0; k < of[b].n; k++) {
       const PetscInt i    = of[b].all[of[b].begin + k] - begin;
       ContactPair   *pair = &contact->pairs[contact->rows.pair[i]];
@@ -46,7 +46,7 @@ PetscErrorCode ContactDestroyBodyRows(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt b = 0; contact->body_rows && b < contact->n_bodies; b++) {
-    PetscCall(PetscFree3(contact->body_rows[b].rows, contact->body_rows[b].area, contact->body_rows[b].near));
+    PetscCall(PetscFree4(contact->body_rows[b].rows, contact->body_rows[b].area, contact->body_rows[b].near, contact->body_rows[b].acting));
     PetscCall(PetscFree(contact->body_rows[b].all));
     PetscCall(VecDestroy(&contact->body_rows[b].of_rows));
     PetscCall(VecDestroyVecs(CONTACT_CARRIED, &contact->body_rows[b].of_nodes));

@@ -1,6 +1,9 @@
 /* Rows near contact: those that may touch before rows are built again, which they are once surfaces have moved by a quarter of the smallest
    face. A step of a method that asks for them looks at no others, and costs what touches. Others are open and have no force; their gaps and
-   the bodies' output traces are old until somebody asks. */
+   the bodies' output traces are old until somebody asks.
+
+   Of near rows those act in a step whose node touches, or had a force in it or in the last one. On all others forces and their effects have
+   been zero since the step after their last force. */
 #include <contact/parts.h>
 
 /* Gap of a row up to which it is near [edges of the face]: rows within two edges count as near contact in builds, and surfaces may have
@@ -9,19 +12,48 @@
 #define NEAR_CONTACT  3
 #define NEAR_OBSTACLE 1.5
 
-/* The near rows of the bodies, from the list of all */
-static void ListBodyRows(Contact contact)
+/* In a step, once it is known which rows touch (NULL: all near ones act): lists those that act, of all and of the bodies. After a failed
+   attempt, with forces on others, all near rows do. */
+void ContactListActingRows(Contact contact, const PetscBool touches[])
 {
-  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].n_near = 0;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair = &contact->pairs[p];
+  ContactRows *rows = &contact->rows;
 
+  if (!rows->listed && touches) return; /* all do */
+  rows->n_acting = 0;
+  for (PetscInt b = 0; b < contact->n_bodies; b++) contact->body_rows[b].n_acting = 0;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    ContactPair *pair = &contact->pairs[p];
+
+    pair->acts_begin = rows->n_acting;
+    for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
+      const PetscInt first = rows->near[k];
+      PetscBool      acts  = (PetscBool)(!touches || touches[first] || contact->attempt.again);
+
+      for (PetscInt i = first; i < first + pair->components && !acts; i++)
+        acts = (PetscBool)(contact->start.force[i] != 0 || contact->energy.last_force[i] != 0);
+      for (PetscInt i = first; i < first + pair->components && acts; i++) rows->acting[rows->n_acting++] = i;
+    }
+    pair->acts_end = rows->n_acting;
     for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
       ContactBodyRows *of = &contact->body_rows[pair->body[side]];
 
-      for (PetscInt k = pair->near_begin; k < pair->near_end; k++) of->near[of->n_near++] = contact->rows.near[k] - pair->shift[side];
+      for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) of->acting[of->n_acting++] = rows->acting[k] - pair->shift[side];
     }
   }
+}
+
+/* The near rows of the bodies, from the list of all; all of them act until it is known which touch */
+static PetscErrorCode ListBodyRows(Contact contact)
+{
+  PetscFunctionBegin;
+  ContactListActingRows(contact, NULL);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    ContactBodyRows *of = &contact->body_rows[b];
+
+    of->n_near = of->n_acting;
+    PetscCall(PetscArraycpy(of->near, of->acting, of->n_near));
+  }
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Gaps at the start of the controller step, from the bodies' traces; those of near rows if these are wanted */
@@ -111,7 +143,7 @@ PetscErrorCode ContactListAllRows(Contact contact)
     contact->pairs[p].near_begin = contact->pairs[p].begin;
     contact->pairs[p].near_end   = contact->pairs[p].end;
   }
-  ListBodyRows(contact);
+  PetscCall(ListBodyRows(contact));
   if (before) PetscCall(Tell(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -157,7 +189,7 @@ PetscErrorCode ContactListNearRows(Contact contact, PetscReal reach)
   }
   contact->rows.near_reach = smallest;
   contact->rows.listed     = PETSC_TRUE;
-  ListBodyRows(contact);
+  PetscCall(ListBodyRows(contact));
   PetscCall(Tell(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

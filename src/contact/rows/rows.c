@@ -33,7 +33,7 @@ static PetscErrorCode AllocateRows(Contact contact)
     for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) contact->rows.pair[i] = p;
   PetscCall(ContactGatherRows(contact, MPIU_INT, contact->rows.pair, contact->ranks.row_pair));
   PetscCall(ContactNumberBodyRows(contact));
-  PetscCall(PetscMalloc1(n, &contact->rows.near));
+  PetscCall(PetscMalloc2(n, &contact->rows.near, n, &contact->rows.acting));
   PetscCall(ContactListAllRows(contact));
   PetscCall(ContactOrderVisits(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -229,7 +229,7 @@ PetscErrorCode ContactDestroyRows(Contact contact)
                        contact->work.flags, contact->work.rest));
   PetscCall(PetscFree3(contact->work.updated, contact->work.motion, contact->work.off));
   PetscCall(ContactDestroyBodyRows(contact));
-  PetscCall(PetscFree(contact->rows.near));
+  PetscCall(PetscFree2(contact->rows.near, contact->rows.acting));
   PetscCall(PetscFree(contact->ranks.visits));
   PetscCall(PetscFree4(contact->ties.holds, contact->ties.distance, contact->work.entry_counts, contact->work.drift));
   PetscCall(PetscFree(contact->saved.state));

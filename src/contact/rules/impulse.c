@@ -59,13 +59,13 @@ static PetscErrorCode Load(Contact contact, ContactStepper *stepper, PetscInt b)
   const ContactBodyRows *of = &contact->body_rows[b];
 
   PetscFunctionBegin;
-  for (PetscInt j = 0; j < of->n_near; j++) {
-    const PetscInt k = of->near[j], i = of->rows[k];
+  for (PetscInt j = 0; j < of->n_acting; j++) {
+    const PetscInt k = of->acting[j], i = of->rows[k];
 
     stepper->mine[k]   = contact->end.force[i];
     stepper->before[k] = stepper->last[i];
   }
-  PetscCall(BodySetConstantForces(contact->bodies[b], of->n_near, of->near, stepper->mine, stepper->before, stepper->none));
+  PetscCall(BodySetConstantForces(contact->bodies[b], of->n_acting, of->acting, stepper->mine, stepper->before, stepper->none));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -114,8 +114,8 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper, const Contac
 {
   PetscFunctionBegin;
   contact->energy.changed = PETSC_TRUE;
-  for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     contact->energy.last_force[i] = stepper->last[i];
     contact->start.force[i]       = contact->end.force[i];

@@ -78,8 +78,8 @@ PetscErrorCode ContactStepperAdvance(Contact contact, ContactStepper *stepper)
     const ContactBodyRows *of = &contact->body_rows[b];
 
     moves[b] = !stepper->rests[b];
-    for (PetscInt k = 0; k < of->n_near && !moves[b]; k++) {
-      const PetscInt i = of->rows[of->near[k]];
+    for (PetscInt k = 0; k < of->n_acting && !moves[b]; k++) {
+      const PetscInt i = of->rows[of->acting[k]];
 
       moves[b] = contact->end.force[i] != stepper->given[i];
     }
@@ -93,7 +93,8 @@ PetscErrorCode ContactStepperAdvance(Contact contact, ContactStepper *stepper)
   PetscCall(ContactAgree(contact));
   if (stepper->problem.n) contact->counts.sweeps++; /* else nothing touches */
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->given[contact->rows.near[k]] = contact->end.force[contact->rows.near[k]];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++)
+    stepper->given[contact->rows.acting[k]] = contact->end.force[contact->rows.acting[k]];
   for (PetscInt b = 0; b < contact->n_bodies; b++) stepper->rests[b] = PETSC_TRUE;
   PetscCall(ContactComputeGaps(contact));
   if (contact->friction.slip) PetscCall(ContactComputeSlips(contact));

@@ -14,8 +14,8 @@ PetscErrorCode ContactStepperGuess(Contact contact, ContactStepper *stepper)
     const PetscBool    constant = (PetscBool)(ContactStepperRule(stepper, pair)->shape == BODY_FORCE_CONSTANT);
     const PetscBool    goes_on  = (PetscBool)(pair->rests && pair->components == 1);
 
-    for (PetscInt k = pair->near_begin; k < pair->near_end; k++) {
-      const PetscInt  i     = contact->rows.near[k];
+    for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
+      const PetscInt  i     = contact->rows.acting[k];
       const PetscBool known = (PetscBool)(stepper->touches[i] && !stepper->joins[i] && !(constant && stepper->joined[i]));
 
       contact->end.force[i] = known ? contact->start.force[i] + (goes_on ? stepper->grows[i] : 0) : 0;

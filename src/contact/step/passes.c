@@ -124,20 +124,21 @@ static PetscErrorCode ComputeChange(SNES snes, Vec X, Vec F, void *ctx)
   ContactStepper    *stepper = Stepper(contact);
   LawProblem        *problem = &stepper->problem;
   const PetscBool    first   = (PetscBool)!stepper->has_told; /* pass with these rows */
-  const PetscInt     n = problem->n, n_near = contact->rows.n_near, *near = contact->rows.near;
+  const PetscInt     n = problem->n, n_acting = contact->rows.n_acting, *acting = contact->rows.acting;
   const PetscScalar *x;
   PetscScalar       *f;
 
   PetscFunctionBegin;
   (void)snes;
   PetscCall(VecGetArrayRead(X, &x));
-  for (PetscInt k = 0; k < n_near; k++) contact->end.force[near[k]] = stepper->touches[near[k]] ? PetscRealPart(x[near[k]]) : 0;
+  for (PetscInt k = 0; k < n_acting; k++) contact->end.force[acting[k]] = stepper->touches[acting[k]] ? PetscRealPart(x[acting[k]]) : 0;
   PetscCall(VecRestoreArrayRead(X, &x));
   PetscCall(ContactStepperGather(contact, stepper, contact->end.force, problem->base));
   PetscCall(ContactStepperTurn(contact, stepper));
   PetscCall(ContactStepperAdvance(contact, stepper));
   if (!ContactFailed(contact)) {
-    for (PetscInt k = 0; k < n_near; k++) stepper->mine[near[k]] = stepper->touches[near[k]] ? Reading(contact, stepper, near[k]) : 0;
+    for (PetscInt k = 0; k < n_acting; k++)
+      stepper->mine[acting[k]] = stepper->touches[acting[k]] ? Reading(contact, stepper, acting[k]) : 0;
     PetscCall(ContactStepperGather(contact, stepper, stepper->mine, problem->read));
     PetscCall(CheckReadings(contact, stepper));
   }
@@ -232,8 +233,8 @@ PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *steppe
 static PetscErrorCode FindScales(Contact contact, ContactStepper *stepper)
 {
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i     = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i     = contact->rows.acting[k];
     PetscReal     *scale = &stepper->scale[stepper->group[contact->pairs[contact->rows.pair[i]].body[0]]];
 
     if (stepper->touches[i]) *scale = PetscMax(*scale, PetscAbsReal(contact->step * stepper->rate[i]));
@@ -270,8 +271,8 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(stepper->x, &x));
   PetscCall(PetscArrayzero(x, contact->rows.n));
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     if (stepper->touches[i]) x[i] = contact->end.force[i];
   }

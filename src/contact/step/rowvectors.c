@@ -52,14 +52,14 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
 {
   LawProblem      *problem = &stepper->problem;
   const PetscBool  alone   = (PetscBool)(contact->ranks.size == 1);
-  const PetscInt   n_look  = alone ? contact->rows.n_near : contact->rows.n_all;
+  const PetscInt   n_look  = alone ? contact->rows.n_acting : contact->rows.n_all;
   const PetscReal *touches = stepper->mine;
   PetscInt         n       = 0;
 
   PetscFunctionBegin;
   if (!alone) PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     stepper->mine[i] = stepper->touches[i] ? 1 + contact->rows.tied[ContactFirstRow(contact, i)] : 0; /* which law it has */
   }
@@ -67,11 +67,11 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
     PetscCall(ContactGatherRows(contact, MPIU_REAL, stepper->mine, stepper->all));
     touches = stepper->all;
   }
-  for (PetscInt k = 0; k < n_look; k++) n += touches[alone ? contact->rows.near[k] : k] != 0;
+  for (PetscInt k = 0; k < n_look; k++) n += touches[alone ? contact->rows.acting[k] : k] != 0;
   PetscCall(LawProblemResize(problem, n));
   n = problem->n_nodes = 0;
   for (PetscInt k = 0; k < n_look; k++) {
-    const PetscInt     i    = alone ? contact->rows.near[k] : k;
+    const PetscInt     i    = alone ? contact->rows.acting[k] : k;
     const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[i]];
 
     if (touches[i] == 0) continue;

@@ -124,8 +124,8 @@ PetscErrorCode ContactStepperAccept(Contact contact)
 
   PetscFunctionBegin;
   if (contact->ties.inverse) PetscCall(ContactStepperEndTies(contact, stepper));
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     stepper->joined[i] = stepper->joins[i];
     stepper->grows[i]  = contact->end.force[i] - stepper->last[i];

@@ -84,8 +84,8 @@ PetscErrorCode ContactStepperListSprings(Contact contact, ContactStepper *steppe
   springs->give   = 0;
   if (stepper->penalty.rounds) stepper->assembled = -1; /* the last step has left it with stiffer ones */
   for (PetscInt k = 0; k < 2 && stepper->penalty.any; k++) {
-    for (PetscInt j = 0; j < contact->rows.n_near; j++) {
-      const PetscInt  i       = contact->rows.near[j];
+    for (PetscInt j = 0; j < contact->rows.n_acting; j++) {
+      const PetscInt  i       = contact->rows.acting[j];
       const PetscBool goes_on = (PetscBool)(stepper->penalty.rounds || ContactRowRubs(contact, i));
 
       stepper->mine[i] = !k ? Softness(contact, stepper, i) : goes_on ? stepper->last[i] : 0;
@@ -145,8 +145,8 @@ PetscErrorCode ContactStepperEndSprings(Contact contact, ContactStepper *stepper
 {
   PetscFunctionBegin;
   if (!stepper->penalty.any) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_near && !stepper->penalty.rounds; k++) {
-    const PetscInt i = contact->rows.near[k];
+  for (PetscInt k = 0; k < contact->rows.n_acting && !stepper->penalty.rounds; k++) {
+    const PetscInt i = contact->rows.acting[k];
 
     if (ContactRowRubs(contact, i)) contact->friction.slip[i] += Softness(contact, stepper, i) * (contact->end.force[i] - stepper->last[i]);
   }

@@ -48,13 +48,13 @@ PetscErrorCode ContactStepperMarkRows(Contact contact, const ContactStepper *ste
   const LawProblem *problem = &stepper->problem;
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) {
-    const PetscInt i = contact->rows.near[k], first = ContactFirstRow(contact, i);
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
+    const PetscInt i = contact->rows.acting[k], first = ContactFirstRow(contact, i);
 
     contact->end.active[i] = (PetscBool)(stepper->touches[i] && (contact->rows.tied[first] || contact->end.force[first] > 0));
   }
   if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_near; k++) contact->friction.slides[contact->rows.near[k]] = PETSC_FALSE;
+  for (PetscInt k = 0; k < contact->rows.n_acting; k++) contact->friction.slides[contact->rows.acting[k]] = PETSC_FALSE;
   for (PetscInt node = 0; problem->n && node < problem->n_nodes; node++) {
     const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first, i = stepper->rows[first] - contact->rows.begin;
 
@@ -119,12 +119,14 @@ PetscErrorCode ContactStepperStep(Contact contact)
   for (PetscInt i = 0; i < contact->rows.n && contact->friction.drive; i++) stepper->rate[i] += contact->friction.drive[i] / contact->step;
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall((*ContactStepperRule(stepper, &contact->pairs[p])->begin)(contact, stepper, &contact->pairs[p]));
+  ContactListActingRows(contact, stepper->touches);
   PetscCall(ContactStepperGuess(contact, stepper));
   PetscCall(ContactSetConditions(contact, CONDITIONS_FORCES));
   PetscCall(ContactStepperBeginSecants(contact, stepper));
   PetscCall(ContactStepperBeginTurns(contact, stepper));
   while (more) {
-    for (PetscInt k = 0; k < contact->rows.n_near; k++) stepper->last[contact->rows.near[k]] = contact->start.force[contact->rows.near[k]];
+    for (PetscInt k = 0; k < contact->rows.n_acting; k++)
+      stepper->last[contact->rows.acting[k]] = contact->start.force[contact->rows.acting[k]];
     PetscCall(ContactStepperListRows(contact, stepper));
     if (stepper->problem.n) {
       PetscCall(ContactStepperGetLimits(contact, stepper));
@@ -136,6 +138,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
     } else PetscCall(ContactStepperAdvance(contact, stepper));
     if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(FindMore(contact, stepper, &more));
+    if (more) ContactListActingRows(contact, stepper->touches);
   }
   PetscCall(EndStep(contact, stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
