@@ -193,8 +193,12 @@ PetscErrorCode SurfaceKeepFacing(Surface a, Surface b, Obstacle obstacle, PetscB
       PetscReal        x[3], distance, gradient[3];
 
       Centroid(&surfaces[side]->data, f, x);
-      if (obstacle) PetscCall(ObstacleGetGap(obstacle, x, &distance, gradient));
-      keep[side][f] = obstacle ? (PetscBool)(Dot(normal, gradient) < OPPOSED) : SeesGroups(x, normal, &directions[1 - side], depth);
+      if (directions) {
+        keep[side][f] = SeesGroups(x, normal, &directions[1 - side], depth);
+        continue;
+      }
+      PetscCall(ObstacleGetGap(obstacle, x, &distance, gradient));
+      keep[side][f] = (PetscBool)(Dot(normal, gradient) < OPPOSED);
     }
   }
   for (PetscInt side = 0; side < 2; side++) {
