@@ -4,6 +4,7 @@
 
 #define BODY_SUDDEN_LENGTH 512 /* of the text of BodyDescribeSuddenLoad() */
 
+PETSC_EXTERN PetscErrorCode BodyIsOutOfBalance(Body, PetscBool *);
 PETSC_EXTERN PetscErrorCode BodySumRows(Body, PetscBool, PetscScalar[]);
 PETSC_EXTERN PetscErrorCode BodyBalanceLayer(Body, PetscBool, PetscScalar[], PetscReal *);
 PETSC_EXTERN PetscErrorCode BodyMultiplyLayerCompliance(Body, Vec, Vec);

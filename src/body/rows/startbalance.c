@@ -47,6 +47,24 @@ static PetscBool HasLayer(Body body)
   return (PetscBool)(body->layer.exists && body->integrator->has_inertia);
 }
 
+/* Whether outside and internal forces of the massless layer differ before the first step; false without layer or inertia. Collective. */
+PetscErrorCode BodyIsOutOfBalance(Body body, PetscBool *out)
+{
+  Vec                f = body->work.nodes[0];
+  const PetscScalar *values;
+
+  PetscFunctionBegin;
+  *out = PETSC_FALSE;
+  if (!HasLayer(body)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ComputeImbalance(body, NULL, f));
+  PetscCall(VecGetArrayRead(f, &values));
+  for (PetscInt i = 0; i < body->layer.n_dofs; i++)
+    if (values[body->layer.dofs[i]] != 0) *out = PETSC_TRUE;
+  PetscCall(VecRestoreArrayRead(f, &values));
+  PetscCall(BodyAnyRank(body, out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Sums of the entries of this rank's rows, without signs, on the massless layer; `massive`: on nodes with mass and bodies without inertia.
    Collective. */
 PetscErrorCode BodySumRows(Body body, PetscBool massive, PetscScalar sums[])

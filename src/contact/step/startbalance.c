@@ -61,7 +61,7 @@ static PetscErrorCode SetUp(Contact contact, ContactStepper *stepper)
 {
   PetscFunctionBegin;
   PetscCall(LawProblemSetUp(&stepper->problem));
-  PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
+  PetscCall(ContactStepperCreateVecs(contact, stepper));
   for (PetscInt p = 0; p < contact->n_pairs; p++) stepper->laws[p] = &RowLawTie;
   stepper->answer = BodyMultiplyLayerCompliance;
   PetscCall(FindRows(contact, stepper));
@@ -144,6 +144,21 @@ static PetscErrorCode Finish(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Whether any body has a layer out of balance, and all have inertia: what a body without inertia does in its first step is not known yet */
+static PetscErrorCode IsNeeded(Contact contact, PetscBool *needed, PetscBool *linear)
+{
+  PetscFunctionBegin;
+  *needed = PETSC_FALSE;
+  *linear = PETSC_TRUE;
+  if (!contact->options.balanced_start || !(contact->n_pairs || contact->neighbours.come_and_go)) PetscFunctionReturn(PETSC_SUCCESS);
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    if (BodyDoes(contact->bodies[b], BodyIsStatic)) PetscFunctionReturn(PETSC_SUCCESS);
+    *linear = (PetscBool)(*linear && BodyDoes(contact->bodies[b], BodyIsLinear));
+  }
+  for (PetscInt b = 0; b < contact->n_bodies && !*needed; b++) PetscCall(BodyIsOutOfBalance(contact->bodies[b], needed));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* The error of a first state that is not found */
 static PetscErrorCode RefuseStart(Contact contact)
 {
@@ -157,39 +172,34 @@ static PetscErrorCode RefuseStart(Contact contact)
           MAX_ROUNDS, sudden[0] ? ". " : "", sudden);
 }
 
-/* Moves the massless nodes of all bodies into balance in their first states. Call with the bodies set up, when ties and rows are known.
-   What a body without inertia does in its first step is not known yet. */
+/* Moves the massless nodes of all bodies into balance in their first states. Call with the bodies set up, when ties and rows are known. */
 PetscErrorCode ContactBalanceStart(Contact contact)
 {
   const PetscInt n       = contact->rows.n;
   ContactStepper stepper = {0};
   PetscReal      change, first = 0;
-  PetscBool      linear = PETSC_TRUE;
+  PetscBool      needed, linear, out = PETSC_FALSE; /* of balance without forces */
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(contact->end.force, n));
   PetscCall(PetscArrayzero(contact->start.force, n));
   PetscCall(PetscArrayzero(contact->end.active, n));
   PetscCall(PetscArrayzero(contact->start.active, n));
-  if (!contact->options.balanced_start || !(contact->n_pairs || contact->neighbours.come_and_go)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    if (BodyDoes(contact->bodies[b], BodyIsStatic)) PetscFunctionReturn(PETSC_SUCCESS);
-    linear = (PetscBool)(linear && BodyDoes(contact->bodies[b], BodyIsLinear));
+  PetscCall(IsNeeded(contact, &needed, &linear));
+  if (!needed) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(SetUp(contact, &stepper));
+  for (PetscInt round = 0;; round++) {
+    if (round == MAX_ROUNDS) PetscCall(RefuseStart(contact));
+    PetscCall(PetscArraycpy(stepper.mine, stepper.lets, n));
+    PetscCall(Balance(contact, &stepper, PETSC_FALSE, stepper.mine, &change));
+    if (round == 0 && change == 0) break;
+    out = PETSC_TRUE;
+    PetscCall(SolveRows(contact, &stepper));
+    PetscCall(Balance(contact, &stepper, PETSC_TRUE, stepper.lets, &change));
+    first = PetscMax(first, change);
+    if (linear || change <= SMALL * first) break;
   }
-  PetscCall(ContactStepperCreateVecs(contact, &stepper));
-  PetscCall(Balance(contact, &stepper, PETSC_FALSE, stepper.mine, &change));
-  if (change != 0) { /* also where forces put all nodes back, as with the state of a run that goes on */
-    PetscCall(SetUp(contact, &stepper));
-    for (PetscInt round = 0; round == 0 || (!linear && change > SMALL * first); round++) {
-      if (round == MAX_ROUNDS) PetscCall(RefuseStart(contact));
-      PetscCall(PetscArraycpy(stepper.mine, stepper.lets, n));
-      PetscCall(Balance(contact, &stepper, PETSC_FALSE, stepper.mine, &change));
-      PetscCall(SolveRows(contact, &stepper));
-      PetscCall(Balance(contact, &stepper, PETSC_TRUE, stepper.lets, &change));
-      first = PetscMax(first, change);
-    }
-    PetscCall(Finish(contact, &stepper));
-  }
+  if (out) PetscCall(Finish(contact, &stepper)); /* also where forces put all nodes back, as with the state of a run that goes on */
   PetscCall(ContactStepperDestroyAssembly(&stepper.assembly));
   PetscCall(ContactStepperDestroyVecs(&stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
