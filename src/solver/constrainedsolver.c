@@ -10,7 +10,7 @@
 #include <math.h>
 
 /* How many columns are kept: of all rows where these are few, else so many that to add them up is half the work of a solution by factors;
-   they take a quarter of the factors' memory then */
+   they take two thirds of the memory of Cholesky's factors then */
 static PetscErrorCode ChooseColumns(ConstrainedSolver s)
 {
   PetscInt size;

@@ -196,8 +196,10 @@ static PetscErrorCode FindColumns(ConstrainedSolver s, PetscBool *columns)
   if (s->global > FEW_ROWS && (s->exact || ++s->missed <= missing)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt j = 0; j < s->global; j++) {
     if (s->changes[j] != 0) PetscCall(ConstrainedSolverMakeColumn(s, j));
-    else if (change + others > s->most) PetscCall(VecDestroy(&s->columns[j]));
-    s->fresh[j] = (PetscBool)(s->fresh[j] && s->columns[j]);
+    else if (change + others > s->most) {
+      PetscCall(VecDestroy(&s->columns[j]));
+      s->fresh[j] = PETSC_FALSE;
+    }
   }
   s->missed = 0;
   *columns  = PETSC_TRUE;
