@@ -30,9 +30,8 @@ typedef struct {
   /* chosen at set-up */
   PetscBool mass_prescribed; /* contact nodes of a Dirichlet side have mass: they take velocity and acceleration from their partner */
   PetscReal controller_step; /* [s]; of the present level */
-  PetscBool
-      by_position; /* what is compared with the tolerances is the change of position of all nodes of every body from one sweep to
-                      the next (Hoy, Tezaur, Mota), for fixed relaxation; else what one more plain sweep would bring at contact nodes */
+  PetscBool by_mismatch;     /* tolerances are for what one more plain sweep would bring at contact nodes; else, with fixed relaxation, for
+                                the change of position of all nodes from one sweep to the next (Hoy, Tezaur, Mota) */
   /* unknowns of the outer iteration */
   SNES      snes;
   Vec       x, residual;

@@ -76,16 +76,15 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
 /* Compares the change of position with the tolerances, and notes the worst one */
 PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
 {
-  Alternation    *alternation = (Alternation *)contact->data;
-  const PetscBool mismatch    = (PetscBool)!alternation->by_position;
-  PetscReal       worst       = -1;
+  Alternation *alternation = (Alternation *)contact->data;
+  PetscReal    worst       = -1;
 
   PetscFunctionBegin;
   alternation->converged = PETSC_TRUE;
-  for (PetscInt k = 0; k < (mismatch ? 1 : contact->n_bodies); k++) {
+  for (PetscInt k = 0; k < (alternation->by_mismatch ? 1 : contact->n_bodies); k++) {
     PetscReal change, position;
 
-    if (mismatch) PetscCall(MeasureMismatch(contact, f, &change, &position));
+    if (alternation->by_mismatch) PetscCall(MeasureMismatch(contact, f, &change, &position));
     else PetscCall(BodyGetPositionChange(contact->bodies[k], &change, &position));
     if (!(change <= alternation->atol || change <= alternation->rtol * position)) alternation->converged = PETSC_FALSE;
     if (change <= worst) continue;

@@ -118,6 +118,6 @@ PetscErrorCode AlternationSetUpOuterSolver(Contact contact, PetscInt unknowns)
     PetscCall(SNESLineSearchShellSetApply(line_search, ApplyAitken, contact));
     if (!damping_set) PetscCall(SNESLineSearchSetDamping(line_search, 0.5));
   }
-  alternation->by_position = (PetscBool)(richardson && alternation->relaxation == SCHWARZ_RELAXATION_FIXED);
+  alternation->by_mismatch = (PetscBool)(!richardson || alternation->relaxation != SCHWARZ_RELAXATION_FIXED);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
