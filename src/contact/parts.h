@@ -107,6 +107,7 @@ PETSC_INTERN PetscErrorCode ContactVisitPairNodes(const ContactPair *, const Sta
 PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
 PETSC_INTERN void           ContactTakeLeave(Contact, const ContactPair *, const ContactPairState *);
 PETSC_INTERN PetscErrorCode ContactComputePairStates(Contact, ContactPairState[]);
+PETSC_INTERN void           ContactAddPairState(ContactPairState *, PetscInt, const ContactPairState *);
 PETSC_INTERN PetscErrorCode ContactSetUpPairResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpRowEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactTakeFirstNeighbours(Contact, PetscReal *);
@@ -241,6 +242,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpSprings(Contact);
 PETSC_INTERN PetscErrorCode ContactMakeStep(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyFloating(Contact);
 
+PETSC_INTERN PetscErrorCode ContactCreateResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpResultants(Contact);
 PETSC_INTERN PetscErrorCode ContactStartImpulses(Contact);
 PETSC_INTERN PetscErrorCode ContactAddImpulses(Contact);

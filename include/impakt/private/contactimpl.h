@@ -243,9 +243,10 @@ typedef struct {
   PetscReal        *cross_section;  /* of its first body: turns lengths and points into areas */
   PetscReal        *impulse;        /* this rank's shares, see resultants.c */
   PetscReal         penalty_energy; /* energy in the penalty springs of all pairs [J] */
-  PetscReal        *sums;           /* work space */
-  PetscReal        *maxima;         /* work space */
+  PetscReal        *gaps;           /* work space */
   ContactPairState *states;         /* work space */
+  MPI_Datatype      state;          /* that of a pair, */
+  MPI_Op            add;            /* and how ranks add their shares of it */
 } ContactResultants;
 
 /* The search for a start of the step that keeps the energy of a group of bodies within its room, see src/contact/energy/limit.c */

@@ -40,6 +40,7 @@ PetscErrorCode ContactCreate(MPI_Comm comm, Contact *contact)
   PetscCallMPI(MPI_Comm_size(comm, &(*contact)->ranks.size));
   PetscCallMPI(MPI_Comm_rank(comm, &(*contact)->ranks.rank));
   PetscCall(ContactCreateLaws(*contact));
+  PetscCall(ContactCreateResultants(*contact));
   (*contact)->attempt.failed = PETSC_INT_MAX;
   (*contact)->options        = (ContactOptions){
       .separation       = PETSC_TRUE,
@@ -231,6 +232,8 @@ PetscErrorCode ContactDestroy(Contact *contact)
   PetscCall(PetscFree5(c->traces, c->interfaces, c->spares, c->order, c->body_rows));
   PetscCall(PetscFree4(c->ends, c->ahead, c->work.hands_over, c->work.traces));
   PetscCall(ContactDestroyResultants(c));
+  PetscCallMPI(MPI_Op_free(&c->resultants.add));
+  PetscCallMPI(MPI_Type_free(&c->resultants.state));
   PetscCall(ContactDestroyOverlaps(c));
   PetscCall(ContactDestroyFloating(c));
   PetscCall(ContactDestroyEnergy(c));

@@ -1,33 +1,53 @@
 /* What the contact forces of each pair amount to: resultant, moment, impulse, area. */
 #include <contact/parts.h>
 #include <impakt/private/bodymesh.h>
+#include <impakt/private/bodystep.h>
 
-enum {
-  SUM_FORCE          = 0,
-  SUM_ACTIVE         = 1,
-  SUM_AREA           = 2,
-  SUM_VECTOR         = 3,
-  SUM_MOMENT         = SUM_VECTOR + 3,
-  SUM_IMPULSE        = SUM_MOMENT + 3,
-  SUM_NORMAL_IMPULSE = SUM_IMPULSE + 3,
-  SUM_BEYOND         = SUM_NORMAL_IMPULSE + 1,
-  SUM_SLIDING        = SUM_BEYOND + 1,
-  N_SUMS             = SUM_SLIDING + 1
-};
+/* Adds a share of the state of a pair. With the sign -1 that alone counts which has a direction, and is turned round. */
+void ContactAddPairState(ContactPairState *sum, PetscInt sign, const ContactPairState *share)
+{
+  sum->gap     = PetscMin(sum->gap, share->gap);
+  sum->tension = PetscMax(sum->tension, share->tension);
+  for (PetscInt d = 0; d < 3; d++) {
+    sum->impulse[d] += sign * share->impulse[d];
+    sum->force_vector[d] += sign * share->force_vector[d];
+    sum->moment[d] += sign * share->moment[d];
+  }
+  if (sign < 0) return;
+  sum->normal_impulse += share->normal_impulse;
+  sum->beyond_impulse += share->beyond_impulse;
+  sum->friction_loss += share->friction_loss;
+  sum->obstacle_work += share->obstacle_work;
+  sum->force += share->force;
+  sum->active += share->active;
+  sum->area += share->area;
+  sum->sliding += share->sliding;
+}
 
-#define N_KEPT CONTACT_IMPULSES
+/* For MPI: adds the states of all pairs on one rank to those on another */
+static void MPIAPI AddStates(void *of_one, void *sums, PetscMPIInt *n, MPI_Datatype *type)
+{
+  (void)type;
+  for (PetscMPIInt p = 0; p < *n; p++) ContactAddPairState((ContactPairState *)sums + p, 1, (const ContactPairState *)of_one + p);
+}
 
-/* Of what the largest value of a pair's rows is found */
-enum { MAX_PENETRATION, MAX_TENSION, N_MAXIMA };
+/* What MPI needs to know of the states of pairs */
+PetscErrorCode ContactCreateResultants(Contact contact)
+{
+  PetscFunctionBegin;
+  PetscCallMPI(MPI_Type_contiguous(sizeof(ContactPairState), MPI_BYTE, &contact->resultants.state));
+  PetscCallMPI(MPI_Type_commit(&contact->resultants.state));
+  PetscCallMPI(MPI_Op_create(AddStates, 1, &contact->resultants.add));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
 
 /* Makes room for the resultants of all pairs, and notes cross-sections */
 PetscErrorCode ContactSetUpPairResultants(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(ContactDestroyResultants(contact));
-  PetscCall(PetscCalloc5(contact->n_pairs, &contact->resultants.cross_section, N_SUMS * contact->n_pairs, &contact->resultants.sums,
-                         N_MAXIMA * contact->n_pairs, &contact->resultants.maxima, N_KEPT * contact->n_pairs, &contact->resultants.impulse,
-                         contact->n_pairs, &contact->resultants.states));
+  PetscCall(PetscCalloc4(contact->n_pairs, &contact->resultants.cross_section, contact->n_pairs, &contact->resultants.gaps,
+                         CONTACT_IMPULSES * contact->n_pairs, &contact->resultants.impulse, contact->n_pairs, &contact->resultants.states));
   for (PetscInt p = 0; p < contact->n_pairs; p++)
     PetscCall(BodyGetScale(contact->bodies[contact->pairs[p].body[0]], BODY_CROSS_SECTION, &contact->resultants.cross_section[p]));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,16 +56,10 @@ PetscErrorCode ContactSetUpPairResultants(Contact contact)
 /* Makes room for the resultants, and notes the controller step. The bodies must have been set up. */
 PetscErrorCode ContactSetUpResultants(Contact contact)
 {
-  PetscInt substeps;
-  TS       ts;
-
   PetscFunctionBegin;
   if (!contact->n_pairs && !contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactSetUpPairResultants(contact));
-  PetscCall(BodyGetTS(contact->bodies[0], &ts));
-  PetscCall(TSGetTimeStep(ts, &contact->step));
-  PetscCall(BodyGetSubsteps(contact->bodies[0], &substeps));
-  contact->step *= substeps;
+  PetscCall(BodyGetControllerStep(contact->bodies[0], &contact->step));
   contact->attempt.whole_step = contact->step;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -53,8 +67,8 @@ PetscErrorCode ContactSetUpResultants(Contact contact)
 PetscErrorCode ContactDestroyResultants(Contact contact)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree5(contact->resultants.cross_section, contact->resultants.sums, contact->resultants.maxima, contact->resultants.impulse,
-                       contact->resultants.states));
+  PetscCall(
+      PetscFree4(contact->resultants.cross_section, contact->resultants.gaps, contact->resultants.impulse, contact->resultants.states));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -85,7 +99,7 @@ PetscErrorCode ContactStartImpulses(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, sums[N_FORCES];
+    PetscReal *impulse = contact->resultants.impulse + CONTACT_IMPULSES * p, sums[N_FORCES];
 
     PetscCall(SumForces(contact, &contact->pairs[p], contact->end.force, sums));
     PetscCall(PetscArraycpy(impulse + 3, sums, 3));
@@ -99,7 +113,7 @@ PetscErrorCode ContactAddImpulses(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscReal *impulse = contact->resultants.impulse + N_KEPT * p, *last = impulse + 3, *normal = impulse + 6, first[N_FORCES],
+    PetscReal *impulse = contact->resultants.impulse + CONTACT_IMPULSES * p, *last = impulse + 3, *normal = impulse + 6, first[N_FORCES],
               end[N_FORCES];
 
     PetscCall(PetscArraycpy(first, last, 3));
@@ -118,7 +132,7 @@ PetscErrorCode ContactAddImpulses(Contact contact)
 /* Whether a pair has had a force in an accepted step, along rows of this rank */
 PetscBool ContactHasTouched(Contact contact, const ContactPair *pair)
 {
-  return (PetscBool)(contact->resultants.impulse[N_KEPT * (pair - contact->pairs) + 6] != 0);
+  return (PetscBool)(contact->resultants.impulse[CONTACT_IMPULSES * (pair - contact->pairs) + 6] != 0);
 }
 
 /* This rank's share of the moment of a pair about the origin on the partner of the body that has the rows [N m] */
@@ -155,96 +169,77 @@ static PetscErrorCode SumMoments(Contact contact, const ContactPair *pair, Petsc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* This rank's sums and largest values over the rows of pair p */
-static PetscErrorCode SumPair(Contact contact, PetscInt p, PetscReal sums[], PetscReal maxima[])
+/* This rank's share of the state of pair p, but for what friction and obstacles do */
+static PetscErrorCode SumPair(Contact contact, PetscInt p, ContactPairState *state)
 {
   const ContactPair *pair    = &contact->pairs[p];
+  const PetscReal   *impulse = contact->resultants.impulse + CONTACT_IMPULSES * p;
+  const PetscInt     sign    = ContactPairSign(pair);
   PetscInt           counted = -1; /* the node that was counted last: the rows of a tied node follow each other */
   PetscReal          normal  = 0;  /* force along the normal of the rows of a node so far [N] */
   PetscReal          forces[N_FORCES];
   TransferRows       rows;
 
   PetscFunctionBegin;
-  PetscCall(PetscArrayzero(sums, N_SUMS));
-  PetscCall(PetscArraycpy(sums + SUM_IMPULSE, contact->resultants.impulse + N_KEPT * p, 3));
-  sums[SUM_NORMAL_IMPULSE] = contact->resultants.impulse[N_KEPT * p + 6];
-  sums[SUM_BEYOND]         = contact->resultants.impulse[N_KEPT * p + 8];
-  maxima[MAX_PENETRATION]  = -PETSC_MAX_REAL;
-  maxima[MAX_TENSION]      = 0;
+  *state = (ContactPairState){.gap = PETSC_MAX_REAL, .normal_impulse = impulse[6], .beyond_impulse = impulse[8]};
   for (PetscInt k = pair->near_begin; k < pair->near_end; k += ContactGapStride(pair))
-    maxima[MAX_PENETRATION] = PetscMax(maxima[MAX_PENETRATION], -contact->end.gap[contact->rows.near[k]]);
+    state->gap = PetscMin(state->gap, contact->end.gap[contact->rows.near[k]]);
   PetscCall(TransferGetRows(pair->transfer, &rows));
   for (PetscInt j = pair->acts_begin; j < pair->acts_end; j++) {
     const PetscInt  i = contact->rows.acting[j], node = (i - pair->begin) / pair->components, k = (i - pair->begin) % pair->components;
     const PetscReal along = ContactPairTies(pair) ? rows.normals[contact->dim * node + k] : k == 0;
 
     normal = (k ? normal : 0) + along * contact->end.force[i];
-    if (k == pair->components - 1) maxima[MAX_TENSION] = PetscMax(maxima[MAX_TENSION], -normal);
+    if (k == pair->components - 1) state->tension = PetscMax(state->tension, -normal);
     if (!contact->end.active[i]) continue;
     /* merged rows of one node may have different areas */
-    if (contact->held.merger) sums[SUM_AREA] += PetscSqr(along) * contact->rows.area[i] * contact->resultants.cross_section[p];
+    if (contact->held.merger) state->area += PetscSqr(along) * contact->rows.area[i] * contact->resultants.cross_section[p];
     if (contact->rows.dof[i] == counted) continue;
-    sums[SUM_ACTIVE] += 1;
-    if (contact->friction.slides && contact->friction.slides[i]) sums[SUM_SLIDING] += 1;
-    if (!contact->held.merger) sums[SUM_AREA] += contact->rows.area[i] * contact->resultants.cross_section[p];
+    state->active++;
+    if (contact->friction.slides && contact->friction.slides[i]) state->sliding++;
+    if (!contact->held.merger) state->area += contact->rows.area[i] * contact->resultants.cross_section[p];
     counted = contact->rows.dof[i];
   }
   PetscCall(SumForces(contact, pair, contact->end.force, forces));
-  PetscCall(PetscArraycpy(sums + SUM_VECTOR, forces, 3));
-  sums[SUM_FORCE] = forces[OF_NORMAL];
-  PetscCall(SumMoments(contact, pair, sums + SUM_MOMENT));
+  PetscCall(SumMoments(contact, pair, state->moment));
+  state->force = forces[OF_NORMAL];
+  for (PetscInt d = 0; d < 3; d++) {
+    state->force_vector[d] = sign * forces[d];
+    state->moment[d] *= sign;
+    state->impulse[d] = sign * impulse[d];
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Gaps of pairs none of whose near rows is close: others may be closer, whose gaps are old. `maxima`: of all ranks */
-static PetscErrorCode FindFarGaps(Contact contact, PetscReal maxima[])
+/* Gaps of pairs none of whose near rows is close: others may be closer, whose gaps are old */
+static PetscErrorCode FindFarGaps(Contact contact, ContactPairState states[])
 {
-  const PetscReal until = -contact->rows.near_reach;
-  PetscBool       any   = PETSC_FALSE;
+  PetscReal *gaps = contact->resultants.gaps;
+  PetscBool  any  = PETSC_FALSE;
 
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || maxima[N_MAXIMA * p + MAX_PENETRATION] < until);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || states[p].gap > contact->rows.near_reach);
   if (!contact->rows.listed || !any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(ContactRefreshGaps(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    const ContactPair *pair    = &contact->pairs[p];
-    PetscReal         *deepest = &maxima[N_MAXIMA * p + MAX_PENETRATION];
-
-    for (PetscInt i = pair->begin; i < pair->end; i++) *deepest = PetscMax(*deepest, -contact->end.gap[i]);
+    gaps[p] = states[p].gap;
+    for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) gaps[p] = PetscMin(gaps[p], contact->end.gap[i]);
   }
-  PetscCall(ContactReduce(contact, N_MAXIMA * contact->n_pairs, MPIU_REAL, MPIU_MAX, maxima));
+  PetscCall(ContactReduce(contact, contact->n_pairs, MPIU_REAL, MPIU_MIN, gaps));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) states[p].gap = gaps[p];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* States of all pairs */
 PetscErrorCode ContactComputePairStates(Contact contact, ContactPairState states[])
 {
-  PetscReal *sums = contact->resultants.sums, *maxima = contact->resultants.maxima;
-
   PetscFunctionBegin;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(SumPair(contact, p, sums + N_SUMS * p, maxima + N_MAXIMA * p));
-  PetscCall(ContactReduce(contact, N_SUMS * contact->n_pairs, MPIU_REAL, MPIU_SUM, sums));
-  PetscCall(ContactReduce(contact, N_MAXIMA * contact->n_pairs, MPIU_REAL, MPIU_MAX, maxima));
-  PetscCall(FindFarGaps(contact, maxima));
-  for (PetscInt p = 0; p < contact->n_pairs; p++, sums += N_SUMS, maxima += N_MAXIMA) {
-    ContactPairState *state = &states[p];
-    const PetscInt    sign  = ContactPairSign(&contact->pairs[p]);
-
-    state->force   = sums[SUM_FORCE];
-    state->active  = (PetscInt)sums[SUM_ACTIVE];
-    state->gap     = -maxima[MAX_PENETRATION];
-    state->tension = maxima[MAX_TENSION];
-    state->area    = sums[SUM_AREA];
-    for (PetscInt d = 0; d < 3; d++) {
-      state->force_vector[d] = sign * sums[SUM_VECTOR + d];
-      state->moment[d]       = sign * sums[SUM_MOMENT + d];
-      state->impulse[d]      = sign * sums[SUM_IMPULSE + d];
-    }
-    state->normal_impulse = sums[SUM_NORMAL_IMPULSE];
-    state->beyond_impulse = sums[SUM_BEYOND];
-    state->sliding        = (PetscInt)sums[SUM_SLIDING];
-    state->friction_loss  = contact->friction.pair_loss ? contact->friction.pair_loss[p] : 0;
-    state->obstacle_work  = contact->friction.pair_driven ? contact->friction.pair_driven[p] : 0;
+  for (PetscInt p = 0; p < contact->n_pairs; p++) PetscCall(SumPair(contact, p, &states[p]));
+  PetscCall(ContactReduce(contact, contact->n_pairs, contact->resultants.state, contact->resultants.add, states));
+  PetscCall(FindFarGaps(contact, states));
+  for (PetscInt p = 0; p < contact->n_pairs; p++) {
+    if (contact->friction.pair_loss) states[p].friction_loss = contact->friction.pair_loss[p];
+    if (contact->friction.pair_driven) states[p].obstacle_work = contact->friction.pair_driven[p];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -50,33 +50,13 @@ PetscErrorCode ContactSetUpTold(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds the state of a pair to what is told. What has no direction counts with the rows' body alone, so that sums are right. */
-static void AddState(ContactPairState *sum, PetscInt sign, const ContactPairState *state)
-{
-  sum->gap     = PetscMin(sum->gap, state->gap);
-  sum->tension = PetscMax(sum->tension, state->tension);
-  for (PetscInt d = 0; d < 3; d++) {
-    sum->impulse[d] += sign * state->impulse[d];
-    sum->force_vector[d] += sign * state->force_vector[d];
-    sum->moment[d] += sign * state->moment[d];
-  }
-  if (sign < 0) return;
-  sum->normal_impulse += state->normal_impulse;
-  sum->beyond_impulse += state->beyond_impulse;
-  sum->friction_loss += state->friction_loss;
-  sum->obstacle_work += state->obstacle_work;
-  sum->force += state->force;
-  sum->active += state->active;
-  sum->area += state->area;
-  sum->sliding += state->sliding;
-}
-
-/* Adds the state of a pair to those that are told of its bodies, or of its body and the obstacle */
+/* Adds the state of a pair to those that are told of its bodies, or of its body and the obstacle. What has no direction counts with the
+   rows' body alone, so that sums are right. */
 static void Tell(Contact contact, const ContactPair *pair, const ContactPairState *state, ContactPairState told[])
 {
   if (pair->obstacle)
-    AddState(&told[ObstaclePlace(contact, pair->body[0], ContactPairPartner(contact, pair) - contact->n_bodies)], 1, state);
-  for (PetscInt side = 0; side < 2 && !pair->obstacle; side++) AddState(&told[pair->body[side]], side ? -1 : 1, state);
+    ContactAddPairState(&told[ObstaclePlace(contact, pair->body[0], ContactPairPartner(contact, pair) - contact->n_bodies)], 1, state);
+  for (PetscInt side = 0; side < 2 && !pair->obstacle; side++) ContactAddPairState(&told[pair->body[side]], side ? -1 : 1, state);
 }
 
 /* A pair goes: what it has done stays with its bodies. It has no force any more, and TellStates() forgets its gap. */
