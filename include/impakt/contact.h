@@ -146,6 +146,8 @@ S*/
 typedef struct {
   PetscBool   friction, glue, breaks; /* whether any pair has such a law, with damage; where pairs come and go, those to come */
   PetscBool   pulls;                  /* any pair has another law than the frictionless one */
+  PetscInt    parts;                  /* of a controller step, at whose ends all bodies have a time in common: each is a step of contact */
+  PetscBool   cuts;                   /* steps can be made again in halves: not where the method moves the state that they start from */
   PetscBool   separation;             /* surfaces that have met may come apart again */
   PetscBool   balance;                /* forces have the same sum along the normals of both surfaces */
   PetscBool   energy_cap;             /* steps in which contact would gain energy are made again */

@@ -23,7 +23,7 @@ typedef struct ContactPreference {
    normal forces, one number each; the impulse of nodes beyond the end of the partner */
 #define CONTACT_IMPULSES 9
 
-/* Length of the texts of ContactDescribeMoves() and ContactDescribeRound() */
+/* Length of the texts of ContactDescribeMoves() */
 #define CONTACT_MOVES 256
 
 /* A pair that outputs are told of */
@@ -127,8 +127,7 @@ PETSC_INTERN PetscErrorCode ContactGetBoundary(Contact, PetscInt, Surface *);
 PETSC_INTERN PetscErrorCode ContactStartOverlaps(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode ContactCreateFacing(Contact, const ContactPair *, Surface[2]);
 PETSC_INTERN PetscErrorCode ContactMarkNearNodes(Contact, const ContactPair *, PetscInt);
-PETSC_INTERN PetscErrorCode ContactDescribeRound(Contact, PetscInt, char[CONTACT_MOVES]);
-PETSC_INTERN PetscErrorCode ContactDescribeMoves(Contact, PetscInt, char[CONTACT_MOVES]);
+PETSC_INTERN PetscErrorCode ContactDescribeMoves(Contact, PetscInt, char[CONTACT_MOVES], char[CONTACT_MOVES]);
 PETSC_INTERN PetscErrorCode ContactDestroyOverlaps(Contact);
 PETSC_INTERN PetscErrorCode ContactCheckAxisymmetric(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactChooseBalance(Contact);

@@ -28,7 +28,7 @@ struct _p_Controller {
   PetscReal resolved_step;    /* that, where it is not chosen [s]; infinity: none */
   char      step_reason[512]; /* what that follows from */
   /* step control */
-  PetscInt       parts;     /* of a controller step, see ContactGetParts() */
+  PetscInt       parts;     /* of a controller step, see ContactTraits */
   const char    *whole;     /* why steps are not cut, or NULL */
   PetscInt       most_cuts; /* how often a step may be cut in halves */
   ControllerCuts cuts;

@@ -25,12 +25,12 @@ static PetscErrorCode GetRatio(Body body, const BodyStepBounds **bounds, PetscRe
 
 static PetscErrorCode CountSubsteps(Controller controller, Body body, PetscInt *substeps)
 {
-  PetscInt parts;
+  ContactTraits traits;
 
   PetscFunctionBegin;
-  PetscCall(ContactGetParts(controller->contact, &parts));
+  PetscCall(ContactGetTraits(controller->contact, &traits));
   PetscCall(BodyGetSubsteps(body, substeps));
-  *substeps *= parts;
+  *substeps *= traits.parts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

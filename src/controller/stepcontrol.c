@@ -113,21 +113,21 @@ static PetscErrorCode IsNearInstability(Body body, PetscBool *near)
 PetscErrorCode ControllerSetUpStepControl(Controller controller)
 {
   ControllerStatics statics;
-  PetscBool         can;
+  ContactTraits     traits;
 
   PetscFunctionBegin;
-  PetscCall(ContactCanCut(controller->contact, &can));
+  PetscCall(ContactGetTraits(controller->contact, &traits));
   PetscCall(ControllerGetStatics(controller, &statics));
   if (controller->most_cuts == PETSC_DECIDE) controller->most_cuts = statics.some ? STATIC_CUTS : STEP_CUTS;
-  if (!can && controller->most_cuts) controller->whole = "the method changes the state that its steps start from";
-  for (PetscInt b = 0; b < controller->n_bodies && controller->most_cuts && can; b++) {
+  if (!traits.cuts && controller->most_cuts) controller->whole = "the method changes the state that its steps start from";
+  for (PetscInt b = 0; b < controller->n_bodies && controller->most_cuts && traits.cuts; b++) {
     PetscBool near;
 
     PetscCall(IsNearInstability(controller->bodies[b], &near));
     if (near) controller->whole = "an explicit body is too near to its stable step for steps that change";
   }
   if (controller->whole) controller->most_cuts = 0;
-  PetscCall(ContactGetParts(controller->contact, &controller->parts));
+  controller->parts              = traits.parts;
   controller->cuts.smallest_step = controller->time_step / (PetscReal)controller->parts;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -195,7 +195,7 @@ static PetscErrorCode MakeStep(Controller controller, PetscInt level)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* A whole controller step, from the state that was accepted last to one that is accepted: each of its parts, see ContactGetParts() */
+/* A whole controller step, from the state that was accepted last to one that is accepted: each of its parts, see ContactTraits */
 PetscErrorCode ControllerMakeStep(Controller controller)
 {
   PetscInt most_sweeps = 0;

@@ -69,7 +69,7 @@ static PetscErrorCode AddPairs(Controller controller, ControllerSupport support[
   for (o = 0; o < n_obstacles; o++)
     for (PetscInt d = 0; d < 3; d++) support[o].force[d] = support[o].moment[d] = 0;
   for (PetscInt p = 0; p < n_pairs; p++) {
-    PetscCall(ContactGetPairObstacle(controller->contact, p, &o));
+    PetscCall(ContactGetPairTraits(controller->contact, p, NULL, &o, NULL));
     for (PetscInt d = 0; d < 3 && o >= 0; d++) {
       support[o].force[d] -= controller->pair_states[p].force_vector[d];
       support[o].moment[d] -= controller->pair_states[p].moment[d];

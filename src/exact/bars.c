@@ -183,7 +183,7 @@ PetscErrorCode ExactSetUpBars(Exact exact, Controller controller)
              " pairs; leave -exact out",
              exact->type, n_bodies, n_pairs);
   PetscCall(ContactGetPair(contact, 0, &pair, &sides[0], &sides[1]));
-  PetscCall(ContactGetPairNormal(contact, 0, exact->normal));
+  PetscCall(ContactGetPairTraits(contact, 0, NULL, NULL, exact->normal));
   for (PetscInt i = 0; i < 2; i++) {
     exact->body[i] = sides[i] == bodies[0] ? 0 : 1;
     PetscCall(GetBar(sides[i], exact->normal, &bars[i], &measures[i]));

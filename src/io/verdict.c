@@ -258,7 +258,7 @@ static PetscErrorCode LookAtPair(Contact contact, PetscInt p, const ContactPairS
   tied = (PetscBool)(law == CONTACT_LAW_TIED || law == CONTACT_LAW_GLUE);
   if (tied && !results->pairs[p].active_max)
     PetscCall(Add(verdict, VERDICT_UNTIED, "the ties of %s tie nothing: no node of one surface lies opposite the other", name));
-  PetscCall(ContactPairIsNamed(contact, p, &named));
+  PetscCall(ContactGetPairTraits(contact, p, &named, NULL, NULL));
   if (named && !tied && !results->pairs[p].steps_in_contact) {
     if (results->pairs[p].gap_min < CONTACT_NO_GAP)
       PetscCall(PetscSNPrintf(nearest, sizeof(nearest), "its smallest gap was %.3g%s", (double)results->pairs[p].gap_min,

@@ -198,16 +198,17 @@ static void transit_of_contact_elements(void **state)
 
 static void substeps_divide_it(void **state)
 {
-  Simulation *simulation = (Simulation *)*state;
-  PetscInt    substeps, parts;
+  Simulation   *simulation = (Simulation *)*state;
+  ContactTraits traits;
+  PetscInt      substeps;
 
   AddCollision(8, 13, 0);
   near(ChosenStep(simulation, "-time_step auto -left_ts_time_step 0.03 -right_ts_time_step 0.015", NULL), 0.09, 1e-15);
   /* the bodies have three times in common in a controller step, which is made in so many parts: a body tells its substeps in one of them */
-  ok(ContactGetParts(simulation->contact, &parts));
+  ok(ContactGetTraits(simulation->contact, &traits));
   ok(BodyGetSubsteps(simulation->bodies[1], &substeps));
-  assert_int_equal(parts, 3);
-  assert_int_equal(parts * substeps, 6);
+  assert_int_equal(traits.parts, 3);
+  assert_int_equal(traits.parts * substeps, 6);
   /* even one substep may be longer than what resolves contact */
   near(ChosenStep(simulation, "-left_ts_time_step 0.12 -right_ts_time_step 0.12", NULL), 0.12, 1e-15);
   /* explicit bodies without a substep get one that is stable */

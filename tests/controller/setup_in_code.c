@@ -574,9 +574,9 @@ static void supports_and_probes(void **state)
   assert_int_equal(n, 1);
   ok(PetscObjectGetName((PetscObject)obstacles[0], &name));
   assert_string_equal(name, "wall");
-  ok(ContactGetPairObstacle(simulation->contact, 0, &i));
+  ok(ContactGetPairTraits(simulation->contact, 0, NULL, &i, NULL));
   assert_int_equal(i, 0);
-  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 1", ContactGetPairObstacle(simulation->contact, 1, &i));
+  refused(PETSC_ERR_ARG_OUTOFRANGE, "no pair 1", ContactGetPairTraits(simulation->contact, 1, NULL, &i, NULL));
 
   ok(ControllerGetProbes(simulation->controller, &n, &probes));
   assert_int_equal(n, 2);

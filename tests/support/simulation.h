@@ -101,16 +101,17 @@ static inline void SimulationRepeat(Simulation *simulation, const char options[]
   ok(SimulationCreate(simulation));
 }
 
-/* One controller step with all its parts, see ContactGetParts(), and the only pair at its end */
+/* One controller step with all its parts, see ContactTraits, and the only pair at its end */
 static inline ContactPairState Step(Simulation *simulation)
 {
   ContactPairState pairs[16];
-  PetscInt         parts, n;
+  ContactTraits    traits;
+  PetscInt         n;
 
   ok(ContactGetNumPairs(simulation->contact, &n));
   assert_in_range(n, 1, 16);
-  ok(ContactGetParts(simulation->contact, &parts));
-  for (PetscInt part = 0; part < parts; part++) {
+  ok(ContactGetTraits(simulation->contact, &traits));
+  for (PetscInt part = 0; part < traits.parts; part++) {
     ok(ContactStep(simulation->contact));
     ok(ContactAccept(simulation->contact));
   }

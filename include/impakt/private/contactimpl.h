@@ -431,7 +431,7 @@ struct _p_Contact {
   ContactSurface *surfaces; /* of all pairs */
   PetscInt        n_obstacles;
   Obstacle       *obstacles;
-  PetscInt        parts; /* of a controller step, see ContactGetParts() */
+  PetscInt        parts; /* of a controller step, see ContactTraits */
   PetscReal       step;  /* one part of the controller step [s] */
   ContactOptions  options;
   ContactScale    scale;

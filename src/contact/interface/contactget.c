@@ -65,25 +65,20 @@ PetscErrorCode ContactGetPair(Contact contact, PetscInt pair, const char *name[]
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether the user has named a pair, not the program chosen it as one of all bodies with each other */
-PetscErrorCode ContactPairIsNamed(Contact contact, PetscInt pair, PetscBool *named)
+/* Of a pair, each or `NULL`: whether the user has named it, not the program chosen it as one of all bodies with each other; number of the
+   obstacle that it has for its second side, -1 where both sides are bodies; mean outward normal of its first body, 3 numbers, zeros beyond
+   the space dimension, and of pairs that come and go */
+PetscErrorCode ContactGetPairTraits(Contact contact, PetscInt pair, PetscBool *named, PetscInt *obstacle, PetscReal normal[])
 {
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(named, 3);
-  ContactCheckPair(contact, pair);
-  *named = (PetscBool)!ContactToldPair(contact, pair)->chosen;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+  const ContactPair *told;
 
-/* Mean outward normal of the first body of a pair: 3 numbers, zeros beyond the space dimension, and of pairs that come and go */
-PetscErrorCode ContactGetPairNormal(Contact contact, PetscInt pair, PetscReal normal[])
-{
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(normal, 3);
   ContactCheckPair(contact, pair);
-  for (PetscInt d = 0; d < 3; d++) normal[d] = ContactPairSign(ContactToldPair(contact, pair)) * ContactToldPair(contact, pair)->normal[d];
+  told = ContactToldPair(contact, pair);
+  if (named) *named = (PetscBool)!told->chosen;
+  if (obstacle) *obstacle = told->obstacle ? ContactPairPartner(contact, told) - contact->n_bodies : -1;
+  for (PetscInt d = 0; d < 3 && normal; d++) normal[d] = ContactPairSign(told) * told->normal[d];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -112,6 +107,8 @@ PetscErrorCode ContactGetTraits(Contact contact, ContactTraits *traits)
   *traits       = (ContactTraits){.friction         = ContactAnyPairHas(contact, CONTACT_LAW_FRICTION),
                                   .glue             = ContactAnyPairHas(contact, CONTACT_LAW_GLUE),
                                   .breaks           = ContactGlueBreaks(contact),
+                                  .parts            = contact->parts,
+                                  .cuts             = (PetscBool)!contact->attempt.moves_start,
                                   .separation       = options->separation,
                                   .balance          = options->balance,
                                   .energy_cap       = options->energy_cap,

@@ -71,38 +71,18 @@ PetscErrorCode ContactGetObstacles(Contact contact, PetscInt *n, const Obstacle 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Number of the obstacle that a pair has for its second side, -1 where both sides are bodies */
-PetscErrorCode ContactGetPairObstacle(Contact contact, PetscInt pair, PetscInt *i)
+/* The options by which a user moves a body at the start; `nodes`, or NULL: of a ball or a rod whose nodes lie outside its radius, that they
+   do, of other bodies nothing */
+PetscErrorCode ContactDescribeMoves(Contact contact, PetscInt body, char moves[CONTACT_MOVES], char nodes[CONTACT_MOVES])
 {
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(i, 3);
-  ContactCheckPair(contact, pair);
-  *i = ContactToldPair(contact, pair)->obstacle ? ContactPairPartner(contact, ContactToldPair(contact, pair)) - contact->n_bodies : -1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The options by which a user moves a body at the start */
-PetscErrorCode ContactDescribeMoves(Contact contact, PetscInt body, char text[CONTACT_MOVES])
-{
-  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *option;
+  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *option, *keeps;
 
   PetscFunctionBegin;
-  PetscCall(MeshGetPlaceOption(prefix, &option, NULL));
-  PetscCall(PetscSNPrintf(text, CONTACT_MOVES, "-%s%s, -%sinitial_displacement", prefix, option, prefix));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Of a ball or a rod whose nodes lie outside its radius, that they do; of other bodies nothing */
-PetscErrorCode ContactDescribeRound(Contact contact, PetscInt body, char text[CONTACT_MOVES])
-{
-  const char *prefix = ((PetscObject)contact->bodies[body])->prefix, *keeps;
-
-  PetscFunctionBegin;
-  text[0] = 0;
-  PetscCall(MeshGetPlaceOption(prefix, NULL, &keeps));
-  if (keeps)
-    PetscCall(PetscSNPrintf(text, CONTACT_MOVES,
+  PetscCall(MeshGetPlaceOption(prefix, &option, &keeps));
+  PetscCall(PetscSNPrintf(moves, CONTACT_MOVES, "-%s%s, -%sinitial_displacement", prefix, option, prefix));
+  if (nodes) nodes[0] = 0;
+  if (nodes && keeps)
+    PetscCall(PetscSNPrintf(nodes, CONTACT_MOVES,
                             "; nodes of '%s' lie outside its radius, for the mesh to have its volume: with -%s%s false they lie at it",
                             ((PetscObject)contact->bodies[body])->name, prefix, keeps));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -130,8 +110,7 @@ PetscErrorCode ContactRefuseInside(Contact contact, const ContactPair *pair, Pet
 
   PetscFunctionBegin;
   PetscCall(AdviseObstacle(pair, sizeof(advice), advice));
-  PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
-  PetscCall(ContactDescribeRound(contact, pair->body[0], nodes));
+  PetscCall(ContactDescribeMoves(contact, pair->body[0], moves, nodes));
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
           "-contact_pairs %s: the body is %g%s inside the obstacle at the start; move the body (%s) or the obstacle, or look whether it is "
           "on the wrong side: %s%s",

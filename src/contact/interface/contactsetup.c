@@ -46,16 +46,6 @@ static PetscErrorCode ShareControllerStep(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The number of parts of a controller step, at whose ends all bodies have a time in common: calls of ContactStep() and ContactAccept() */
-PetscErrorCode ContactGetParts(Contact contact, PetscInt *parts)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(parts, 2);
-  *parts = contact->parts;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Lets bodies choose whether their contact nodes are massless. Where some are not, no others of their set are either: their rule is that of
    impulses, by which massless nodes lose more than the kinetic energy with which those that have mass hit, and cost more. */
 static PetscErrorCode ChooseMass(Contact contact)

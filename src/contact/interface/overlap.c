@@ -113,10 +113,7 @@ static PetscErrorCode RefuseOverlap(Contact contact, const SurfaceDepth *overlap
   char            moves[2][CONTACT_MOVES], nodes[2][CONTACT_MOVES];
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscCall(ContactDescribeMoves(contact, of[k], moves[k]));
-    PetscCall(ContactDescribeRound(contact, of[k], nodes[k]));
-  }
+  for (PetscInt k = 0; k < 2; k++) PetscCall(ContactDescribeMoves(contact, of[k], moves[k], nodes[k]));
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
           "Bodies '%s' and '%s' overlap by %g%s at the start, at (%g, %g, %g); move one of them: %s, or %s%s%s",
           ((PetscObject)contact->bodies[of[0]])->name, ((PetscObject)contact->bodies[of[1]])->name, (double)overlap->depth,

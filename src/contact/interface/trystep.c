@@ -89,8 +89,8 @@ PetscErrorCode ContactTryStep(Contact contact, PetscBool may_cut, PetscReal most
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Advances all bodies from their saved states through one controller step, or one of the parts of it that ContactGetParts() tells of, under
-   contact; a failure is an error. ContactAccept() makes it final. Collective. */
+/* Advances all bodies from their saved states through one controller step, or one of the parts of it that ContactGetTraits() tells of,
+   under contact; a failure is an error. ContactAccept() makes it final. Collective. */
 PetscErrorCode ContactStep(Contact contact)
 {
   StepConvergedReason reason;
@@ -177,15 +177,5 @@ PetscErrorCode ContactSetStepLevel(Contact contact, PetscInt level)
   contact->step  = attempt->whole_step / PetscPowRealInt(2, level);
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetStepLevel(contact->bodies[b], level));
   if (contact->rows.n_all) PetscTryTypeMethod(contact, steplevel);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether steps can be made again in halves: not where the method moves their start (forward increments, contact-stabilised) */
-PetscErrorCode ContactCanCut(Contact contact, PetscBool *can)
-{
-  PetscFunctionBegin;
-  PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
-  PetscAssertPointer(can, 2);
-  *can = (PetscBool)!contact->attempt.moves_start;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

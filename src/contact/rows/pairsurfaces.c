@@ -58,7 +58,8 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
     PetscCall(SurfaceDestroy(&surfaces[side]));
   }
   if (pair->obstacle && !any[0]) PetscCall(ContactRefuseTurned(contact, pair));
-  for (PetscInt side = 0; side < 2 && !(any[0] && any[1]); side++) PetscCall(ContactDescribeMoves(contact, pair->body[side], moves[side]));
+  for (PetscInt side = 0; side < 2 && !(any[0] && any[1]); side++)
+    PetscCall(ContactDescribeMoves(contact, pair->body[side], moves[side], NULL));
   PetscCheck(any[0] && any[1], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs %s: the surfaces of the two bodies do not face each other anywhere at the start; name others, move one of the "
              "bodies (%s, or %s), or set -contact_facing false where they turn to each other later",

@@ -118,7 +118,7 @@ static PetscErrorCode CheckDistances(Contact contact, const ContactPair *pair, c
 
   PetscFunctionBegin;
   if (state == TIE_APART) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
+  PetscCall(ContactDescribeMoves(contact, pair->body[0], moves, NULL));
   SETERRQ(PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
           "-contact_pairs %s: at the start %" PetscInt_FMT " of %" PetscInt_FMT " nodes of body '%s' opposite to the partner %s, and "
           "-contact_law %s ties surfaces that lie on each other: the worst, at (%g, %g, %g) before any displacement, %s by %g%s, which "
@@ -149,7 +149,7 @@ static PetscErrorCode CheckNothingTied(Contact contact, const PetscInt tied[], c
     const PetscReal   *x       = summary->worst.x;
     char               moves[CONTACT_MOVES];
 
-    PetscCall(ContactDescribeMoves(contact, pair->body[0], moves));
+    PetscCall(ContactDescribeMoves(contact, pair->body[0], moves, NULL));
     PetscCheck(summary->n[TIE_APART], PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
                "-contact_pairs %s: -contact_law %s ties nothing, since at the start no node of body '%s' lies opposite to the partner; "
                "place the bodies so that their surfaces lie on each other, or leave the pair out of -contact_pairs",

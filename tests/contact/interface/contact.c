@@ -92,7 +92,7 @@ static void two_bodies_are_a_pair(void **state)
     near(positions[3 * b], (b ? 1 : -1) * COLLISION_GAP / 2, 1e-15);
     near(velocities[3 * b], (b ? -1 : 1) * COLLISION_SPEED, 0);
   }
-  ok(ContactGetPairNormal(simulation->contact, 0, normal));
+  ok(ContactGetPairTraits(simulation->contact, 0, NULL, NULL, normal));
   near(normal[0], 1, 0);
   near(normal[1], 0, 0);
   ok(ContactGetType(simulation->contact, &type));

@@ -95,17 +95,17 @@ static void MakeMixed(Simulation *simulation, PetscInt step, PetscBool fails)
 /* Parts of a controller step, at whose ends all bodies have a time in common, are cut each for itself */
 static void Run(Simulation *simulation, Way way, Record *record)
 {
-  PetscInt parts;
+  ContactTraits traits;
 
-  ok(ContactGetParts(simulation->contact, &parts));
+  ok(ContactGetTraits(simulation->contact, &traits));
   for (PetscInt step = 0; step < STEPS; step++) {
-    for (PetscInt part = 0; part < parts && way == CUT; part++) {
+    for (PetscInt part = 0; part < traits.parts && way == CUT; part++) {
       Fail(simulation, 0);
       Make(simulation, 1);
       Make(simulation, 1);
     }
-    for (PetscInt part = 0; part < parts && (way == MIXED || way == MIXED_FAILS); part++)
-      MakeMixed(simulation, parts * step + part, (PetscBool)(way == MIXED_FAILS));
+    for (PetscInt part = 0; part < traits.parts && (way == MIXED || way == MIXED_FAILS); part++)
+      MakeMixed(simulation, traits.parts * step + part, (PetscBool)(way == MIXED_FAILS));
     for (PetscInt half = 0; half < 2 && way == HALVES; half++) Step(simulation);
     Note(simulation, step, record);
   }

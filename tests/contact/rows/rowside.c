@@ -39,7 +39,7 @@ static void Run(Simulation *simulation, const char options[], const char name[],
   assert_ptr_equal(first, simulation->bodies[swapped]);
   assert_ptr_equal(second, simulation->bodies[1 - swapped]);
   ok(ContactGetPairRowSide(simulation->contact, 0, &answer->side));
-  ok(ContactGetPairNormal(simulation->contact, 0, answer->normal));
+  ok(ContactGetPairTraits(simulation->contact, 0, NULL, NULL, answer->normal));
   for (PetscInt step = 0; step < STEPS; step++) answer->pair = Step(simulation);
   assert_true(answer->pair.active > 0 && answer->pair.force > 0);
   ok(BodyGetMeasures(simulation->bodies[1], &measures));
