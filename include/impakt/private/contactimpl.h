@@ -536,7 +536,6 @@ PETSC_EXTERN PetscErrorCode ContactIntegrateSome(Contact, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode ContactIntegrateBodies(Contact);
 PETSC_EXTERN PetscErrorCode ContactAgree(Contact);
 PETSC_EXTERN PetscErrorCode ContactCompleteBodies(Contact);
-PETSC_EXTERN PetscErrorCode ContactRejectResidual(Vec);
 PETSC_EXTERN PetscErrorCode ContactIntegrateFree(Contact, PetscBool *);
 PETSC_EXTERN PetscErrorCode ContactIntegrateForces(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);

@@ -1,6 +1,5 @@
 /* The active set and what is shared by all methods: conditions, gaps, the free step. */
 #include <contact/parts.h>
-#include <math.h>
 
 static void GetConditions(Contact contact, ContactConditions conditions, PetscInt b, BodyCondition rows[])
 {
@@ -203,20 +202,6 @@ PetscErrorCode ContactCompleteBodies(Contact contact)
   }
   PetscCall(EndExchange(contact, NULL));
   PetscCall(ContactAgree(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The residual of an outer iteration where the step has failed: not a number, so that the iteration ends, whatever its type */
-PetscErrorCode ContactRejectResidual(Vec F)
-{
-  PetscScalar *f;
-  PetscInt     n;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetLocalSize(F, &n));
-  PetscCall(VecGetArrayWrite(F, &f));
-  for (PetscInt i = 0; i < n; i++) f[i] = NAN;
-  PetscCall(VecRestoreArrayWrite(F, &f));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
