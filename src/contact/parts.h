@@ -249,7 +249,7 @@ PETSC_INTERN PetscBool      ContactHasTouched(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactDestroyResultants(Contact);
 
 PETSC_INTERN PetscErrorCode ContactSetUpStabilization(Contact);
-PETSC_INTERN PetscErrorCode ContactRefuseSlopes(Contact, const char[], SNESLineSearch);
+PETSC_INTERN PetscErrorCode ContactSetOuterFromOptions(Contact, SNES, SNESType);
 PETSC_INTERN PetscErrorCode ContactRefuseUnstable(Contact, PetscBool, const char[]);
 PETSC_INTERN PetscBool      ContactBodyHasMass(Body);
 PETSC_INTERN PetscBool      ContactNeedsImpulse(Contact, PetscInt);

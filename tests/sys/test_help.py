@@ -11,7 +11,7 @@ ENTRY = re.compile(r"^  -(\S+) \S+\n      \S.*$", re.MULTILINE)
 
 # Options that Impakt looks at, and that are PETSc's own: their table is PETSc's
 OF_PETSC = {
-    "options_file_yaml", "prefix_push", "prefix_pop", "pc_gamg_use_sa_esteig", "snes_type", "snes_anderson_m", "snes_anderson_beta",
+    "options_file_yaml", "prefix_push", "prefix_pop", "pc_gamg_use_sa_esteig", "snes_type", "schwarz_snes_anderson_m", "schwarz_snes_anderson_beta",
     "snes_linesearch_damping", "snes_linesearch_type", "snes_vi_zero_tolerance", "snes_lag_jacobian_persists", "snes_lag_preconditioner_persists",
     "ts_view", "dm_view", "dm_distribute", "dm_distribute_overlap", "dm_plex_box_bd", "dm_plex_cell",
     "dm_plex_interpolate", "dm_plex_reorder", "dm_plex_separate_marker", "petscpartitioner_type", "help", "version", "h", "log_exclude",

@@ -1,5 +1,6 @@
 /* What keeps the energy of a run: steps made again, contact at all shared times, refusals of what is known to be unstable. */
 #include <contact/parts.h>
+#include <sys/petsccompat.h>
 
 /* Ends with an error where a choice is known to gain energy, unless the user wants it all the same; what: the choice, and what to do */
 PetscErrorCode ContactRefuseUnstable(Contact contact, PetscBool unstable, const char what[])
@@ -47,18 +48,33 @@ PetscBool ContactHasMass(Contact contact, PetscBool all_sides)
   return (PetscBool)(with_mass > (all_sides && !contact->n_obstacles ? 1 : 0));
 }
 
-/* Line searches that want the slope of the residual's norm multiply with the Jacobian, of which there is only what divides by it */
-PetscErrorCode ContactRefuseSlopes(Contact contact, const char prefix[], SNESLineSearch line_search)
+/* Type and line search of an outer iteration, as options have them: full steps, and this type by default. There is no Jacobian, so neither
+   Newton's method nor line searches that want the slope of the residual's norm, which multiply with it. */
+PetscErrorCode ContactSetOuterFromOptions(Contact contact, SNES snes, SNESType by_default)
 {
-  SNESLineSearchType type;
-  PetscBool          slope;
+  MPI_Comm           comm = PetscObjectComm((PetscObject)contact);
+  char               type[64];
+  SNESLineSearch     line_search;
+  SNESLineSearchType search;
+  PetscBool          known, slope;
 
   PetscFunctionBegin;
-  PetscCall(SNESLineSearchGetType(line_search, &type));
-  PetscCall(PetscStrcmpAny(type, &slope, SNESLINESEARCHBT, SNESLINESEARCHNLEQERR, ""));
-  PetscCheck(!slope, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-%ssnes_linesearch_type %s needs products with the Jacobian, which this iteration does not have; choose none, secant or cp",
-             prefix, type);
+  PetscCall(PetscStrncpy(type, by_default, sizeof(type)));
+  PetscCall(PetscOptionsGetString(NULL, "schwarz_", "-snes_type", type, sizeof(type), NULL));
+  PetscCall(PetscStrcmpAny(type, &known, SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN, ""));
+  PetscCheck(known, comm, PETSC_ERR_USER_INPUT,
+             "-schwarz_snes_type %s: the outer iteration has no Jacobian; choose anderson, nrichardson, ngmres or qn", type);
+  PetscCall(SNESSetOptionsPrefix(snes, "schwarz_"));
+  PetscCall(SNESSetType(snes, type));
+  PetscCall(SNESGetLineSearch(snes, &line_search)); /* the type's own, which takes other steps */
+  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
+  PetscCall(SNESSetFromOptions(snes));
+  PetscCall(SNESLineSearchGetType(line_search, &search));
+  PetscCall(PetscStrcmpAny(search, &slope, SNESLINESEARCHBT, SNESLINESEARCHNLEQERR, ""));
+  PetscCheck(!slope, comm, PETSC_ERR_USER_INPUT,
+             "-schwarz_snes_linesearch_type %s needs products with the Jacobian, which the outer iteration does not have; choose none, "
+             "secant or cp",
+             search);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -202,29 +202,12 @@ static PetscErrorCode TestConvergence(SNES snes, PetscInt it, PetscReal xnorm, P
 
 PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *stepper)
 {
-  SNESLineSearch line_search;
-  SNESType       type;
-  PetscBool      known;
-  MPI_Comm       comm = PetscObjectComm((PetscObject)contact);
-
   PetscFunctionBegin;
-  PetscCall(SNESCreate(comm, &stepper->outer));
-  PetscCall(SNESSetOptionsPrefix(stepper->outer, "schwarz_"));
+  PetscCall(SNESCreate(PetscObjectComm((PetscObject)contact), &stepper->outer));
   PetscCall(SNESSetFunction(stepper->outer, stepper->f, ComputeChange, contact));
-  PetscCall(SNESSetType(stepper->outer, SNESNRICHARDSON));
-  PetscCall(SNESGetLineSearch(stepper->outer, &line_search));
-  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESSetTolerances(stepper->outer, stepper->atol, stepper->rtol, 0, MOST_PASSES, PETSC_INT_MAX));
   PetscCall(SNESSetErrorIfNotConverged(stepper->outer, PETSC_FALSE));
-  PetscCall(SNESSetFromOptions(stepper->outer));
-  PetscCall(SNESGetType(stepper->outer, &type));
-  PetscCall(PetscObjectTypeCompareAny((PetscObject)stepper->outer, &known, SNESNRICHARDSON, SNESANDERSON, SNESNGMRES, SNESQN, ""));
-  PetscCheck(known, comm, PETSC_ERR_USER_INPUT,
-             "-schwarz_snes_type %s: the outer iteration of -contact_type schwarz has no Jacobian, since the law of rows is solved inside "
-             "it; choose nrichardson, which is the default, anderson, ngmres or qn",
-             type);
-  PetscCall(SNESGetLineSearch(stepper->outer, &line_search));
-  PetscCall(ContactRefuseSlopes(contact, "schwarz_", line_search));
+  PetscCall(ContactSetOuterFromOptions(contact, stepper->outer, SNESNRICHARDSON));
   PetscCall(SNESSetConvergenceTest(stepper->outer, TestConvergence, contact, NULL));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -22,7 +22,7 @@ REFUSED = {
     "balance-on-mass": (f"{MASS} -contact_balance true", ["-contact_balance", "massless contact nodes"]),
     "outer-type": ("-schwarz_snes_type newtontr", ["-schwarz_snes_type newtontr", "nrichardson", "anderson", "ngmres", "qn"]),
     "newton": ("-schwarz_snes_type newtonls", ["-schwarz_snes_type newtonls", "no Jacobian", "nrichardson"]),
-    "newton-alternation": ("-contact_type alternation -schwarz_snes_type newtonls", ["-schwarz_snes_type 'newtonls'", "anderson"]),
+    "newton-alternation": ("-contact_type alternation -schwarz_snes_type newtonls", ["-schwarz_snes_type newtonls", "no Jacobian", "anderson"]),
     "line-search": ("-schwarz_snes_linesearch_type nleqerr", ["-schwarz_snes_linesearch_type nleqerr", "secant"]),
     # not read by this method
     "traction": ("-schwarz_traction internal", ["-schwarz_traction", "needs -contact_type alternation"]),

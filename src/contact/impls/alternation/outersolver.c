@@ -1,6 +1,5 @@
 /* The SNES of the sweeps: a fixed-point iteration, accelerated or relaxed. */
 #include "alternationimpl.h"
-#include <sys/petsccompat.h>
 
 /* Most iterations: plain alternation of impedance conditions takes up to 41 in the paper's impacts; and evaluations, more than needed. */
 #define MAX_ITERATIONS  50
@@ -8,47 +7,21 @@
 /* Relative tolerance on positions: round-off of their sums, so that it is the absolute one that counts but far from the origin */
 #define POSITION_RTOL 1e-15
 
-/* The type of the iteration, as the options have it. Sweeps have no Jacobian: Anderson's acceleration serves. */
-static PetscErrorCode ReadType(Contact contact, char type[], size_t size)
-{
-  const char *known[] = {SNESANDERSON, SNESNRICHARDSON, SNESNGMRES, SNESQN};
-  PetscBool   same    = PETSC_FALSE;
-
-  PetscFunctionBegin;
-  PetscCall(PetscStrncpy(type, SNESANDERSON, size));
-  PetscCall(PetscOptionsGetString(NULL, "schwarz_", "-snes_type", type, size, NULL));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(known) && !same; i++) PetscCall(PetscStrcmp(type, known[i], &same));
-  PetscCheck(same, PetscObjectComm((PetscObject)contact), PETSC_ERR_ARG_UNKNOWN_TYPE,
-             "Unknown -schwarz_snes_type '%s'; known: anderson, nrichardson, ngmres, qn", type);
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Type, tolerances and relaxation, as the options have them. Anderson's mixing 1/2 and eight vectors suit an iteration with a gain of about
-   -1, which is that of the Dirichlet-Neumann alternation between equal bodies. PETSc has no setter: they are options for a while. */
+/* Type and relaxation, as the options have them. Anderson's mixing 1/2 and eight vectors suit an iteration with a gain of about -1, which
+   is that of the Dirichlet-Neumann alternation between equal bodies. PETSc has no setter: they are options for a while. */
 static PetscErrorCode SetFromOptions(Contact contact, SNES snes)
 {
-  static const char *const defaults[][2] = {{"snes_anderson_beta", "0.5"}, {"snes_anderson_m", "8"}};
-  char                     type[64], names[PETSC_STATIC_ARRAY_LENGTH(defaults)][64];
-  PetscBool                anderson, given[PETSC_STATIC_ARRAY_LENGTH(defaults)];
-  SNESLineSearch           line_search;
+  static const char *const defaults[][2] = {{"-schwarz_snes_anderson_beta", "0.5"}, {"-schwarz_snes_anderson_m", "8"}};
+  PetscBool                given[PETSC_STATIC_ARRAY_LENGTH(defaults)];
 
   PetscFunctionBegin;
-  PetscCall(ReadType(contact, type, sizeof(type)));
-  PetscCall(PetscStrcmp(type, SNESANDERSON, &anderson));
-  PetscCall(SNESSetType(snes, type));
-  /* after the type, which brings a line search of its own */
-  PetscCall(SNESGetLineSearch(snes, &line_search));
-  PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
-  PetscCall(SNESSetTolerances(snes, CONTACT_POSITION_TOLERANCE * contact->scale.length, POSITION_RTOL, 0, MAX_ITERATIONS, MAX_EVALUATIONS));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(defaults) && anderson; i++) {
-    PetscCall(PetscSNPrintf(names[i], sizeof(names[i]), "-schwarz_%s", defaults[i][0]));
-    PetscCall(PetscOptionsHasName(NULL, NULL, names[i], &given[i]));
-    if (!given[i]) PetscCall(PetscOptionsSetValue(NULL, names[i], defaults[i][1]));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(defaults); i++) {
+    PetscCall(PetscOptionsHasName(NULL, NULL, defaults[i][0], &given[i]));
+    if (!given[i]) PetscCall(PetscOptionsSetValue(NULL, defaults[i][0], defaults[i][1]));
   }
-  PetscCall(SNESSetFromOptions(snes));
-  PetscCall(ContactRefuseSlopes(contact, "schwarz_", line_search));
-  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(defaults) && anderson; i++)
-    if (!given[i]) PetscCall(PetscOptionsClearValue(NULL, names[i]));
+  PetscCall(ContactSetOuterFromOptions(contact, snes, SNESANDERSON));
+  for (size_t i = 0; i < PETSC_STATIC_ARRAY_LENGTH(defaults); i++)
+    if (!given[i]) PetscCall(PetscOptionsClearValue(NULL, defaults[i][0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -103,8 +76,9 @@ PetscErrorCode AlternationSetUpOuterSolver(Contact contact, PetscInt unknowns)
   PetscCall(VecSetType(alternation->x, VECSTANDARD));
   PetscCall(VecDuplicate(alternation->x, &alternation->residual));
   PetscCall(SNESCreate(comm, &alternation->snes));
-  PetscCall(SNESSetOptionsPrefix(alternation->snes, "schwarz_"));
   PetscCall(SNESSetFunction(alternation->snes, alternation->residual, AlternationSweep, contact));
+  PetscCall(SNESSetTolerances(alternation->snes, CONTACT_POSITION_TOLERANCE * contact->scale.length, POSITION_RTOL, 0, MAX_ITERATIONS,
+                              MAX_EVALUATIONS));
   PetscCall(SetFromOptions(contact, alternation->snes));
   PetscCall(SNESGetTolerances(alternation->snes, &alternation->atol, &alternation->rtol, NULL, NULL, NULL));
   PetscCall(SNESSetConvergenceTest(alternation->snes, AlternationTestConvergence, contact, NULL));
