@@ -60,27 +60,27 @@ static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Adds a pair that is given with a tilde: the sides are the user's, which of them is the first is not */
-static PetscErrorCode AddTilde(Contact contact, const char pair[], const char left[], const char right[])
+/* Turns a pair that is given with a tilde, whose sides are the user's, to have the side first that is better */
+static PetscErrorCode OrderSides(Contact contact, ContactPair *pair, const char left[], const char right[])
 {
   const ContactPreference *preferences;
-  PetscInt                 body[2];
-  PetscBool                turn;
-  Obstacle                 obstacle = NULL;
-  char                    *surface, ordered[512];
-  const char              *why = "obstacle second";
+  const PetscInt           body[2]    = {pair->body[0], pair->body[1]};
+  char *const              surface[2] = {pair->surface[0], pair->surface[1]};
+  PetscBool                turn       = PETSC_FALSE;
+  char                     ordered[512];
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) PetscCall(BodySetUpDiscretization(contact->bodies[b]));
-  for (PetscInt side = 0; side < 2; side++) {
-    PetscCall(ParseSide(contact, pair, side ? right : left, &body[side], &surface, side ? &obstacle : NULL));
-    PetscCall(PetscFree(surface));
-  }
   PetscCall(ContactGetPreferences(contact, &preferences));
-  turn = obstacle ? PETSC_FALSE : ContactChooseSides(&preferences[body[0]], &preferences[body[1]], &why);
+  pair->why = "obstacle second";
+  if (!pair->obstacle) turn = ContactChooseSides(&preferences[body[0]], &preferences[body[1]], &pair->why);
+  for (PetscInt side = 0; side < 2; side++) {
+    pair->body[side]    = body[turn ? 1 - side : side];
+    pair->surface[side] = surface[turn ? 1 - side : side];
+  }
   PetscCall(PetscSNPrintf(ordered, sizeof(ordered), "%s:%s", turn ? right : left, turn ? left : right));
-  PetscCall(ContactAddPair(contact, ordered));
-  contact->pairs[contact->n_pairs - 1].why = why;
+  PetscCall(PetscFree(pair->name));
+  PetscCall(PetscStrallocpy(ordered, &pair->name));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -110,36 +110,34 @@ controller step is known; then the one with the finer mesh; then the one that is
 PetscErrorCode ContactAddPair(Contact contact, const char pair[])
 {
   ContactPair *p;
-  char         text[512], *colon, *tilde;
+  char         text[512], *between;
+  PetscBool    tilde;
 
   PetscFunctionBegin;
   PetscValidHeaderSpecific(contact, CONTACT_CLASSID, 1);
   PetscAssertPointer(pair, 2);
   ContactCheckNotSetUp(contact);
   PetscCall(PetscStrncpy(text, pair, sizeof(text)));
-  PetscCall(PetscStrchr(text, ':', &colon));
-  PetscCall(PetscStrchr(text, '~', &tilde));
-  if (tilde && !colon) {
-    *tilde = 0;
-    PetscCall(AddTilde(contact, pair, text, tilde + 1));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCheck(colon, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCall(PetscStrchr(text, ':', &between));
+  tilde = (PetscBool)!between;
+  if (tilde) PetscCall(PetscStrchr(text, '~', &between));
+  PetscCheck(between, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs %s: a pair is two bodies with a colon between them, Dirichlet side first, as in left:right, or with a tilde, "
              "which leaves the "
              "order to the program",
              pair);
-  *colon = 0;
+  *between = 0;
   PetscCall(AppendPair(contact, pair, &p));
   PetscCall(ParseSide(contact, pair, text, &p->body[0], &p->surface[0], NULL));
-  PetscCall(ParseSide(contact, pair, colon + 1, &p->body[1], &p->surface[1], &p->obstacle));
+  PetscCall(ParseSide(contact, pair, between + 1, &p->body[1], &p->surface[1], &p->obstacle));
   PetscCheck(p->body[0] != p->body[1] || (p->surface[0] && p->surface[1]), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
              "-contact_pairs %s: name the two surfaces by which the body touches itself, as in clip.upper:clip.lower", pair);
+  if (tilde) PetscCall(OrderSides(contact, p, text, between + 1));
   for (PetscInt other = 0; other < contact->n_pairs - 1; other++) {
     PetscBool same;
 
-    PetscCall(PetscStrcmp(pair, contact->pairs[other].name, &same));
-    PetscCheck(!same, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs: pair %s is given twice", pair);
+    PetscCall(PetscStrcmp(p->name, contact->pairs[other].name, &same));
+    PetscCheck(!same, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "-contact_pairs: pair %s is given twice", p->name);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
