@@ -33,12 +33,7 @@ static PetscErrorCode ShareControllerStep(Contact contact)
 
     PetscCall(BodySetUpSteps(contact->bodies[b]));
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
-    while (substeps) { /* the greatest common divisor */
-      const PetscInt rest = common % substeps;
-
-      common   = substeps;
-      substeps = rest;
-    }
+    common = PetscGCD(common, substeps);
   }
   if (!contact->options.shared_times || (!contact->n_pairs && !contact->neighbours.come_and_go)) PetscFunctionReturn(PETSC_SUCCESS);
   contact->parts = common;

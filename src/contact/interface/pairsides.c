@@ -49,27 +49,25 @@ PetscErrorCode ContactGetPreferences(Contact contact, const ContactPreference *a
 {
   ContactPreference *preferences;
   PetscReal         *size, level = PETSC_MAX_REAL;
+  PetscInt          *ascending;
 
   PetscFunctionBegin;
   if (!contact->neighbours.preferences) PetscCall(PetscMalloc1(contact->n_bodies, &contact->neighbours.preferences));
   *all = preferences = contact->neighbours.preferences;
-  PetscCall(PetscMalloc1(contact->n_bodies, &size));
+  PetscCall(PetscMalloc2(contact->n_bodies, &size, contact->n_bodies, &ascending));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
     PetscCall(BodyIsExplicit(contact->bodies[b], &preferences[b].is_explicit));
     PetscCall(BodyIsRigid(contact->bodies[b], &preferences[b].is_rigid));
     PetscCall(BodyGetScale(contact->bodies[b], BODY_ELEMENT_SIZE, &size[b]));
-    preferences[b].size = -1;
+    ascending[b] = b;
   }
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscInt largest = -1;
-
-    for (PetscInt c = 0; c < contact->n_bodies; c++)
-      if (preferences[c].size < 0 && (largest < 0 || size[c] > size[largest])) largest = c;
-    if (size[largest] < ALIKE * level) level = size[largest];
-    preferences[largest].size = level;
+  PetscCall(PetscSortRealWithPermutation(contact->n_bodies, size, ascending));
+  for (PetscInt k = contact->n_bodies - 1; k >= 0; k--) {
+    if (size[ascending[k]] < ALIKE * level) level = size[ascending[k]];
+    preferences[ascending[k]].size = level;
   }
   PetscCall(EstimateSubsteps(contact, size, preferences));
-  PetscCall(PetscFree(size));
+  PetscCall(PetscFree2(size, ascending));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

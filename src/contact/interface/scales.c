@@ -7,15 +7,13 @@
 /* Diagonal of the box of a body's nodes [m]: the length of a bar, however it lies in space */
 static PetscErrorCode GetExtent(Body body, PetscReal *extent)
 {
-  PetscReal lower[3], upper[3], square = 0;
-  PetscInt  dim;
+  PetscReal lower[3] = {0}, upper[3] = {0}, square = 0;
   DM        dm;
 
   PetscFunctionBegin;
   PetscCall(BodyGetDM(body, &dm));
-  PetscCall(DMGetCoordinateDim(dm, &dim));
   PetscCall(DMGetBoundingBox(dm, lower, upper));
-  for (PetscInt d = 0; d < dim; d++) square += PetscSqr(upper[d] - lower[d]);
+  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(upper[d] - lower[d]);
   *extent = PetscSqrtReal(square);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
