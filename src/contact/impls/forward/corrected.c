@@ -13,8 +13,8 @@
 /* What changes states beside the forces of the step */
 typedef struct {
   Complementarity impulses;
-  PetscBool       close_rate, stabilized;
-  ContactRule     rule; /* of the contact-stabilised method: that of the step, with forces as the integrators take them */
+  PetscBool       stabilized; /* else velocities are corrected */
+  ContactRule     rule;       /* of the contact-stabilised method: that of the step, with forces as the integrators take them */
 } Corrections;
 
 /* Contact-stabilised, by the trapezoidal rule: with accelerations without contact forces at the start of a step and this many times the
@@ -47,7 +47,7 @@ static PetscErrorCode Step(Contact contact)
   Corrections *corrections = CorrectionsOf(contact);
 
   PetscFunctionBegin;
-  if (corrections->stabilized) PetscCall(LagrangeProjectPrediction(contact, contact->step, &corrections->impulses));
+  if (corrections->stabilized) PetscCall(LagrangeProjectPrediction(contact, &corrections->impulses));
   if (!ContactFailed(contact)) PetscCall(ContactStepperStep(contact));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -61,8 +61,10 @@ static PetscErrorCode Accept(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(ContactStepperAccept(contact));
-  if (corrections->close_rate) PetscCall(LagrangeCloseRate(contact, PETSC_FALSE, &corrections->impulses));
-  if (!corrections->stabilized) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!corrections->stabilized) {
+    PetscCall(LagrangeCloseRate(contact, PETSC_FALSE, &corrections->impulses));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
   PetscCall(ContactAny(contact, PETSC_FALSE, &in_contact));
   if (!in_contact) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) corrections->impulses.forces[i] = -TIMES * contact->end.force[i];
@@ -136,7 +138,6 @@ static PetscErrorCode SetUpCorrected(Contact contact, PetscBool stabilized)
   PetscFunctionBegin;
   if (stabilized) PetscCall(CheckStabilized(contact));
   PetscCall(PetscNew(&corrections));
-  corrections->close_rate = (PetscBool)!stabilized;
   corrections->stabilized = stabilized;
   if (stabilized) {
     corrections->rule            = ContactRuleLinear;

@@ -24,7 +24,7 @@ PETSC_INTERN PetscErrorCode LagrangeSetUpForward(Contact);
 PETSC_INTERN PetscErrorCode LagrangeSetUpImplicit(Contact);
 PETSC_INTERN PetscErrorCode LagrangeSetUpImpulses(Contact, const char[], Complementarity *);
 PETSC_INTERN PetscErrorCode LagrangeCloseRate(Contact, PetscBool, Complementarity *);
-PETSC_INTERN PetscErrorCode LagrangeProjectPrediction(Contact, PetscReal, Complementarity *);
+PETSC_INTERN PetscErrorCode LagrangeProjectPrediction(Contact, Complementarity *);
 PETSC_INTERN PetscErrorCode PenaltyReadParameter(Contact);
 PETSC_INTERN PetscErrorCode PenaltySetUpSprings(Contact);
 PETSC_INTERN PetscErrorCode PenaltyViewParameter(Contact, PetscViewer);

@@ -42,7 +42,7 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
 
 /* Where positions that go on at constant velocity would penetrate after the step, moves the start of the step by as much as puts
    them outside: their projection in the norm of the mass onto what is admissible */
-PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Complementarity *impulses)
+PetscErrorCode LagrangeProjectPrediction(Contact contact, Complementarity *impulses)
 {
   const PetscReal parts[] = {1, 0, 0};
   int             any     = 0;
@@ -50,7 +50,7 @@ PetscErrorCode LagrangeProjectPrediction(Contact contact, PetscReal step, Comple
   PetscFunctionBegin;
   PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, impulses->gaps));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
-    impulses->gaps[i] = contact->start.gap[i] + step * impulses->gaps[i];
+    impulses->gaps[i] = contact->start.gap[i] + contact->step * impulses->gaps[i];
     any |= impulses->gaps[i] < 0;
   }
   PetscCall(ContactOr(contact, &any));

@@ -52,30 +52,22 @@ static PetscErrorCode ContactSetFromOptions_AugmentedLagrangian(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode ContactSetUp_Penalty(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(StepperCheckFriction(contact));
-  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP || PenaltyOf(contact)->damping > 0,
-             PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance "
-             "of a bar, sqrt(E rho) times its area, is its scale",
-             ContactConstraints[contact->options.constraint]);
-  PetscCall(ContactStepperSetUp(contact));
-  PetscCall(PenaltySetUpSprings(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode ContactSetUp_AugmentedLagrangian(Contact contact)
+static PetscErrorCode SetUp(Contact contact)
 {
   StepperPenalty *penalty = PenaltyOf(contact);
+  const PetscBool rates   = (PetscBool)(contact->options.constraint != CONTACT_CONSTRAINT_GAP);
+  MPI_Comm        comm    = PetscObjectComm((PetscObject)contact);
 
   PetscFunctionBegin;
-  PetscCheck(contact->options.constraint == CONTACT_CONSTRAINT_GAP, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
+  PetscCheck(!rates || !penalty->rounds, comm, PETSC_ERR_USER_INPUT,
              "-contact_constraint %s: -contact_type augmented_lagrangian closes the gap only; choose -contact_type lagrange or penalty",
              ContactConstraints[contact->options.constraint]);
   PetscCall(StepperCheckFriction(contact));
-  PetscCall(StepperCheckBodies(contact));
+  PetscCheck(!rates || penalty->damping > 0, comm, PETSC_ERR_USER_INPUT,
+             "-contact_constraint %s with -contact_type penalty needs -contact_penalty_damping, in N s/m in one dimension; the impedance "
+             "of a bar, sqrt(E rho) times its area, is its scale",
+             ContactConstraints[contact->options.constraint]);
+  if (penalty->rounds) PetscCall(StepperCheckBodies(contact));
   if (penalty->tolerance == (PetscReal)PETSC_DEFAULT) penalty->tolerance = CONTACT_AUGMENTATION_TOLERANCE * contact->scale.length;
   PetscCall(ContactStepperSetUp(contact));
   PetscCall(PenaltySetUpSprings(contact));
@@ -114,6 +106,7 @@ static PetscErrorCode Create(Contact contact)
   PetscCall(ContactCreate_Schwarz(contact));
   StepperClosesEnds(contact);
   PenaltyOf(contact)->any   = PETSC_TRUE;
+  contact->ops->setup       = SetUp;
   contact->ops->rowschanged = RowsChanged;
   contact->ops->view        = View;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -144,7 +137,6 @@ PetscErrorCode ContactCreate_Penalty(Contact contact)
   PetscFunctionBegin;
   PetscCall(Create(contact));
   contact->ops->setfromoptions = ContactSetFromOptions_Penalty;
-  contact->ops->setup          = ContactSetUp_Penalty;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -175,6 +167,5 @@ PetscErrorCode ContactCreate_AugmentedLagrangian(Contact contact)
   PenaltyOf(contact)->tolerance = PETSC_DEFAULT;
   PenaltyOf(contact)->rounds    = AUGMENTATION_MAX_IT;
   contact->ops->setfromoptions  = ContactSetFromOptions_AugmentedLagrangian;
-  contact->ops->setup           = ContactSetUp_AugmentedLagrangian;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
