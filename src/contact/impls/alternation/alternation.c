@@ -15,7 +15,8 @@ static const char *const Waveforms[]     = {"linear", "constant", "SchwarzWavefo
 static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
 {
   Alternation *alternation = (Alternation *)contact->data;
-  PetscBool    set = PETSC_FALSE, set_impedance = PETSC_FALSE;
+  const char  *parameter   = "-schwarz_robin_parameter";
+  PetscBool    set         = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscObjectOptionsBegin((PetscObject)contact);
@@ -29,12 +30,10 @@ static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
                                "ContactSetFromOptions", Waveforms, (PetscEnum)alternation->waveform, (PetscEnum *)&alternation->waveform,
                                NULL));
   }
-  if (alternation->transmission == SCHWARZ_TRANSMISSION_ROBIN)
-    PetscCall(PetscOptionsReal("-schwarz_robin_parameter", "Stiffness of Robin conditions [N/m for each unit of area]",
-                               "ContactSetFromOptions", alternation->robin_parameter, &alternation->robin_parameter, &set));
-  if (alternation->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
-    PetscCall(PetscOptionsReal("-schwarz_impedance_parameter", "Impedance of impedance conditions [N s/m for each unit of area]",
-                               "ContactSetFromOptions", alternation->impedance, &alternation->impedance, &set_impedance));
+  if (alternation->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE) parameter = "-schwarz_impedance_parameter";
+  if (alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN)
+    PetscCall(PetscOptionsReal(parameter, "Stiffness [N/m] or impedance [N s/m] for each unit of area", "ContactSetFromOptions",
+                               alternation->parameter, &alternation->parameter, &set));
   PetscCall(PetscOptionsEnum("-schwarz_predictor", "Where the first sweep starts from", "ContactSetFromOptions", Predictors,
                              (PetscEnum)alternation->predictor, (PetscEnum *)&alternation->predictor, NULL));
   PetscCall(PetscOptionsBool("-contact_swap_sides", "Sides change with every controller step", "ContactSetFromOptions", alternation->swap,
@@ -43,10 +42,8 @@ static PetscErrorCode ContactSetFromOptions_Alternation(Contact contact)
                              (PetscEnum)alternation->relaxation, (PetscEnum *)&alternation->relaxation, NULL));
   PetscCall(ContactReadUnconverged(contact));
   PetscOptionsEnd();
-  PetscCheck(!set || alternation->robin_parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-schwarz_robin_parameter %g must be positive", (double)alternation->robin_parameter);
-  PetscCheck(!set_impedance || alternation->impedance > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-schwarz_impedance_parameter %g must be positive", (double)alternation->impedance);
+  PetscCheck(!set || alternation->parameter > 0, PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT, "%s %g must be positive",
+             parameter, (double)alternation->parameter);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -55,17 +52,13 @@ static PetscErrorCode SetUpUnknowns(Contact contact, PetscInt *unknowns)
   Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
+  alternation->controller_step = contact->step;
   PetscCall(PetscCalloc2(contact->n_bodies, &alternation->exchange, contact->rows.n, &alternation->offset));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    PetscReal dt;
-    PetscInt  substeps;
-    TS        ts;
+    PetscInt substeps;
 
     PetscCall(BodyGetSubsteps(contact->bodies[b], &substeps));
     PetscCall(TraceCreate(contact->body_rows[b].n, substeps, &alternation->exchange[b]));
-    PetscCall(BodyGetTS(contact->bodies[b], &ts));
-    PetscCall(TSGetTimeStep(ts, &dt));
-    alternation->controller_step = substeps * dt;
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     alternation->offset[i] = *unknowns;

@@ -23,10 +23,9 @@ typedef struct {
   SchwarzTransmission transmission;
   SchwarzPredictor    predictor;
   SchwarzWaveform     waveform;
-  PetscReal           robin_parameter; /* N/m for each unit of area; 0: from the stiffness of the elements */
-  PetscReal           impedance;       /* N s/m for each unit of area; 0: that of plane waves in the Neumann side */
-  PetscBool           swap;            /* sides change with every controller step */
-  PetscReal           atol, rtol;      /* on the change of position [m], relative */
+  PetscReal           parameter;  /* of a unit of area: stiffness [N/m], or impedance [N s/m]; 0: from the elements of the Neumann side */
+  PetscBool           swap;       /* sides change with every controller step */
+  PetscReal           atol, rtol; /* on the change of position [m], relative */
   /* chosen at set-up */
   PetscBool mass_prescribed; /* contact nodes of a Dirichlet side have mass: they take velocity and acceleration from their partner */
   PetscReal controller_step; /* [s]; of the present level */
@@ -51,9 +50,9 @@ typedef struct {
   PetscReal damping; /* relaxation of the last iteration */
   Vec       last_residual;
   /* the controller step under way */
-  PetscInt *left;             /* per row: 1 once it has left in this step, 2 once it has joined again */
-  PetscBool cycled;           /* one has joined again */
-  PetscReal change, position; /* of the last sweep: the body with the worst ratio */
+  PetscInt *left;   /* per row: 1 once it has left in this step, 2 once it has joined again */
+  PetscBool cycled; /* one has joined again */
+  PetscReal change; /* of position, by the last sweep: of the body with the largest [m] */
   PetscBool converged;
   /* work space */
   PetscScalar *row_work; /* one for each row */

@@ -77,21 +77,18 @@ static PetscErrorCode MeasureMismatch(Contact contact, const PetscScalar f[], Pe
 PetscErrorCode AlternationMeasureChange(Contact contact, const PetscScalar f[])
 {
   Alternation *alternation = (Alternation *)contact->data;
-  PetscReal    worst       = -1;
 
   PetscFunctionBegin;
   alternation->converged = PETSC_TRUE;
+  alternation->change    = -1;
   for (PetscInt k = 0; k < (alternation->by_mismatch ? 1 : contact->n_bodies); k++) {
     PetscReal change, position;
 
     if (alternation->by_mismatch) PetscCall(MeasureMismatch(contact, f, &change, &position));
     else PetscCall(BodyGetPositionChange(contact->bodies[k], &change, &position));
     if (!(change <= alternation->atol || change <= alternation->rtol * position)) alternation->converged = PETSC_FALSE;
-    if (change <= worst) continue;
-    worst                 = change;
-    alternation->position = position;
+    alternation->change = PetscMax(alternation->change, change);
   }
-  alternation->change = worst;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -95,20 +95,6 @@ static PetscErrorCode SetUpReactionTraction(Contact contact, PetscInt p, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether contact nodes with mass are prescribed: their force is not the one that would move them */
-static PetscErrorCode PrescribesMass(Contact contact, PetscBool *prescribes)
-{
-  const Alternation *alternation = (const Alternation *)contact->data;
-
-  PetscFunctionBegin;
-  *prescribes = PETSC_FALSE;
-  if (alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt side = 0; side <= (alternation->swap && !contact->pairs[p].obstacle ? 1 : 0); side++)
-      *prescribes = (PetscBool)(*prescribes || BodyDoes(contact->bodies[contact->pairs[p].body[side]], BodyPrescribesMass));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Levels and traces of all pairs, for both choices of sides if they are to be swapped */
 PetscErrorCode AlternationSetUpSides(Contact contact)
 {
@@ -135,10 +121,12 @@ PetscErrorCode AlternationSetUpSides(Contact contact)
       PetscCall(CountLevels(contact, p, side, levels));
       PetscCall(TraceCreate(contact->pairs[p].end - contact->pairs[p].begin, *levels, &alternation->trace[2 * p + side]));
       PetscCall(SetUpReactionTraction(contact, p, side));
+      if (alternation->transmission == SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN &&
+          BodyDoes(contact->bodies[contact->pairs[p].body[side]], BodyPrescribesMass))
+        alternation->mass_prescribed = PETSC_TRUE;
       alternation->room[p] = PetscMax(alternation->room[p], *levels);
     }
   for (PetscInt b = 0; b < contact->n_bodies && alternation->swap; b++) PetscCall(CheckSwappable(contact, b));
-  PetscCall(PrescribesMass(contact, &alternation->mass_prescribed));
   if (alternation->mass_prescribed) contact->energy.unlimited = "nodes with mass take velocity and acceleration from their partner";
   PetscFunctionReturn(PETSC_SUCCESS);
 }

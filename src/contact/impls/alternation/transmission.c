@@ -22,14 +22,13 @@ static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal 
   Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  if (alternation->impedance > 0) impedance = alternation->impedance;
   for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
     const PetscInt i = contact->body_rows[b].rows[k];
 
     if (contact->pairs[contact->rows.pair[i]].body[1] != b) continue;
-    if (alternation->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE)
-      alternation->weight[i] = impedance * contact->rows.area[i] / alternation->controller_step;
-    else alternation->weight[i] = alternation->robin_parameter > 0 ? alternation->robin_parameter * contact->rows.area[i] : stiffness[k];
+    alternation->weight[i] = (alternation->parameter > 0 ? alternation->parameter : impedance) * contact->rows.area[i];
+    if (alternation->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE) alternation->weight[i] /= alternation->controller_step;
+    else if (alternation->parameter == 0) alternation->weight[i] = stiffness[k];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -149,7 +148,7 @@ PetscErrorCode AlternationSetUpTransmission(Contact contact)
 {
   Alternation    *alternation = (Alternation *)contact->data;
   const PetscBool robin       = (PetscBool)(alternation->transmission != SCHWARZ_TRANSMISSION_DIRICHLET_NEUMANN);
-  const PetscBool tied        = (PetscBool)(alternation->transmission == SCHWARZ_TRANSMISSION_ROBIN && alternation->robin_parameter == 0 &&
+  const PetscBool tied        = (PetscBool)(alternation->transmission == SCHWARZ_TRANSMISSION_ROBIN && alternation->parameter == 0 &&
                                             ContactAllPairsTie(contact));
   PetscReal      *stiffness;
 
