@@ -16,8 +16,26 @@ PetscErrorCode ContactBeginAttempts(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The step from the saved states, with the start forces as they are */
-static PetscErrorCode MakeStep(Contact contact)
+/* Work of contact on each group in the last attempt: that of the first, and by how much more the bodies and springs have now */
+static PetscErrorCode ComputeGroupWork(Contact contact)
+{
+  ContactEnergy *energy = &contact->energy;
+
+  PetscFunctionBegin;
+  PetscCall(ContactComputeEnergies(contact, energy->energies, energy->springs));
+  for (PetscInt p = 0; p < contact->n_pairs; p++)
+    energy->pair_sums[2 * p + 1] = PetscMax(energy->pair_sums[2 * p + 1], energy->springs[2 * p + 1]);
+  ContactFindGroups(contact);
+  PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group_work[energy->group[b]] += energy->first_work[b] + energy->energies[b];
+  for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->springs[2 * p];
+  PetscCall(ContactLeaveOutStatic(contact));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* The step from the saved states once more, with the start forces as they are, and what each group gains in it; nothing is told where it
+   fails. Collective. */
+PetscErrorCode ContactMakeAttempt(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
 
@@ -38,33 +56,8 @@ static PetscErrorCode MakeStep(Contact contact)
   PetscUseTypeMethod(contact, step);
   PetscCall(ContactCompleteBodies(contact));
   energy->again = PETSC_FALSE;
-  if (!ContactFailed(contact)) PetscCall(ContactComputeFrictionLoss(contact, energy->start_force));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Work of contact on each group in the last attempt: that of the first, and by how much more the bodies and springs have now */
-static PetscErrorCode ComputeGroupWork(Contact contact)
-{
-  ContactEnergy *energy = &contact->energy;
-
-  PetscFunctionBegin;
-  PetscCall(ContactComputeEnergies(contact, energy->energies, energy->springs));
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    energy->pair_sums[2 * p + 1] = PetscMax(energy->pair_sums[2 * p + 1], energy->springs[2 * p + 1]);
-  ContactFindGroups(contact);
-  PetscCall(PetscArrayzero(energy->group_work, contact->n_bodies));
-  for (PetscInt b = 0; b < contact->n_bodies; b++) energy->group_work[energy->group[b]] += energy->first_work[b] + energy->energies[b];
-  for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->springs[2 * p];
-  PetscCall(ContactLeaveOutStatic(contact));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The step once more, with the start forces as they are, and what each group gains in it; nothing is told where it fails. Collective. */
-PetscErrorCode ContactMakeAttempt(Contact contact)
-{
-  PetscFunctionBegin;
-  PetscCall(MakeStep(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ContactComputeFrictionLoss(contact, energy->start_force));
   PetscCall(ComputeGroupWork(contact));
   contact->counts.energy_attempts++;
   PetscFunctionReturn(PETSC_SUCCESS);

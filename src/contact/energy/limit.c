@@ -218,7 +218,7 @@ static PetscBool AnyGainsTooMuch(Contact contact)
 static PetscBool Rubs(Contact contact, PetscInt i)
 {
   const PetscReal start = contact->energy.changed ? contact->energy.start_force[i] : contact->energy.last_force[i];
-  const PetscInt  first = i - (i - contact->pairs[contact->rows.pair[i]].begin) % contact->pairs[contact->rows.pair[i]].components;
+  const PetscInt  first = ContactFirstRow(contact, i);
 
   if (!ContactRowRubs(contact, i) || (contact->end.active[first] && !contact->friction.slides[first])) return PETSC_FALSE;
   return (PetscBool)(0.5 * (start + contact->end.force[i]) * contact->friction.slip[i] > FRICTION_BRINGS * contact->energy.scale);
