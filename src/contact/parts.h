@@ -121,7 +121,7 @@ PETSC_INTERN PetscErrorCode ContactSetUpRows(Contact, PetscReal);
 PETSC_INTERN PetscErrorCode ContactCheckNear(Contact);
 PETSC_INTERN PetscErrorCode ContactSetUpObstacleTraces(Contact);
 PETSC_INTERN PetscErrorCode ContactReadStartGaps(Contact, PetscBool);
-PETSC_INTERN PetscErrorCode ContactGetLeastElement(Contact, const ContactPair *, PetscReal *);
+PETSC_INTERN PetscErrorCode ContactGetLeastElement(Contact, const PetscInt[2], PetscReal *);
 PETSC_INTERN PetscErrorCode ContactLetTouch(Contact, PetscBool);
 PETSC_INTERN PetscErrorCode ContactGetBoundary(Contact, PetscInt, Surface *);
 PETSC_INTERN PetscErrorCode ContactStartOverlaps(Contact, PetscBool);

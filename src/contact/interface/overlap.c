@@ -10,14 +10,15 @@
    touch all round overlap by 0.2. A run warns of smaller overlaps at its end. */
 #define NO_START 0.25
 
-PetscErrorCode ContactGetLeastElement(Contact contact, const ContactPair *pair, PetscReal *least)
+/* The size of the elements with a contact node of the finer one of two bodies, the second of which may be an obstacle [m] */
+PetscErrorCode ContactGetLeastElement(Contact contact, const PetscInt body[2], PetscReal *least)
 {
   PetscFunctionBegin;
   *least = PETSC_MAX_REAL;
-  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+  for (PetscInt side = 0; side < 2 && body[side] < contact->n_bodies; side++) {
     PetscReal size;
 
-    PetscCall(BodyGetScale(contact->bodies[pair->body[side]], BODY_CONTACT_ELEMENT_SIZE, &size));
+    PetscCall(BodyGetScale(contact->bodies[body[side]], BODY_CONTACT_ELEMENT_SIZE, &size));
     *least = PetscMin(*least, size);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -36,7 +37,7 @@ PetscErrorCode ContactLetTouch(Contact contact, PetscBool of_state)
 
     if (pair->obstacle || ContactPairTies(pair)) continue;
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    PetscCall(ContactGetLeastElement(contact, pair, &least));
+    PetscCall(ContactGetLeastElement(contact, pair->body, &least));
     for (PetscInt i = pair->begin; i < pair->end; i += pair->components) {
       const PetscReal depth = -contact->start.gap[i], bow = rows.bow[(i - pair->begin) / pair->components];
 
@@ -93,16 +94,11 @@ static PetscErrorCode FindDepths(Contact contact, PetscInt *n, SurfaceDepth *dep
   PetscCall(SurfacesFindDepths(PetscObjectComm((PetscObject)contact), contact->n_bodies, contact->overlaps.boundaries, contact->n_obstacles,
                                contact->obstacles, n, depths));
   for (PetscInt i = 0; i < *n; i++) {
-    PetscInt *of = (*depths)[i].surfaces;
+    SurfaceDepth *depth = &(*depths)[i];
 
-    PetscCall(PetscSortInt(2, of));
-    for (PetscInt k = 0; k < 2 && contact->dim == 1 && (*depths)[i].depth > 0; k++) { /* faces are points */
-      PetscReal size;
-
-      if (of[k] >= contact->n_bodies) continue;
-      PetscCall(BodyGetScale(contact->bodies[of[k]], BODY_CONTACT_ELEMENT_SIZE, &size));
-      (*depths)[i].size = k ? PetscMin((*depths)[i].size, size) : size;
-    }
+    PetscCall(PetscSortInt(2, depth->surfaces));
+    if (contact->dim == 1 && depth->depth > 0)
+      PetscCall(ContactGetLeastElement(contact, depth->surfaces, &depth->size)); /* faces are points */
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -90,7 +90,7 @@ static PetscErrorCode More(Contact contact, ContactStepper *stepper, const Conta
   PetscReal size;
 
   PetscFunctionBegin;
-  PetscCall(ContactGetLeastElement(contact, pair, &size));
+  PetscCall(ContactGetLeastElement(contact, pair->body, &size));
   for (PetscInt k = pair->near_begin; k < pair->near_end; k += pair->components) {
     const PetscInt first = contact->rows.near[k];
     PetscReal      most;
