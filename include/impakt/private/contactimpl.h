@@ -425,7 +425,6 @@ struct _p_Contact {
   Body           *bodies;
   PetscInt        dim; /* of space */
   PetscInt        n_pairs;
-  PetscInt        max_pairs; /* how many there is room for */
   ContactPair    *pairs;
   PetscInt        n_surfaces, max_surfaces;
   ContactSurface *surfaces; /* of all pairs */

@@ -47,10 +47,7 @@ static PetscErrorCode ParseSide(Contact contact, const char pair[], const char s
 static PetscErrorCode AppendPair(Contact contact, const char name[], ContactPair **pair)
 {
   PetscFunctionBegin;
-  if (contact->n_pairs == contact->max_pairs) {
-    contact->max_pairs = 2 * contact->max_pairs + 4;
-    PetscCall(PetscRealloc((size_t)contact->max_pairs * sizeof(ContactPair), &contact->pairs));
-  }
+  PetscCall(PetscRealloc((size_t)(contact->n_pairs + 1) * sizeof(ContactPair), &contact->pairs));
   *pair = &contact->pairs[contact->n_pairs++];
   PetscCall(PetscMemzero(*pair, sizeof(**pair)));
   PetscCall(PetscStrallocpy(name, &(*pair)->name));

@@ -45,11 +45,10 @@ static PetscErrorCode KeepRows(Contact contact, Kept *kept)
     kept->rows[kept->width * (i + 1) - 1] = (PetscReal)contact->rows.dof[i];
   }
   for (PetscInt p = 0; p < contact->n_pairs; p++) CopySums(contact, p, PETSC_FALSE, kept->sums + N_SUMS * p);
-  kept->n_pairs      = contact->n_pairs;
-  kept->pairs        = contact->pairs;
-  contact->pairs     = NULL;
-  contact->n_pairs   = 0;
-  contact->max_pairs = 0;
+  kept->n_pairs    = contact->n_pairs;
+  kept->pairs      = contact->pairs;
+  contact->pairs   = NULL;
+  contact->n_pairs = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
