@@ -9,14 +9,14 @@ const char *const ContactStabilizations[] = {"none", "naive", "contact_stabilize
 PetscErrorCode ContactSetUpStabilization(Contact contact)
 {
   MPI_Comm  comm = PetscObjectComm((PetscObject)contact);
-  PetscBool lagrange, all_massless = PETSC_TRUE;
+  PetscBool lagrange;
 
   PetscFunctionBegin;
   if (contact->options.stabilization == CONTACT_STABILIZATION_NONE) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2); side++)
-      if (!BodyDoes(contact->bodies[contact->pairs[p].body[side]], BodyIsRedistributed)) all_massless = PETSC_FALSE;
-  PetscCheck(!all_massless, comm, PETSC_ERR_USER_INPUT,
+  PetscCheck(!ContactHasRigid(contact), comm, PETSC_ERR_USER_INPUT,
+             "-contact_stabilization changes accelerations of contact nodes, and those of a rigid body have none of their own; leave it at "
+             "none");
+  PetscCheck(ContactHasMass(contact, PETSC_FALSE), comm, PETSC_ERR_USER_INPUT,
              "-contact_stabilization %s acts on contact nodes with mass, and all are massless here, which do not chatter; leave it at "
              "none, or set -<body>_mass_redistribute false",
              ContactStabilizations[contact->options.stabilization]);
@@ -26,9 +26,6 @@ PetscErrorCode ContactSetUpStabilization(Contact contact)
                "-contact_stabilization contact_stabilized works with -contact_type lagrange and implicit bodies only, not with %s; choose "
                "these, or -contact_stabilization naive",
                ((PetscObject)contact)->type_name);
-  PetscCheck(!ContactHasRigid(contact), PetscObjectComm((PetscObject)contact), PETSC_ERR_USER_INPUT,
-             "-contact_stabilization changes accelerations of contact nodes, and those of a rigid body have none of their own; leave it at "
-             "none");
   contact->energy.unlimited = "a stabilization changes accelerations or forces between steps";
   if (contact->options.stabilization == CONTACT_STABILIZATION_CONTACT_STABILIZED) PetscCall(ImpaktCite(CITE_CONTACT_STABILIZED));
   PetscFunctionReturn(PETSC_SUCCESS);
