@@ -1,7 +1,6 @@
 /* The class: creation, type, step, destruction. */
 #include <contact/parts.h>
 #include <sys/names.h>
-#include <sys/stages.h>
 #include <impakt/private/bodystep.h>
 
 /* Parts of the system's energy that contact may gain in a run (tests/README.md), and take or bring in a step before it is halved */

@@ -1,6 +1,5 @@
 /* Obstacles of a contact problem. */
 #include <contact/parts.h>
-#include <impakt/private/bodymesh.h>
 #include <impakt/private/mesh.h>
 #include <sys/units.h>
 

@@ -1,5 +1,4 @@
 /* The registry of contact methods, and the package of the class. */
-#include <contact/laws/rowlaw.h>
 #include <contact/parts.h>
 #include <sys/package.h>
 

@@ -1,6 +1,5 @@
 /* Set-up; what contact tells of itself then is in contactget.c. */
 #include <contact/parts.h>
-#include "contactvisit.h"
 #include <sys/citations.h>
 #include <sys/statusline.h>
 #include <impakt/private/bodymass.h>

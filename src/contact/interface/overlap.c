@@ -1,6 +1,5 @@
 /* Bodies that are inside each other, or inside obstacles. */
 #include <contact/parts.h>
-#include <impakt/private/mesh.h>
 #include <sys/units.h>
 #include <impakt/private/bodymesh.h>
 

@@ -1,7 +1,6 @@
 /* The passes of a step: all bodies are advanced under forces of the touching rows, and the law has other forces for what rows read then.
    That is one evaluation of the outer SNES, F = lambda - law(lambda). */
 #include "stepimpl.h"
-#include <sys/petsccompat.h>
 #include <sys/units.h>
 
 #define MOST_PASSES 50

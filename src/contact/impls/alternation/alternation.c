@@ -2,7 +2,6 @@
 #include "alternationimpl.h"
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
-#include <sys/petsccompat.h>
 #include <sys/units.h>
 #include <impakt/private/bodysweeps.h>
 

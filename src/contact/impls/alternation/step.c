@@ -1,6 +1,5 @@
 /* One controller step: trial, contact, and the nodes that join and leave. */
 #include "alternationimpl.h"
-#include <impakt/private/bodysweeps.h>
 
 /* The outer iteration with the active set as it is, then forces and gaps */
 static PetscErrorCode SolveActive(Contact contact)

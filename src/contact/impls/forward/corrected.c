@@ -7,7 +7,6 @@
    Around the step there are impulses that end the rate of closed gaps (-contact_constraint both), and the contact-stabilised Newmark method
    (Deuflhard, Krause, Ertel 2008). */
 #include "forwardimpl.h"
-#include <checkpoint/checkpoint.h>
 #include <impakt/private/bodyforces.h>
 
 /* What changes states beside the forces of the step */

@@ -6,7 +6,6 @@
 
    All is divided by dt^2: so the same matrix finds the impulses that close the rate beside the gap. */
 #include "forwardimpl.h"
-#include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
 #include <impakt/private/bodyforces.h>
 
