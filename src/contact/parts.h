@@ -105,7 +105,7 @@ PETSC_INTERN PetscErrorCode ContactRenewNeighbours(Contact, PetscReal, PetscBool
 PETSC_INTERN void           ContactListRowState(Contact, StateList *);
 PETSC_INTERN PetscErrorCode ContactVisitPairNodes(const ContactPair *, const StateList *, const char[], Tables);
 PETSC_INTERN PetscErrorCode ContactSetUpTold(Contact);
-PETSC_INTERN void           ContactTakeLeave(Contact, const ContactPair *, const ContactPairState *);
+PETSC_INTERN void           ContactTell(Contact, const ContactPair *, const ContactPairState *, ContactPairState[]);
 PETSC_INTERN PetscErrorCode ContactComputePairStates(Contact, ContactPairState[]);
 PETSC_INTERN void           ContactAddPairState(ContactPairState *, PetscInt, const ContactPairState *);
 PETSC_INTERN PetscErrorCode ContactSetUpPairResultants(Contact);

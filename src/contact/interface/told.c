@@ -52,17 +52,11 @@ PetscErrorCode ContactSetUpTold(Contact contact)
 
 /* Adds the state of a pair to those that are told of its bodies, or of its body and the obstacle. What has no direction counts with the
    rows' body alone, so that sums are right. */
-static void Tell(Contact contact, const ContactPair *pair, const ContactPairState *state, ContactPairState told[])
+void ContactTell(Contact contact, const ContactPair *pair, const ContactPairState *state, ContactPairState told[])
 {
   if (pair->obstacle)
     ContactAddPairState(&told[ObstaclePlace(contact, pair->body[0], ContactPairPartner(contact, pair) - contact->n_bodies)], 1, state);
   for (PetscInt side = 0; side < 2 && !pair->obstacle; side++) ContactAddPairState(&told[pair->body[side]], side ? -1 : 1, state);
-}
-
-/* A pair goes: what it has done stays with its bodies. It has no force any more, and TellStates() forgets its gap. */
-void ContactTakeLeave(Contact contact, const ContactPair *pair, const ContactPairState *state)
-{
-  Tell(contact, pair, state, contact->neighbours.told.gone);
 }
 
 /* States of all that is told; collective */
@@ -74,7 +68,7 @@ static PetscErrorCode TellStates(Contact contact, ContactPairState states[])
   PetscCall(ContactComputePairStates(contact, contact->resultants.states));
   PetscCall(PetscArraycpy(states, told->gone, told->n));
   for (PetscInt p = 0; p < told->n; p++) states[p].gap = CONTACT_NO_GAP;
-  for (PetscInt p = 0; p < contact->n_pairs; p++) Tell(contact, &contact->pairs[p], &contact->resultants.states[p], states);
+  for (PetscInt p = 0; p < contact->n_pairs; p++) ContactTell(contact, &contact->pairs[p], &contact->resultants.states[p], states);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -78,7 +78,7 @@ static PetscErrorCode TakePairs(Contact contact, PetscInt n, const PetscInt list
 
     if (kept->goes_on[p]) continue;
     for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) affected[pair->body[side]] = PETSC_TRUE;
-    ContactTakeLeave(contact, pair, &kept->states[p]);
+    ContactTell(contact, pair, &kept->states[p], contact->neighbours.told.gone); /* what it has done stays with its bodies */
     PetscCall(ContactDestroyPair(pair));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
