@@ -232,7 +232,6 @@ PETSC_INTERN PetscErrorCode ContactSetUpEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactBeginEnergy(Contact);
 PETSC_INTERN PetscErrorCode ContactNoteRebuild(Contact);
 PETSC_INTERN PetscErrorCode ContactLimitEnergy(Contact);
-PETSC_INTERN PetscErrorCode ContactNoteLevel(Contact);
 PETSC_INTERN PetscErrorCode ContactBookWork(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyEnergy(Contact);
 

@@ -74,15 +74,6 @@ PetscReal ContactMoreRoom(Contact contact)
   return energy->at_rest ? Resolution(contact) * PetscMax(SumForces(contact) - energy->largest_force, 0) / (PetscReal)contact->n_bodies : 0;
 }
 
-/* At the start of a step: by how much more energy bodies have, since it has another size than the last one. Collective. */
-PetscErrorCode ContactNoteLevel(Contact contact)
-{
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++)
-    PetscCall(BodyGetLevelEnergy(contact->bodies[b], contact->attempt.level, &contact->energy.change[b]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether halves of the present step would not begin with more energy than each group has room for. Collective. */
 PetscErrorCode ContactCanAffordHalves(Contact contact, PetscBool *can)
 {
@@ -107,8 +98,7 @@ PetscErrorCode ContactCanAffordHalves(Contact contact, PetscBool *can)
 static PetscErrorCode BookLevel(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
-
-  PetscReal *owed = energy->of_group, *has = owed + contact->n_bodies;
+  PetscReal     *owed = energy->of_group, *has = owed + contact->n_bodies;
 
   PetscFunctionBegin;
   PetscCall(PetscArrayzero(owed, 2 * contact->n_bodies));
@@ -238,12 +228,15 @@ PetscErrorCode ContactSetUpEnergy(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Before the first step: the room that bodies begin with, from the energies of their initial states; collective */
+/* At the start of a step: by how much more energy bodies have, since it has another size than the last one; before the first one the room
+   that they begin with, from the energies of their initial states. Collective. */
 PetscErrorCode ContactBeginEnergy(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
 
   PetscFunctionBegin;
+  for (PetscInt b = 0; b < contact->n_bodies; b++)
+    PetscCall(BodyGetLevelEnergy(contact->bodies[b], contact->attempt.level, &energy->change[b]));
   if (energy->begun) PetscFunctionReturn(PETSC_SUCCESS);
   energy->begun = PETSC_TRUE;
   PetscCall(GetOwnEnergy(contact, &energy->scale));

@@ -28,7 +28,6 @@ static PetscErrorCode MakeOnce(Contact contact, PetscInt pass, PetscReal *off, P
   *again = PETSC_FALSE;
   StepFailureClear(&contact->attempt.failure);
   PetscCall(ContactBeginEnergy(contact));
-  PetscCall(ContactNoteLevel(contact));
   PetscCall(StageBegin(STAGE_ROWS, &logged));
   PetscCall(PetscLogEventBegin(CONTACT_Update, contact, 0, 0, 0));
   PetscTryTypeMethod(contact, layrows);
