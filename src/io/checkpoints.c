@@ -194,7 +194,6 @@ PetscErrorCode OutputSetCheckpoint(Output output, const char path[], PetscInt in
 {
   Checkpoints *c;
   MPI_Comm     comm;
-  PetscBool    has;
   Contact      contact;
 
   PetscFunctionBegin;
@@ -208,8 +207,7 @@ PetscErrorCode OutputSetCheckpoint(Output output, const char path[], PetscInt in
              "Checkpoints every %" PetscInt_FMT " controller steps or %g minutes: one of them must be positive, and none negative",
              interval, (double)minutes);
   PetscCall(ControllerGetContact(output->controller, &contact));
-  PetscCall(ContactHasVisit(contact, &has));
-  PetscCheck(has, comm, PETSC_ERR_SUP, "-checkpoint: the contact method does not tell its state");
+  PetscCheck(ContactHasVisit(contact), comm, PETSC_ERR_SUP, "-checkpoint: the contact method does not tell its state");
   PetscCall(OutputCheckPaths(comm, output->summary_path, output->history_path, output->fields_path, path));
   PetscCall(OutputFileCheck(comm, "-checkpoint", path));
   PetscCall(PetscStrncpy(c->path, path, sizeof(c->path)));

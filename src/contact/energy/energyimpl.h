@@ -7,6 +7,6 @@ PETSC_INTERN PetscErrorCode ContactMakeAttempt(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeWork(Contact);
 PETSC_INTERN PetscErrorCode ContactComputeEnergies(Contact, PetscReal[], PetscReal[]);
 PETSC_INTERN void           ContactFindGroups(Contact);
-PETSC_INTERN PetscErrorCode ContactLeaveOutStatic(Contact);
+PETSC_INTERN void           ContactLeaveOutStatic(Contact);
 PETSC_INTERN PetscReal      ContactMoreRoom(Contact);
 PETSC_INTERN PetscErrorCode ContactCanAffordHalves(Contact, PetscBool *);

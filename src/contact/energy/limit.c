@@ -346,7 +346,7 @@ PetscErrorCode ContactLimitEnergy(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) energy->group_work[energy->group[contact->pairs[p].body[0]]] += energy->pair_sums[2 * p];
   for (PetscInt p = 0; p < contact->n_pairs && !touch; p++) touch = (PetscBool)(energy->pair_sums[2 * p + 1] != 0);
   if (energy->rebuilt && touch) PetscCall(MeasureGroupWork(contact));
-  PetscCall(ContactLeaveOutStatic(contact));
+  ContactLeaveOutStatic(contact);
   if (contact->options.energy_cap) PetscCall(LimitFriction(contact));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt g = 0; g < contact->n_bodies; g++) energy->step_work += energy->group[g] == g ? energy->group_work[g] : 0;

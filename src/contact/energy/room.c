@@ -27,14 +27,12 @@ void ContactFindGroups(Contact contact)
 
 /* Groups in which a body has no inertia neither gain nor lose: static balance knows no force at the start of a step, so that the
    trapezoidal rule does not tell the work of contact, and no other force there changes the step. */
-PetscErrorCode ContactLeaveOutStatic(Contact contact)
+void ContactLeaveOutStatic(Contact contact)
 {
   ContactEnergy *energy = &contact->energy;
 
-  PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++)
     if (BodyDoes(contact->bodies[b], BodyIsStatic)) energy->group_work[energy->group[b]] = 0;
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* How far gaps may be from what they are said to be [m] */

@@ -59,11 +59,9 @@ static PetscErrorCode VisitEnergy(Contact contact, Checkpoint checkpoint)
 }
 
 /* ContactHasVisit - whether runs with the method can have checkpoints */
-PetscErrorCode ContactHasVisit(Contact contact, PetscBool *has)
+PetscBool ContactHasVisit(Contact contact)
 {
-  PetscFunctionBegin;
-  *has = (PetscBool)(contact->ops->rowschanged || (!contact->rows.n_all && !contact->neighbours.come_and_go));
-  PetscFunctionReturn(PETSC_SUCCESS);
+  return (PetscBool)(contact->ops->rowschanged || (!contact->rows.n_all && !contact->neighbours.come_and_go));
 }
 
 /* ContactRepeatsBits - whether sums over rows are the same to the last bit in another run: those over rows that lie on three ranks or more

@@ -4,7 +4,7 @@
 #include <checkpoint/tables.h>
 #include <impakt/contact.h>
 
-PETSC_INTERN PetscErrorCode ContactHasVisit(Contact, PetscBool *);
+PETSC_INTERN PetscBool      ContactHasVisit(Contact);
 PETSC_INTERN PetscErrorCode ContactRepeatsBits(Contact, PetscBool *);
 PETSC_INTERN PetscErrorCode ContactVisit(Contact, Checkpoint);
 PETSC_INTERN PetscErrorCode ContactVisitShared(Contact, Checkpoint);

@@ -117,7 +117,7 @@ static PetscErrorCode ContactAccept_Alternation(Contact contact)
 
   PetscFunctionBegin;
   if (contact->ties.inverse) PetscCall(ContactAlignTies(contact, alternation->drift));
-  if (alternation->swap) PetscCall(AlternationSwapSides(contact));
+  if (alternation->swap) AlternationSwapSides(contact);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

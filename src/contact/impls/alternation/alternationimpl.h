@@ -92,7 +92,7 @@ PETSC_INTERN PetscErrorCode AlternationPredict(Contact);
 PETSC_INTERN PetscErrorCode AlternationSetUpTransmission(Contact);
 PETSC_INTERN PetscErrorCode AlternationSetStepLevel(Contact);
 PETSC_INTERN PetscErrorCode AlternationSetUpSides(Contact);
-PETSC_INTERN PetscErrorCode AlternationSwapSides(Contact);
+PETSC_INTERN void           AlternationSwapSides(Contact);
 PETSC_INTERN PetscErrorCode AlternationGetForces(Contact, PetscScalar[]);
 PETSC_INTERN PetscErrorCode AlternationMeasureChange(Contact, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode AlternationTestConvergence(SNES, PetscInt, PetscReal, PetscReal, PetscReal, SNESConvergedReason *, void *);

@@ -132,9 +132,8 @@ PetscErrorCode AlternationSetUpSides(Contact contact)
 }
 
 /* From now on the other body of each pair takes displacements. What came before its partner in a sweep comes after it. */
-PetscErrorCode AlternationSwapSides(Contact contact)
+void AlternationSwapSides(Contact contact)
 {
-  PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) contact->pairs[p].dirichlet = 1 - contact->pairs[p].dirichlet;
   for (PetscInt b = 0; b < contact->n_bodies / 2; b++) {
     const PetscInt first = contact->order[b];
@@ -142,5 +141,4 @@ PetscErrorCode AlternationSwapSides(Contact contact)
     contact->order[b]                         = contact->order[contact->n_bodies - 1 - b];
     contact->order[contact->n_bodies - 1 - b] = first;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -17,11 +17,10 @@
 #include <impakt/private/bodysweeps.h>
 
 /* Stiffness of the springs of each row: as given, or that of the partner, which answers best */
-static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
+static void SetUpWeights(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
 {
   Alternation *alternation = (Alternation *)contact->data;
 
-  PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
     const PetscInt i = contact->body_rows[b].rows[k];
 
@@ -30,7 +29,6 @@ static PetscErrorCode SetUpWeights(Contact contact, PetscInt b, const PetscReal 
     if (alternation->transmission == SCHWARZ_TRANSMISSION_IMPEDANCE) alternation->weight[i] /= alternation->controller_step;
     else if (alternation->parameter == 0) alternation->weight[i] = stiffness[k];
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Ties have rows across the normal as well, and the partner's rows are means over nodes that need not lie opposite, which move more easily
@@ -68,18 +66,16 @@ static PetscErrorCode SetUpTiedWeights(Contact contact, PetscInt b, const PetscR
 
 /* What both sides of each row weigh in their common velocity after an impact: the impedances of plane waves, or, where nodes with mass are
    prescribed, the masses of the elements beside the row. E A / h and sqrt(E rho) A make rho A h. */
-static PetscErrorCode SetUpMasses(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
+static void SetUpMasses(Contact contact, PetscInt b, const PetscReal stiffness[], PetscReal impedance)
 {
   Alternation *alternation = (Alternation *)contact->data;
 
-  PetscFunctionBegin;
   for (PetscInt k = 0; k < contact->body_rows[b].n; k++) {
     const PetscInt i    = contact->body_rows[b].rows[k];
     const PetscInt side = contact->pairs[contact->rows.pair[i]].body[1] == b ? 1 : 0;
 
     alternation->mass[side][i] = alternation->mass_prescribed ? PetscSqr(impedance * contact->rows.area[i]) / stiffness[k] : impedance;
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The force at the end of a substep must move its row in that substep */
@@ -163,9 +159,9 @@ PetscErrorCode AlternationSetUpTransmission(Contact contact)
 
     PetscCall(BodyGetScale(contact->bodies[b], BODY_IMPEDANCE, &impedance));
     if (robin || alternation->mass_prescribed) PetscCall(BodyComputeRowStiffness(contact->bodies[b], stiffness));
-    PetscCall(SetUpMasses(contact, b, stiffness, impedance));
+    SetUpMasses(contact, b, stiffness, impedance);
     if (tied) PetscCall(SetUpTiedWeights(contact, b, stiffness));
-    else if (robin) PetscCall(SetUpWeights(contact, b, stiffness, impedance));
+    else if (robin) SetUpWeights(contact, b, stiffness, impedance);
   }
   PetscCall(PetscFree(stiffness));
   if (robin) PetscCall(SetRobin(contact));
