@@ -99,7 +99,6 @@ PetscErrorCode ContactWarnOfStages(Contact contact, PetscBool of_ties)
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    const char        *name;
     PetscReal          stage[2][2];
     PetscBool          differ, between;
 
@@ -108,11 +107,10 @@ PetscErrorCode ContactWarnOfStages(Contact contact, PetscBool of_ties)
     differ  = (PetscBool)(stage[0][0] != stage[1][0] || stage[0][1] != stage[1][1]);
     between = (PetscBool)(pair->keeps_mass && !(stage[0][0] == stage[0][1] && (stage[0][0] == 1 || stage[0][0] == 0.5)));
     if (of_ties ? differ || !between : !differ) continue;
-    PetscCall(ContactGetPair(contact, p, &name, NULL, NULL));
     PetscCall(PetscFPrintf(PetscObjectComm((PetscObject)contact), stderr,
                            "impakt: warning: %s: -<body>_ts_alpha_... lets forces act at %s, so that energy and momentum at contact have "
                            "errors of first order in the step; %s\n",
-                           name, of_ties ? "times inside a step on tied nodes with mass" : "different times of a step on both bodies",
+                           pair->name, of_ties ? "times inside a step on tied nodes with mass" : "different times of a step on both bodies",
                            of_ties ? "choose -schwarz_transmission robin, or a radius of 1" : "give both bodies the same parameters"));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
