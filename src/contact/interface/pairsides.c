@@ -108,10 +108,9 @@ static PetscErrorCode FindOrder(Contact contact, PetscInt *done)
       PetscBool ready = (PetscBool)!placed[b];
 
       for (PetscInt p = 0; p < contact->n_pairs; p++) {
-        const ContactPair *pair  = &contact->pairs[p];
-        const PetscInt     first = pair->turned && !contact->prescribes ? 1 : 0;
+        const PetscInt *body = contact->pairs[p].body;
 
-        if (pair->body[1 - first] == b && pair->body[first] != b && !placed[pair->body[first]] && !contact->sideless) ready = PETSC_FALSE;
+        if (contact->prescribes && body[1] == b && body[0] != b && !placed[body[0]]) ready = PETSC_FALSE;
       }
       if (!ready) continue;
       contact->order[(*done)++] = b;
