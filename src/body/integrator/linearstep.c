@@ -69,9 +69,9 @@ SIMD_CLONES static void MoveEnds(PetscInt n, Newmark m, PetscReal scale, const P
 {
 #pragma omp simd
   for (PetscInt i = 0; i < n; i++) {
-    const PetscScalar u1 = u[i] - scale * du[i], a1 = m.c2 * (u1 - u0[i]) - m.c1 * v0[i] - m.c0 * a[i];
+    const PetscScalar way = (u[i] - u0[i]) - scale * du[i], a1 = m.c2 * way - m.c1 * v0[i] - m.c0 * a[i];
 
-    u[i] = u1;
+    u[i] = u0[i] + way;
     v[i] = v0[i] + m.by_start * a[i] + m.by_end * a1;
     a[i] = a1;
   }

@@ -50,7 +50,7 @@ def test_two_rules(shared_run):
     assert np.diff(taken).min() >= -1e-13 * scale and taken[-1] > 0.01 * scale
     of_squares = sum(both.history[f"body/{name}/{kind}"][()] for name in "lr" for kind in ("kinetic", "potential"))
     assert np.abs(of_squares - of_squares[0]).max() <= CAP * scale
-    assert kept_error(both, "momentum", "lr") <= 1e-11  # the round-off of implicit bodies; measured 5e-12
+    assert kept_error(both, "momentum", "lr") <= 1e-12  # measured 2e-14
 
 
 def test_two_rules_on_ranks(shared_run):
