@@ -211,14 +211,15 @@ KSPConvergedReason ConstrainedSolverTakeFailure(ConstrainedSolver s)
   return failed;
 }
 
-/* The rows have new entries, as many as before; `changed`: for each row of all ranks, whether it is one of them */
+/* The rows have new entries, as many as before; `changed`: for each row of all ranks, whether it is one of them; NULL: none is, the columns
+   of entries alone are others */
 PetscErrorCode ConstrainedSolverSetRows(ConstrainedSolver s, Mat B, const PetscMPIInt changed[])
 {
   PetscFunctionBegin;
   PetscCall(PetscObjectReference((PetscObject)B));
   PetscCall(MatDestroy(&s->B));
   s->B = B;
-  for (PetscInt j = 0; j < s->global; j++) {
+  for (PetscInt j = 0; j < s->global && changed; j++) {
     if (!changed[j]) continue;
     s->fresh[j] = PETSC_FALSE;
     s->missed   = 0; /* columns of rows that change again and again are not worth it */

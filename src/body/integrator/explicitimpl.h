@@ -3,7 +3,6 @@
 #include <body/layout/bodyimpl.h>
 
 typedef struct _n_LayerBalance *LayerBalance;
-typedef struct _n_LayerRows    *LayerRows;
 
 typedef struct {
   LayerBalance layer;       /* NULL: no node is massless, on any rank */
@@ -15,14 +14,9 @@ static inline LayerBalance GetLayerBalance(Body body)
   return ((BodyExplicit *)body->integrator->data)->layer;
 }
 
-PETSC_INTERN PetscErrorCode LayerRowsCreate(Body, LayerRows *);
-PETSC_INTERN PetscErrorCode LayerRowsUpdate(LayerRows, Body);
-PETSC_INTERN Mat            LayerRowsGetMatrix(LayerRows);
-PETSC_INTERN PetscErrorCode LayerRowsDestroy(LayerRows *);
-
 PETSC_INTERN PetscErrorCode LayerBalanceCreate(Body, LayerBalance *);
 PETSC_INTERN PetscErrorCode LayerBalanceDestroy(LayerBalance *);
-PETSC_INTERN PetscErrorCode LayerBalanceSetRows(Body, const PetscMPIInt[]);
+PETSC_INTERN PetscErrorCode LayerBalanceSetRows(Body);
 PETSC_INTERN PetscErrorCode LayerBalanceSolve(LayerBalance, Body, PetscReal, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode LayerBalanceGetForce(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode LayerBalanceSave(Body);

@@ -44,7 +44,6 @@ typedef struct {
 } Factors;
 
 struct _n_LayerBalance {
-  LayerRows rows;
   PetscReal reach;      /* norm of the reference positions of all nodes [m] */
   Factors   now, aside; /* the latter: of the saved state */
   PetscInt  n_history;  /* numbers of that history */
@@ -235,13 +234,20 @@ PetscErrorCode LayerBalanceGetForce(Body body, Vec u, Vec force)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-PetscErrorCode LayerBalanceSetRows(Body body, const PetscMPIInt changed[])
+/* The solver has new rows of the body, on all of its dofs: takes those on the dofs of the layer in their place. Collective. */
+PetscErrorCode LayerBalanceSetRows(Body body)
 {
-  LayerBalance layer = GetLayerBalance(body);
+  Mat B;
+  IS  rows;
 
   PetscFunctionBegin;
-  PetscCall(LayerRowsUpdate(layer->rows, body));
-  PetscCall(ConstrainedSolverSetRows(body->solver, LayerRowsGetMatrix(layer->rows), changed));
+  PetscCall(ConstrainedSolverGetMatrices(body->solver, NULL, &B));
+  if (B != body->rows.free_matrix) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ISCreateStride(PetscObjectComm((PetscObject)body), body->rows.local, body->rows.begin, 1, &rows));
+  PetscCall(MatCreateSubMatrix(body->rows.free_matrix, rows, body->layer.global, MAT_INITIAL_MATRIX, &B));
+  PetscCall(ConstrainedSolverSetRows(body->solver, B, NULL));
+  PetscCall(MatDestroy(&B));
+  PetscCall(ISDestroy(&rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -257,11 +263,9 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   layer = *balance;
   PetscCall(BodySetUpLayerElements(body));
   PetscCall(BodyCreateLayerMatrix(body, &K));
-  PetscCall(LayerRowsCreate(body, &layer->rows));
   PetscCall(PetscSNPrintf(prefix, sizeof(prefix), "%slayer_", ((PetscObject)body)->prefix));
   /* a layer is a surface, and its factors fill in as those of a mesh with one dimension less */
-  PetscCall(ConstrainedSolverCreate(K, LayerRowsGetMatrix(layer->rows), PetscMax(body->mesh.dim - 1, 1), prefix, body->model.linear,
-                                    &body->solver));
+  PetscCall(ConstrainedSolverCreate(K, body->rows.free_matrix, PetscMax(body->mesh.dim - 1, 1), prefix, body->model.linear, &body->solver));
   PetscCall(VecNorm(body->mesh.positions, NORM_2, &layer->reach));
   PetscCall(MatDestroy(&K));
   if (!body->model.linear) {
@@ -316,7 +320,8 @@ PetscErrorCode LayerBalanceVisit(Body body, PetscInt level, Checkpoint checkpoin
   const PetscInt before = layer->now.number;
 
   PetscFunctionBegin;
-  if (level || body->model.linear) PetscFunctionReturn(PETSC_SUCCESS); /* one for all levels */
+  if (CheckpointLoads(checkpoint)) PetscCall(LayerBalanceSetRows(body)); /* columns are made of them */
+  if (level || body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);   /* one for all levels */
   PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.number));
   PetscCall(CheckpointVisitInts(checkpoint, "layer rounds", 1, &layer->now.rounds));
   PetscCall(CheckpointVisitVec(checkpoint, "layer point", layer->now.point));
@@ -336,7 +341,6 @@ PetscErrorCode LayerBalanceDestroy(LayerBalance *layer)
   PetscCall(PetscFree((*layer)->now.memory));
   PetscCall(VecDestroy(&(*layer)->aside.point));
   PetscCall(PetscFree((*layer)->aside.memory));
-  PetscCall(LayerRowsDestroy(&(*layer)->rows));
   PetscCall(PetscFree(*layer));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -85,11 +85,8 @@ PetscErrorCode BodyStepBack(Body body)
 /* Rows of the interface have new entries: those that are marked, of all ranks */
 PetscErrorCode BodySetRowsOfLevels(Body body, const PetscMPIInt changed[])
 {
-  PetscErrorCode (*setrows)(Body, const PetscMPIInt[]) = body->integrator->ops.setrows;
-
   PetscFunctionBegin;
-  if (setrows) PetscCall((*setrows)(body, changed));
-  else if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->rows.free_matrix, changed));
+  if (body->solver) PetscCall(ConstrainedSolverSetRows(body->solver, body->rows.free_matrix, changed));
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) {
     const BodyLevel *level = &body->levels[k];
 

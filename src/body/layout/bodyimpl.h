@@ -179,14 +179,11 @@ typedef struct {
 } RowList;
 
 typedef struct {
-  Mat              matrix;       /* B: rows of all ranks x displacements */
-  Mat              free_matrix;  /* without held dofs; the same matrix where none is held */
-  uint64_t         pattern;      /* hash of where the rows of this rank have entries; 0: there were none */
-  PetscBool        same_pattern; /* the last new rows have entries where those before had them; on this rank, if its body is local */
-  PetscInt64       laid_out;     /* how often there have been other rows */
-  Vec              free_dofs;    /* 1, 0 on held dofs; NULL until needed */
-  PetscMPIInt     *changed;      /* work space, per row of all ranks */
-  PetscMPIInt      size;         /* ranks */
+  Mat              matrix;      /* B: rows of all ranks x displacements */
+  Mat              free_matrix; /* without held dofs; the same matrix where none is held */
+  Vec              free_dofs;   /* 1, 0 on held dofs; NULL until needed */
+  PetscMPIInt     *changed;     /* work space, per row of all ranks */
+  PetscMPIInt      size;        /* ranks */
   PetscInt         local, global, begin;
   PetscBool        at_home;     /* the mesh is whole on one of several ranks, and no other has rows */
   PetscBool        expected;    /* rows may come in the course of the run */

@@ -11,8 +11,8 @@ typedef struct {
   PetscErrorCode (*setdefaults)(Body);   /* (NULL) gives a TS that has just been made the parameters that are Impakt's default */
   PetscErrorCode (*getparameters)(Body); /* (NULL) reads and checks the parameters of the TS, after program and options have set them */
   PetscErrorCode (*setup)(Body);         /* callbacks of the TS, matrices and factors; mass, rows, loads and substeps are known */
-  PetscErrorCode (*setrows)(Body, const PetscMPIInt[]); /* (NULL) the rows that are marked, of all ranks, have new entries: tells the
-                                                           solver in place of BodySetRowsOfLevels() */
+  PetscErrorCode (*setrows)(Body);       /* (NULL) of a solver that has the rows on other dofs than the body: it gets them, before they are
+                                            prescribed or read, if they are new */
   PetscErrorCode (*setlevel)(Body); /* (NULL) the controller step is cut in halves another number of times, body->time.level: matrix and
                                        solver are those of this level, made where there are none yet */
   PetscErrorCode (*renew)(Body); /* of a body that uses Newton's method: factors of its last iteration in this substep, or at its start */

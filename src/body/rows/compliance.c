@@ -30,7 +30,9 @@ PetscErrorCode BodyGetLayerMatrices(Body body, Mat *stiffness, Mat *rows)
   PetscFunctionBegin;
   if (stiffness) *stiffness = NULL;
   if (rows) *rows = NULL;
-  if (body->integrator->answers_by_layer) PetscCall(ConstrainedSolverGetMatrices(body->solver, stiffness, rows));
+  if (!body->integrator->answers_by_layer) PetscFunctionReturn(PETSC_SUCCESS);
+  if (rows) PetscCall((*body->integrator->ops.setrows)(body));
+  PetscCall(ConstrainedSolverGetMatrices(body->solver, stiffness, rows));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -43,6 +45,7 @@ PetscErrorCode BodyApplyCompliance(Body body, Vec force, Vec displacement)
   PetscFunctionBegin;
   PetscCall(StageBegin(STAGE_INTERFACE, &logged));
   PetscCall(PetscLogEventBegin(BODY_Compliance, body, 0, 0, 0));
+  if (body->integrator->ops.setrows) PetscCall((*body->integrator->ops.setrows)(body));
   PetscCall(ConstrainedSolverApplyCompliance(body->solver, force, displacement));
   PetscCall(PetscLogEventEnd(BODY_Compliance, body, 0, 0, 0));
   PetscCall(StageEnd(logged));

@@ -39,7 +39,6 @@ PetscErrorCode BodyCreateRowArrays(Body body)
   for (PetscInt k = 0; k < 3; k++) PetscCall(MatCreateVecs(rows->matrix, NULL, &body->work.rows[k]));
   PetscCall(BodySetNearRows(body, -1, NULL));
   rows->n_prescribed = rows->n_forced = rows->n_robin = 0;
-  rows->laid_out++;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -61,7 +60,6 @@ PetscErrorCode BodyDestroyRowArrays(Body body)
   rows->near.n = -1;
   for (PetscInt k = 0; k < 3; k++) PetscCall(VecDestroy(&body->work.rows[k]));
   PetscCall(MatDestroy(&rows->free_matrix));
-  rows->pattern = 0;
   PetscCall(BodyGramDestroy(&rows->gram));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -1,6 +1,5 @@
 /* The rows of the interface, B u, as one body sees them: prescribing them, loading them, reporting them. */
 #include <body/layout/bodyimpl.h>
-#include <sys/bytesum.h>
 
 const char *const BodyTractionTypes[] = {"internal", "reaction", "BodyTractionType", "BODY_TRACTION_", NULL};
 
@@ -21,72 +20,25 @@ PetscErrorCode BodySetInterface(Body body, Mat B)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Values of a matrix without held dofs, in place where entries are where they were */
-static PetscErrorCode FillFreeRows(Body body)
-{
-  BodyRows *rows = &body->rows;
-
-  PetscFunctionBegin;
-  if (!rows->free_dofs) {
-    PetscCall(VecDuplicate(body->state.u, &rows->free_dofs));
-    PetscCall(VecSet(rows->free_dofs, 1));
-    PetscCall(BodyZeroHeld(body, rows->free_dofs));
-  }
-  if (rows->same_pattern && rows->free_matrix) PetscCall(MatCopy(rows->matrix, rows->free_matrix, SAME_NONZERO_PATTERN));
-  else {
-    PetscCall(MatDestroy(&rows->free_matrix));
-    PetscCall(MatDuplicate(rows->matrix, MAT_COPY_VALUES, &rows->free_matrix));
-  }
-  PetscCall(MatDiagonalScale(rows->free_matrix, NULL, rows->free_dofs));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Whether new rows have entries where those before had them: then what has been made of their matrix (that without held dofs, that of the
-   massless layer) gets new values in the same places, and nothing is allocated. `agree`: on every rank, collective */
-static PetscErrorCode NotePattern(Body body, PetscBool agree)
-{
-  BodyRows       *rows = &body->rows;
-  uint64_t        hash = BYTE_SUM_BEGIN;
-  PetscInt        begin, end, n;
-  const PetscInt *columns;
-  PetscBool       many, differs;
-  Mat             block;
-
-  PetscFunctionBegin;
-  PetscCall(MatGetOwnershipRange(rows->matrix, &begin, &end));
-  for (PetscInt row = begin; row < end; row++) {
-    PetscCall(MatGetRow(rows->matrix, row, &n, &columns, NULL));
-    hash = ByteSum(ByteSum(hash, sizeof(n), &n), (size_t)n * sizeof(*columns), columns);
-    PetscCall(MatRestoreRow(rows->matrix, row, &n, &columns, NULL));
-  }
-  /* entries in columns of other ranks are stored by their places among those that there is room for, which may be more */
-  PetscCall(PetscObjectTypeCompare((PetscObject)rows->matrix, MATMPIAIJ, &many));
-  if (many) {
-    PetscCall(MatMPIAIJGetSeqAIJ(rows->matrix, NULL, &block, &columns));
-    PetscCall(MatGetSize(block, NULL, &n));
-    hash = ByteSum(ByteSum(hash, sizeof(n), &n), (size_t)n * sizeof(*columns), columns);
-  }
-  differs       = (PetscBool)(hash != rows->pattern);
-  rows->pattern = hash;
-  if (agree) PetscCall(BodyAnyRank(body, &differs));
-  rows->same_pattern = (PetscBool)!differs;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The rows of the interface without held dofs, which no contact force moves */
 PetscErrorCode BodySetUpFreeRows(Body body)
 {
   BodyRows *rows = &body->rows;
 
   PetscFunctionBegin;
-  /* the layer of a local body needs no other rank for its rows, but a copy of them without held dofs is made on all */
-  PetscCall(NotePattern(body, (PetscBool)(!body->local || body->held.any)));
-  if (body->held.any) PetscCall(FillFreeRows(body));
-  else {
+  PetscCall(MatDestroy(&rows->free_matrix));
+  if (!body->held.any) {
     PetscCall(PetscObjectReference((PetscObject)rows->matrix));
-    PetscCall(MatDestroy(&rows->free_matrix));
     rows->free_matrix = rows->matrix;
+    PetscFunctionReturn(PETSC_SUCCESS);
   }
+  if (!rows->free_dofs) {
+    PetscCall(VecDuplicate(body->state.u, &rows->free_dofs));
+    PetscCall(VecSet(rows->free_dofs, 1));
+    PetscCall(BodyZeroHeld(body, rows->free_dofs));
+  }
+  PetscCall(MatDuplicate(rows->matrix, MAT_COPY_VALUES, &rows->free_matrix));
+  PetscCall(MatDiagonalScale(rows->free_matrix, NULL, rows->free_dofs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -150,6 +102,7 @@ PetscErrorCode BodySetConstraints(Body body)
   if (body->solver && !body->rows.n_prescribed && !body->rows.n_robin) PetscCall(ConstrainedSolverFreeRows(body->solver));
   else if (body->solver) {
     if (body->local && body->integrator->ops.agree) PetscCall((*body->integrator->ops.agree)(body));
+    if (body->integrator->ops.setrows) PetscCall((*body->integrator->ops.setrows)(body));
     PetscCall(ConstrainedSolverSetConstraints(body->solver, body->rows.constrained, body->rows.flexibility));
   }
   if (body->mass.solver && body->integrator->divides_by_mass && body->rows.have_mass) {
