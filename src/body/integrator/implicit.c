@@ -122,10 +122,7 @@ static PetscErrorCode FinishSubstep(Body body)
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  if (!body->model.linear) { /* TSALPHA2 keeps the acceleration to itself */
-    PetscCall(VecZeroEntries(body->work.nodes[0]));
-    PetscCall(BodyImplicitMoveEnd(body, body->work.nodes[0]));
-  }
+  if (!body->model.linear) PetscCall(BodyImplicitMoveEnd(body, NULL)); /* TSALPHA2 keeps the acceleration to itself */
   PetscCall(BodyFinishLayer(body));
   PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, body->state.a));
   if (body->rows.have_mass) {

@@ -1,106 +1,54 @@
 /* A substep of a linear body on TSALPHA2: the residual at a first iterate, one solution with the factors of the constant effective matrix,
-   and Newmark's formulas: an iteration of Newton's method, in two passes over the vectors. */
+   and Newmark's formulas: an iteration of Newton's method. */
 #include "implicitimpl.h"
-#include <impakt/private/simd.h>
 
-/* Acceleration at the end of the substep, a1 = c2 (u1 - u0) - c1 v0 - c0 a0, and velocity, v1 = v0 + dt ((1 - gamma) a0 + gamma a1) */
-typedef struct {
-  PetscReal c2, c1, c0, by_start, by_end;
-} Newmark;
-
-static Newmark NewmarkOf(const BodyImplicit *implicit, PetscReal dt)
+/* Acceleration at the end of the substep, a1 = (u1 - u0) / (beta dt^2) - v0 / (beta dt) - (1 - 2 beta) / (2 beta) a0, u1 being U */
+static PetscErrorCode ComputeAcceleration(Body body, Vec U, Vec a1)
 {
-  const PetscReal beta = implicit->beta, gamma = implicit->gamma;
+  const PetscReal beta = ((const BodyImplicit *)body->integrator->data)->beta, dt = body->time.step;
 
-  return (Newmark){1 / (beta * dt * dt), 1 / (beta * dt), (1 - 2 * beta) / (2 * beta), dt * (1 - gamma), dt * gamma};
+  PetscFunctionBegin;
+  PetscCall(VecWAXPY(a1, -1, body->substep_start.u, U));
+  PetscCall(VecAXPBYPCZ(a1, -1 / (beta * dt), -(1 - 2 * beta) / (2 * beta), 1 / (beta * dt * dt), body->substep_start.v, body->state.a));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-SIMD_CLONES static void GetStageAccelerations(PetscInt n, Newmark m, PetscReal alpha_m, const PetscScalar u0[], const PetscScalar v0[],
-                                              const PetscScalar a0[], const PetscScalar u1[], PetscScalar a[])
+/* v = v0 + part dt ((1 - gamma) a0 + gamma a1) */
+static PetscErrorCode ComputeVelocity(Body body, PetscReal part, Vec a1, Vec v)
 {
-#pragma omp simd
-  for (PetscInt i = 0; i < n; i++) a[i] = (1 - alpha_m) * a0[i] + alpha_m * (m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i]);
+  const PetscReal gamma = ((const BodyImplicit *)body->integrator->data)->gamma, dt = part * body->time.step;
+
+  PetscFunctionBegin;
+  PetscCall(VecWAXPY(v, dt * (1 - gamma), body->state.a, body->substep_start.v));
+  PetscCall(VecAXPY(v, dt * gamma, a1));
+  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* Motion at the stage, of which the residual is, from U at the end with held dofs and prescribed rows in place. */
 static PetscErrorCode ComputeStage(Body body, Vec U)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const Newmark       m        = NewmarkOf(implicit, body->time.step);
-  const PetscReal     alpha_f  = implicit->alpha_f;
-  const PetscInt      n        = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar  *u0, *v0, *a0, *u1;
-  PetscScalar        *u, *v, *a;
+  const PetscReal     alpha_m = implicit->alpha_m, alpha_f = implicit->alpha_f;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
-  PetscCall(VecGetArrayRead(body->substep_start.v, &v0));
-  PetscCall(VecGetArrayRead(body->state.a, &a0));
-  PetscCall(VecGetArrayRead(U, &u1));
-  if (implicit->stage_a) {
-    PetscCall(VecGetArrayWrite(implicit->stage_a, &a));
-    GetStageAccelerations(n, m, implicit->alpha_m, u0, v0, a0, u1, a);
-    PetscCall(VecRestoreArrayWrite(implicit->stage_a, &a));
-  }
-  if (implicit->stage_v) {
-    PetscCall(VecGetArrayWrite(implicit->stage_v, &v));
-#pragma omp simd
-    for (PetscInt i = 0; i < n; i++)
-      v[i] = v0[i] + alpha_f * (m.by_start * a0[i] + m.by_end * (m.c2 * (u1[i] - u0[i]) - m.c1 * v0[i] - m.c0 * a0[i]));
-    PetscCall(VecRestoreArrayWrite(implicit->stage_v, &v));
-  }
-  if (implicit->stage_u) {
-    PetscCall(VecGetArrayWrite(implicit->stage_u, &u));
-#pragma omp simd
-    for (PetscInt i = 0; i < n; i++) u[i] = u0[i] + alpha_f * (u1[i] - u0[i]);
-    PetscCall(VecRestoreArrayWrite(implicit->stage_u, &u));
-  }
-  PetscCall(VecRestoreArrayRead(U, &u1));
-  PetscCall(VecRestoreArrayRead(body->state.a, &a0));
-  PetscCall(VecRestoreArrayRead(body->substep_start.v, &v0));
-  PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
-  PetscCall(PetscLogFlops(10.0 * (PetscLogDouble)n));
+  if (implicit->stage_u) PetscCall(VecAXPBYPCZ(implicit->stage_u, 1 - alpha_f, alpha_f, 0, body->substep_start.u, U));
+  if (!implicit->stage_a) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(ComputeAcceleration(body, U, implicit->stage_a));
+  if (implicit->stage_v) PetscCall(ComputeVelocity(body, alpha_f, implicit->stage_a, implicit->stage_v));
+  PetscCall(VecAXPBY(implicit->stage_a, 1 - alpha_m, alpha_m, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* u -= du, and velocity and acceleration with it, which is that at the start before */
-SIMD_CLONES static void MoveEnds(PetscInt n, Newmark m, PetscReal scale, const PetscScalar du[], const PetscScalar u0[],
-                                 const PetscScalar v0[], PetscScalar u[], PetscScalar v[], PetscScalar a[])
-{
-#pragma omp simd
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscScalar way = (u[i] - u0[i]) - scale * du[i], a1 = m.c2 * way - m.c1 * v0[i] - m.c0 * a[i];
-
-    u[i] = u0[i] + way;
-    v[i] = v0[i] + m.by_start * a[i] + m.by_end * a1;
-    a[i] = a1;
-  }
-}
-
-/* The displacement at the end of the substep less a change of it at the stage, with the velocity and the acceleration there */
+/* The displacement at the end of the substep less a change of it at the stage (NULL: none), with the velocity and the acceleration there */
 PetscErrorCode BodyImplicitMoveEnd(Body body, Vec du)
 {
-  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const Newmark       m        = NewmarkOf(implicit, body->time.step);
-  const PetscInt      n        = body->mesh.owned_nodes * body->mesh.dim;
-  const PetscScalar  *change, *u0, *v0;
-  PetscScalar        *u, *v, *a;
+  Vec a1 = body->work.nodes[1];
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(du, &change));
-  PetscCall(VecGetArrayRead(body->substep_start.u, &u0));
-  PetscCall(VecGetArrayRead(body->substep_start.v, &v0));
-  PetscCall(VecGetArray(body->state.u, &u));
-  PetscCall(VecGetArrayWrite(body->state.v, &v));
-  PetscCall(VecGetArray(body->state.a, &a));
-  MoveEnds(n, m, 1 / implicit->alpha_f, change, u0, v0, u, v, a);
-  PetscCall(VecRestoreArray(body->state.a, &a));
-  PetscCall(VecRestoreArrayWrite(body->state.v, &v));
-  PetscCall(VecRestoreArray(body->state.u, &u));
-  PetscCall(VecRestoreArrayRead(body->substep_start.v, &v0));
-  PetscCall(VecRestoreArrayRead(body->substep_start.u, &u0));
-  PetscCall(VecRestoreArrayRead(du, &change));
-  PetscCall(PetscLogFlops(12.0 * (PetscLogDouble)n));
+  if (du) PetscCall(VecAXPY(body->state.u, -1 / ((const BodyImplicit *)body->integrator->data)->alpha_f, du));
+  PetscCall(ComputeAcceleration(body, body->state.u, a1));
+  PetscCall(ComputeVelocity(body, 1, a1, body->state.v));
+  PetscCall(VecCopy(a1, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
