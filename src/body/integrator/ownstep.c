@@ -18,24 +18,29 @@ struct _BodyOwnStep {
   BodyPredictorFn *predictor;
 };
 
-/* The array of a vector of this rank to one that is laid out as those of the body */
-static PetscErrorCode Lend(struct _BodyOwnStep *own, PetscInt k, Vec vec)
+/* The arrays of n vectors of this rank, to vectors laid out as those of the body; those from `written` on are to be written too */
+static PetscErrorCode Lend(struct _BodyOwnStep *own, PetscInt n, PetscInt written, const Vec vecs[])
 {
-  const PetscScalar *array;
-
   PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(vec, &array));
-  PetscCall(VecPlaceArray(own->lent[k], array));
+  for (PetscInt k = 0; k < n; k++) {
+    const PetscScalar *read  = NULL;
+    PetscScalar       *write = NULL;
+
+    if (k < written) PetscCall(VecGetArrayRead(vecs[k], &read));
+    else PetscCall(VecGetArray(vecs[k], &write));
+    PetscCall(VecPlaceArray(own->lent[k], write ? write : read));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* `writes`: what has been done to the vector laid out as those of the body was meant for that of this rank */
-static PetscErrorCode TakeBack(struct _BodyOwnStep *own, PetscInt k, PetscBool writes, Vec vec)
+static PetscErrorCode TakeBack(struct _BodyOwnStep *own, PetscInt n, PetscInt written, const Vec vecs[])
 {
   PetscFunctionBegin;
-  PetscCall(VecResetArray(own->lent[k]));
-  PetscCall(VecRestoreArrayRead(vec, NULL));
-  if (writes) PetscCall(PetscObjectStateIncrease((PetscObject)vec));
+  for (PetscInt k = 0; k < n; k++) {
+    PetscCall(VecResetArray(own->lent[k]));
+    if (k < written) PetscCall(VecRestoreArrayRead(vecs[k], NULL));
+    else PetscCall(VecRestoreArray(vecs[k], NULL));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -50,9 +55,9 @@ static PetscErrorCode ComputeResidual(TS ts, PetscReal t, Vec U, Vec V, Vec A, V
   Vec                  vecs[] = {U, V, A, F};
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < LENT; k++) PetscCall(Lend(own, k, vecs[k]));
+  PetscCall(Lend(own, LENT, 1, vecs));
   PetscCall((*own->residual)(ts, t, own->lent[0], own->lent[1], own->lent[2], own->lent[3], ctx));
-  for (PetscInt k = 0; k < LENT; k++) PetscCall(TakeBack(own, k, (PetscBool)(k > 0), vecs[k]));
+  PetscCall(TakeBack(own, LENT, 1, vecs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -62,9 +67,9 @@ static PetscErrorCode Predict(TS ts, Vec X0, Vec V0, Vec A0, Vec X1, void *ctx)
   Vec                  vecs[] = {X0, V0, A0, X1};
 
   PetscFunctionBegin;
-  for (PetscInt k = 0; k < LENT; k++) PetscCall(Lend(own, k, vecs[k]));
+  PetscCall(Lend(own, LENT, 2, vecs));
   PetscCall((*own->predictor)(ts, own->lent[0], own->lent[1], own->lent[2], own->lent[3], ctx));
-  for (PetscInt k = 0; k < LENT; k++) PetscCall(TakeBack(own, k, (PetscBool)(k > 1), vecs[k]));
+  PetscCall(TakeBack(own, LENT, 2, vecs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,25 +83,24 @@ PetscErrorCode BodyImplicitLinearize(Body body, Vec U)
     PetscCall(BodyImplicitRefactor(body, U));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  PetscCall(Lend(implicit->own, 0, U));
+  PetscCall(Lend(implicit->own, 1, 1, &U));
   PetscCall(BodyImplicitRefactor(body, implicit->own->lent[0]));
-  PetscCall(TakeBack(implicit->own, 0, PETSC_FALSE, U));
+  PetscCall(TakeBack(implicit->own, 1, 1, &U));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 static PetscErrorCode ApplySolver(PC pc, Vec b, Vec x)
 {
+  const Vec            vecs[] = {b, x};
   struct _BodyOwnStep *own;
   Body                 body;
 
   PetscFunctionBegin;
   PetscCall(PCShellGetContext(pc, &body));
   own = OwnStep(body);
-  PetscCall(Lend(own, 0, b));
-  PetscCall(Lend(own, 1, x));
+  PetscCall(Lend(own, 2, 1, vecs));
   PetscCall(ConstrainedSolverSolve(body->solver, own->lent[0], own->lent[1]));
-  PetscCall(TakeBack(own, 1, PETSC_TRUE, x));
-  PetscCall(TakeBack(own, 0, PETSC_FALSE, b));
+  PetscCall(TakeBack(own, 2, 1, vecs));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
