@@ -11,6 +11,20 @@ struct _n_Compliance {
   PetscScalar *values;               /* work space: a column */
 };
 
+/* A unit force: a vector that is 1 at one of its entries, by its number on all ranks, and else 0. Collective. */
+PetscErrorCode ComplianceSetUnit(Vec vec, PetscInt entry)
+{
+  PetscInt begin, end;
+
+  PetscFunctionBegin;
+  PetscCall(VecZeroEntries(vec));
+  PetscCall(VecGetOwnershipRange(vec, &begin, &end));
+  if (entry >= begin && entry < end) PetscCall(VecSetValue(vec, entry, 1, INSERT_VALUES));
+  PetscCall(VecAssemblyBegin(vec));
+  PetscCall(VecAssemblyEnd(vec));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* For rows laid out as a vector; none is known yet */
 PetscErrorCode ComplianceCreate(Vec layout, Compliance *compliance)
 {

@@ -6,6 +6,7 @@
 
 typedef struct _n_Compliance *Compliance;
 
+PETSC_INTERN PetscErrorCode ComplianceSetUnit(Vec, PetscInt);
 PETSC_INTERN PetscErrorCode ComplianceCreate(Vec, Compliance *);
 PETSC_INTERN PetscErrorCode ComplianceDestroy(Compliance *);
 PETSC_INTERN void           ComplianceClear(Compliance);

@@ -25,22 +25,20 @@ static PetscErrorCode ChooseColumns(ConstrainedSolver s)
 /* Whether the rank that has A has all rows too */
 static PetscErrorCode FindWhetherAlone(ConstrainedSolver s)
 {
-  const PetscInt *ranges;
+  const PetscInt *rows, *ranges;
 
   PetscFunctionBegin;
+  PetscCall(MatGetOwnershipRanges(s->B, &rows));
   PetscCall(VecGetOwnershipRanges(s->rhs, &ranges));
   s->alone = s->home;
   for (PetscMPIInt r = 0; r < s->size; r++)
-    if (s->counts[r] && ranges[r + 1] == ranges[r]) s->alone = PETSC_FALSE;
+    if (rows[r + 1] > rows[r] && ranges[r + 1] == ranges[r]) s->alone = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* All that goes with the rows: none of them is constrained, and no column is there */
 static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B)
 {
-  MPI_Comm    comm = PetscObjectComm((PetscObject)s->ksp);
-  PetscMPIInt local, total = 0;
-
   PetscFunctionBegin;
   PetscCall(PetscObjectReference((PetscObject)B));
   s->B = B;
@@ -48,10 +46,6 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B)
   PetscCall(MatGetLocalSize(B, &s->local, NULL));
   PetscCall(MatGetSize(B, &s->global, NULL));
   PetscCall(MatGetOwnershipRange(B, &s->begin, NULL));
-  PetscCall(PetscMalloc2(s->size, &s->counts, s->size, &s->offsets));
-  PetscCall(PetscMPIIntCast(s->local, &local));
-  PetscCallMPI(MPI_Allgather(&local, 1, MPI_INT, s->counts, 1, MPI_INT, comm));
-  for (PetscMPIInt r = 0; r < s->size; total += s->counts[r++]) s->offsets[r] = total;
   PetscCall(FindWhetherAlone(s));
   PetscCall(
       PetscCalloc5(s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh, s->global, &s->changes));
@@ -67,7 +61,6 @@ static PetscErrorCode DestroyRows(ConstrainedSolver s)
   for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
   PetscCall(PetscFree5(s->constrained, s->rows, s->columns, s->fresh, s->changes));
   PetscCall(PetscFree3(s->gathered, s->force, s->used));
-  PetscCall(PetscFree2(s->counts, s->offsets));
   PetscCall(PetscFree2(s->W, s->pivots));
   PetscCall(VecDestroy(&s->row));
   PetscCall(MatDestroy(&s->B));
@@ -237,28 +230,15 @@ PetscErrorCode ConstrainedSolverApplyCompliance(ConstrainedSolver s, Vec f, Vec 
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* C_j = A^{-1} B^T e_j */
-static PetscErrorCode SolveForColumn(ConstrainedSolver s, PetscInt j)
-{
-  PetscScalar *unit;
-
-  PetscFunctionBegin;
-  if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
-  PetscCall(VecGetArrayWrite(s->row, &unit));
-  PetscCall(PetscArrayzero(unit, s->local));
-  if (j >= s->begin && j < s->begin + s->local) unit[j - s->begin] = 1;
-  PetscCall(VecRestoreArrayWrite(s->row, &unit));
-  PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
-  PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->columns[j]));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* The same, unless it is there */
+/* C_j = A^{-1} B^T e_j, unless it is there */
 PetscErrorCode ConstrainedSolverMakeColumn(ConstrainedSolver s, PetscInt j)
 {
   PetscFunctionBegin;
   if (s->fresh[j]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(SolveForColumn(s, j));
+  if (!s->columns[j]) PetscCall(VecDuplicate(s->rhs, &s->columns[j]));
+  PetscCall(ComplianceSetUnit(s->row, j));
+  PetscCall(MatMultTranspose(s->B, s->row, s->rhs));
+  PetscCall(ConstrainedSolverSolveFree(s, s->rhs, s->columns[j]));
   s->fresh[j] = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

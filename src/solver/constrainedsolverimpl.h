@@ -1,5 +1,6 @@
 /* What the sources of the constrained solver share. Private to src/solver. */
 #pragma once
+#include "compliance.h"
 #include "constrainedsolver.h"
 
 struct _n_ConstrainedSolver {
@@ -10,7 +11,7 @@ struct _n_ConstrainedSolver {
   PetscBool          alone;   /* and all rows of B too: then it solves without a word of others, who may not even ask */
   Mat                B;
   PetscInt           local, global, begin; /* rows of B */
-  PetscMPIInt        size, *counts, *offsets;
+  PetscMPIInt        size;
   PetscBool          constant;    /* A is */
   KSPConvergedReason failed;      /* why a solution with a matrix that is not constant did not converge; 0: none failed */
   PetscReal         *constrained; /* of all rows: its flexibility, 0 where it is prescribed, less than 0 where it is free */

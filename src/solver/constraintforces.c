@@ -96,9 +96,11 @@ static PetscErrorCode FactorConstraints(ConstrainedSolver s)
 PetscErrorCode ConstrainedSolverSetConstraints(ConstrainedSolver s, const PetscBool constrained[], const PetscReal flexibility[])
 {
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < s->local; i++) s->constrained[s->begin + i] = constrained[i] ? (flexibility ? flexibility[i] : 0) : -1;
+  for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
+  for (PetscInt i = 0; i < s->local; i++)
+    if (constrained[i]) s->constrained[s->begin + i] = flexibility ? flexibility[i] : 0;
   PetscCallMPI(
-      MPI_Allgatherv(MPI_IN_PLACE, 0, MPIU_REAL, s->constrained, s->counts, s->offsets, MPIU_REAL, PetscObjectComm((PetscObject)s->ksp)));
+      MPI_Allreduce(MPI_IN_PLACE, s->constrained, (PetscMPIInt)s->global, MPIU_REAL, MPIU_MAX, PetscObjectComm((PetscObject)s->ksp)));
   PetscCall(FactorConstraints(s));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -210,10 +212,11 @@ static PetscErrorCode FindColumns(ConstrainedSolver s, PetscBool *columns)
 static PetscErrorCode GatherChanges(ConstrainedSolver s, const PetscScalar force[], PetscBool *columns)
 {
   PetscFunctionBegin;
+  PetscCall(PetscArrayzero(s->changes, s->global));
+  PetscCall(PetscArraycpy(s->changes + s->begin, force, s->local));
   if (s->size > 1 && !s->alone)
-    PetscCallMPI(MPI_Allgatherv(force, (PetscMPIInt)s->local, MPIU_SCALAR, s->changes, s->counts, s->offsets, MPIU_SCALAR,
-                                PetscObjectComm((PetscObject)s->ksp)));
-  else PetscCall(PetscArraycpy(s->changes, force, s->local));
+    PetscCallMPI(
+        MPI_Allreduce(MPI_IN_PLACE, s->changes, (PetscMPIInt)s->global, MPIU_SCALAR, MPIU_SUM, PetscObjectComm((PetscObject)s->ksp)));
   PetscCall(FindColumns(s, columns));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

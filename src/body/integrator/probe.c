@@ -1,27 +1,13 @@
 /* What unit forces on nodes of a body bring about in a controller step from rest, without loads; afterwards it is as it was. */
 #include <body/layout/bodyimpl.h>
 
-/* BodySetUnit - a vector laid out as displacements that is 1 at one of them, by its number on all ranks, and else 0 */
-PetscErrorCode BodySetUnit(Vec vec, PetscInt dof)
-{
-  PetscInt begin, end;
-
-  PetscFunctionBegin;
-  PetscCall(VecZeroEntries(vec));
-  PetscCall(VecGetOwnershipRange(vec, &begin, &end));
-  if (dof >= begin && dof < end) PetscCall(VecSetValue(vec, dof, 1, INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(vec));
-  PetscCall(VecAssemblyEnd(vec));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The substeps of a controller step under a force of 1 N, from the saved state, whose displacements become a column */
 static PetscErrorCode ProbeColumn(Body body, PetscInt dof, Compliance matrices)
 {
   const PetscScalar *u;
 
   PetscFunctionBegin;
-  PetscCall(BodySetUnit(body->rows.nodal_force, dof));
+  PetscCall(ComplianceSetUnit(body->rows.nodal_force, dof));
   if (body->rows.nodal_shape == BODY_FORCE_CONSTANT) { /* the step starts from it too */
     PetscCall(VecCopy(body->rows.nodal_force, body->work.nodes[0]));
     PetscCall(BodyAnswerAtStart(body, body->saved.a));

@@ -508,7 +508,6 @@ PETSC_INTERN PetscErrorCode BodyRepeat(Body, PetscBool *);
 PETSC_INTERN PetscErrorCode BodyNoteInputs(Body);
 PETSC_INTERN PetscErrorCode BodyPrepareLinearized(Body);
 PETSC_INTERN PetscErrorCode BodyTryIntegrate(Body, StepConvergedReason *);
-PETSC_INTERN PetscErrorCode BodySetUnit(Vec, PetscInt);
 PETSC_INTERN PetscErrorCode BodyProbeNodes(Body, BodyForceShape, PetscInt, const PetscInt[], Compliance);
 PETSC_INTERN PetscErrorCode BodyAnswerAtStart(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyNoteStart(Body);

@@ -7,15 +7,13 @@
 typedef struct _NodalMatrix *NodalMatrix;
 
 struct _BodyCompliance {
-  Compliance     nodal;          /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
-  BodyForceShape nodal_shape;    /* the forces that it is for */
-  PetscReal      nodal_step;     /* the substep that it is of [s] */
-  PetscReal      nodal_time;     /* where it is that of a state: when the step begins [s] */
-  NodalMatrix    nodal_matrix;   /* that tells it, see nodalmatrix.c; NULL: controller steps do */
-  PetscInt       nodal_kind;     /* which kind of it has told what is known, see nodalmatrix.c */
-  Vec            diagonal;       /* see BodyGetNodalDiagonal(); or NULL */
-  PetscReal      diagonal_step;  /* the substep that it is of [s], */
-  BodyForceShape diagonal_shape; /* and how forces run in it */
+  Compliance     nodal;        /* of displacements, not rows, at the end of the controller step, see BodyGetNodalCompliance(); or NULL */
+  BodyForceShape nodal_shape;  /* the forces that it is for */
+  PetscReal      nodal_step;   /* the substep that it is of [s] */
+  PetscReal      nodal_time;   /* where it is that of a state: when the step begins [s] */
+  NodalMatrix    nodal_matrix; /* that tells it, see nodalmatrix.c; NULL: controller steps do */
+  PetscInt       nodal_kind;   /* which kind of it has told what is known, see nodalmatrix.c */
+  Vec            diagonal;     /* see BodyGetNodalDiagonal(); or NULL */
 };
 
 PETSC_INTERN PetscErrorCode NodalMatrixRenew(Body, BodyForceShape, PetscInt, PetscInt, const PetscInt[], PetscInt *, NodalMatrix *,

@@ -256,7 +256,7 @@ static PetscErrorCode SolveColumns(Body body, const NodalMatrix nodal, BodyForce
       PetscCall(VecScale(column, shape == BODY_FORCE_CONSTANT ? 2 : 1));
     }
     if (layer) {
-      PetscCall(BodySetUnit(of_layer, dofs[k]));
+      PetscCall(ComplianceSetUnit(of_layer, dofs[k]));
       /* an explicit body has the factors of its layer's balance */
       if (answers) PetscCall(BodyApplyLayerCompliance(body, of_layer, of_layer));
       else {

@@ -104,14 +104,9 @@ PetscErrorCode BodyGetNodalDiagonal(Body body, BodyForceShape shape, Vec *diagon
   *diagonal = NULL;
   if (!body->mass.inverse || body->integrator->staggered <= 0 || body->time.substeps > 1 || body->layer.exists)
     PetscFunctionReturn(PETSC_SUCCESS);
-  if (!compliance->diagonal || compliance->diagonal_step != body->time.step || compliance->diagonal_shape != shape) {
-    if (!compliance->diagonal) PetscCall(BodyCreateVec(body, &compliance->diagonal));
-    PetscCall(VecCopy(body->mass.inverse, compliance->diagonal));
-    PetscCall(VecScale(compliance->diagonal, shape == BODY_FORCE_CONSTANT ? 0.5 * PetscSqr(body->time.step) : 0));
-    PetscCall(BodyZeroHeld(body, compliance->diagonal));
-    compliance->diagonal_step  = body->time.step;
-    compliance->diagonal_shape = shape;
-  }
+  if (!compliance->diagonal) PetscCall(BodyCreateVec(body, &compliance->diagonal));
+  PetscCall(VecAXPBY(compliance->diagonal, shape == BODY_FORCE_CONSTANT ? 0.5 * PetscSqr(body->time.step) : 0, 0, body->mass.inverse));
+  PetscCall(BodyZeroHeld(body, compliance->diagonal));
   *diagonal = compliance->diagonal;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
