@@ -56,8 +56,8 @@ static void SetShifts(Body body)
   BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
 
   if (!body->integrator->has_inertia) return;
-  implicit->shift          = implicit->alpha_m / (implicit->alpha_f * implicit->beta * PetscSqr(body->time.step));
-  implicit->shift_velocity = implicit->gamma / (implicit->beta * body->time.step);
+  implicit->shift          = implicit->alpha_m / (implicit->alpha_f * body->integrator->beta * PetscSqr(body->time.step));
+  implicit->shift_velocity = body->integrator->gamma / (body->integrator->beta * body->time.step);
 }
 
 /* The factors are there, and what depends on how many numbers they have */

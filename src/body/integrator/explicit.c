@@ -236,7 +236,6 @@ static PetscErrorCode Destroy(Body body)
 {
   PetscFunctionBegin;
   PetscCall(LayerBalanceDestroy(&((BodyExplicit *)body->integrator->data)->layer));
-  PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -67,22 +67,23 @@ static PetscErrorCode SetDefaults(Body body)
 
 static PetscErrorCode GetParameters(Body body)
 {
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
-  const char   *prefix   = ((PetscObject)body)->prefix;
+  BodyImplicit  *implicit   = (BodyImplicit *)body->integrator->data;
+  BodyIntegrator integrator = body->integrator;
+  const char    *prefix     = ((PetscObject)body)->prefix;
 
   PetscFunctionBegin;
-  PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
-  PetscCheck(PetscMax(PetscMax(implicit->beta, implicit->gamma), PetscMax(implicit->alpha_f, implicit->alpha_m)) <= LARGEST,
+  PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &integrator->gamma, &integrator->beta));
+  PetscCheck(PetscMax(PetscMax(integrator->beta, integrator->gamma), PetscMax(implicit->alpha_f, implicit->alpha_m)) <= LARGEST,
              PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must not be larger than %g", prefix, (double)implicit->alpha_m,
-             (double)implicit->alpha_f, (double)implicit->gamma, (double)implicit->beta, LARGEST);
-  PetscCheck(implicit->beta > 0 && implicit->alpha_f > 0 && implicit->alpha_m > 0 && implicit->gamma > 0,
+             (double)implicit->alpha_f, (double)integrator->gamma, (double)integrator->beta, LARGEST);
+  PetscCheck(integrator->beta > 0 && implicit->alpha_f > 0 && implicit->alpha_m > 0 && integrator->gamma > 0,
              PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sts_alpha_...: alpha_m %g, alpha_f %g, gamma %g, beta %g must be positive; for the explicit scheme (beta = 0) choose "
              "-%sts_type centraldifference",
-             prefix, (double)implicit->alpha_m, (double)implicit->alpha_f, (double)implicit->gamma, (double)implicit->beta, prefix);
+             prefix, (double)implicit->alpha_m, (double)implicit->alpha_f, (double)integrator->gamma, (double)integrator->beta, prefix);
   /* else the force at the stage, within the substep, is what displacements answer to */
-  body->integrator->affine = (PetscBool)(implicit->alpha_f == 1 && implicit->alpha_m == 1);
+  integrator->affine = (PetscBool)(implicit->alpha_f == 1 && implicit->alpha_m == 1);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -111,8 +112,22 @@ static PetscErrorCode SetUp(Body body)
   /* else velocities at the end, and the dashpots' forces, have a part of the acceleration at the start; several ranks would wait for each
      other in what forces on the rows do there */
   body->integrator->repeats_constant = (PetscBool)(body->model.linear && body->integrator->affine && !body->layer.exists &&
-                                                   body->time.substeps == 1 && implicit->gamma == 2 * implicit->beta &&
+                                                   body->time.substeps == 1 && body->integrator->gamma == 2 * body->integrator->beta &&
                                                    body->rows.size == 1);
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Velocity and acceleration of massless, held and prescribed nodes at a position in the controller step, and the forces of the dashpots */
+static PetscErrorCode FinishRates(Body body, PetscReal position)
+{
+  PetscFunctionBegin;
+  PetscCall(BodyFinishLayer(body));
+  PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, body->state.a));
+  if (body->rows.have_mass) {
+    PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
+    PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
+  }
+  PetscCall(BodyNoteDamping(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -122,17 +137,12 @@ static PetscErrorCode FinishSubstep(Body body)
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
 
   PetscFunctionBegin;
-  if (!body->model.linear) PetscCall(BodyImplicitMoveEnd(body, NULL)); /* TSALPHA2 keeps the acceleration to itself */
-  PetscCall(BodyFinishLayer(body));
-  PetscCall(BodyPrescribeHeld(body, body->state.time, NULL, body->state.v, body->state.a));
-  if (body->rows.have_mass) {
-    const PetscReal position = (PetscReal)(body->time.substep + 1) / body->time.substeps;
-
-    PetscCall(BodyPrescribe(body, body->traces.velocity_in, position, body->state.v));
-    PetscCall(BodyPrescribe(body, body->traces.acceleration_in, position, body->state.a));
+  if (!body->model.linear) { /* TSALPHA2 keeps the acceleration to itself */
+    PetscCall(BodyImplicitGetAcceleration(body, body->state.u, body->work.nodes[0]));
+    PetscCall(VecCopy(body->work.nodes[0], body->state.a));
   }
   if (!body->model.linear && implicit->alpha_f != 1) PetscCall(BodyComputeInternalForce(body, body->state.u, body->state.internal_force));
-  PetscCall(BodyNoteDamping(body));
+  PetscCall(FinishRates(body, (PetscReal)(body->time.substep + 1) / body->time.substeps));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -140,40 +150,17 @@ static PetscErrorCode FinishSubstep(Body body)
    its start too, by da0 = M^{-1} B^T df: A du = (1 + c0) B^T df and da -= c0 da0, c0 = (1 - 2 beta) / (2 beta). */
 static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscScalar displacement[])
 {
-  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal     dt = body->time.step, to_velocity = implicit->gamma / (implicit->beta * dt);
-  const PetscReal     c0 = body->rows.constant ? (1 - 2 * implicit->beta) / (2 * implicit->beta) : 0;
+  const PetscReal dt = body->time.step, beta = body->integrator->beta, to_velocity = body->integrator->gamma / (beta * dt);
+  const PetscReal c0 = body->rows.constant ? (1 - 2 * beta) / (2 * beta) : 0;
 
   PetscFunctionBegin;
-  PetscCall(BodyImplicitCorrect(body, displacement, 1 + c0, to_velocity, 1 / (implicit->beta * dt * dt), body->work.nodes[2]));
+  PetscCall(BodyImplicitCorrect(body, displacement, 1 + c0, to_velocity, 1 / (beta * dt * dt), body->work.nodes[2]));
   if (body->rows.constant) {
     PetscCall(BodySolveMassOfRows(body, force, body->work.nodes[2]));
     PetscCall(VecAXPY(body->saved.a, 1, body->work.nodes[2]));
     PetscCall(VecAXPY(body->state.a, -c0, body->work.nodes[2]));
   }
-  PetscCall(BodyFinishLayer(body));
-  if (body->rows.have_mass) {
-    PetscCall(BodyPrescribe(body, body->traces.velocity_in, 1, body->state.v));
-    PetscCall(BodyPrescribe(body, body->traces.acceleration_in, 1, body->state.a));
-  }
-  PetscCall(BodyNoteDamping(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Newmark's formulas; massless nodes, which have no dynamics, have (u1 - u0) / dt and zero instead. */
-static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
-{
-  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal     dt = body->time.step, beta = implicit->beta, gamma = implicit->gamma;
-  const PetscBool     massless = (PetscBool)(body->mass.redistribute && !body->rows.tied_mass);
-
-  PetscFunctionBegin;
-  acceleration[0] = massless ? 0 : 1 / (beta * dt * dt);
-  acceleration[1] = massless ? 0 : -1 / (beta * dt);
-  acceleration[2] = massless ? 0 : -(1 - 2 * beta) / (2 * beta);
-  velocity[0]     = massless ? 1 / dt : gamma / (beta * dt);
-  velocity[1]     = massless ? 0 : 1 - gamma / beta;
-  velocity[2]     = massless ? 0 : dt * (1 - gamma / (2 * beta));
+  PetscCall(FinishRates(body, 1));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -187,6 +174,5 @@ PetscErrorCode BodyIntegratorCreate_Implicit(BodyIntegrator integrator)
   integrator->ops.setup         = SetUp;
   integrator->ops.finishsubstep = FinishSubstep;
   integrator->ops.repeat        = Repeat;
-  integrator->ops.rates         = GetRates;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

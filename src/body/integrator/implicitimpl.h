@@ -7,20 +7,20 @@
 #define BODY_STATIC_DESCENT 1e-4
 
 typedef struct {
-  PetscReal alpha_m, alpha_f, gamma, beta; /* of TSALPHA2 */
-  Mat       matrix;                        /* K + shift M, its held dofs eliminated: body->solver has its factors */
-  Mat       matrices[STEP_MAX_CUTS + 1];   /* that of each level of cut steps which there has been */
-  PetscBool iterated;                      /* of a nonlinear body: in this substep by Newton's method, or refactored at its start */
-  Vec       stiffness;                     /* diagonal of the stiffness of a nonlinear body, undeformed [N/m] */
-  PetscReal shift;                         /* [1/s^2]; 0 without inertia */
-  PetscReal shift_velocity;                /* of C where the body is damped [1/s] */
-  PetscReal first;                         /* norm of the first residual of the substep [N] */
-  PetscReal terms, round_off;          /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
-  PetscReal unit_strain;               /* norm of the forces of strains of size 1, of a nonlinear body [N] */
-  Vec       lead[4];                   /* work of BodyImplicitCarry() */
-  Vec       stage_u, stage_v, stage_a; /* of a linear body, at the stage: NULL where its residual does not read them, or is at the end */
-  struct _BodyOwnStep *own;            /* of a nonlinear body that one of several ranks has: see ownstep.c; or NULL */
-  PetscBool            alone;          /* the substep under way is that rank's alone */
+  PetscReal alpha_m, alpha_f;            /* of TSALPHA2 */
+  Mat       matrix;                      /* K + shift M, its held dofs eliminated: body->solver has its factors */
+  Mat       matrices[STEP_MAX_CUTS + 1]; /* that of each level of cut steps which there has been */
+  PetscBool iterated;                    /* of a nonlinear body: in this substep by Newton's method, or refactored at its start */
+  Vec       stiffness;                   /* diagonal of the stiffness of a nonlinear body, undeformed [N/m] */
+  PetscReal shift;                       /* [1/s^2]; 0 without inertia */
+  PetscReal shift_velocity;              /* of C where the body is damped [1/s] */
+  PetscReal first;                       /* norm of the first residual of the substep [N] */
+  PetscReal terms, round_off;            /* of a nonlinear residual: norm of the forces that it is the balance of, and its round-off [N] */
+  PetscReal unit_strain;                 /* norm of the forces of strains of size 1, of a nonlinear body [N] */
+  Vec       lead[4];                     /* work of BodyImplicitCarry() */
+  Vec       stage_u, stage_v, stage_a;   /* of a linear body, at the stage: NULL where its residual does not read them, or is at the end */
+  struct _BodyOwnStep *own;              /* of a nonlinear body that one of several ranks has: see ownstep.c; or NULL */
+  PetscBool            alone;            /* the substep under way is that rank's alone */
 } BodyImplicit;
 
 typedef PetscErrorCode BodyResidualFn(TS, PetscReal, Vec, Vec, Vec, Vec, void *);
@@ -46,4 +46,4 @@ PETSC_INTERN PetscErrorCode BodyImplicitAddForces(Body, PetscReal, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitPrescribe(Body, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitCarry(Body, BodyResidualFn *, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyImplicitCorrect(Body, const PetscScalar[], PetscReal, PetscReal, PetscReal, Vec);
-PETSC_INTERN PetscErrorCode BodyImplicitMoveEnd(Body, Vec);
+PETSC_INTERN PetscErrorCode BodyImplicitGetAcceleration(Body, Vec, Vec);

@@ -79,6 +79,5 @@ PetscErrorCode BodyImplicitDestroy(Body body)
   for (PetscInt k = 0; k < 4; k++) PetscCall(VecDestroy(&implicit->lead[k]));
   PetscCall(BodyImplicitDestroyOwnStep(body));
   for (PetscInt k = 0; k <= STEP_MAX_CUTS; k++) PetscCall(MatDestroy(&implicit->matrices[k]));
-  PetscCall(PetscFree(body->integrator->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

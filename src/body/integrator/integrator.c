@@ -54,6 +54,7 @@ PetscErrorCode BodyIntegratorDestroy(Body body)
   PetscFunctionBegin;
   if (!body->integrator) PetscFunctionReturn(PETSC_SUCCESS);
   if (body->integrator->ops.destroy) PetscCall((*body->integrator->ops.destroy)(body));
+  PetscCall(PetscFree(body->integrator->data));
   PetscCall(PetscFree(body->integrator));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

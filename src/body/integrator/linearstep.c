@@ -3,9 +3,9 @@
 #include "implicitimpl.h"
 
 /* Acceleration at the end of the substep, a1 = (u1 - u0) / (beta dt^2) - v0 / (beta dt) - (1 - 2 beta) / (2 beta) a0, u1 being U */
-static PetscErrorCode ComputeAcceleration(Body body, Vec U, Vec a1)
+PetscErrorCode BodyImplicitGetAcceleration(Body body, Vec U, Vec a1)
 {
-  const PetscReal beta = ((const BodyImplicit *)body->integrator->data)->beta, dt = body->time.step;
+  const PetscReal beta = body->integrator->beta, dt = body->time.step;
 
   PetscFunctionBegin;
   PetscCall(VecWAXPY(a1, -1, body->substep_start.u, U));
@@ -13,42 +13,40 @@ static PetscErrorCode ComputeAcceleration(Body body, Vec U, Vec a1)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* v = v0 + part dt ((1 - gamma) a0 + gamma a1) */
-static PetscErrorCode ComputeVelocity(Body body, PetscReal part, Vec a1, Vec v)
-{
-  const PetscReal gamma = ((const BodyImplicit *)body->integrator->data)->gamma, dt = part * body->time.step;
-
-  PetscFunctionBegin;
-  PetscCall(VecWAXPY(v, dt * (1 - gamma), body->state.a, body->substep_start.v));
-  PetscCall(VecAXPY(v, dt * gamma, a1));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* Motion at the stage, of which the residual is, from U at the end with held dofs and prescribed rows in place. */
+/* Motion at the stage, of which the residual is, from U at the end with held dofs and prescribed rows in place: v = v0 + alpha_f dt ((1 -
+   gamma) a0 + gamma a1), a = (1 - alpha_m) a0 + alpha_m a1 */
 static PetscErrorCode ComputeStage(Body body, Vec U)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal     alpha_m = implicit->alpha_m, alpha_f = implicit->alpha_f;
+  const PetscReal     alpha_m = implicit->alpha_m, alpha_f = implicit->alpha_f, dt = alpha_f * body->time.step;
+  const PetscReal     gamma = body->integrator->gamma;
 
   PetscFunctionBegin;
   if (implicit->stage_u) PetscCall(VecAXPBYPCZ(implicit->stage_u, 1 - alpha_f, alpha_f, 0, body->substep_start.u, U));
   if (!implicit->stage_a) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(ComputeAcceleration(body, U, implicit->stage_a));
-  if (implicit->stage_v) PetscCall(ComputeVelocity(body, alpha_f, implicit->stage_a, implicit->stage_v));
+  PetscCall(BodyImplicitGetAcceleration(body, U, implicit->stage_a));
+  if (implicit->stage_v) {
+    PetscCall(VecWAXPY(implicit->stage_v, dt * (1 - gamma), body->state.a, body->substep_start.v));
+    PetscCall(VecAXPY(implicit->stage_v, dt * gamma, implicit->stage_a));
+  }
   PetscCall(VecAXPBY(implicit->stage_a, 1 - alpha_m, alpha_m, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The displacement at the end of the substep less a change of it at the stage (NULL: none), with the velocity and the acceleration there */
-PetscErrorCode BodyImplicitMoveEnd(Body body, Vec du)
+/* The displacement at the end of the substep less a change of it at the stage, with the velocity and the acceleration there */
+static PetscErrorCode MoveEnd(Body body, Vec du)
 {
-  Vec a1 = body->work.nodes[1];
+  const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
+  const PetscReal     dt = body->time.step, gamma = body->integrator->gamma, alpha_m = implicit->alpha_m;
+  const BodyState    *state = &body->state;
 
   PetscFunctionBegin;
-  if (du) PetscCall(VecAXPY(body->state.u, -1 / ((const BodyImplicit *)body->integrator->data)->alpha_f, du));
-  PetscCall(ComputeAcceleration(body, body->state.u, a1));
-  PetscCall(ComputeVelocity(body, 1, a1, body->state.v));
-  PetscCall(VecCopy(a1, body->state.a));
+  PetscCall(VecAXPY(state->u, -1 / implicit->alpha_f, du));
+  if (!implicit->stage_a) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(VecAXPY(state->v, dt * (1 - gamma), state->a));
+  PetscCall(VecAXPBYPCZ(state->a, 1 / alpha_m, -1 / (implicit->alpha_f * body->integrator->beta * dt * dt), (alpha_m - 1) / alpha_m,
+                        implicit->stage_a, du));
+  PetscCall(VecAXPY(state->v, dt * gamma, state->a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -107,7 +105,7 @@ static PetscErrorCode MakeStep(TS ts)
   PetscCall((*compute_residual)(ts, t + implicit->alpha_f * dt, implicit->stage_u ? implicit->stage_u : U, implicit->stage_v,
                                 implicit->stage_a, F, body));
   PetscCall(ConstrainedSolverSolve(body->solver, F, du));
-  PetscCall(BodyImplicitMoveEnd(body, du));
+  PetscCall(MoveEnd(body, du));
   body->state.force_known = PETSC_FALSE;
   PetscCall(TSSetTime(ts, t + dt));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -123,7 +123,7 @@ static PetscErrorCode CreateTS(Body body, BodyNewtonFn *newton)
   PetscCall(TSCreate(PETSC_COMM_SELF, &own->ts));
   PetscCall(TSSetOptionsPrefix(own->ts, ((PetscObject)body)->prefix));
   PetscCall(TSSetType(own->ts, TSALPHA2));
-  PetscCall(TSAlpha2SetParams(own->ts, implicit->alpha_m, implicit->alpha_f, implicit->gamma, implicit->beta));
+  PetscCall(TSAlpha2SetParams(own->ts, implicit->alpha_m, implicit->alpha_f, body->integrator->gamma, body->integrator->beta));
   PetscCall(TSGetAdapt(own->ts, &adapt));
   PetscCall(TSAdaptSetType(adapt, TSADAPTNONE));
   PetscCall(TS2SetSolution(own->ts, own->u, own->v));

@@ -227,28 +227,6 @@ static PetscErrorCode SetUp(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Newmark's formulas, as far as the body does not turn */
-static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
-{
-  const PetscReal dt = body->time.step;
-
-  PetscFunctionBegin;
-  velocity[0]     = 2 / dt;
-  velocity[1]     = -1;
-  velocity[2]     = 0;
-  acceleration[0] = 4 / (dt * dt);
-  acceleration[1] = -4 / dt;
-  acceleration[2] = -1;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode Destroy(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFree(body->integrator->data));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode BodyIntegratorCreate_Rigid(BodyIntegrator integrator)
 {
   BodyRigid *rigid;
@@ -259,15 +237,15 @@ PetscErrorCode BodyIntegratorCreate_Rigid(BodyIntegrator integrator)
   integrator->deforms               = PETSC_FALSE;
   integrator->has_inertia           = PETSC_TRUE;
   integrator->affine                = PETSC_TRUE;
+  integrator->beta                  = 0.25; /* as far as the body does not turn */
+  integrator->gamma                 = 0.5;
   integrator->ops.getparameters     = GetParameters;
   integrator->ops.setup             = SetUp;
   integrator->ops.nodalcolumns      = BodyRigidSetNodalColumns;
   integrator->ops.solvemass         = BodyRigidSolveMass;
   integrator->ops.start             = Start;
   integrator->ops.startacceleration = CompleteStartAcceleration;
-  integrator->ops.rates             = GetRates;
   integrator->ops.measure           = BodyRigidMeasure;
   integrator->ops.view              = BodyRigidView;
-  integrator->ops.destroy           = Destroy;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -62,11 +62,12 @@ static PetscErrorCode MakeSubstep(Body body)
 
 static PetscErrorCode GetParameters(Body body)
 {
-  BodyImplicit *implicit = (BodyImplicit *)body->integrator->data;
+  BodyImplicit  *implicit   = (BodyImplicit *)body->integrator->data;
+  BodyIntegrator integrator = body->integrator;
 
   PetscFunctionBegin;
-  PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &implicit->gamma, &implicit->beta));
-  PetscCheck(implicit->alpha_m == 1 && implicit->alpha_f == 1 && implicit->gamma > 0 && implicit->beta > 0,
+  PetscCall(TSAlpha2GetParams(body->time.ts, &implicit->alpha_m, &implicit->alpha_f, &integrator->gamma, &integrator->beta));
+  PetscCheck(implicit->alpha_m == 1 && implicit->alpha_f == 1 && integrator->gamma > 0 && integrator->beta > 0,
              PetscObjectComm((PetscObject)body), PETSC_ERR_USER_INPUT,
              "-%sts_alpha_...: a static body has no parameters of time integration; leave them out", ((PetscObject)body)->prefix);
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -104,14 +105,6 @@ static PetscErrorCode Repeat(Body body, const PetscScalar force[], const PetscSc
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode GetRates(Body body, PetscReal velocity[3], PetscReal acceleration[3])
-{
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < 3; k++) velocity[k] = acceleration[k] = 0;
-  velocity[0] = 1 / body->time.step;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator integrator)
 {
   PetscFunctionBegin;
@@ -122,6 +115,5 @@ PetscErrorCode BodyIntegratorCreate_Static(BodyIntegrator integrator)
   integrator->ops.finishsubstep = FinishSubstep;
   integrator->ops.repeat        = Repeat;
   integrator->ops.save          = BodyResetSprings; /* they are at rest where the body starts from */
-  integrator->ops.rates         = GetRates;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -332,16 +332,16 @@ PetscErrorCode BodyGetHeldDofs(Body body, PetscInt *n, const PetscInt *dofs[])
    a_a a0. v_u and a_v are in [1/s], v_a in [s], a_u in [1/s^2]. Massless nodes report u1 - u0 over the step and zero instead. */
 PetscErrorCode BodyGetNewmark(Body body, PetscReal *v_u, PetscReal *v_v, PetscReal *v_a, PetscReal *a_u, PetscReal *a_v, PetscReal *a_a)
 {
-  PetscReal velocity[3], acceleration[3];
+  const PetscReal dt = body->time.step, beta = body->integrator->beta, gamma = body->integrator->gamma;
+  const PetscBool massless = (PetscBool)(!body->integrator->has_inertia || (body->mass.redistribute && !body->rows.tied_mass));
 
   PetscFunctionBegin;
-  PetscCheck(body->integrator->ops.rates, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG, "Body '%s' is explicit", body->hdr.name);
-  PetscCall((*body->integrator->ops.rates)(body, velocity, acceleration));
-  *v_u = velocity[0];
-  *v_v = velocity[1];
-  *v_a = velocity[2];
-  *a_u = acceleration[0];
-  *a_v = acceleration[1];
-  *a_a = acceleration[2];
+  PetscCheck(beta > 0, PetscObjectComm((PetscObject)body), PETSC_ERR_ARG_WRONG, "Body '%s' is explicit", body->hdr.name);
+  *v_u = massless ? 1 / dt : gamma / (beta * dt);
+  *v_v = massless ? 0 : 1 - gamma / beta;
+  *v_a = massless ? 0 : dt * (1 - gamma / (2 * beta));
+  *a_u = massless ? 0 : 1 / (beta * dt * dt);
+  *a_v = massless ? 0 : -1 / (beta * dt);
+  *a_a = massless ? 0 : -(1 - 2 * beta) / (2 * beta);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

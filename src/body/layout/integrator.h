@@ -42,9 +42,7 @@ typedef struct {
   PetscErrorCode (*startacceleration)(Body);       /* (NULL) makes that of the first state, which solvemass() has found, complete */
   PetscErrorCode (*measure)(Body, BodyMeasures *); /* (NULL) where a rigid body is, and how it turns */
   PetscErrorCode (*view)(Body, PetscViewer);       /* (NULL) what there is to tell of such a body */
-  PetscErrorCode (*rates)(Body, PetscReal[3], PetscReal[3]); /* (NULL) of rows: velocity and acceleration at the end of a substep as
-                                                                multiples of u1 - u0, v0 and a0 */
-  PetscErrorCode (*destroy)(Body);                           /* frees `data`; the body may not have been set up */
+  PetscErrorCode (*destroy)(Body); /* (NULL) frees what `data` points to, not that itself; the body may not have been set up */
 } BodyIntegratorOps;
 
 struct _n_BodyIntegrator {
@@ -58,6 +56,7 @@ struct _n_BodyIntegrator {
   PetscBool divides_by_mass;   /* each substep divides by the mass, so that factoring it has to be paid for */
   PetscReal staggered;         /* the energy that the scheme conserves has 1/2 (v'Mv - staggered dt^2 a'Ma) for kinetic energy */
   /* known after getparameters() */
+  PetscReal beta, gamma; /* of Newmark's formulas for nodes with mass; 0: they do not hold */
   PetscBool affine; /* for linear materials, displacements at the ends of substeps are affine in the contact forces at these ends alone */
   /* known after setup() */
   PetscBool is_local;           /* substeps need no word of other ranks but what rows that are prescribed take: see `local` in bodyimpl.h */
