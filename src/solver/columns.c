@@ -1,9 +1,6 @@
 /* Many right-hand sides at once. A solution reads all factors of A, which are larger than any cache: together each costs a fraction. */
 #include "constrainedsolverimpl.h"
 
-/* Right-hand sides that are solved for together, at most */
-#define MAX_BLOCK 256
-
 /* Factors of MUMPS on all ranks, or NULL */
 PetscErrorCode ConstrainedSolverGetMUMPS(ConstrainedSolver s, Mat *factors)
 {
@@ -22,7 +19,6 @@ PetscErrorCode ConstrainedSolverSolveFreeColumns(ConstrainedSolver s, Mat b, Mat
   PetscFunctionBegin;
   PetscCall(ConstrainedSolverGetMUMPS(s, &factors));
   if (factors) {
-    PetscCall(MatMumpsSetIcntl(factors, 27, (PetscInt)MAX_BLOCK));
     PetscCall(MatMatSolve(factors, b, x));
     PetscFunctionReturn(PETSC_SUCCESS);
   }

@@ -49,7 +49,7 @@ static PetscErrorCode CreateRows(ConstrainedSolver s, Mat B)
   PetscCall(FindWhetherAlone(s));
   PetscCall(
       PetscCalloc5(s->global, &s->constrained, s->global, &s->rows, s->global, &s->columns, s->global, &s->fresh, s->global, &s->changes));
-  PetscCall(PetscMalloc3(s->global, &s->gathered, s->global, &s->force, s->global, &s->used));
+  PetscCall(PetscMalloc2(s->global, &s->force, s->global, &s->used));
   for (PetscInt j = 0; j < s->global; j++) s->constrained[j] = -1;
   s->n = 0;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -60,7 +60,7 @@ static PetscErrorCode DestroyRows(ConstrainedSolver s)
   PetscFunctionBegin;
   for (PetscInt j = 0; j < s->global; j++) PetscCall(VecDestroy(&s->columns[j]));
   PetscCall(PetscFree5(s->constrained, s->rows, s->columns, s->fresh, s->changes));
-  PetscCall(PetscFree3(s->gathered, s->force, s->used));
+  PetscCall(PetscFree2(s->force, s->used));
   PetscCall(PetscFree2(s->W, s->pivots));
   PetscCall(VecDestroy(&s->row));
   PetscCall(MatDestroy(&s->B));

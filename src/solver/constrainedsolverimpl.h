@@ -23,8 +23,8 @@ struct _n_ConstrainedSolver {
   PetscInt       room; /* rows that there is room for */
   PetscScalar   *W;    /* LU factors of W_mm, the same on every rank */
   PetscBLASInt  *pivots;
-  PetscScalar   *gathered, *force; /* of constrained rows, on every rank */
-  Vec           *used;             /* columns */
+  PetscScalar   *force; /* of constrained rows, on every rank */
+  Vec           *used;  /* columns */
   Vec            row, rhs, product;
   PetscLogDouble solve_flops; /* of one solution with A */
   PetscBool      mumps;       /* all ranks have `factors` of MUMPS, which take many right-hand sides at once */

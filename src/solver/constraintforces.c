@@ -39,8 +39,8 @@ static PetscErrorCode FillMatrix(ConstrainedSolver s)
   }
   for (PetscInt k = 0; k < s->n; k++) {
     PetscCall(ConstrainedSolverMakeColumn(s, s->rows[k]));
-    PetscCall(Gather(s, s->columns[s->rows[k]], NULL, s->gathered));
-    for (PetscInt l = 0; l <= k; l++) s->W[k * s->n + l] = s->W[l * s->n + k] = s->gathered[l];
+    PetscCall(Gather(s, s->columns[s->rows[k]], NULL, s->force));
+    for (PetscInt l = 0; l <= k; l++) s->W[k * s->n + l] = s->W[l * s->n + k] = s->force[l];
     s->W[k * s->n + k] += s->constrained[s->rows[k]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -140,9 +140,9 @@ static PetscErrorCode Constrain(ConstrainedSolver s, const PetscScalar target[],
 
   PetscFunctionBegin;
   if (!s->n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(Gather(s, x, target, s->gathered));
+  PetscCall(Gather(s, x, target, s->force));
   for (PetscInt k = 0; k < s->n; k++) {
-    s->force[k] = -s->gathered[k];
+    s->force[k] = -s->force[k];
     s->used[k]  = s->columns[s->rows[k]];
   }
   PetscCall(PetscBLASIntCast(s->n, &n));

@@ -14,6 +14,8 @@ static const PetscInt max_sequential_size[] = {50000, 50000, 12000, 1500};
    part has most elements: what it expects leaves out what moves between ranks as they go, and what pivots of indefinite matrices take.
    Pages that are not used are not taken. */
 #define MUMPS_MEMORY 100
+/* Right-hand sides that MUMPS solves for together: its factors are larger than any cache, and are read once for all of them */
+#define TOGETHER 64
 /* In three dimensions factors of bodies larger than this take more memory and time than multigrid */
 #define MAX_DIRECT_SIZE_3D 150000
 /* of multigrid: what is left of the residual must not show in energies and momenta */
@@ -54,6 +56,7 @@ PetscErrorCode ConstrainedSolverChooseMUMPS(PC pc)
   PetscCall(PCFactorSetUpMatSolverType(pc));
   PetscCall(PCFactorGetMatrix(pc, &F));
   PetscCall(MatMumpsSetIcntl(F, 14, MUMPS_MEMORY));
+  PetscCall(MatMumpsSetIcntl(F, 27, TOGETHER));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

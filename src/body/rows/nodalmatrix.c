@@ -181,7 +181,6 @@ static PetscErrorCode SolveSparse(Body body, const NodalMatrix nodal, PetscInt n
   PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, all, nodal->functions ? PETSC_DEFAULT : 1, NULL, &forces));
   PetscCall(MatSetOption(forces, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE));
   PetscCall(FillForces(body, nodal, n, dofs, PETSC_TRUE, forces));
-  PetscCall(MatMumpsSetIcntl(factors, 27, COLUMNS));
   PetscCall(MatMatTransposeSolve(factors, forces, answers));
   PetscCall(MatDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -222,10 +221,7 @@ static PetscErrorCode Solve(Body body, const NodalMatrix nodal, PetscInt n, cons
                "): %s; allow more iterations (-%sksp_max_it), or choose another preconditioner or a direct solver (-%spc_type cholesky)",
                ((PetscObject)body)->name, (double)(body->saved.time + body->time.step), body->saved.step + 1, KSPConvergedReasons[reason],
                ((PetscObject)body)->prefix, ((PetscObject)body)->prefix);
-  } else {
-    PetscCall(MatMumpsSetIcntl(factors, 27, COLUMNS));
-    PetscCall(MatMatSolve(factors, forces, *answers));
-  }
+  } else PetscCall(MatMatSolve(factors, forces, *answers));
   PetscCall(MatDestroy(&forces));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
