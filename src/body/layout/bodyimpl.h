@@ -488,7 +488,6 @@ PETSC_INTERN PetscErrorCode BodyEndMeanForce(Body);
 PETSC_INTERN PetscErrorCode BodyReadRows(Body, Mat, Vec, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodySpreadRows(Body, Mat, const PetscScalar[], Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
-PETSC_INTERN PetscErrorCode BodyMultiplyNearRows(Body, Vec, PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyAddNearRows(Body, const PetscScalar[], Vec);
 PETSC_INTERN PetscBool      BodyNearRowsAreZero(Body, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyListContactDofs(Body);

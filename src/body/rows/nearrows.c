@@ -2,20 +2,6 @@
    of a sheet that falls these are all of its nodes, though a corner touches. Output traces of other rows are old. */
 #include <body/layout/bodyimpl.h>
 
-/* values = B vec, of near rows */
-PetscErrorCode BodyMultiplyNearRows(Body body, Vec vec, PetscScalar values[])
-{
-  const RowList     *list = &body->rows.near;
-  const PetscScalar *row;
-
-  PetscFunctionBegin;
-  PetscCall(MatMult(list->matrix, vec, list->values));
-  PetscCall(VecGetArrayRead(list->values, &row));
-  for (PetscInt k = 0; k < list->n; k++) values[list->numbers[k]] = row[k];
-  PetscCall(VecRestoreArrayRead(list->values, &row));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Whether near rows of all ranks have forces that are all zero, as far as one rank knows */
 PetscBool BodyNearRowsAreZero(Body body, const PetscScalar values[])
 {

@@ -142,18 +142,15 @@ static PetscErrorCode CreateMatrix(Body body, RowList *list)
 {
   BodyRows *rows = &body->rows;
   MPI_Comm  comm = PetscObjectComm((PetscObject)rows->matrix);
-  PetscInt *numbers, begin, end;
-  IS        some, all;
+  PetscInt *numbers;
+  IS        some;
 
   PetscFunctionBegin;
   PetscCall(PetscMalloc1(list->n, &numbers));
   for (PetscInt k = 0; k < list->n; k++) numbers[k] = rows->begin + list->numbers[k];
   PetscCall(ISCreateGeneral(comm, list->n, numbers, PETSC_OWN_POINTER, &some));
-  PetscCall(MatGetOwnershipRangeColumn(rows->matrix, &begin, &end));
-  PetscCall(ISCreateStride(comm, end - begin, begin, 1, &all));
-  PetscCall(MatCreateSubMatrix(rows->matrix, some, all, MAT_INITIAL_MATRIX, &list->matrix));
+  PetscCall(MatCreateSubMatrix(rows->matrix, some, NULL, MAT_INITIAL_MATRIX, &list->matrix));
   PetscCall(MatCreateVecs(list->matrix, NULL, &list->values));
-  PetscCall(ISDestroy(&all));
   PetscCall(ISDestroy(&some));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -51,14 +51,19 @@ static PetscErrorCode ExtendFromStage(Body body, PetscInt level, PetscScalar rea
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* What the rows that are read make of a vector, at a level of a trace */
+/* What the near rows make of a vector, at a level of a trace */
 static PetscErrorCode WriteNear(Body body, Vec vec, Trace trace, PetscInt level)
 {
-  PetscScalar *values;
+  const RowList     *near = &body->rows.near;
+  const PetscScalar *row;
+  PetscScalar       *values;
 
   PetscFunctionBegin;
   PetscCall(TraceGetLevel(trace, level, &values));
-  PetscCall(BodyMultiplyNearRows(body, vec, values));
+  PetscCall(MatMult(near->matrix, vec, near->values));
+  PetscCall(VecGetArrayRead(near->values, &row));
+  for (PetscInt k = 0; k < near->n; k++) values[near->numbers[k]] = row[k];
+  PetscCall(VecRestoreArrayRead(near->values, &row));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
