@@ -472,7 +472,6 @@ PETSC_INTERN PetscErrorCode BodyAddMassMatrix(Body, PetscReal, Mat);
 PETSC_INTERN PetscErrorCode BodySolveMass(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodySolveMassOfRows(Body, const PetscScalar[], Vec);
 PETSC_INTERN PetscBool      BodyAnswersByNodes(Body);
-PETSC_INTERN PetscErrorCode BodyCopyContactNodes(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyAddAnswerOfNodes(Body, const PetscScalar[], PetscBool, PetscInt, const PetscReal[], const Vec[]);
 PETSC_INTERN PetscErrorCode BodyDestroyContactNodes(Body);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);

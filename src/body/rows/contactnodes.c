@@ -56,22 +56,6 @@ PetscErrorCode BodyListContactDofs(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Contact nodes have in one vector what they have in the other */
-PetscErrorCode BodyCopyContactNodes(Body body, Vec from, Vec to)
-{
-  const PetscScalar *source;
-  PetscScalar       *target;
-
-  PetscFunctionBegin;
-  if (!body->nodes.force) PetscCall(BodyListContactDofs(body));
-  PetscCall(VecGetArrayRead(from, &source));
-  PetscCall(VecGetArray(to, &target));
-  for (PetscInt k = 0; k < body->nodes.n; k++) target[body->nodes.dofs[k]] = source[body->nodes.dofs[k]];
-  PetscCall(VecRestoreArray(to, &target));
-  PetscCall(VecRestoreArrayRead(from, &source));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* x = M^{-1} B^T force, one force for each row of this rank, and that of what does not go over from the rows of the last step where
    `stopped`: vecs[k] += scales[k] x */
 PetscErrorCode BodyAddAnswerOfNodes(Body body, const PetscScalar force[], PetscBool stopped, PetscInt n, const PetscReal scales[],

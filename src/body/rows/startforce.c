@@ -38,22 +38,13 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* An acceleration, on the nodes that forces at the start can accelerate */
-static PetscErrorCode CopyAnswering(Body body, Vec from, Vec to)
-{
-  PetscFunctionBegin;
-  if (BodyAnswersByNodes(body)) PetscCall(BodyCopyContactNodes(body, from, to));
-  else PetscCall(VecCopy(from, to));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Notes the acceleration with which the step begins, before forces at its start change that: BodyDropStartForce() goes back to it */
 PetscErrorCode BodyNoteStart(Body body)
 {
   PetscFunctionBegin;
   if (body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->start.a) PetscCall(BodyCreateVec(body, &body->start.a));
-  PetscCall(CopyAnswering(body, body->saved.a, body->start.a));
+  PetscCall(VecCopy(body->saved.a, body->start.a));
   body->start.changed = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -64,27 +55,23 @@ PetscErrorCode BodyNoteStart(Body body)
    no acceleration and stays. Collective. */
 PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const PetscReal rest[])
 {
+  const PetscBool by_nodes = BodyAnswersByNodes(body), moved = (PetscBool)(body->state.step != body->saved.step);
+  const PetscReal one = 1;
+
   PetscFunctionBegin;
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
-  if (!body->start.changed && body->state.step == body->saved.step && BodyAnswersByNodes(body) && !BodyHandsOver(body) &&
-      BodyNearRowsAreZero(body, force))
+  if (!body->start.changed && !moved && by_nodes && !BodyHandsOver(body) && BodyNearRowsAreZero(body, force))
     PetscFunctionReturn(PETSC_SUCCESS); /* as it is */
-  if (body->start.changed) PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
+  if (body->start.changed) PetscCall(VecCopy(body->start.a, body->saved.a));
   PetscCall(BodyNoteStart(body));
-  if (BodyAnswersByNodes(body)) {
-    const PetscReal one = 1;
-
-    PetscCall(BodySetHandoverRest(body, rest));
-    PetscCall(BodyAddAnswerOfNodes(body, force, PETSC_TRUE, 1, &one, &body->saved.a));
-    if (body->state.step != body->saved.step) PetscCall(BodyRestore(body));
-    else PetscCall(BodyCopyContactNodes(body, body->saved.a, body->state.a));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(BodyRestore(body));
+  if (moved || !by_nodes) PetscCall(BodyRestore(body));
   PetscCall(BodySetHandoverRest(body, rest));
-  PetscCall(ComputeChange(body, force, body->state.a));
-  PetscCall(VecAXPY(body->saved.a, 1, body->state.a));
-  PetscCall(BodyRestore(body));
+  if (by_nodes) PetscCall(BodyAddAnswerOfNodes(body, force, PETSC_TRUE, 1, &one, &body->saved.a));
+  else {
+    PetscCall(ComputeChange(body, force, body->state.a));
+    PetscCall(VecAXPY(body->saved.a, 1, body->state.a));
+  }
+  PetscCall(VecCopy(body->saved.a, body->state.a));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,7 +80,7 @@ PetscErrorCode BodyDropStartForce(Body body)
 {
   PetscFunctionBegin;
   if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CopyAnswering(body, body->start.a, body->saved.a));
+  PetscCall(VecCopy(body->start.a, body->saved.a));
   PetscCall(BodySetHandoverRest(body, NULL));
   body->start.changed = PETSC_FALSE;
   PetscCall(BodyRestore(body));
@@ -109,9 +96,7 @@ PetscErrorCode BodyNoteStartEnergy(Body body)
   PetscFunctionBegin;
   if (body->integrator->staggered == 0 || body->saved.step) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySumStaggering(body, body->saved.a, &with));
-  PetscCall(VecCopy(body->saved.a, body->work.nodes[1]));
-  if (body->start.changed) PetscCall(CopyAnswering(body, body->start.a, body->work.nodes[1]));
-  PetscCall(BodySumStaggering(body, body->work.nodes[1], &without));
+  PetscCall(BodySumStaggering(body, body->start.changed ? body->start.a : body->saved.a, &without));
   body->start.energy = 0.5 * body->integrator->staggered * PetscSqr(body->time.step) * (without - with);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
