@@ -26,7 +26,6 @@ static PetscErrorCode ProbeColumn(Body body, PetscInt dof, Compliance matrices)
 /* BodyProbeNodes - columns of displacements, by their global numbers, at the end of a controller step from rest with all rows free */
 PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const PetscInt dofs[], Compliance matrices)
 {
-  const PetscInt counts[3] = {body->rows.n_prescribed, body->rows.n_forced, body->rows.n_robin};
   BodyState      state = {0}, saved = {0};
   BodyCondition *kept;
   Vec            force;
@@ -42,10 +41,8 @@ PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const
   body->saved.force_known = PETSC_FALSE;
   PetscCall(PetscMalloc1(body->rows.local, &kept));
   PetscCall(PetscArraycpy(kept, body->rows.conditions, body->rows.local));
-  PetscCall(PetscArrayzero(body->rows.conditions, body->rows.local));
-  body->rows.n_prescribed = body->rows.n_robin = 0;
-  body->rows.n_forced                          = 1;
-  PetscCall(BodySetConstraints(body));
+  PetscCall(BodyFreeRows(body));
+  body->rows.n_forced = 1;
   PetscCall(BodyPrepareLinearized(body));
   PetscCall(BodyCreateVec(body, &force));
   body->unloaded         = PETSC_TRUE;
@@ -60,11 +57,8 @@ PetscErrorCode BodyProbeNodes(Body body, BodyForceShape shape, PetscInt n, const
   PetscCall(BodyStateCopy(body, &state, &body->state));
   PetscCall(BodyStateCopy(body, &saved, &body->saved));
   PetscCall(TSSecondOrderSetState(body->time.ts, body->state.time, body->time.step, body->state.step));
-  PetscCall(PetscArraycpy(body->rows.conditions, kept, body->rows.local));
-  body->rows.n_prescribed = counts[0];
-  body->rows.n_forced     = counts[1];
-  body->rows.n_robin      = counts[2];
-  PetscCall(BodySetConstraints(body));
+  body->rows.n_forced = 0;
+  PetscCall(BodySetConditions(body, kept));
   PetscCall(PetscFree(kept));
   PetscCall(VecDestroy(&force));
   PetscCall(BodyStateDestroy(&state));

@@ -4,17 +4,6 @@
    A failed step must leave no trace: a cut run ends with the bits of one that makes the same steps and none that fail. */
 #include <body/rows/complianceimpl.h>
 
-/* All rows free, so that no solver has rows to hold: conditions come with the next step */
-static PetscErrorCode FreeRows(Body body)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscArrayzero(body->rows.conditions, body->rows.local));
-  body->rows.n_prescribed = body->rows.n_forced = body->rows.n_robin = 0;
-  body->repeats                                                      = PETSC_FALSE;
-  PetscCall(BodySetConstraints(body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* The compliance of a level, and its solver where that depends on the step, in place of those of the level before */
 PetscErrorCode BodyTakeLevel(Body body, PetscInt number)
 {
@@ -52,7 +41,7 @@ PetscErrorCode BodySetStepLevel(Body body, PetscInt level)
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   PetscCall(BodyTakeLevel(body, level));
-  PetscCall(FreeRows(body));
+  PetscCall(BodyFreeRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -78,7 +67,7 @@ PetscErrorCode BodyStepBack(Body body)
   PetscFunctionBegin;
   PetscCall(BodyRestore(body));
   body->iterate.known = PETSC_FALSE;
-  PetscCall(FreeRows(body));
+  PetscCall(BodyFreeRows(body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

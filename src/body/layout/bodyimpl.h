@@ -475,6 +475,7 @@ PETSC_INTERN PetscBool      BodyAnswersByNodes(Body);
 PETSC_INTERN PetscErrorCode BodyAddAnswerOfNodes(Body, const PetscScalar[], PetscBool, PetscInt, const PetscReal[], const Vec[]);
 PETSC_INTERN PetscErrorCode BodyDestroyContactNodes(Body);
 PETSC_INTERN PetscErrorCode BodyPrescribe(Body, Trace, PetscReal, Vec);
+PETSC_INTERN PetscErrorCode BodyFreeRows(Body);
 PETSC_INTERN PetscErrorCode BodySetConstraints(Body);
 PETSC_INTERN PetscErrorCode BodyAddContactForce(Body, PetscReal, PetscScalar, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyHandoverEnd(Body);

@@ -90,6 +90,17 @@ PetscErrorCode BodySetConditions(Body body, const BodyCondition conditions[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* BodyFreeRows - all rows free, so that no solver has rows to hold: conditions come with the next step */
+PetscErrorCode BodyFreeRows(Body body)
+{
+  PetscFunctionBegin;
+  PetscCall(PetscArrayzero(body->rows.conditions, body->rows.local));
+  body->rows.n_prescribed = body->rows.n_forced = body->rows.n_robin = 0;
+  body->repeats                                                      = PETSC_FALSE;
+  PetscCall(BodySetConstraints(body));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 PetscErrorCode BodySetConstraints(Body body)
 {
   PetscFunctionBegin;
