@@ -35,12 +35,16 @@
 #define AMPLIFIED 100
 
 typedef struct {
+  PetscInt number; /* of these factors, counted as they are made from those before */
+  PetscInt rounds; /* that the last balance with them took */
+} Age;
+
+typedef struct {
+  Age        age;
   Vec        point;   /* the displacement that they are made at [m] */
   char      *memory;  /* of the history */
   PetscReal *history; /* that the elements of the layer had then, and the length of their step; NULL where the material has none */
   PetscReal  step;
-  PetscInt   number; /* of these factors, counted as they are made from those before */
-  PetscInt   rounds; /* that the last balance with them took */
 } Factors;
 
 struct _n_LayerBalance {
@@ -49,13 +53,14 @@ struct _n_LayerBalance {
   PetscInt  n_history;  /* numbers of that history */
 };
 
-/* What factors are made from, from one place to another */
-static PetscErrorCode CopyOrigin(LayerBalance layer, const Factors *from, Factors *to)
+/* Age of factors, and what they are made from, from one place to another */
+static PetscErrorCode CopyFactors(LayerBalance layer, const Factors *from, Factors *to)
 {
   PetscFunctionBegin;
   PetscCall(VecCopy(from->point, to->point));
   PetscCall(PetscArraycpy(to->history, from->history, layer->n_history));
   to->step = from->step;
+  to->age  = from->age;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -83,8 +88,8 @@ static PetscErrorCode RefactorAt(LayerBalance layer, Body body, Vec u)
   PetscFunctionBegin;
   PetscCall(BodyGatherLayer(body, u, layer->now.point));
   PetscCall(BodyLayerCopyHistory(body, layer->now.history, &layer->now.step));
-  layer->now.number++;
-  layer->now.rounds = 0;
+  layer->now.age.number++;
+  layer->now.age.rounds = 0;
   PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -92,31 +97,25 @@ static PetscErrorCode RefactorAt(LayerBalance layer, Body body, Vec u)
 /* The state of the body has been put aside. That of an accepted step is where slow factors are made anew, for all that starts there. */
 PetscErrorCode LayerBalanceSave(Body body)
 {
-  LayerBalance layer = GetLayerBalance(body);
-  Factors     *aside = &layer->aside;
+  LayerBalance   layer = GetLayerBalance(body);
+  const PetscInt slow  = body->mesh.dim == 2 ? SLOW_ROUNDS_PLANE : SLOW_ROUNDS_SPACE;
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  if (layer->now.rounds >= (body->mesh.dim == 2 ? SLOW_ROUNDS_PLANE : SLOW_ROUNDS_SPACE)) PetscCall(RefactorAt(layer, body, body->state.u));
-  if (aside->number != layer->now.number) PetscCall(CopyOrigin(layer, &layer->now, aside));
-  aside->number = layer->now.number;
-  aside->rounds = layer->now.rounds;
+  if (layer->now.age.rounds >= slow) PetscCall(RefactorAt(layer, body, body->state.u));
+  PetscCall(CopyFactors(layer, &layer->now, &layer->aside));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* How good the factors of a local body are its rank alone knows; before all ranks have rows to hold, they all do */
 PetscErrorCode LayerBalanceAgree(Body body)
 {
-  LayerBalance    layer    = GetLayerBalance(body);
-  PetscInt *const values[] = {&layer->now.number, &layer->now.rounds, &layer->aside.number, &layer->aside.rounds};
-  PetscInt        told[PETSC_STATIC_ARRAY_LENGTH(values)];
+  LayerBalance layer = GetLayerBalance(body);
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) told[k] = *values[k];
-  PetscCallMPI(
-      MPI_Bcast(told, (PetscMPIInt)PETSC_STATIC_ARRAY_LENGTH(told), MPIU_INT, body->mesh.owner, PetscObjectComm((PetscObject)body)));
-  for (size_t k = 0; k < PETSC_STATIC_ARRAY_LENGTH(values); k++) *values[k] = told[k];
+  PetscCallMPI(MPI_Bcast(&layer->now.age, sizeof(Age), MPI_BYTE, body->mesh.owner, PetscObjectComm((PetscObject)body)));
+  PetscCallMPI(MPI_Bcast(&layer->aside.age, sizeof(Age), MPI_BYTE, body->mesh.owner, PetscObjectComm((PetscObject)body)));
   PetscCall(ConstrainedSolverForgetColumns(body->solver));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -128,10 +127,9 @@ PetscErrorCode LayerBalanceRestore(Body body)
 
   PetscFunctionBegin;
   if (body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);
-  layer->now.rounds = aside->rounds;
-  if (aside->number == layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
-  layer->now.number = aside->number;
-  PetscCall(CopyOrigin(layer, aside, &layer->now));
+  layer->now.age.rounds = aside->age.rounds;
+  if (aside->age.number == layer->now.age.number) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CopyFactors(layer, aside, &layer->now));
   PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -192,7 +190,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
 
   PetscFunctionBegin;
   if (!linear) {
-    if (layer->now.rounds >= SLOW_ROUNDS_WITHIN_STEP) PetscCall(RefactorAt(layer, body, u));
+    if (layer->now.age.rounds >= SLOW_ROUNDS_WITHIN_STEP) PetscCall(RefactorAt(layer, body, u));
     PetscCall(BodyGetNorm(body, u, &round_off));
     round_off = ROUND_OFF * (round_off + layer->reach);
   }
@@ -210,7 +208,7 @@ PetscErrorCode LayerBalanceSolve(LayerBalance layer, Body body, PetscReal time, 
     PetscCall(BodyGetNorm(body, body->layer.solution, &change));
     first = PetscMax(first, change);
     /* what is not a number is told when the substep is over */
-    layer->now.rounds = round + 1;
+    layer->now.age.rounds = round + 1;
     if (change <= TOLERANCE * first + round_off || PetscIsInfOrNanReal(change)) PetscFunctionReturn(PETSC_SUCCESS);
     if (change >= previous && change <= AMPLIFIED * round_off) PetscFunctionReturn(PETSC_SUCCESS);
     previous = change;
@@ -279,17 +277,6 @@ PetscErrorCode LayerBalanceCreate(Body body, LayerBalance *balance)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The displacement of the factors that all levels put aside is that of the present ones, which are made if they differ */
-static PetscErrorCode TakeFactors(LayerBalance layer, Body body, PetscBool others)
-{
-  PetscFunctionBegin;
-  layer->aside.number = layer->now.number;
-  layer->aside.rounds = layer->now.rounds;
-  PetscCall(CopyOrigin(layer, &layer->now, &layer->aside));
-  if (others) PetscCall(Refactor(layer, body));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* For a checkpoint that is continued on another number of ranks: where the factors were made, on the nodes of the body near the layer, and
    their number, 0 for those of the undeformed layer, and the rounds of the last balance with them; or back */
 PetscErrorCode LayerBalanceCopyPoint(Body body, PetscBool back, Vec point, PetscReal numbers[2])
@@ -298,17 +285,18 @@ PetscErrorCode LayerBalanceCopyPoint(Body body, PetscBool back, Vec point, Petsc
 
   PetscFunctionBegin;
   if (back) {
-    layer->now.number = (PetscInt)numbers[0];
-    layer->now.rounds = (PetscInt)numbers[1];
-    if (!layer->now.number) PetscFunctionReturn(PETSC_SUCCESS);
+    layer->now.age.number = (PetscInt)numbers[0];
+    layer->now.age.rounds = (PetscInt)numbers[1];
+    if (!layer->now.age.number) PetscFunctionReturn(PETSC_SUCCESS);
     /* a displacement of earlier steps goes with the history of these steps: with that of now there are factors where the body is now */
     PetscCall(BodyGatherLayer(body, body->history ? body->saved.u : point, layer->now.point));
     PetscCall(BodyLayerCopyHistory(body, layer->now.history, &layer->now.step));
-    PetscCall(TakeFactors(layer, body, PETSC_TRUE));
+    PetscCall(CopyFactors(layer, &layer->now, &layer->aside));
+    PetscCall(Refactor(layer, body));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  numbers[0] = (PetscReal)layer->now.number;
-  numbers[1] = (PetscReal)layer->now.rounds;
+  numbers[0] = (PetscReal)layer->now.age.number;
+  numbers[1] = (PetscReal)layer->now.age.rounds;
   PetscCall(BodySpreadLayer(body, layer->now.point, point));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -317,19 +305,21 @@ PetscErrorCode LayerBalanceCopyPoint(Body body, PetscBool back, Vec point, Petsc
 PetscErrorCode LayerBalanceVisit(Body body, PetscInt level, Checkpoint checkpoint)
 {
   LayerBalance   layer  = GetLayerBalance(body);
-  const PetscInt before = layer->now.number;
+  const PetscInt before = layer->now.age.number;
 
   PetscFunctionBegin;
   if (CheckpointLoads(checkpoint)) PetscCall(LayerBalanceSetRows(body)); /* columns are made of them */
   if (level || body->model.linear) PetscFunctionReturn(PETSC_SUCCESS);   /* one for all levels */
-  PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.number));
-  PetscCall(CheckpointVisitInts(checkpoint, "layer rounds", 1, &layer->now.rounds));
+  PetscCall(CheckpointVisitInts(checkpoint, "layer number", 1, &layer->now.age.number));
+  PetscCall(CheckpointVisitInts(checkpoint, "layer rounds", 1, &layer->now.age.rounds));
   PetscCall(CheckpointVisitVec(checkpoint, "layer point", layer->now.point));
   if (body->history) {
     PetscCall(CheckpointVisitReals(checkpoint, "layer history", layer->n_history, layer->now.history));
     PetscCall(CheckpointVisitReals(checkpoint, "layer step", 1, &layer->now.step));
   }
-  if (CheckpointLoads(checkpoint)) PetscCall(TakeFactors(layer, body, (PetscBool)(layer->now.number != before)));
+  if (!CheckpointLoads(checkpoint)) PetscFunctionReturn(PETSC_SUCCESS);
+  PetscCall(CopyFactors(layer, &layer->now, &layer->aside));
+  if (layer->now.age.number != before) PetscCall(Refactor(layer, body));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
