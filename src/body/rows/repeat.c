@@ -10,8 +10,9 @@ static PetscBool Counts(Body body, PetscInt input, PetscInt row)
   return (PetscBool)(input ? condition == BODY_PRESCRIBED : condition == BODY_FORCED || condition == BODY_ROBIN);
 }
 
-/* Changes of the inputs at the end of the controller step from the present state's, on rows they count for; `any`: on this rank */
-static PetscErrorCode CompareInputs(Body body, PetscBool *any)
+/* Changes of the inputs at the end of the controller step from the present state's, on rows they count for; `any`: on this rank. `takes`:
+   what comes in is the present state's from now on. */
+static PetscErrorCode CompareInputs(Body body, PetscBool takes, PetscBool *any)
 {
   const Trace    traces[] = {body->traces.force_in, body->traces.displacement_in};
   BodyRows      *rows     = &body->rows;
@@ -28,23 +29,8 @@ static PetscErrorCode CompareInputs(Body body, PetscBool *any)
 
       rows->changes[k][i] = Counts(body, k, i) ? values[i] - rows->inputs[k][i] : 0;
       if (rows->changes[k][i] != 0) *any = PETSC_TRUE;
+      if (takes) rows->inputs[k][i] = values[i];
     }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-/* What comes in is the present state's from now on: forces, and displacements where any are prescribed */
-static PetscErrorCode TakeInputs(Body body)
-{
-  const Trace    traces[] = {body->traces.force_in, body->traces.displacement_in};
-  const RowList *read     = &body->rows.near;
-
-  PetscFunctionBegin;
-  for (PetscInt k = 0; k < (body->rows.n_prescribed ? 2 : 1); k++) {
-    PetscScalar *values;
-
-    PetscCall(TraceGetLevel(traces[k], body->time.substeps, &values));
-    for (PetscInt j = 0; j < read->n; j++) body->rows.inputs[k][read->numbers[j]] = values[read->numbers[j]];
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -55,16 +41,18 @@ PetscErrorCode BodyBringChanges(Body body)
   PetscBool any;
 
   PetscFunctionBegin;
-  PetscCall(CompareInputs(body, &any));
+  PetscCall(CompareInputs(body, PETSC_FALSE, &any));
   PetscCall(ConstrainedSolverBring(body->solver, body->rows.changes[0]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode BodyNoteInputs(Body body)
 {
+  PetscBool any;
+
   PetscFunctionBegin;
   if (!body->integrator->ops.repeat || !body->rows.global) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(TakeInputs(body));
+  PetscCall(CompareInputs(body, PETSC_TRUE, &any));
   /* rows of one node that are not orthonormal are prescribed by least squares, which has no simple change */
   body->repeats = (PetscBool)(!body->rows.n_prescribed || (body->integrator->repeats_prescribed && !body->rows.any_oblique));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -79,8 +67,7 @@ PetscErrorCode BodyRepeat(Body body, PetscBool *done)
   PetscFunctionBegin;
   *done = body->repeats;
   if (!*done) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(CompareInputs(body, &any));
-  PetscCall(TakeInputs(body));
+  PetscCall(CompareInputs(body, PETSC_TRUE, &any));
   /* where rows of other ranks count, their inputs may have changed */
   if (body->rows.size > 1 && !(BodyStepsAlone(body) && body->rows.at_home)) any = PETSC_TRUE;
   /* Without a change a state in balance stays as it is, bit for bit. Prescribed nodes with mass may yet be given another velocity and
