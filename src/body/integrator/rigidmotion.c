@@ -3,8 +3,8 @@
 
 /* Steps of Newton's method to a rotation matrix: two take round-off away; from 1 % off six get there */
 #define POLAR_STEPS 8
-/* What may be left of R R^T - I */
-#define ORTHONORMAL 1e-13
+/* A last step by less leaves its square of R R^T - I */
+#define LAST_STEP 1e-7
 /* Below this angle the series are exact to round-off [rad] */
 #define SMALL_ANGLE 1e-3
 
@@ -49,28 +49,21 @@ PetscBool RigidInvert(const PetscReal A[9], PetscReal B[9])
    polar decomposition, SIAM Journal on Scientific and Statistical Computing 7, 1986). False where A is far from any. */
 PetscBool RigidFindRotation(PetscReal A[9])
 {
-  PetscReal inverse[9], off;
+  PetscReal inverse[9], third[3], change = 1;
 
-  for (PetscInt step = 0; step < POLAR_STEPS; step++) {
+  for (PetscInt step = 0; step < POLAR_STEPS && change > LAST_STEP; step++) {
     if (!RigidInvert(A, inverse)) return PETSC_FALSE;
-    for (PetscInt i = 0; i < 3; i++)
-      for (PetscInt j = 0; j < 3; j++) A[3 * i + j] = 0.5 * (A[3 * i + j] + inverse[3 * j + i]);
-    off = 0;
-    for (PetscInt i = 0; i < 3; i++)
-      for (PetscInt j = 0; j < 3; j++) {
-        PetscReal product = i == j ? -1 : 0;
+    change = 0;
+    for (PetscInt k = 0; k < 9; k++) {
+      const PetscReal half = 0.5 * (inverse[3 * (k % 3) + k / 3] - A[k]);
 
-        for (PetscInt k = 0; k < 3; k++) product += A[3 * i + k] * A[3 * j + k];
-        off = PetscMax(off, PetscAbsReal(product));
-      }
-    if (off < ORTHONORMAL) {
-      PetscReal third[3];
-
-      RigidCross(A, A + 3, third);
-      return (PetscBool)(third[0] * A[6] + third[1] * A[7] + third[2] * A[8] > 0); /* else a reflection */
+      A[k] += half;
+      change = PetscMax(change, PetscAbsReal(half));
     }
   }
-  return PETSC_FALSE;
+  RigidCross(A, A + 3, third);
+  return (PetscBool)(change <= LAST_STEP &&
+                     third[0] * A[6] + third[1] * A[7] + third[2] * A[8] > 0); /* else far from any, or a reflection */
 }
 
 /* a I + b v^ + c v v^T, v^ x being v x x */

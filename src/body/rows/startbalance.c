@@ -138,22 +138,15 @@ PetscErrorCode BodyMultiplyLayerCompliance(Body body, Vec force, Vec displacemen
 /* Reactions of held dofs do no work against contact forces, which come from the partner; nor does what holds a static body as it is */
 static PetscErrorCode SubtractFromReactions(Body body, const PetscScalar force[])
 {
-  Vec                on_nodes = body->work.nodes[0];
-  const PetscScalar *contact;
-  PetscScalar       *applied;
+  const PetscBool all      = (PetscBool)(!body->integrator->has_inertia || BodyIsLed(body));
+  Vec             on_nodes = body->work.nodes[0], on_held = body->work.nodes[1];
 
   PetscFunctionBegin;
-  if (!body->loads || (body->integrator->has_inertia && !body->held.any && !BodyIsLed(body))) PetscFunctionReturn(PETSC_SUCCESS);
+  if (!body->loads || (!all && !body->held.any)) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(BodySpreadRows(body, body->rows.matrix, force, on_nodes));
-  if (!body->integrator->has_inertia || BodyIsLed(body)) {
-    PetscCall(VecAXPY(body->state.applied, -1, on_nodes));
-    PetscFunctionReturn(PETSC_SUCCESS);
-  }
-  PetscCall(VecGetArrayRead(on_nodes, &contact));
-  PetscCall(VecGetArray(body->state.applied, &applied));
-  for (PetscInt i = 0; i < body->held.n; i++) applied[body->held.dofs[i]] -= contact[body->held.dofs[i]];
-  PetscCall(VecRestoreArray(body->state.applied, &applied));
-  PetscCall(VecRestoreArrayRead(on_nodes, &contact));
+  PetscCall(VecZeroEntries(on_held));
+  PetscCall(BodyCopyHeld(body, on_nodes, on_held));
+  PetscCall(VecAXPY(body->state.applied, -1, all ? on_nodes : on_held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
