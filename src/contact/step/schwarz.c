@@ -111,13 +111,6 @@ PetscErrorCode ContactStepperRowsChanged(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode SetStepLevel(Contact contact)
-{
-  PetscFunctionBegin;
-  Stepper(contact)->state++;
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ContactStepperAccept(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);
@@ -259,7 +252,7 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->step                    = ContactStepperStep;
   contact->ops->rowschanged             = ContactStepperRowsChanged;
   contact->ops->stored                  = ContactStoresNothing;
-  contact->ops->steplevel               = SetStepLevel;
+  contact->ops->steplevel               = ContactStepperRowsChanged;
   contact->ops->accept                  = ContactStepperAccept;
   contact->ops->visit                   = ContactStepperVisit;
   contact->ops->visitshared             = ContactStepperVisitShared;
