@@ -32,9 +32,9 @@ struct _ContactOps {
      loading, after visitshared() and rowschanged() */
   PetscErrorCode (*visittables)(Contact, Tables);
   PetscErrorCode (*maybalance)(Contact, PetscBool *); /* (NULL: not) whether gaps may be turned, see src/contact/rows/balance.c */
-  /* (NULL) whether pairs may come and go in the course of a run; then `reset` undoes `setup`, which follows if there are rows */
-  PetscBool (*mayreplacerows)(Contact);
+  /* (NULL) undoes `setup`, which follows if there are rows: pairs may come and go in the course of a run, */
   PetscErrorCode (*reset)(Contact);
+  PetscBool (*mayreplacerows)(Contact); /* (NULL) if this says so */
   PetscErrorCode (*view)(Contact, PetscViewer);
   PetscErrorCode (*destroy)(Contact);
 };

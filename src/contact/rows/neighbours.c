@@ -24,7 +24,8 @@ static const char *FindUnsuited(Contact contact)
   if (contact->options.balance) return "of -contact_balance";
   if (contact->options.rows_second) return "of -contact_rows, which is not first";
   if (contact->options.stabilization != CONTACT_STABILIZATION_NONE) return "of -contact_stabilization";
-  if (!contact->ops->mayreplacerows || !(*contact->ops->mayreplacerows)(contact)) return "the contact method cannot begin anew in a run";
+  if (!contact->ops->reset || (contact->ops->mayreplacerows && !(*contact->ops->mayreplacerows)(contact)))
+    return "the contact method cannot begin anew in a run";
   return NULL;
 }
 

@@ -179,14 +179,7 @@ PetscErrorCode ContactStepperView(Contact contact, PetscViewer viewer)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Rows need no more than they have in all methods: what is lost is which of them have joined in the last step, for the guess */
-static PetscBool MayReplaceRows(Contact contact)
-{
-  (void)contact;
-  return PETSC_TRUE;
-}
-
-/* All but the options */
+/* All but the options. Rows need no more than in all methods: lost is which of them have joined in the last step, for the guess. */
 static PetscErrorCode Reset(Contact contact)
 {
   ContactStepper *stepper = Stepper(contact);
@@ -258,7 +251,6 @@ PetscErrorCode ContactCreate_Schwarz(Contact contact)
   contact->ops->visitshared             = ContactStepperVisitShared;
   contact->ops->visittables             = ContactStepperVisitTables;
   contact->ops->maybalance              = ContactStepperMayTurn;
-  contact->ops->mayreplacerows          = MayReplaceRows;
   contact->ops->reset                   = Reset;
   contact->ops->view                    = ContactStepperView;
   contact->ops->destroy                 = ContactStepperDestroy;
