@@ -37,9 +37,15 @@ PetscErrorCode ContactShareRows(Contact contact)
 /* A number of each row of all ranks, from those of this rank's rows. Collective. */
 PetscErrorCode ContactGatherRows(Contact contact, MPI_Datatype type, const void *mine, void *all)
 {
+  PetscMPIInt size;
+
   PetscFunctionBegin;
-  PetscCall(PetscSFBcastBegin(contact->ranks.gather, type, mine, all, MPI_REPLACE));
-  PetscCall(PetscSFBcastEnd(contact->ranks.gather, type, mine, all, MPI_REPLACE));
+  PetscCallMPI(MPI_Type_size(type, &size));
+  if (contact->ranks.size == 1) PetscCall(PetscMemcpy(all, mine, (size_t)contact->rows.n * (size_t)size));
+  else {
+    PetscCall(PetscSFBcastBegin(contact->ranks.gather, type, mine, all, MPI_REPLACE));
+    PetscCall(PetscSFBcastEnd(contact->ranks.gather, type, mine, all, MPI_REPLACE));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

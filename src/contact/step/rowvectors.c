@@ -39,11 +39,9 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
 /* Numbers of the touching rows of all ranks, from those of this rank's rows */
 PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, const PetscReal mine[], PetscScalar all[])
 {
-  const PetscBool alone = (PetscBool)(contact->ranks.size == 1); /* all rows are here */
-
   PetscFunctionBegin;
-  if (!alone) PetscCall(ContactGatherRows(contact, MPIU_REAL, mine, stepper->all));
-  for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = (alone ? mine : stepper->all)[stepper->rows[k]];
+  PetscCall(ContactGatherRows(contact, MPIU_REAL, mine, stepper->all));
+  for (PetscInt k = 0; k < stepper->problem.n; k++) all[k] = stepper->all[stepper->rows[k]];
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -51,27 +49,21 @@ PetscErrorCode ContactStepperGather(Contact contact, ContactStepper *stepper, co
 PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
 {
   LawProblem      *problem = &stepper->problem;
-  const PetscBool  alone   = (PetscBool)(contact->ranks.size == 1);
-  const PetscInt   n_look  = alone ? contact->rows.n_acting : contact->rows.n_all;
-  const PetscReal *touches = stepper->mine;
+  const PetscReal *touches = stepper->all;
   PetscInt         n       = 0;
 
   PetscFunctionBegin;
-  if (!alone) PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
+  PetscCall(PetscArrayzero(stepper->mine, contact->rows.n));
   for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
     const PetscInt i = contact->rows.acting[k];
 
     stepper->mine[i] = stepper->touches[i] ? 1 + contact->rows.tied[ContactFirstRow(contact, i)] : 0; /* which law it has */
   }
-  if (!alone) {
-    PetscCall(ContactGatherRows(contact, MPIU_REAL, stepper->mine, stepper->all));
-    touches = stepper->all;
-  }
-  for (PetscInt k = 0; k < n_look; k++) n += touches[alone ? contact->rows.acting[k] : k] != 0;
+  PetscCall(ContactGatherRows(contact, MPIU_REAL, stepper->mine, stepper->all));
+  for (PetscInt i = 0; i < contact->rows.n_all; i++) n += touches[i] != 0;
   PetscCall(LawProblemResize(problem, n));
   n = problem->n_nodes = 0;
-  for (PetscInt k = 0; k < n_look; k++) {
-    const PetscInt     i    = alone ? contact->rows.acting[k] : k;
+  for (PetscInt i = 0; i < contact->rows.n_all; i++) {
     const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[i]];
 
     if (touches[i] == 0) continue;
