@@ -31,7 +31,7 @@ struct _ContactOps {
   /* (NULL) the same, what no solver finds anew to round-off, to or from tables by which a run is continued on another number of ranks;
      loading, after visitshared() and rowschanged() */
   PetscErrorCode (*visittables)(Contact, Tables);
-  PetscErrorCode (*maybalance)(Contact, PetscBool *); /* (NULL: not) whether gaps may be turned, see src/contact/rows/balance.c */
+  PetscBool (*maybalance)(Contact); /* (NULL: not) whether gaps may be turned, see src/contact/rows/balance.c */
   /* (NULL) undoes `setup`, which follows if there are rows: pairs may come and go in the course of a run, */
   PetscErrorCode (*reset)(Contact);
   PetscBool (*mayreplacerows)(Contact); /* (NULL) if this says so */

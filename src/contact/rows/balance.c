@@ -61,16 +61,15 @@ static PetscErrorCode IsHeld(Contact contact, PetscInt b, int *held)
    edges, nor where both bodies are held: they cannot spin, and turns that nothing answers have brought energy. */
 static PetscErrorCode Judge(Contact contact, const ContactPair *pair, PetscBool unasked, char why[], size_t size)
 {
-  PetscBool linear = PETSC_TRUE, both_held = PETSC_TRUE, may = PETSC_FALSE;
+  PetscBool linear = PETSC_TRUE, both_held = PETSC_TRUE;
 
   PetscFunctionBegin;
   why[0] = 0;
-  if (contact->ops->maybalance) PetscCall((*contact->ops->maybalance)(contact, &may));
   if (contact->dim == 1 || pair->obstacle || pair->law != CONTACT_LAW_FRICTIONLESS)
     PetscCall(PetscStrncpy(why, "is not a frictionless one of two bodies in two or three dimensions", size));
   else if (BodyDoes(contact->bodies[pair->body[0]], BodyGetAxisymmetric))
     PetscCall(PetscStrncpy(why, "is axisymmetric, so that moments of contact forces are in balance all around; leave it out", size));
-  else if (!may)
+  else if (!contact->ops->maybalance || !(*contact->ops->maybalance)(contact))
     PetscCall(PetscStrncpy(why, "needs -contact_type schwarz and massless contact nodes (-<body>_mass_redistribute true)", size));
   for (PetscInt side = 0; side < 2 && !why[0]; side++) {
     const char *name = ((PetscObject)contact->bodies[pair->body[side]])->name;

@@ -199,7 +199,7 @@ PETSC_INTERN PetscReal      StepperSecantMultiply(PetscInt, const PetscScalar[],
 PETSC_INTERN PetscBool      StepperSecantHolds(PetscInt, const PetscScalar[], const PetscScalar[], PetscReal);
 PETSC_INTERN PetscErrorCode StepperSecantCorrect(StepperEntries *, const PetscScalar[], PetscScalar[], PetscBool, LawProblem *);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpTurns(Contact, ContactStepper *);
-PETSC_INTERN PetscErrorCode ContactStepperMayTurn(Contact, PetscBool *);
+PETSC_INTERN PetscBool      ContactStepperMayTurn(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperBeginTurns(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperListTurns(Contact, ContactStepper *);
 PETSC_INTERN PetscErrorCode ContactStepperAddTurns(Contact, ContactStepper *, Mat);

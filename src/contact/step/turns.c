@@ -45,16 +45,14 @@ PetscErrorCode ContactStepperSetUpTurns(Contact contact, ContactStepper *stepper
 }
 
 /* Whether turns suit the step, before it is set up: nodes with mass have another rule, whose rows are not closed at its end */
-PetscErrorCode ContactStepperMayTurn(Contact contact, PetscBool *may)
+PetscBool ContactStepperMayTurn(Contact contact)
 {
-  const ContactStepper *stepper = (const ContactStepper *)contact->data;
+  PetscBool may = (PetscBool)(Stepper(contact)->asked != &ContactRuleImpulse);
 
-  PetscFunctionBegin;
-  *may = (PetscBool)(stepper->asked != &ContactRuleImpulse);
   for (PetscInt p = 0; p < contact->n_pairs; p++)
-    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2) && *may; side++)
-      *may = (PetscBool)!ContactNeedsImpulse(contact, contact->pairs[p].body[side]);
-  PetscFunctionReturn(PETSC_SUCCESS);
+    for (PetscInt side = 0; side < (contact->pairs[p].obstacle ? 1 : 2) && may; side++)
+      may = (PetscBool)!ContactNeedsImpulse(contact, contact->pairs[p].body[side]);
+  return may;
 }
 
 /* At the start of a step all pairs may be turned, and none is */
