@@ -146,10 +146,8 @@ PetscErrorCode TransferSetUpTurns(Transfer transfer)
 
 /* How gaps can be turned such that forces have the same sum along the normals of both sides; each may be NULL. `n`: number of turns, one
    in two dimensions, two in three; for each row of this rank `uneven`: n numbers c, sums of forces times c vanish where forces are
-   balanced; `lever`: n numbers, a turn t changes its gap by the sum of them times t; `bend`: what c is half way between two nodes of
-   surfaces without strain. `turn`: all turns so far together [m] */
-PetscErrorCode TransferGetTurns(Transfer transfer, PetscInt *n, const PetscReal *uneven[], const PetscReal *lever[],
-                                const PetscReal *bend[], PetscReal turn[])
+   balanced; `lever`: n numbers, a turn t changes its gap by the sum of them times t. `turn`: all turns so far together [m] */
+PetscErrorCode TransferGetTurns(Transfer transfer, PetscInt *n, const PetscReal *uneven[], const PetscReal *lever[], PetscReal turn[])
 {
   const Balance *balance = &transfer->balance;
 
@@ -157,7 +155,6 @@ PetscErrorCode TransferGetTurns(Transfer transfer, PetscInt *n, const PetscReal 
   if (n) *n = balance->n;
   if (uneven) *uneven = balance->uneven;
   if (lever) *lever = balance->lever;
-  if (bend) *bend = balance->bend;
   for (PetscInt k = 0; turn && k < balance->n; k++) turn[k] = Dot(transfer->numbers.turn, transfer->numbers.axes[k]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

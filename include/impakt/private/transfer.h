@@ -83,8 +83,7 @@ PETSC_EXTERN PetscErrorCode TransferFollow(Transfer, const PetscBool[], PetscRea
                                            PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferSave(Transfer);
 PETSC_EXTERN PetscErrorCode TransferRestore(Transfer);
-PETSC_EXTERN PetscErrorCode TransferGetTurns(Transfer, PetscInt *, const PetscReal *[], const PetscReal *[], const PetscReal *[],
-                                             PetscReal[]);
+PETSC_EXTERN PetscErrorCode TransferGetTurns(Transfer, PetscInt *, const PetscReal *[], const PetscReal *[], PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferTurn(Transfer, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode TransferBalance(Transfer, const PetscReal[], PetscReal, PetscBool *);
 PETSC_EXTERN PetscErrorCode TransferGetRows(Transfer, TransferRows *);

@@ -162,7 +162,7 @@ PetscErrorCode ContactSetUpTurns(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     PetscInt n;
 
-    PetscCall(TransferGetTurns(contact->pairs[p].transfer, &n, NULL, NULL, NULL, NULL));
+    PetscCall(TransferGetTurns(contact->pairs[p].transfer, &n, NULL, NULL, NULL));
     turns->begin[p + 1] = turns->begin[p] + n;
     if (n) PetscCall(GetStiffness(contact, &contact->pairs[p], &turns->stiffness[p], &turns->edge[p]));
   }
@@ -190,7 +190,7 @@ PetscErrorCode ContactTurn(Contact contact, const PetscReal change[])
     const PetscReal *lever;
     PetscInt         n;
 
-    PetscCall(TransferGetTurns(contact->pairs[p].transfer, &n, NULL, &lever, NULL, NULL));
+    PetscCall(TransferGetTurns(contact->pairs[p].transfer, &n, NULL, &lever, NULL));
     for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end && n; i++) {
       turns->turned[i] = 0;
       for (PetscInt k = 0; k < n; k++)

@@ -100,7 +100,7 @@ PetscErrorCode ContactStepperListTurns(Contact contact, ContactStepper *stepper)
       const PetscInt     count = CountTurns(contact, p);
       const PetscReal   *values[2];
 
-      PetscCall(TransferGetTurns(pair->transfer, NULL, &values[0], &values[1], NULL, NULL));
+      PetscCall(TransferGetTurns(pair->transfer, NULL, &values[0], &values[1], NULL));
       for (PetscInt i = pair->begin; i < pair->end; i++)
         stepper->mine[i] = k / 2 < count ? values[k % 2][count * (i - pair->begin) + k / 2] : 0;
     }
@@ -241,7 +241,7 @@ PetscErrorCode ContactStepperImproveTurns(Contact contact, ContactStepper *stepp
     PetscReal      last[AXES] = {0}, turn[AXES] = {0}, square = 0;
 
     if (!n || turns->fixed[p]) continue;
-    PetscCall(TransferGetTurns(contact->pairs[p].transfer, NULL, NULL, NULL, NULL, last));
+    PetscCall(TransferGetTurns(contact->pairs[p].transfer, NULL, NULL, NULL, last));
     FindTurn(contact, stepper, p, stepper->problem.force, turn);
     for (PetscInt a = 0; a < n; a++) square += PetscSqr(last[a] + turn[a]);
     if (stepper->problem.solved && square <= PetscSqr(LARGEST * contact->turns.edge[p])) {
@@ -275,7 +275,7 @@ PetscErrorCode ContactStepperJoinTurned(Contact contact, ContactStepper *stepper
     int                joined = 0;
 
     if (!turns->fixed[p] || turns->joined[p]) continue;
-    PetscCall(TransferGetTurns(pair->transfer, NULL, &uneven, NULL, NULL, NULL));
+    PetscCall(TransferGetTurns(pair->transfer, NULL, &uneven, NULL, NULL));
     for (PetscInt i = pair->begin; i < pair->end; i++) {
       PetscReal square = 0;
 
