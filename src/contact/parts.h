@@ -184,7 +184,6 @@ PETSC_INTERN PetscErrorCode ContactMarkNodes(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactDescribeRows(Contact, const ContactPair *);
 PETSC_INTERN PetscErrorCode ContactMergeDroppedRows(Contact);
 PETSC_INTERN PetscErrorCode ContactMarkHeldRows(Contact);
-PETSC_INTERN PetscErrorCode ContactKeepHeldRows(Contact, Vec);
 PETSC_INTERN void           ContactLeaveOutDropped(Contact);
 PETSC_INTERN PetscErrorCode ContactMergeMatrix(Contact, PetscInt);
 PETSC_INTERN PetscErrorCode ContactGetPartForces(Contact, Vec *);

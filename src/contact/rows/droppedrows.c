@@ -61,19 +61,6 @@ PetscErrorCode ContactMarkHeldRows(Contact contact)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Dropped rows without heirs, which `known` does not mark, stay as they are */
-PetscErrorCode ContactKeepHeldRows(Contact contact, Vec known)
-{
-  const PetscScalar *has;
-
-  PetscFunctionBegin;
-  PetscCall(VecGetArrayRead(known, &has));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    contact->held.dropped[i] = (PetscBool)(contact->held.dropped[i] && PetscRealPart(has[i]) > 0);
-  PetscCall(VecRestoreArrayRead(known, &has));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 /* Nodes with all rows dropped are left out. Of others a dropped row is a tie without entries, closed and without force. */
 void ContactLeaveOutDropped(Contact contact)
 {

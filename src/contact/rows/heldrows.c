@@ -100,25 +100,20 @@ static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec n
 static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
 {
   const PetscInt most = contact->sideless ? RIM : PETSC_INT_MAX;
-
-  Mat neighbours, given, inherited;
-  Vec known, now, part;
-  int any;
+  PetscScalar   *has, *diagonal;
+  Mat            neighbours, given, inherited;
+  Vec            known, now, part;
+  int            any;
 
   PetscFunctionBegin;
   PetscCall(CreateNeighbours(contact, &neighbours));
   PetscCall(MatCreateVecs(neighbours, &known, &now));
   PetscCall(VecDuplicate(now, &part));
   PetscCall(MatDuplicate(neighbours, MAT_DO_NOT_COPY_VALUES, weights));
-  for (PetscInt i = 0; i < contact->rows.n; i++) {
-    PetscCall(VecSetValue(known, contact->rows.begin + i, contact->rows.opposite[i] && !contact->held.dropped[i] ? 1 : 0, INSERT_VALUES));
-    PetscCall(VecSetValue(now, contact->rows.begin + i, contact->held.dropped[i] ? 0 : 1, INSERT_VALUES));
-  }
-  PetscCall(VecAssemblyBegin(known));
-  PetscCall(VecAssemblyEnd(known));
-  PetscCall(VecAssemblyBegin(now));
-  PetscCall(VecAssemblyEnd(now));
-  PetscCall(MatDiagonalSet(*weights, now, INSERT_VALUES));
+  PetscCall(VecGetArrayWrite(known, &has));
+  for (PetscInt i = 0; i < contact->rows.n; i++) has[i] = contact->rows.opposite[i] && !contact->held.dropped[i] ? 1 : 0;
+  PetscCall(VecRestoreArrayWrite(known, &has));
+  PetscCall(MatDiagonalSet(*weights, known, INSERT_VALUES));
   PetscCall(FindNext(contact, neighbours, known, now, part, &any));
   for (PetscInt edges = 0; any && edges < most; edges++) {
     PetscCall(MatDuplicate(neighbours, MAT_COPY_VALUES, &given));
@@ -130,11 +125,14 @@ static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
     PetscCall(MatDestroy(&given));
     PetscCall(FindNext(contact, neighbours, known, now, part, &any));
   }
-  if (contact->sideless) PetscCall(ContactKeepHeldRows(contact, known));
-  for (PetscInt i = 0; i < contact->rows.n; i++)
-    PetscCall(VecSetValue(now, contact->rows.begin + i, contact->held.dropped[i] ? 0 : 1, INSERT_VALUES));
-  PetscCall(VecAssemblyBegin(now));
-  PetscCall(VecAssemblyEnd(now));
+  PetscCall(VecGetArray(known, &has));
+  PetscCall(VecGetArrayWrite(now, &diagonal));
+  for (PetscInt i = 0; i < contact->rows.n; i++) {
+    if (contact->sideless && has[i] == 0) contact->held.dropped[i] = PETSC_FALSE; /* without heirs rows stay as they are */
+    diagonal[i] = contact->held.dropped[i] ? 0 : 1;
+  }
+  PetscCall(VecRestoreArrayWrite(now, &diagonal));
+  PetscCall(VecRestoreArray(known, &has));
   PetscCall(MatDiagonalSet(*weights, now, INSERT_VALUES));
   PetscCall(VecDestroy(&part));
   PetscCall(VecDestroy(&now));
