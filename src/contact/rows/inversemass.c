@@ -8,7 +8,7 @@
 #define WORST          1e-10
 #define MAX_ITERATIONS 2000
 
-/* y = C x by the bodies, one solution with the mass of each */
+/* y = C x by the bodies, one solution with the mass of each; x is zero on rows that take no part, as what is solved for is */
 static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
 {
   InverseMass       *inverse;
@@ -21,19 +21,14 @@ static PetscErrorCode MultiplyByBodies(Mat shell, Vec x, Vec y)
   contact = inverse->contact;
   PetscCall(VecGetArrayRead(x, &force));
   PetscCall(VecGetArray(y, &sum));
-  for (PetscInt i = 0; i < contact->rows.n; i++) sum[i] = inverse->takes_part[i] ? 0 : force[i];
+  PetscCall(PetscArrayzero(sum, contact->rows.n));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const ContactBodyRows *of  = &contact->body_rows[b];
-    PetscScalar *const on_body = inverse->work[0], *const moved = inverse->work[1];
-
-    ContactTakeRows(contact, b, force, on_body);
-    for (PetscInt k = 0; k < of->n; k++)
-      if (!inverse->takes_part[of->rows[k]]) on_body[k] = 0;
-    PetscCall(BodyMultiplyInverseMass(contact->bodies[b], on_body, moved));
-    for (PetscInt k = 0; k < of->n; k++)
-      if (!inverse->takes_part[of->rows[k]]) moved[k] = 0;
-    ContactAddRows(contact, b, moved, sum);
+    ContactTakeRows(contact, b, force, inverse->work[0]);
+    PetscCall(BodyMultiplyInverseMass(contact->bodies[b], inverse->work[0], inverse->work[1]));
+    ContactAddRows(contact, b, inverse->work[1], sum);
   }
+  for (PetscInt i = 0; i < contact->rows.n; i++)
+    if (!inverse->takes_part[i]) sum[i] = force[i];
   PetscCall(VecRestoreArray(y, &sum));
   PetscCall(VecRestoreArrayRead(x, &force));
   PetscFunctionReturn(PETSC_SUCCESS);
