@@ -1,12 +1,11 @@
 /* Where a surface is now, with its normals and areas. */
 #include "interfaceimpl.h"
 
-/* Positions of all nodes of this rank at u + ahead v; u NULL: the reference positions */
-static PetscErrorCode UpdatePositions(Surface surface, Vec u, Vec v, PetscReal ahead)
+/* Positions of all nodes of this rank under the displacements u; NULL: the reference positions */
+static PetscErrorCode UpdatePositions(Surface surface, Vec u)
 {
   SurfaceData       *data = &surface->data;
-  const PetscInt     dim  = data->dim;
-  const PetscScalar *values, *rates;
+  const PetscScalar *values;
   PetscInt           start;
 
   PetscFunctionBegin;
@@ -14,14 +13,8 @@ static PetscErrorCode UpdatePositions(Surface surface, Vec u, Vec v, PetscReal a
   if (!u) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetOwnershipRange(u, &start, NULL));
   PetscCall(VecGetArrayRead(u, &values));
-  PetscCall(VecGetArrayRead(v, &rates));
-  for (PetscInt i = 0; i < data->n_owned; i++) {
-    const PetscInt dof      = data->dofs[i] - start;
-    PetscReal     *position = data->positions + 3 * i;
-
-    for (PetscInt d = 0; d < dim; d++) position[d] += PetscRealPart(values[dof + d] + ahead * rates[dof + d]);
-  }
-  PetscCall(VecRestoreArrayRead(v, &rates));
+  for (PetscInt i = 0; i < data->n_owned; i++)
+    for (PetscInt d = 0; d < data->dim; d++) data->positions[3 * i + d] += PetscRealPart(values[data->dofs[i] - start + d]);
   PetscCall(VecRestoreArrayRead(u, &values));
   if (!surface->divided) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSFBcastBegin(surface->vectors, MPIU_REAL, data->positions, data->positions, MPI_REPLACE));
@@ -174,12 +167,11 @@ PetscErrorCode SurfaceSetNear(Surface surface, const PetscBool near[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As SurfaceUpdate(), but for normals, areas and sizes of nodes that are not near; to where its body will be after a time `ahead` [s] with
-   the velocities v */
-PetscErrorCode SurfaceMove(Surface surface, Vec u, Vec v, PetscReal ahead)
+/* As SurfaceUpdate(), but for normals, areas and sizes of nodes that are not near */
+PetscErrorCode SurfaceMove(Surface surface, Vec u)
 {
   PetscFunctionBegin;
-  PetscCall(UpdatePositions(surface, u, v, ahead));
+  PetscCall(UpdatePositions(surface, u));
   PetscCall(UpdateNodes(surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -191,7 +183,7 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
 
   PetscFunctionBegin;
   surface->near = NULL; /* all nodes */
-  PetscCall(SurfaceMove(surface, u, u, 0));
+  PetscCall(SurfaceMove(surface, u));
   surface->near = near;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

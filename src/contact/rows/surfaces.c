@@ -31,11 +31,10 @@ PetscErrorCode ContactMoveSurfaces(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
-    const PetscInt b = contact->surfaces[s].body;
-    Vec            u, v;
+    Vec u;
 
-    PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
-    PetscCall(SurfaceMove(contact->surfaces[s].surface, u, v, contact->ahead[b]));
+    PetscCall(ContactGetRowPlace(contact, contact->surfaces[s].body, &u));
+    PetscCall(SurfaceMove(contact->surfaces[s].surface, u));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
