@@ -35,17 +35,17 @@ PetscReal FaceSize(PetscInt n, PetscReal area)
   return n < 3 ? area : PetscSqrtReal(n == 3 ? 2 * area : area);
 }
 
-/* Integrals of the shape functions over a face, projected on the plane across its normal, and their sum; exact for any quadrilateral */
-PetscReal FaceNodeAreas(PetscInt n, const PetscReal x[][3], const PetscReal normal[], PetscReal areas[])
+/* Integrals of the shape functions over a face, projected on the plane across its normal; exact for any quadrilateral */
+void FaceNodeAreas(PetscInt n, const PetscReal x[][3], const PetscReal normal[], PetscReal areas[])
 {
   static const PetscReal corner[4][2] = {{-1, -1}, {1, -1}, {1, 1}, {-1, 1}};
   const PetscReal        gauss        = 1 / PetscSqrtReal(3);
-  PetscReal              sum          = 0, area, unit[3];
+  PetscReal              area, unit[3];
 
   if (n < 4) {
     FaceNormal(n, x, unit, &area);
     for (PetscInt k = 0; k < n; k++) areas[k] = area / n;
-    return area;
+    return;
   }
   for (PetscInt k = 0; k < 4; k++) areas[k] = 0;
   for (PetscInt q = 0; q < 4; q++) {
@@ -60,9 +60,7 @@ PetscReal FaceNodeAreas(PetscInt n, const PetscReal x[][3], const PetscReal norm
     Cross(along, across, product);
     weight = Dot(product, normal);
     for (PetscInt k = 0; k < 4; k++) areas[k] += weight * (1 + corner[k][0] * xi) * (1 + corner[k][1] * eta) / 4;
-    sum += weight;
   }
-  return sum;
 }
 
 /* The plane of a face, with its first tangent along the first edge */

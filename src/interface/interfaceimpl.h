@@ -184,7 +184,7 @@ static inline PetscReal Normalize(PetscReal a[])
 
 /* Geometry of faces with 1 to 4 nodes. In one dimension a face is a point, whose area and size are 1. */
 PETSC_INTERN void      FaceNormal(PetscInt, const PetscReal[][3], PetscReal[], PetscReal *);
-PETSC_INTERN PetscReal FaceNodeAreas(PetscInt, const PetscReal[][3], const PetscReal[], PetscReal[]);
+PETSC_INTERN void      FaceNodeAreas(PetscInt, const PetscReal[][3], const PetscReal[], PetscReal[]);
 PETSC_INTERN void      FaceGradients(PetscInt, const PetscReal[][3], PetscReal[][3]);
 PETSC_INTERN PetscReal FaceSize(PetscInt, PetscReal);
 PETSC_INTERN void      FrameOfFace(PetscInt, const PetscReal[][3], const PetscReal[], Frame *);
