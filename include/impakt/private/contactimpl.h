@@ -540,7 +540,7 @@ PETSC_EXTERN PetscErrorCode ContactIntegrateForces(Contact, const PetscReal[]);
 PETSC_EXTERN PetscErrorCode ContactSetConditions(Contact, ContactConditions);
 PETSC_EXTERN PetscErrorCode ContactComputeGaps(Contact);
 PETSC_EXTERN PetscErrorCode ContactAny(Contact, PetscBool, PetscBool *);
-PETSC_EXTERN PetscErrorCode ContactOr(Contact, int *);
+PETSC_EXTERN PetscErrorCode ContactOr(Contact, PetscBool *);
 PETSC_EXTERN PetscReal      ContactStoresNothing(Contact, PetscInt, PetscReal);
 PETSC_EXTERN PetscErrorCode ContactSumStored(Contact);
 

@@ -40,13 +40,12 @@ PetscErrorCode ContactSetConditions(Contact contact, ContactConditions condition
 /* Whether any row on any rank is active (penetrating = false), or penetrates without being active (true) */
 PetscErrorCode ContactAny(Contact contact, PetscBool penetrating, PetscBool *any)
 {
-  int found = 0;
-
   PetscFunctionBegin;
+  *any = PETSC_FALSE;
   for (PetscInt i = 0; i < contact->rows.n; i++)
-    if (penetrating ? !contact->end.active[i] && contact->end.gap[i] < -contact->options.tolerance : contact->end.active[i]) found = 1;
-  PetscCall(ContactOr(contact, &found));
-  *any = (PetscBool)(found > 0);
+    if (penetrating ? !contact->end.active[i] && contact->end.gap[i] < -contact->options.tolerance : contact->end.active[i])
+      *any = PETSC_TRUE;
+  PetscCall(ContactOr(contact, any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -59,9 +59,9 @@ static PetscBool GainsTooMuch(Contact contact, PetscInt g)
 static PetscErrorCode MarkLeaving(Contact contact, PetscInt g, PetscBool *any)
 {
   ContactEnergy *energy = &contact->energy;
-  int            found  = 0;
 
   PetscFunctionBegin;
+  *any = PETSC_FALSE;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (ContactRowRubs(contact, i)) { /* with the row along the normal */
       energy->leaves[i] = energy->leaves[i - 1];
@@ -71,11 +71,10 @@ static PetscErrorCode MarkLeaving(Contact contact, PetscInt g, PetscBool *any)
     if (!contact->options.separation && contact->rows.tied[i]) continue; /* pulled, it does not leave */
     if ((energy->last_force[i] > 0 || energy->accepted_force[i] > 0) && contact->end.force[i] <= 0) {
       energy->leaves[i] = PETSC_TRUE;
-      found             = 1;
+      *any              = PETSC_TRUE;
     }
   }
-  PetscCall(ContactOr(contact, &found));
-  *any = (PetscBool)(found > 0);
+  PetscCall(ContactOr(contact, any));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -234,7 +233,7 @@ static PetscErrorCode LimitFriction(Contact contact)
   PetscFunctionBegin;
   for (PetscInt tries = 0; tries < MAX_RUBS && contact->friction.slip; tries++) {
     const PetscReal way = tries < WHOLE_WAYS ? 1 : 0.5;
-    int             any = 0;
+    PetscBool       any = PETSC_FALSE;
 
     for (PetscInt i = 0; i < contact->rows.n && !any; i++) any = Rubs(contact, i);
     PetscCall(ContactOr(contact, &any));

@@ -133,13 +133,13 @@ PetscErrorCode ContactWarnOfObstacles(Contact contact)
   if (contact->neighbours.come_and_go) PetscFunctionReturn(PETSC_SUCCESS); /* whoever comes near will */
   for (PetscInt o = 0; o < contact->n_obstacles; o++) {
     PetscInt    pairs = 0;
-    int         rows  = 0;
+    PetscBool   rows  = PETSC_FALSE;
     const char *name;
 
     for (PetscInt p = 0; p < contact->n_pairs; p++) {
       if (contact->pairs[p].obstacle != contact->obstacles[o]) continue;
       pairs++;
-      rows |= contact->pairs[p].end > contact->pairs[p].begin;
+      if (contact->pairs[p].end > contact->pairs[p].begin) rows = PETSC_TRUE;
     }
     PetscCall(ContactOr(contact, &rows));
     if (rows) continue;

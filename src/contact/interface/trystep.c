@@ -110,9 +110,9 @@ static PetscErrorCode NamePairs(Contact contact, size_t size, char text[])
   PetscFunctionBegin;
   if (reason != STEP_DIVERGED_OUTER && reason != STEP_DIVERGED_ACTIVE_SET) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    int touches = contact->n_pairs == 1;
+    PetscBool touches = (PetscBool)(contact->n_pairs == 1);
 
-    for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) touches |= contact->end.active[i];
+    for (PetscInt i = contact->pairs[p].begin; i < contact->pairs[p].end; i++) touches = (PetscBool)(touches || contact->end.active[i]);
     PetscCall(ContactOr(contact, &touches));
     if (!touches || n++ >= MOST_PAIRS) continue;
     PetscCall(PetscSNPrintf(text + used, size - used, "%s%s", n == 1 ? ", in contact: " : ", ", contact->pairs[p].name));

@@ -43,16 +43,15 @@ static PetscErrorCode GetBend(Contact contact, const ContactPair *pair, PetscInt
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode IsHeld(Contact contact, PetscInt b, int *held)
+static PetscErrorCode IsHeld(Contact contact, PetscInt b, PetscBool *held)
 {
   const PetscInt *dofs;
   PetscInt        n;
-  PetscBool       led;
 
   PetscFunctionBegin;
   PetscCall(BodyGetHeldDofs(contact->bodies[b], &n, &dofs));
-  PetscCall(BodyGetLed(contact->bodies[b], &led, NULL));
-  *held = n > 0 || led;
+  PetscCall(BodyGetLed(contact->bodies[b], held, NULL));
+  if (n > 0) *held = PETSC_TRUE;
   PetscCall(ContactOr(contact, held));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -74,7 +73,7 @@ static PetscErrorCode Judge(Contact contact, const ContactPair *pair, PetscBool 
   for (PetscInt side = 0; side < 2 && !why[0]; side++) {
     const char *name = ((PetscObject)contact->bodies[pair->body[side]])->name;
     PetscReal   bend;
-    int         held;
+    PetscBool   held;
 
     PetscCall(GetBend(contact, pair, side, unasked ? PETSC_MAX_REAL : EDGE, &bend));
     PetscCall(IsHeld(contact, pair->body[side], &held));

@@ -49,7 +49,6 @@ PetscErrorCode ContactBond(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     ContactPair *pair = &contact->pairs[p];
     PetscScalar *start[2];
-    int          any = pair->bonded;
 
     if (pair->law != CONTACT_LAW_BONDED) continue;
     PetscCall(ContactGetPairTraces(contact, pair, 0, PETSC_FALSE, start));
@@ -62,10 +61,9 @@ PetscErrorCode ContactBond(Contact contact)
         contact->start.active[i]                    = PETSC_TRUE;
         if (i > first) contact->start.force[i] = 0;
       }
-      any = 1;
+      pair->bonded = PETSC_TRUE;
     }
-    PetscCall(ContactOr(contact, &any));
-    pair->bonded = (PetscBool)(any > 0);
+    PetscCall(ContactOr(contact, &pair->bonded));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

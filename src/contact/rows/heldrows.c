@@ -70,7 +70,7 @@ static PetscErrorCode CreateNeighbours(Contact contact, Mat *neighbours)
 }
 
 /* Dropped rows without heirs beside heirs or rows with some (`known`): `now` becomes one there, `part` one over the number of these. */
-static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec now, Vec part, int *any)
+static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec now, Vec part, PetscBool *any)
 {
   const PetscScalar *has;
   PetscScalar       *values, *parts;
@@ -80,13 +80,13 @@ static PetscErrorCode FindNext(Contact contact, Mat neighbours, Vec known, Vec n
   PetscCall(VecGetArrayRead(known, &has));
   PetscCall(VecGetArrayWrite(now, &values));
   PetscCall(VecGetArray(part, &parts));
-  *any = 0;
+  *any = PETSC_FALSE;
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscBool next = (PetscBool)(contact->held.dropped[i] && PetscRealPart(has[i]) == 0 && PetscRealPart(parts[i]) > 0);
 
     values[i] = next ? 1 : 0;
     parts[i]  = next ? 1 / parts[i] : 0;
-    if (next) *any = 1;
+    if (next) *any = PETSC_TRUE;
   }
   PetscCall(VecRestoreArray(part, &parts));
   PetscCall(VecRestoreArrayWrite(now, &values));
@@ -103,7 +103,7 @@ static PetscErrorCode CreateWeights(Contact contact, Mat *weights)
   PetscScalar   *has, *diagonal;
   Mat            neighbours, given, inherited;
   Vec            known, now, part;
-  int            any;
+  PetscBool      any;
 
   PetscFunctionBegin;
   PetscCall(CreateNeighbours(contact, &neighbours));
@@ -204,10 +204,10 @@ static PetscErrorCode MergeNumbers(Contact contact)
 /* If any row has changed, the rows of heirs may have changed with it: marks them, and takes the shifts of their gaps out */
 static PetscErrorCode MarkHeirs(Contact contact)
 {
-  int any = 0;
+  PetscBool any = PETSC_FALSE;
 
   PetscFunctionBegin;
-  for (PetscInt i = 0; i < contact->rows.n; i++) any |= contact->rows.changed[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) any = (PetscBool)(any || contact->rows.changed[i]);
   PetscCall(ContactOr(contact, &any));
   for (PetscInt i = 0; i < contact->rows.n && any; i++) {
     if (contact->rows.changed[i] || !contact->held.heir[i]) continue;
@@ -220,11 +220,11 @@ static PetscErrorCode MarkHeirs(Contact contact)
 /* Drops the held rows and gives their shares to heirs: areas, gaps and normals now, matrices by contact->held.merger (NULL: none) */
 PetscErrorCode ContactMergeDroppedRows(Contact contact)
 {
-  int any = contact->held.merger ? 1 : 0;
+  PetscBool any = (PetscBool)(contact->held.merger != NULL);
 
   PetscFunctionBegin;
   PetscCall(ContactMarkHeldRows(contact));
-  for (PetscInt i = 0; i < contact->rows.n; i++) any |= contact->held.dropped[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) any = (PetscBool)(any || contact->held.dropped[i]);
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(MarkHeirs(contact));

@@ -42,9 +42,9 @@ static PetscErrorCode GetPairNormal(Contact contact, ContactPair *pair)
 /* Ends with an error if the surfaces of a pair that the user has named have no faces that see each other (opposite or not). */
 static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
 {
-  Surface surfaces[2];
-  int     any[2]                  = {0, 1};
-  char    moves[2][CONTACT_MOVES] = {"", ""};
+  Surface   surfaces[2];
+  PetscBool any[2]                  = {PETSC_FALSE, PETSC_TRUE};
+  char      moves[2][CONTACT_MOVES] = {"", ""};
 
   PetscFunctionBegin;
   if (pair->chosen || !contact->options.facing) PetscFunctionReturn(PETSC_SUCCESS);
@@ -53,7 +53,7 @@ static PetscErrorCode CheckFacing(Contact contact, const ContactPair *pair)
     const SurfaceData *data;
 
     PetscCall(SurfaceGetData(surfaces[side], &data));
-    any[side] = data->n_faces > 0;
+    any[side] = (PetscBool)(data->n_faces > 0);
     PetscCall(ContactOr(contact, &any[side]));
     PetscCall(SurfaceDestroy(&surfaces[side]));
   }
@@ -152,7 +152,7 @@ static PetscErrorCode CheckSelf(Contact contact, const ContactPair *pair)
 {
   const SurfaceData *data[2];
   PetscInt          *first, place;
-  int                common = 0;
+  PetscBool          common = PETSC_FALSE;
 
   PetscFunctionBegin;
   if (pair->obstacle || pair->body[0] != pair->body[1]) PetscFunctionReturn(PETSC_SUCCESS);
@@ -168,7 +168,7 @@ static PetscErrorCode CheckSelf(Contact contact, const ContactPair *pair)
   PetscCall(PetscSortInt(data[0]->n_owned, first));
   for (PetscInt i = 0; i < data[1]->n_owned && !common; i++) {
     PetscCall(PetscFindInt(data[1]->dofs[i], data[0]->n_owned, first, &place));
-    common = place >= 0;
+    common = (PetscBool)(place >= 0);
   }
   PetscCall(PetscFree(first));
   PetscCall(ContactOr(contact, &common));

@@ -2,11 +2,11 @@
 #include <contact/parts.h>
 #include <petscsf.h>
 
-/* A flag becomes the largest of all ranks: 1 where it is 1 on any */
-PetscErrorCode ContactOr(Contact contact, int *flag)
+/* A flag becomes true where it is on any rank */
+PetscErrorCode ContactOr(Contact contact, PetscBool *flag)
 {
   PetscFunctionBegin;
-  PetscCall(ContactReduce(contact, 1, MPI_INT, MPI_MAX, flag));
+  PetscCall(ContactReduce(contact, 1, MPI_C_BOOL, MPI_LOR, flag));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -106,12 +106,12 @@ static PetscErrorCode CheckHeld(Contact contact)
   for (PetscInt p = 0; p < contact->n_pairs && contact->prescribes; p++) {
     const ContactPair *pair = &contact->pairs[p];
     const Body         body = contact->bodies[pair->body[0]];
-    int                any = 0, free = 0; /* rows with a partner opposite, and those that are not held */
+    PetscBool          any = PETSC_FALSE, free = PETSC_FALSE; /* rows with a partner opposite, and those that are not held */
     TransferRows       rows;
 
     PetscCall(TransferGetRows(pair->transfer, &rows));
-    for (PetscInt i = 0; i < rows.n; i++) any |= rows.opposite[i];
-    for (PetscInt i = pair->begin; i < pair->end; i++) free |= contact->rows.opposite[i];
+    for (PetscInt i = 0; i < rows.n; i++) any = (PetscBool)(any || rows.opposite[i]);
+    for (PetscInt i = pair->begin; i < pair->end; i++) free = (PetscBool)(free || contact->rows.opposite[i]);
     PetscCall(ContactOr(contact, &any));
     PetscCall(ContactOr(contact, &free));
     PetscCheck(

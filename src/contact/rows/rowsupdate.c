@@ -202,7 +202,7 @@ PetscErrorCode ContactUpdateRows(Contact contact)
 /* Builds the rows again where the displacements at the start have other nodes tied, or tied to other ones, than the meshes alone */
 static PetscErrorCode RebuildTies(Contact contact)
 {
-  int any = 0;
+  PetscBool any = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(ContactMoveSurfaces(contact));
@@ -216,7 +216,7 @@ static PetscErrorCode RebuildTies(Contact contact)
       PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
     PetscCall(TransferUpdate(pair->transfer, u[0], u[1], contact->dim == 1 || pair->obstacle ? PETSC_MAX_REAL : 0, &rebuilt));
     PetscCall(ContactMeasureTies(contact, pair, &changed));
-    any |= rebuilt || changed;
+    if (rebuilt || changed) any = PETSC_TRUE;
   }
   PetscCall(ContactOr(contact, &any));
   PetscCall(ContactCheckTies(contact));

@@ -26,19 +26,15 @@ PetscErrorCode ContactStepperGetLimits(Contact contact, ContactStepper *stepper)
 /* Whether rows touch that were left out, by the rules of their pairs */
 static PetscErrorCode FindMore(Contact contact, ContactStepper *stepper, PetscBool *more)
 {
-  PetscBool mine = PETSC_FALSE;
-  int       any;
-
   PetscFunctionBegin;
+  *more = PETSC_FALSE;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactRule *rule = ContactStepperRule(stepper, &contact->pairs[p]);
 
-    if (rule->more) PetscCall((*rule->more)(contact, stepper, &contact->pairs[p], &mine));
+    if (rule->more) PetscCall((*rule->more)(contact, stepper, &contact->pairs[p], more));
   }
-  PetscCall(ContactStepperJoinTurned(contact, stepper, &mine));
-  any = mine;
-  PetscCall(ContactOr(contact, &any));
-  *more = (PetscBool)(any > 0);
+  PetscCall(ContactStepperJoinTurned(contact, stepper, more));
+  PetscCall(ContactOr(contact, more));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -272,7 +272,7 @@ PetscErrorCode ContactStepperJoinTurned(Contact contact, ContactStepper *stepper
     const ContactPair *pair = &contact->pairs[p];
     const PetscInt     n    = CountTurns(contact, p);
     const PetscReal   *uneven;
-    int                joined = 0;
+    PetscBool          joined = PETSC_FALSE;
 
     if (!turns->fixed[p] || turns->joined[p]) continue;
     PetscCall(TransferGetTurns(pair->transfer, NULL, &uneven, NULL, NULL));
@@ -282,8 +282,7 @@ PetscErrorCode ContactStepperJoinTurned(Contact contact, ContactStepper *stepper
       for (PetscInt k = 0; k < n; k++) square += PetscSqr(uneven[n * (i - pair->begin) + k]);
       if (stepper->touches[i] || !contact->rows.opposite[i]) continue;
       if (2 * LARGEST * contact->turns.edge[p] * PetscSqrtReal(square) <= contact->end.gap[i]) continue;
-      stepper->touches[i] = stepper->joins[i] = PETSC_TRUE;
-      joined                                  = 1;
+      stepper->touches[i] = stepper->joins[i] = joined = PETSC_TRUE;
     }
     PetscCall(ContactOr(contact, &joined));
     turns->joined[p] = PETSC_TRUE;

@@ -16,19 +16,20 @@ typedef struct {
 static PetscErrorCode ContactStep_Spring(Contact contact)
 {
   const Spring *spring = (const Spring *)contact->data;
+  PetscBool     off    = PETSC_TRUE;
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(spring->force, contact->start.force, contact->rows.n));
-  for (int guess = 0, off = 1; off; guess++) {
+  for (PetscInt guess = 0; off; guess++) {
     PetscCheck(guess < 50, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The spring forces do not settle");
     PetscCall(ContactIntegrateForces(contact, spring->force));
     if (ContactFailed(contact)) break; /* a body's step, which may be made again in halves */
-    off = 0;
+    off = PETSC_FALSE;
     for (PetscInt i = 0; i < contact->rows.n; i++) {
       const PetscReal depth  = PetscMax(-contact->end.gap[i], 0);
       const PetscReal wanted = spring->stiffness * contact->rows.area[i] * depth * PetscSqrtReal(depth);
 
-      if (PetscAbsReal(wanted - spring->force[i]) > 1e-12 * wanted) off = 1;
+      if (PetscAbsReal(wanted - spring->force[i]) > 1e-12 * wanted) off = PETSC_TRUE;
       spring->force[i] = wanted;
     }
     PetscCall(ContactOr(contact, &off)); /* on any rank */

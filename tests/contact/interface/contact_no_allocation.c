@@ -65,11 +65,11 @@ typedef struct {
   PetscInt steps, follow;  /* those steps, and the ones of them in which rows have followed the surfaces */
 } Counted;
 
-static PetscInt any_follows(Contact contact)
+static PetscBool any_follows(Contact contact)
 {
-  int any = 0;
+  PetscBool any = PETSC_FALSE;
 
-  for (PetscInt i = 0; i < contact->rows.n; i++) any |= contact->rows.followed[i];
+  for (PetscInt i = 0; i < contact->rows.n; i++) any = (PetscBool)(any || contact->rows.followed[i]);
   ok(ContactOr(contact, &any));
   return any;
 }

@@ -37,7 +37,7 @@ static PetscErrorCode ChangeSet(Contact contact, PetscBool *changed)
       *active = (PetscBool) !*active;
     }
   }
-  PetscCall(ContactOr(contact, &any));
+  PetscCall(ContactReduce(contact, 1, MPI_INT, MPI_MAX, &any));
   *changed = (PetscBool)(any > 0);
   if (any > 1 && !alternation->cycled) contact->counts.set_cycles++;
   if (any > 1) alternation->cycled = PETSC_TRUE;

@@ -30,14 +30,14 @@ static PetscErrorCode ContactStep_ForwardLagrange(Contact contact)
   Complementarity *problem = (Complementarity *)contact->data;
   PetscBool        penetrating;
   PetscLogDouble   begin, end;
-  int              any = 0;
+  PetscBool        any = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(ContactIntegrateFree(contact, &penetrating));
   if (ContactFailed(contact)) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     problem->gaps[i] = (contact->rows.tied[i] ? contact->end.gap[i] : GapToClose(contact, i)) / PetscSqr(contact->step);
-    any |= contact->rows.tied[i] || (problem->gaps[i] < 0 && (penetrating || contact->start.active[i]));
+    if (contact->rows.tied[i] || (problem->gaps[i] < 0 && (penetrating || contact->start.active[i]))) any = PETSC_TRUE;
   }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);

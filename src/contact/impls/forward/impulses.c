@@ -45,13 +45,13 @@ PetscErrorCode LagrangeCloseRate(Contact contact, PetscBool pushing_only, Comple
 PetscErrorCode LagrangeProjectPrediction(Contact contact, Complementarity *impulses)
 {
   const PetscReal parts[] = {1, 0, 0};
-  int             any     = 0;
+  PetscBool       any     = PETSC_FALSE;
 
   PetscFunctionBegin;
   PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, impulses->gaps));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     impulses->gaps[i] = contact->start.gap[i] + contact->step * impulses->gaps[i];
-    any |= impulses->gaps[i] < 0;
+    if (impulses->gaps[i] < 0) any = PETSC_TRUE;
   }
   PetscCall(ContactOr(contact, &any));
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
