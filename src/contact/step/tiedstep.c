@@ -22,21 +22,6 @@ static PetscErrorCode ExtrapolateForces(Contact contact, const ContactStepper *s
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Tells the bodies the forces at the start and at the end; `start`: more than the last step has ended with, `more`: than the mean */
-static PetscErrorCode TellForces(Contact contact, const PetscScalar start[], const PetscScalar more[])
-{
-  PetscScalar *const *on_body = contact->ties.inverse->work;
-
-  PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    if (!contact->body_rows[b].n_all) continue;
-    ContactTakeRows(contact, b, start, on_body[0]);
-    ContactTakeRows(contact, b, more, on_body[1]);
-    PetscCall(BodyEndConstantForces(contact->bodies[b], on_body[0], on_body[1]));
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
 {
   const PetscReal    parts[] = {0, 0, 1};
@@ -62,6 +47,11 @@ PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
     if (inverse->takes_part[i]) contact->start.force[i] = 2 * mean - contact->end.force[i];
     aligns[0][i] = contact->start.force[i] - stepper->last[i];
   }
-  PetscCall(TellForces(contact, aligns[0], aligns[1]));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) { /* by how much forces start above the last step's end, and end above the mean */
+    if (!contact->body_rows[b].n_all) continue;
+    ContactTakeRows(contact, b, aligns[0], inverse->work[0]);
+    ContactTakeRows(contact, b, aligns[1], inverse->work[1]);
+    PetscCall(BodyEndConstantForces(contact->bodies[b], inverse->work[0], inverse->work[1]));
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
