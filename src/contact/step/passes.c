@@ -203,7 +203,7 @@ PetscErrorCode ContactStepperCreateOuter(Contact contact, ContactStepper *steppe
 {
   PetscFunctionBegin;
   PetscCall(SNESCreate(PetscObjectComm((PetscObject)contact), &stepper->outer));
-  PetscCall(SNESSetFunction(stepper->outer, stepper->f, ComputeChange, contact));
+  PetscCall(SNESSetFunction(stepper->outer, NULL, ComputeChange, contact));
   PetscCall(SNESSetTolerances(stepper->outer, stepper->atol, stepper->rtol, 0, MOST_PASSES, PETSC_INT_MAX));
   PetscCall(SNESSetErrorIfNotConverged(stepper->outer, PETSC_FALSE));
   PetscCall(ContactSetOuterFromOptions(contact, stepper->outer, SNESNRICHARDSON));

@@ -16,7 +16,6 @@ PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper
   PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
                          n, &stepper->given));
   PetscCall(VecCreateMPI(PetscObjectComm((PetscObject)contact), contact->rows.n, PETSC_DETERMINE, &stepper->x));
-  PetscCall(VecDuplicate(stepper->x, &stepper->f));
   PetscCall(PetscMalloc4(n_all, &stepper->rows, n_all, &stepper->gathered, n_all, &stepper->of_assembled, n_all, &stepper->all));
   PetscCall(PetscMalloc2(3 * n_all, &stepper->told, 2 * n_all, &stepper->ends));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -26,7 +25,6 @@ PetscErrorCode ContactStepperDestroyVecs(ContactStepper *stepper)
 {
   PetscFunctionBegin;
   PetscCall(VecDestroy(&stepper->x));
-  PetscCall(VecDestroy(&stepper->f));
   PetscCall(PetscFree4(stepper->rows, stepper->gathered, stepper->of_assembled, stepper->all));
   PetscCall(PetscFree2(stepper->told, stepper->ends));
   PetscCall(PetscFree4(stepper->touches, stepper->joined, stepper->joins, stepper->grows));

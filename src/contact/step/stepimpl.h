@@ -148,7 +148,7 @@ struct _ContactStepper {
   StepperTurns   turns;                     /* what it has of turns */
   StepperSprings springs;                   /* what it has of springs between the surfaces */
   /* work space */
-  Vec          x, f;
+  Vec          x;
   PetscReal   *all;      /* a number per row of all ranks */
   PetscScalar *gathered; /* a number per touching row */
   PetscScalar *ends;     /* two: how its first body has gone along it in the last pass, and its second one [m] */
