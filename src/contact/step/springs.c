@@ -53,10 +53,8 @@ void ContactStepperGetSpring(Contact contact, const ContactStepper *stepper, Pet
 /* Energy of the spring of a row [J]. One across a normal has no gap: its force counts; a gap below 0 is how far it is stretched. */
 static PetscReal StoredEnergy(Contact contact, PetscInt i, PetscReal gap)
 {
-  const ContactStepper *stepper = (const ContactStepper *)contact->data;
-  PetscReal             spring, damper;
+  const PetscReal spring = GetArea(contact, i) * Stepper(contact)->springs.stiffness[contact->rows.pair[i]];
 
-  ContactStepperGetSpring(contact, stepper, i, &spring, &damper);
   if (gap < 0 || (contact->rows.tied[i] && !ContactRowRubs(contact, i))) return 0.5 * spring * PetscSqr(gap);
   return ContactRowRubs(contact, i) && spring > 0 ? 0.5 * PetscSqr(contact->end.force[i]) / spring : 0;
 }
