@@ -174,7 +174,6 @@ PetscErrorCode TransferTurn(Transfer transfer, const PetscReal change[])
       transfer->rows.gap[row] += more;
       balance->turned[row] += more;
     }
-  transfer->saved.same = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -220,7 +219,6 @@ PetscErrorCode TransferBalance(Transfer transfer, const PetscReal force[], Petsc
     transfer->rows.gap[row] += more;
     balance->turned[row] += more;
   }
-  transfer->saved.same = PETSC_FALSE;
-  *any                 = PETSC_TRUE;
+  *any = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

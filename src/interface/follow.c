@@ -193,7 +193,6 @@ PetscErrorCode TransferFollow(Transfer transfer, const PetscBool touches[], Pets
   if (found || size > 1) PetscCall(RowSetGetColumns(&transfer->rows, transfer->follow.partner_moved, transfer->column_moved));
   for (PetscInt row = 0; row < transfer->n; row++) {
     if (!transfer->followed[row]) continue;
-    transfer->saved.same = PETSC_FALSE;
     PetscCall(FollowRow(transfer, row, still, turns, middle, step / last));
     *any = (PetscBool)(*any || transfer->followed[row]);
   }

@@ -127,7 +127,6 @@ typedef struct {
 } TransferNumbers;
 
 typedef struct {
-  PetscBool       same;   /* rows have neither been built, nor have they followed, since they were put aside */
   PetscInt        builds; /* those counted when the rows were put aside; 0: none have been */
   RowSet          rows;   /* their shares */
   TransferNumbers numbers;

@@ -61,13 +61,13 @@ static PetscErrorCode CopyShares(Transfer transfer, const RowSet *from, PetscBoo
 PetscErrorCode TransferSave(Transfer transfer)
 {
   TransferSaved  *saved = &transfer->saved;
-  const PetscBool other = (PetscBool)(saved->builds != transfer->builds), same = (PetscBool)(saved->same && !other);
+  const PetscBool other = (PetscBool)(saved->builds != transfer->builds);
   StateList       lists[2];
 
   PetscFunctionBegin;
   PetscCheck(transfer->built, transfer->comm, PETSC_ERR_ARG_WRONGSTATE, "Call TransferUpdate() first");
-  if (same && !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS); /* builds alone change what obstacles remember */
-  if (!same) PetscCall(CopyShares(transfer, &transfer->rows, other, &saved->rows));
+  if (!other && !transfer->neumann) PetscFunctionReturn(PETSC_SUCCESS); /* builds alone change what obstacles remember */
+  PetscCall(CopyShares(transfer, &transfer->rows, other, &saved->rows));
   TransferListState(transfer, lists);
   for (PetscInt side = 0; side < 2; side++) {
     if (!saved->state[side]) PetscCall(StateListAllocate(&lists[side], &saved->state[side]));
@@ -75,7 +75,6 @@ PetscErrorCode TransferSave(Transfer transfer)
   }
   saved->builds  = transfer->builds;
   saved->numbers = transfer->numbers;
-  saved->same    = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -94,6 +93,5 @@ PetscErrorCode TransferRestore(Transfer transfer)
   for (PetscInt side = 0; side < 2; side++) PetscCall(StateListCopy(&lists[side], PETSC_TRUE, saved->state[side]));
   transfer->numbers = saved->numbers;
   saved->builds     = transfer->builds;
-  saved->same       = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
