@@ -9,17 +9,13 @@ static PetscErrorCode SumNormals(Surface surface, PetscSF sf, PetscReal sums[])
 
   PetscFunctionBegin;
   for (PetscInt f = 0; f < data->n_faces; f++) {
-    const PetscInt *cone, n = data->face_nodes;
-    PetscReal       x[4][3], normal[3], area;
+    const PetscInt *cone;
     PetscInt        size;
 
-    for (PetscInt k = 0; k < n; k++)
-      for (PetscInt d = 0; d < 3; d++) x[k][d] = data->reference[3 * data->faces[f * n + k] + d];
-    FaceNormal(n, (const PetscReal(*)[3])x, normal, &area);
     PetscCall(DMPlexGetConeSize(surface->dm, surface->points[f], &size));
     PetscCall(DMPlexGetCone(surface->dm, surface->points[f], &cone));
     for (PetscInt c = 0; c < size; c++) {
-      for (PetscInt d = 0; d < 3; d++) sums[4 * cone[c] + d] += normal[d];
+      for (PetscInt d = 0; d < 3; d++) sums[4 * cone[c] + d] += data->face_normals[3 * f + d];
       sums[4 * cone[c] + 3] += 1;
     }
   }
@@ -75,7 +71,7 @@ PetscErrorCode SurfaceMarkVertices(DM dm, PetscInt n_faces, const PetscInt point
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Finds the nodes on edges between two faces whose normals differ by more than SHARP in the mesh */
+/* Finds the nodes on edges between two faces whose normals differ by more than SHARP in the mesh, where the surface has to be */
 PetscErrorCode SurfaceFindEdges(Surface surface, PetscSF sf)
 {
   const SurfaceData *data = &surface->data;

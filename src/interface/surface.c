@@ -185,8 +185,9 @@ PetscErrorCode SurfaceSetUpNodes(Surface surface)
   PetscCall(SetUpFaces(surface, numbers));
   PetscCall(PetscFree(numbers));
   PetscCall(PetscCalloc2(surface->data.n_nodes, &surface->sharp, 3 * surface->data.n_nodes, &surface->smooth));
-  PetscCall(SurfaceFindEdges(surface, points));
   PetscCall(SurfaceUpdate(surface, NULL));
+  PetscCall(SurfaceFindEdges(surface, points));
+  PetscCall(SurfaceUpdate(surface, NULL)); /* nodes on edges have no smooth normal */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
