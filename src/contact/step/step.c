@@ -48,14 +48,12 @@ PetscErrorCode ContactStepperMarkRows(Contact contact, const ContactStepper *ste
     const PetscInt i = contact->rows.acting[k], first = ContactFirstRow(contact, i);
 
     contact->end.active[i] = (PetscBool)(stepper->touches[i] && (contact->rows.tied[first] || contact->end.force[first] > 0));
+    if (contact->friction.slides) contact->friction.slides[i] = PETSC_FALSE;
   }
-  if (!ContactAnyPairHas(contact, CONTACT_LAW_FRICTION)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt k = 0; k < contact->rows.n_acting; k++) contact->friction.slides[contact->rows.acting[k]] = PETSC_FALSE;
-  for (PetscInt node = 0; problem->n && node < problem->n_nodes; node++) {
-    const PetscInt first = problem->begin[node], rows = problem->begin[node + 1] - first, i = stepper->rows[first] - contact->rows.begin;
+  for (PetscInt node = 0; contact->friction.slides && problem->n && node < problem->n_nodes; node++) {
+    const PetscInt i = stepper->rows[problem->begin[node]] - contact->rows.begin;
 
-    for (PetscInt k = 0; k < rows && i >= 0 && i < contact->rows.n && contact->end.force[i] > 0; k++)
-      contact->friction.slides[i + k] = LawProblemSlides(problem, node);
+    if (i >= 0 && i < contact->rows.n && contact->end.force[i] > 0) contact->friction.slides[i] = LawProblemSlides(problem, node);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
