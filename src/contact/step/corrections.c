@@ -23,20 +23,12 @@ static PetscErrorCode GatherEnds(Contact contact, ContactStepper *stepper)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* By how much rows have gone otherwise under the forces of a secant than a block has it */
-static PetscReal Off(PetscInt n, const PetscScalar gone[], const PetscScalar product[])
-{
-  PetscReal off = 0;
-
-  for (PetscInt k = 0; k < n; k++) off = PetscMax(off, PetscAbsScalar(gone[k] - product[k]));
-  return off;
-}
-
-static PetscReal Largest(PetscInt n, const PetscScalar product[])
+/* By how much rows go under the forces of a secant as a block has it, at most; less what they have `gone`, unless that is NULL [m] */
+static PetscReal Largest(PetscInt n, const PetscScalar product[], const PetscScalar gone[])
 {
   PetscReal largest = 0;
 
-  for (PetscInt k = 0; k < n; k++) largest = PetscMax(largest, PetscAbsScalar(product[k]));
+  for (PetscInt k = 0; k < n; k++) largest = PetscMax(largest, PetscAbsScalar(product[k] - (gone ? gone[k] : 0)));
   return largest;
 }
 
@@ -81,13 +73,13 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     work += PetscRealPart(force[k] * gone[k]);
   }
   told_work = StepperSecantMultiply(n, entries->block, force, product);
-  off       = Off(n, gone, product);
-  if (entries->follows && off > RENEW * Largest(n, product) + SURE * problem->resolution) {
+  off       = Largest(n, product, gone);
+  if (entries->follows && off > RENEW * Largest(n, product, NULL) + SURE * problem->resolution) {
     PetscCall(Renew(contact, stepper, b));
     *renewed = stepper->corrected = PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  if (stepper->passes == 1 && at && StepperSecantMultiply(n, entries->own, force, product + n) > 0 && Off(n, gone, product + n) < off) {
+  if (stepper->passes == 1 && at && StepperSecantMultiply(n, entries->own, force, product + n) > 0 && Largest(n, product + n, gone) < off) {
     PetscCall(PetscArraymove(secants->values, force, 2 * n));
     PetscCall(StepperSecantsResize(secants, n, 1));
     PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
@@ -95,11 +87,11 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     force     = secants->values;
     gone      = force + n;
     told_work = StepperSecantMultiply(n, entries->block, force, product);
-    off       = Off(n, gone, product);
+    off       = Largest(n, product, gone);
     *renewed = stepper->corrected = PETSC_TRUE;
     stepper->assembled            = -1;
   }
-  if (off <= EXACT * Largest(n, product) + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0)) {
+  if (off <= EXACT * Largest(n, product, NULL) + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0)) {
     secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
