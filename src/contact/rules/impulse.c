@@ -121,9 +121,9 @@ static PetscErrorCode End(Contact contact, ContactStepper *stepper, const Contac
     contact->start.force[i]       = contact->end.force[i];
     if (!stepper->touches[i]) continue;
     if (!ContactRowRubs(contact, i))
-      stepper->step_loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]) +
-                            ContactStepperTaken(contact, stepper, i);
-    stepper->step_force += PetscAbsReal(contact->end.force[i]);
+      stepper->closed.loss -= contact->end.force[i] * (contact->end.gap[i] - contact->start.gap[i]) +
+                              ContactStepperTaken(contact, stepper, i);
+    stepper->closed.force += PetscAbsReal(contact->end.force[i]);
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -55,20 +55,18 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   stepper->assembly.of_state = -1;
   PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperSetUpRules(contact, stepper));
-  stepper->has_rigid = ContactHasRigid(contact);
+  stepper->has_rigid  = ContactHasRigid(contact);
+  contact->rows.lists = PETSC_TRUE;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactLaw law  = contact->pairs[p].law;
     const PetscBool  ties = (PetscBool)(law == CONTACT_LAW_TIED || law == CONTACT_LAW_BONDED);
 
     stepper->laws[p] = law == CONTACT_LAW_GLUE ? RowLaws[contact->pairs[p].named] : ties ? &RowLawTie : &RowLawHold;
+    if (law != CONTACT_LAW_FRICTION && law != CONTACT_LAW_FRICTIONLESS) contact->rows.lists = PETSC_FALSE;
   }
   PetscCall(ContactStepperSetUpGlue(contact, stepper));
-  contact->rows.lists = PETSC_TRUE;
   for (PetscInt b = 0; b < contact->n_bodies; b++)
-    contact->rows.lists = (PetscBool)(contact->rows.lists && stepper->rules[b] == &ContactRuleImpulse);
-  for (PetscInt p = 0; p < contact->n_pairs; p++)
-    if (contact->pairs[p].law != CONTACT_LAW_FRICTION && contact->pairs[p].law != CONTACT_LAW_FRICTIONLESS)
-      contact->rows.lists = PETSC_FALSE;
+    if (stepper->rules[b] != &ContactRuleImpulse) contact->rows.lists = PETSC_FALSE;
   contact->ties.by_mean       = (PetscBool)(contact->impulses && ContactAllPairsTie(contact) && contact->options.shared_times);
   stepper->rtol               = floating ? RTOL_FLOATING : any_static || all_linear ? RTOL_EXACT : RTOL;
   stepper->atol               = (floating ? ATOL_FLOATING : 1) * RESOLUTION * contact->scale.length;
@@ -125,8 +123,8 @@ PetscErrorCode ContactStepperAccept(Contact contact)
   }
   PetscCall(ContactStepperAcceptGlue(contact, stepper));
   PetscCall(ContactStepperAcceptSecants(stepper));
-  contact->counts.contact_loss += stepper->step_loss;
-  contact->energy.largest_force += stepper->step_force; /* changes of gaps add up, and what nobody knows of them does */
+  contact->counts.contact_loss += stepper->closed.loss;
+  contact->energy.largest_force += stepper->closed.force; /* changes of gaps add up, and what nobody knows of them does */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

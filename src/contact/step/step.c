@@ -73,10 +73,8 @@ static PetscErrorCode CheckFriction(Contact contact, const ContactStepper *stepp
 /* States of rows at the end of the step, and what contact has taken */
 static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
 {
-  PetscReal sums[2];
-
   PetscFunctionBegin;
-  stepper->step_loss = stepper->step_force = 0;
+  stepper->closed.loss = stepper->closed.force = 0;
   PetscCall(ContactStepperEndGlue(contact, stepper));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactRule *rule = ContactStepperRule(stepper, &contact->pairs[p]);
@@ -88,12 +86,8 @@ static PetscErrorCode EndStep(Contact contact, ContactStepper *stepper)
   PetscCall(CheckFriction(contact, stepper));
   if (stepper->glued) PetscCall(ContactSumStored(contact));
   if (!contact->energy.takes) PetscFunctionReturn(PETSC_SUCCESS);
-  sums[0] = stepper->step_loss;
-  sums[1] = stepper->step_force;
-  PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_SUM, sums));
-  stepper->step_loss  = sums[0];
-  stepper->step_force = sums[1];
-  PetscCall(PetscInfo(contact, "closed rows take %g J in the step\n", (double)stepper->step_loss));
+  PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_SUM, &stepper->closed));
+  PetscCall(PetscInfo(contact, "closed rows take %g J in the step\n", (double)stepper->closed.loss));
   /* nobody else sums up what friction takes where the energy is not limited */
   PetscCall(ContactComputeFrictionLoss(contact, contact->start.force));
   PetscFunctionReturn(PETSC_SUCCESS);

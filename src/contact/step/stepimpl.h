@@ -137,8 +137,10 @@ struct _ContactStepper {
   PetscInt  passes;
   PetscBool forms;               /* S has entries even where it might be products: Newton's method alone has not solved the law */
   PetscBool has_told, corrected; /* there has been a pass with these rows; S has been corrected in the last one */
-  PetscReal step_loss;           /* what contact takes of the energy in this step, friction apart [J] */
-  PetscReal step_force;          /* sum over the rows whose changes of gaps, not gaps, are held in this step [N] */
+  struct {
+    PetscReal loss;  /* what contact takes of the energy in this step, friction apart [J] */
+    PetscReal force; /* sum over the rows whose changes of gaps, not gaps, are held in this step [N] */
+  } closed;
   /* S: counts of the changes of rows, for which S is another; now, and when S was assembled; the rows that it has */
   StepperAssembly assembly;
   PetscInt64      state, assembled;
