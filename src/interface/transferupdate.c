@@ -79,7 +79,7 @@ static PetscErrorCode Remember(Transfer transfer, PetscReal near)
 PetscErrorCode TransferGetReach(Transfer transfer, PetscReal near, PetscReal *reach)
 {
   const SurfaceData *data[2]   = {&transfer->dirichlet->data, transfer->neumann ? &transfer->neumann->data : NULL};
-  PetscReal          boxes[13] = {0}, square = 0; /* of both sides; then the largest face with its sign changed */
+  PetscReal          boxes[13] = {0}; /* of both sides; then the largest face with its sign changed */
 
   PetscFunctionBegin;
   *reach = near;
@@ -89,8 +89,7 @@ PetscErrorCode TransferGetReach(Transfer transfer, PetscReal near, PetscReal *re
     for (PetscInt i = 0; i < data[side]->n_owned; i++) boxes[12] = PetscMin(boxes[12], -data[side]->sizes[i]);
   }
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, boxes, 13, MPIU_REAL, MPIU_MIN, transfer->comm));
-  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(boxes[d] + boxes[9 + d], boxes[6 + d] + boxes[3 + d])));
-  *reach = PetscMax(near, PetscSqrtReal(square) - FACES_AHEAD * boxes[12]);
+  *reach = PetscMax(near, BoxesDistance(boxes, boxes + 6) - FACES_AHEAD * boxes[12]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

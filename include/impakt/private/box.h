@@ -20,3 +20,12 @@ static inline PetscBool BoxesMeet(const PetscReal a[6], const PetscReal b[6])
     if (a[d] > -b[3 + d] || b[d] > -a[3 + d]) return PETSC_FALSE;
   return PETSC_TRUE;
 }
+
+/* How far two boxes are apart, 0 where they meet [m] */
+static inline PetscReal BoxesDistance(const PetscReal a[6], const PetscReal b[6])
+{
+  PetscReal square = 0;
+
+  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(a[d] + b[3 + d], b[d] + a[3 + d])));
+  return PetscSqrtReal(square);
+}

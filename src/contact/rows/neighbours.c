@@ -68,14 +68,6 @@ PetscErrorCode ContactSuitsNeighbours(Contact contact, PetscBool *suits)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscReal BoxDistance(const PetscReal a[], const PetscReal b[])
-{
-  PetscReal square = 0;
-
-  for (PetscInt d = 0; d < 3; d++) square += PetscSqr(PetscMax(0, PetscMax(a[d] + b[3 + d], b[d] + a[3 + d])));
-  return PetscSqrtReal(square);
-}
-
 /* Takes a pair whose boxes are near enough, `edge` being that of its larger contact elements [m] */
 static PetscErrorCode Consider(Contact contact, PetscInt first, PetscInt second, PetscReal distance, PetscReal near, PetscReal edge,
                                PetscInt *n)
@@ -126,7 +118,7 @@ static PetscErrorCode FindBodies(Contact contact, PetscReal near, PetscInt *n)
     for (PetscInt l = k + 1; l < contact->n_bodies && neighbours->lower[l] <= until; l++) {
       const PetscInt  b = neighbours->sorted[l], first = neighbours->place[a] < neighbours->place[b] ? a : b, second = a + b - first;
       const PetscReal edge     = PetscMax(neighbours->edge[a], neighbours->edge[b]);
-      const PetscReal distance = BoxDistance(neighbours->boxes + 6 * a, neighbours->boxes + 6 * b);
+      const PetscReal distance = BoxesDistance(neighbours->boxes + 6 * a, neighbours->boxes + 6 * b);
 
       PetscCall(Consider(contact, first, second, distance, near, edge, n));
     }
