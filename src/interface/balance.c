@@ -103,7 +103,6 @@ static PetscErrorCode FindAxes(Transfer transfer, const PetscReal force[], Petsc
 {
   Balance  *balance = &transfer->balance;
   PetscReal sums[8] = {0};
-  PetscInt  least   = 0;
 
   PetscFunctionBegin;
   if (transfer->dim == 2) PetscFunctionReturn(PETSC_SUCCESS);
@@ -118,11 +117,7 @@ static PetscErrorCode FindAxes(Transfer transfer, const PetscReal force[], Petsc
   PetscCallMPI(MPIU_Allreduce(MPI_IN_PLACE, sums, 8, MPIU_REAL, MPIU_SUM, transfer->comm));
   if (!(sums[3] > 0)) PetscCall(PetscArraycpy(sums, sums + 4, 3));
   if (!(Normalize(sums) > 0)) PetscFunctionReturn(PETSC_SUCCESS);
-  for (PetscInt d = 1; d < 3; d++)
-    if (PetscAbsReal(sums[d]) < PetscAbsReal(sums[least])) least = d;
-  for (PetscInt d = 0; d < 3; d++) transfer->numbers.axes[0][d] = (d == least) - sums[d] * sums[least];
-  (void)Normalize(transfer->numbers.axes[0]);
-  Cross(sums, transfer->numbers.axes[0], transfer->numbers.axes[1]);
+  UnitsAcross(transfer->dim, sums, transfer->numbers.axes[0], transfer->numbers.axes[1]);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -130,22 +130,13 @@ void FaceGradients(PetscInt n, const PetscReal x[][3], PetscReal gradients[][3])
    PETSC_FALSE: the row has no such part. The slopes map directions along that part to what they become. */
 PetscBool RowPartnerNormal(Surface surface, const RowSet *set, PetscInt row, const PetscReal x[], PetscReal normal[])
 {
-  const PetscInt   dim         = surface->data.dim;
-  const PetscReal *built       = set->partner + 3 * row;
-  PetscReal        frame[2][3] = {{0}}, now[2][3] = {{0}};
-  PetscInt         thinnest = 0;
+  const PetscInt   dim   = surface->data.dim;
+  const PetscReal *built = set->partner + 3 * row;
+  PetscReal        frame[2][3], now[2][3] = {{0}};
 
   if (Dot(built, built) == 0) return PETSC_FALSE;
-  for (PetscInt d = 1; d < 3; d++)
-    if (PetscAbsReal(built[d]) < PetscAbsReal(built[thinnest])) thinnest = d;
-  if (dim == 2) {
-    thinnest  = 2;
-    now[1][2] = 1;
-  }
-  frame[1][thinnest] = 1;
-  Cross(frame[1], built, frame[0]);
-  (void)Normalize(frame[0]);
-  Cross(built, frame[0], frame[1]);
+  if (dim == 2) now[1][2] = 1;
+  UnitsAcross(dim, built, frame[0], frame[1]);
   for (PetscInt j = set->offsets[row]; j < set->offsets[row + 1]; j++)
     for (PetscInt a = 0; a < dim - 1; a++)
       for (PetscInt d = 0; d < 3; d++) now[a][d] += Dot(set->shares[j].slope, frame[a]) * x[3 * set->columns[j] + d];

@@ -181,6 +181,19 @@ static inline PetscReal Normalize(PetscReal a[])
   return length;
 }
 
+/* Two unit vectors across a unit vector n, n x a = b; in the plane a lies in it, and b is across it */
+static inline void UnitsAcross(PetscInt dim, const PetscReal n[], PetscReal a[], PetscReal b[])
+{
+  PetscInt thinnest = dim == 2 ? 2 : 0;
+
+  for (PetscInt d = 1; d < 3 && dim > 2; d++)
+    if (PetscAbsReal(n[d]) < PetscAbsReal(n[thinnest])) thinnest = d;
+  for (PetscInt d = 0; d < 3; d++) b[d] = d == thinnest;
+  Cross(b, n, a);
+  (void)Normalize(a);
+  Cross(n, a, b);
+}
+
 /* Geometry of faces with 1 to 4 nodes. In one dimension a face is a point, whose area and size are 1. */
 PETSC_INTERN void      FaceNormal(PetscInt, const PetscReal[][3], PetscReal[], PetscReal *);
 PETSC_INTERN void      FaceNodeAreas(PetscInt, const PetscReal[][3], const PetscReal[], PetscReal[]);

@@ -83,21 +83,10 @@ static PetscBool IsBeside(PetscInt a, PetscReal lower[3][3], PetscInt n, const P
 void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size,
                 PetscReal weights[])
 {
-  PetscReal tangents[2][3] = {{0}}, gram[3][3] = {{0}}, lower[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
-  PetscInt  thinnest = 0;
+  PetscReal tangents[2][3], gram[3][3] = {{0}}, lower[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
 
   if (dim == 1) return;
-  for (PetscInt d = 1; d < dim; d++)
-    if (PetscAbsReal(normal[d]) < PetscAbsReal(normal[thinnest])) thinnest = d;
-  if (dim == 2) {
-    tangents[0][0] = -normal[1];
-    tangents[0][1] = normal[0];
-  } else {
-    tangents[1][thinnest] = 1;
-    Cross(normal, tangents[1], tangents[0]);
-    (void)Normalize(tangents[0]);
-    Cross(normal, tangents[0], tangents[1]);
-  }
+  UnitsAcross(dim, normal, tangents[0], tangents[1]);
   for (PetscInt j = 0; j < n; j++) {
     PetscReal condition[3];
 
