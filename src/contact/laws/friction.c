@@ -128,30 +128,25 @@ static PetscErrorCode GetDrive(Contact contact, const ContactPair *pair, PetscIn
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* At the start of a step: how far the surfaces of obstacles go along themselves in it, at the nodes' last places. */
+/* At the start of a step: how far the surfaces of obstacles go along themselves in it, at the places of nodes with which rows are laid */
 PetscErrorCode ContactDriveFriction(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs && contact->friction.slip; p++) {
     const ContactPair *pair  = &contact->pairs[p];
     PetscBool          moves = PETSC_FALSE;
-    const PetscScalar *reference, *displacement;
+    const SurfaceData *data;
     PetscReal          time;
-    Vec                positions, u;
 
     if (pair->obstacle) PetscCall(ObstacleGetVelocity(pair->obstacle, NULL, 0, NULL, &moves));
     if (!moves || pair->law != CONTACT_LAW_FRICTION) continue;
     PetscCall(BodyGetStartTime(contact->bodies[pair->body[0]], &time));
-    PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
-    PetscCall(BodyGetSolution(contact->bodies[pair->body[0]], &u, NULL, NULL));
-    PetscCall(VecGetArrayRead(positions, &reference));
-    PetscCall(VecGetArrayRead(u, &displacement));
+    PetscCall(SurfaceGetData(pair->surfaces[0], &data));
     for (PetscInt first = pair->begin; first < pair->end; first += pair->components) {
-      PetscReal x[3] = {0, 0, 0}, velocity[3];
+      const PetscReal *x = data->positions + 3 * ((first - pair->begin) / pair->components);
+      PetscReal        velocity[3];
 
       if (!contact->rows.opposite[first]) continue;
-      for (PetscInt d = 0; d < contact->dim; d++)
-        x[d] = PetscRealPart(reference[contact->rows.dof[first] + d] + displacement[contact->rows.dof[first] + d]);
       PetscCall(GetDrive(contact, pair, first, x, time + 0.5 * contact->step, velocity));
       for (PetscInt i = first; i < first + pair->components; i++) {
         contact->friction.drive[i] = 0;
@@ -159,8 +154,6 @@ PetscErrorCode ContactDriveFriction(Contact contact)
       }
       contact->friction.drive[first] = 0;
     }
-    PetscCall(VecRestoreArrayRead(u, &displacement));
-    PetscCall(VecRestoreArrayRead(positions, &reference));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
