@@ -76,16 +76,14 @@ static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSum
     int    rank;
   } worst = {0, contact->ranks.rank};
   TieNode            nodes[4]; /* the worst in each state on this rank */
-  const PetscScalar *x;
+  const SurfaceData *data;
   TransferRows       rows;
-  Vec                positions;
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(summary, sizeof(*summary)));
   for (PetscInt state = 0; state < 4; state++) nodes[state] = (TieNode){.bad = -PETSC_MAX_REAL, .gap = PETSC_MAX_REAL};
   PetscCall(TransferGetRows(pair->transfer, &rows));
-  PetscCall(BodyGetReferencePositions(contact->bodies[pair->body[0]], &positions));
-  PetscCall(VecGetArrayRead(positions, &x));
+  PetscCall(SurfaceGetData(pair->surfaces[0], &data));
   for (PetscInt node = 0; node < rows.n; node++) {
     const PetscInt i   = pair->begin + node * pair->components;
     TieNode        own = {.gap = PetscAbsReal(contact->ties.distance[i])};
@@ -93,13 +91,12 @@ static PetscErrorCode Summarize(Contact contact, const ContactPair *pair, TieSum
 
     if (!rows.opposite[node]) continue;
     PetscCall(GetFaceSize(contact, pair, &rows, node, &own.size));
-    for (PetscInt d = 0; d < contact->dim; d++) own.x[d] = PetscRealPart(x[contact->rows.dof[i] + d]);
+    PetscCall(PetscArraycpy(own.x, data->reference + 3 * node, 3));
     state   = JudgeDistance(contact, contact->ties.distance[i], own.size);
     own.bad = state == TIE_APART ? -own.gap : own.gap;
     if (own.bad > nodes[state].bad) nodes[state] = own;
     summary->n[state]++;
   }
-  PetscCall(VecRestoreArrayRead(positions, &x));
   PetscCall(ContactReduce(contact, 4, MPIU_INT, MPI_SUM, summary->n));
   summary->state = summary->n[TIE_OVERLAPS] ? TIE_OVERLAPS : summary->n[TIE_TOO_FAR] ? TIE_TOO_FAR : TIE_APART;
   summary->worst = nodes[summary->state];
