@@ -21,19 +21,6 @@ static PetscErrorCode GetLinearTurn(Contact contact, const ContactPair *pair, Pe
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Sums over a pair's rows on this rank of tilt times normal force, and of what friction can bear [N]; `turn`: tilt of all rows [rad] */
-static void AddTilts(Contact contact, const ContactPair *pair, PetscReal turn, const PetscReal tilts[], PetscReal sums[2])
-{
-  for (PetscInt first = pair->begin, k = 0; first < pair->end; first += pair->components, k++) {
-    PetscReal limit[2];
-
-    if (!(contact->end.force[first] > 0) || !contact->rows.opposite[first]) continue;
-    ContactGetFrictionLimit(contact, pair, 0, limit);
-    sums[0] += (turn + tilts[k]) * contact->end.force[first];
-    sums[1] += limit[0] + limit[1] * contact->end.force[first];
-  }
-}
-
 /* Notes the most by which normal forces along rows are off along the surfaces, in parts of what friction can bear, at the end of the
    accepted step, of pairs of bodies without inertia. Collective; surfaces are moved to where bodies are. */
 PetscErrorCode ContactNoteTilt(Contact contact)
@@ -46,12 +33,17 @@ PetscErrorCode ContactNoteTilt(Contact contact)
   PetscCall(ContactMoveSurfaces(contact));
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair = &contact->pairs[p];
-    PetscReal          turn, sums[2] = {0, 0};
+    PetscReal          turn, limit[2], sums[2] = {0, 0}; /* of tilt times normal force, and of what friction can bear [N] */
 
     if (!pair->rests || pair->law != CONTACT_LAW_FRICTION) continue;
     PetscCall(TransferGetTilts(pair->transfer, contact->work.tilts));
     PetscCall(GetLinearTurn(contact, pair, &turn));
-    AddTilts(contact, pair, turn, contact->work.tilts, sums);
+    ContactGetFrictionLimit(contact, pair, 0, limit);
+    for (PetscInt first = pair->begin, k = 0; first < pair->end; first += pair->components, k++) {
+      if (!(contact->end.force[first] > 0) || !contact->rows.opposite[first]) continue;
+      sums[0] += (turn + contact->work.tilts[k]) * contact->end.force[first];
+      sums[1] += limit[0] + limit[1] * contact->end.force[first];
+    }
     PetscCall(ContactReduce(contact, 2, MPIU_REAL, MPIU_SUM, sums));
     if (sums[1] > 0) contact->counts.friction_tilt = PetscMax(contact->counts.friction_tilt, sums[0] / sums[1]);
   }
