@@ -6,13 +6,12 @@
 /* ContactStepperSetFromOptions - options of all contact types that are made of the step */
 PetscErrorCode ContactStepperSetFromOptions(Contact contact)
 {
-  ContactMonitor *monitor = &Stepper(contact)->monitor;
+  PetscViewer *monitor = &Stepper(contact)->monitor;
 
   PetscFunctionBegin;
-  PetscCall(PetscViewerDestroy(&monitor->viewer));
+  PetscCall(PetscViewerDestroy(monitor));
   PetscObjectOptionsBegin((PetscObject)contact);
-  PetscCall(PetscOptionsViewer("-contact_monitor", "A line for each pass of a contact step", "ContactSetType", &monitor->viewer,
-                               &monitor->format, NULL));
+  PetscCall(PetscOptionsViewer("-contact_monitor", "A line for each pass of a contact step", "ContactSetType", monitor, NULL, NULL));
   PetscOptionsEnd();
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -44,7 +43,7 @@ static void CountNodes(Contact contact, const ContactStepper *stepper, PetscInt 
 PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper)
 {
   const LawProblem *problem = &stepper->problem;
-  PetscViewer       viewer  = stepper->monitor.viewer;
+  PetscViewer       viewer  = stepper->monitor;
   const char       *m;
   PetscReal         time;
 
@@ -74,7 +73,7 @@ PetscErrorCode ContactMonitorPass(Contact contact, const ContactStepper *stepper
 
 PetscErrorCode ContactMonitorStep(Contact contact, const ContactStepper *stepper, SNESConvergedReason reason)
 {
-  PetscViewer viewer = stepper->monitor.viewer;
+  PetscViewer viewer = stepper->monitor;
   PetscReal   time;
   int         counts[2] = {0, 0};
 

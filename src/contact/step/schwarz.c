@@ -55,7 +55,6 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   stepper->assembly.of_state = -1;
   PetscCall(ContactStepperCreateVecs(contact, stepper));
   PetscCall(ContactStepperSetUpRules(contact, stepper));
-  stepper->has_rigid  = ContactHasRigid(contact);
   contact->rows.lists = PETSC_TRUE;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactLaw law  = contact->pairs[p].law;
@@ -203,7 +202,7 @@ PetscErrorCode ContactStepperDestroy(Contact contact)
 {
   PetscFunctionBegin;
   PetscCall(Reset(contact));
-  PetscCall(PetscViewerDestroy(&Stepper(contact)->monitor.viewer));
+  PetscCall(PetscViewerDestroy(&Stepper(contact)->monitor));
   PetscCall(PetscFree(contact->data));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

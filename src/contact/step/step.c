@@ -100,7 +100,7 @@ PetscErrorCode ContactStepperStep(Contact contact)
 
   PetscFunctionBegin;
   stepper->passes = 0;
-  if (stepper->has_rigid || stepper->forms) stepper->state++;
+  if (ContactHasRigid(contact) || stepper->forms) stepper->state++; /* as rigid bodies turn their compliance is another */
   stepper->forms = PETSC_FALSE;
   PetscCall(PetscArrayzero(stepper->rests, contact->n_bodies));
   PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, stepper->rate));

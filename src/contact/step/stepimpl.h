@@ -21,12 +21,6 @@ typedef struct {
   PetscErrorCode (*end)(Contact, ContactStepper *, const ContactPair *);               /* (NULL) after the step has been made */
 } ContactRule;
 
-/* Where to tell of each pass, see monitor.c */
-typedef struct {
-  PetscViewer       viewer; /* NULL: nowhere */
-  PetscViewerFormat format;
-} ContactMonitor;
-
 /* Secants of a body: forces on some of its rows, by which two passes differ, and how these rows have gone then */
 typedef struct {
   PetscInt     n, row_room, *rows; /* their numbers among those of the body, ascending */
@@ -99,8 +93,8 @@ typedef struct {
 
 struct _ContactStepper {
   /* options */
-  ContactMonitor     monitor;
-  const ContactRule *asked; /* the rule of all sets; NULL: as bodies have mass on contact nodes or not */
+  PetscViewer        monitor; /* where to tell of each pass, see monitor.c; NULL: nowhere */
+  const ContactRule *asked;   /* the rule of all sets; NULL: as bodies have mass on contact nodes or not */
   StepperPenalty     penalty;
   PetscReal          rtol, atol; /* tolerances of the outer iteration on what rows read [parts of the largest way; m] */
   void              *method;     /* what a contact type that is made of the step keeps beside it, or NULL */
@@ -112,7 +106,6 @@ struct _ContactStepper {
   const RowLaw      **laws;       /* per pair: of nodes that are held; those that may open have the unilateral one */
   PetscBool           glued;      /* a law is of glue */
   PetscReal          *parameters; /* ROW_LAW_PARAMETERS per pair: of its glue */
-  PetscBool           has_rigid;  /* bodies whose compliance is another in each step, as they turn */
   /* state between steps, per row of this rank */
   PetscBool *joined;  /* its node has touched first in the last accepted step */
   PetscReal *grows;   /* by how much its force has grown in that step [N] */
