@@ -149,7 +149,6 @@ PETSC_INTERN PetscErrorCode ContactCheckLaws(Contact);
 PETSC_INTERN PetscErrorCode ContactBond(Contact);
 PETSC_INTERN void           ContactHoldTogether(Contact);
 PETSC_INTERN PetscErrorCode ContactChooseTiedMass(Contact);
-PETSC_INTERN PetscErrorCode ContactAlignTies(Contact, PetscScalar *const[2]);
 PETSC_INTERN PetscErrorCode ContactSetUpTiedEnds(Contact);
 PETSC_INTERN PetscErrorCode ContactDestroyTiedEnds(Contact);
 PETSC_INTERN PetscErrorCode ContactStartTies(Contact);

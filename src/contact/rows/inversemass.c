@@ -77,6 +77,7 @@ PetscErrorCode InverseMassCreate(Contact contact, InverseMassType type, InverseM
 
   PetscFunctionBegin;
   inverse->contact = contact;
+  inverse->lumped  = (PetscBool)(type == INVERSE_MASS_LUMPED);
   PetscCall(PetscMalloc3(n, &inverse->takes_part, n, &inverse->work[0], n, &inverse->work[1]));
   PetscCall(InverseMassAssemble(contact, PETSC_TRUE, &lumped));
   PetscCall(MatCreateVecs(lumped, &inverse->solution, &inverse->rhs));
@@ -134,6 +135,25 @@ PetscErrorCode InverseMassSolve(Contact contact, InverseMass *inverse, const Pet
   PetscCall(VecGetArrayRead(inverse->solution, &solution));
   for (PetscInt i = 0; i < contact->rows.n; i++) force[i] = inverse->takes_part[i] ? solution[i] : 0;
   PetscCall(VecRestoreArrayRead(inverse->solution, &solution));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Gives both sides of ties one velocity and one acceleration at the start or the end of a controller step. `change`: per row, the impulses
+   [N s], then forces [N] that this takes; zero on rows that take no part */
+PetscErrorCode InverseMassAlign(Contact contact, InverseMass *inverse, BodyStepSide when, PetscScalar *const change[2])
+{
+  PetscFunctionBegin;
+  for (PetscInt order = 1; order <= 2; order++) {
+    const PetscReal    parts[] = {0, order == 1, order == 2};
+    PetscScalar *const rates   = change[order - 1];
+
+    PetscCall(ContactComputeRates(contact, order, (PetscBool)(when == BODY_AT_END), rates));
+    PetscCall(InverseMassSolve(contact, inverse, rates, rates));
+    for (PetscInt b = 0; b < contact->n_bodies; b++) {
+      ContactTakeRows(contact, b, rates, inverse->work[0]);
+      PetscCall(BodyAddImpulses(contact->bodies[b], when, inverse->lumped, parts, inverse->work[0]));
+    }
+  }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -6,27 +6,6 @@
    After a force that is the same throughout the step this is more than round-off: central differences go on with the force that the uncut
    body has at the end of the step, and velocities have the mean of both. With it both sides move as the uncut body does. */
 #include <contact/rows/inversemass.h>
-#include <impakt/private/bodyforces.h>
-
-/* At the end of a controller step. `change`: per row, impulses [N s], then forces [N]; zero on rows that take no part */
-PetscErrorCode ContactAlignTies(Contact contact, PetscScalar *const change[2])
-{
-  const ContactTies *ties = &contact->ties;
-
-  PetscFunctionBegin;
-  for (PetscInt order = 1; order <= 2; order++) {
-    const PetscReal    parts[] = {0, order == 1, order == 2};
-    PetscScalar *const rates = change[order - 1], *const on_body = ties->inverse->work[0];
-
-    PetscCall(ContactComputeRates(contact, order, PETSC_TRUE, rates));
-    PetscCall(InverseMassSolve(contact, ties->inverse, rates, rates));
-    for (PetscInt b = 0; b < contact->n_bodies; b++) {
-      ContactTakeRows(contact, b, rates, on_body);
-      PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, (PetscBool)!ties->all_explicit, parts, on_body));
-    }
-  }
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
 
 /* Finds out which ties keep their mass, with the rows as they are */
 PetscErrorCode ContactSetUpTiedEnds(Contact contact)

@@ -98,38 +98,28 @@ PetscErrorCode ContactSetMeanForces(Contact contact)
 /* One velocity and acceleration of both sides of ties that keep their mass, in the first state, and the forces that this takes */
 PetscErrorCode ContactStartTies(Contact contact)
 {
-  const PetscReal velocity[] = {0, 1, 0}, acceleration[] = {0, 0, 1};
-  PetscScalar    *rates, *impulse, *force, *on_body, *reaction;
-  InverseMass     inverse;
-  PetscBool       any = PETSC_FALSE;
+  PetscScalar *change[2], *reaction; /* impulses, forces */
+  InverseMass  inverse;
+  PetscBool    any = PETSC_FALSE;
 
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) any = (PetscBool)(any || contact->pairs[p].keeps_mass);
   if (!any) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc4(contact->rows.n, &rates, contact->rows.n, &impulse, contact->rows.n, &force, contact->rows.n, &on_body));
+  PetscCall(PetscMalloc2(contact->rows.n, &change[0], contact->rows.n, &change[1]));
   PetscCall(InverseMassCreate(contact, INVERSE_MASS_ONCE, &inverse));
-  PetscCall(ContactComputeRates(contact, 1, PETSC_FALSE, rates));
-  PetscCall(InverseMassSolve(contact, &inverse, rates, impulse));
-  PetscCall(ContactComputeRates(contact, 2, PETSC_FALSE, rates));
-  PetscCall(InverseMassSolve(contact, &inverse, rates, force));
+  PetscCall(InverseMassAlign(contact, &inverse, BODY_AT_START, change));
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
-    const Body body = contact->bodies[b];
-
-    ContactTakeRows(contact, b, impulse, on_body);
-    PetscCall(BodyAddImpulses(body, BODY_AT_START, PETSC_FALSE, velocity, on_body));
-    ContactTakeRows(contact, b, force, on_body);
-    PetscCall(BodyAddImpulses(body, BODY_AT_START, PETSC_FALSE, acceleration, on_body));
-    PetscCall(BodyWriteStartTraces(body));
+    PetscCall(BodyWriteStartTraces(contact->bodies[b]));
     PetscCall(TraceGetLevel(contact->traces[b].reaction, 0, &reaction));
-    PetscCall(PetscArraycpy(reaction, on_body, contact->body_rows[b].n));
+    ContactTakeRows(contact, b, change[1], reaction);
   }
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     if (!inverse.takes_part[i]) continue;
-    contact->start.force[i] = contact->end.force[i] = PetscRealPart(force[i]);
+    contact->start.force[i] = contact->end.force[i] = PetscRealPart(change[1][i]);
     contact->start.active[i] = contact->end.active[i] = PETSC_TRUE;
   }
   PetscCall(ContactStartImpulses(contact));
   PetscCall(InverseMassDestroy(&inverse));
-  PetscCall(PetscFree4(rates, impulse, force, on_body));
+  PetscCall(PetscFree2(change[0], change[1]));
   PetscFunctionReturn(PETSC_SUCCESS);
 }

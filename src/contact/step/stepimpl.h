@@ -149,7 +149,7 @@ struct _ContactStepper {
   PetscScalar *ends;     /* two: how its first body has gone along it in the last pass, and its second one [m] */
   PetscReal   *none;     /* zeros */
   PetscReal   *mine, *before;
-  PetscScalar *aligns[2]; /* per row of this rank: see ContactAlignTies(); NULL where no ties keep their mass */
+  PetscScalar *aligns[2]; /* per row of this rank: see InverseMassAlign(); NULL where no ties keep their mass */
   int         *moves;     /* per body */
 };
 

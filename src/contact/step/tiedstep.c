@@ -37,7 +37,7 @@ PetscErrorCode ContactStepperEndTies(Contact contact, ContactStepper *stepper)
     ContactTakeRows(contact, b, aligns[1], inverse->work[0]);
     PetscCall(BodyAddImpulses(contact->bodies[b], BODY_AT_END, PETSC_FALSE, parts, inverse->work[0]));
   }
-  PetscCall(ContactAlignTies(contact, aligns));
+  PetscCall(InverseMassAlign(contact, contact->ties.inverse, BODY_AT_END, aligns));
   for (PetscInt i = 0; i < contact->rows.n; i++) {
     const PetscReal mean = contact->end.force[i] + PetscRealPart(aligns[0][i]) / contact->step; /* with what has aligned velocities */
 

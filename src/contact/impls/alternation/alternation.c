@@ -1,5 +1,6 @@
 /* The Schwarz alternating method for contact (Hoy, Tezaur, Mota): options, set-up, destruction. */
 #include "alternationimpl.h"
+#include <contact/rows/inversemass.h>
 #include <checkpoint/checkpoint.h>
 #include <sys/citations.h>
 #include <sys/units.h>
@@ -116,7 +117,7 @@ static PetscErrorCode ContactAccept_Alternation(Contact contact)
   Alternation *alternation = (Alternation *)contact->data;
 
   PetscFunctionBegin;
-  if (contact->ties.inverse) PetscCall(ContactAlignTies(contact, alternation->drift));
+  if (contact->ties.inverse) PetscCall(InverseMassAlign(contact, contact->ties.inverse, BODY_AT_END, alternation->drift));
   if (alternation->swap) AlternationSwapSides(contact);
   PetscFunctionReturn(PETSC_SUCCESS);
 }

@@ -45,7 +45,7 @@ typedef struct {
   PetscReal *weight;    /* per row: Robin stiffness [N/m] */
   PetscReal *mass[2];   /* per row: what its body, and the partner, weigh in the inelastic predictor */
   /* ties that keep their mass */
-  PetscScalar *drift[2]; /* per row: see ContactAlignTies(); NULL: there are none */
+  PetscScalar *drift[2]; /* per row: see InverseMassAlign(); NULL: there are none */
   /* Aitken */
   PetscReal damping; /* relaxation of the last iteration */
   Vec       last_residual;
