@@ -7,9 +7,10 @@
 /* On one rank, PETSc's own factorisation is an order of magnitude faster than MUMPS for small bodies: up to these sizes, by dimension. In
    more dimensions factors fill in more, and MUMPS has the better kernels and orderings. A square of 10^4 unknowns takes a third of the time
    of MUMPS for a solution and 0.9 of it for its factors, a strip of 4 x 640 elements 0.15 and 0.6, a cube of 12^3 elements 1.3 and 3.
-   Cholesky's factors have half the memory of LU factors, and take a third to 1.3 times their time for a solution, as processors have it.
-   With LU the law of rows of blocks of 1e13 on 1e7 Pa was not solved. */
+   Cholesky's factors have half the memory of LU factors, and take a third to 1.3 times their time for a solution, as processors have it,
+   in chains twice as long, in small solids 1.3 to 2 times. In the plane the law of rows of blocks of 1e13 on 1e7 Pa is not solved by LU. */
 static const PetscInt max_sequential_size[] = {50000, 50000, 12000, 1500};
+static const PCType   own_factors[]         = {PCLU, PCLU, PCCHOLESKY, PCLU};
 /* Memory that factors may take beyond what MUMPS expects [%]. Its own 20 were too few on three ranks that divide a ball of which a small
    part has most elements: what it expects leaves out what moves between ranks as they go, and what pivots of indefinite matrices take.
    Pages that are not used are not taken. */
@@ -27,7 +28,8 @@ static const PetscInt max_sequential_size[] = {50000, 50000, 12000, 1500};
    became indefinite; 20 iterations were enough for all jumps that were tried, up to 10^6, and so were they in Newton's method. */
 #define ESTIMATE_OPTION     "mg_levels_esteig_ksp_max_it"
 #define ESTIMATE_ITERATIONS "20"
-/* Operations of one solution, in parts of the entries of the factors: a multiplication and an addition each, in both triangles */
+/* Operations of one solution, in parts of the entries of the factors. Cholesky's are one triangle of two. LU's are both, but a solution
+   takes twice as long for an operation as sums of columns, with which it is compared, or more (1.2 and 3.8 in a nanosecond). */
 #define FLOPS_OF_ENTRY 4
 /* The same where PETSc does not tell how many entries there are, as with multigrid: in parts of the unknowns, of the order of what 20
    iterations of conjugate gradients with a matrix of 81 entries in a row take */
@@ -61,10 +63,10 @@ PetscErrorCode ConstrainedSolverChooseMUMPS(PC pc)
 }
 
 /* PETSc's own factors */
-static PetscErrorCode ChooseOwn(PC pc)
+static PetscErrorCode ChooseOwn(PC pc, PetscInt dim)
 {
   PetscFunctionBegin;
-  PetscCall(PCSetType(pc, PCCHOLESKY));
+  PetscCall(PCSetType(pc, own_factors[dim]));
   PetscCall(PCFactorSetZeroPivot(pc, 0)); /* PETSc's default is 2e-14, whatever the unit of the matrix */
   PetscCall(PCFactorSetMatOrderingType(pc, MATORDERINGND));
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -74,7 +76,7 @@ static PetscErrorCode ChooseSequential(PC pc, PetscInt n, PetscInt dim)
 {
   PetscFunctionBegin;
   if (n > max_sequential_size[dim]) PetscCall(ConstrainedSolverChooseMUMPS(pc));
-  else PetscCall(ChooseOwn(pc));
+  else PetscCall(ChooseOwn(pc, dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -124,7 +126,7 @@ PetscErrorCode ConstrainedSolverChoose(KSP ksp, Mat A, PetscInt dim)
     PetscCall(PCRedundantGetKSP(pc, &inner));
     PetscCall(KSPSetType(inner, KSPPREONLY));
     PetscCall(KSPGetPC(inner, &pc));
-    PetscCall(ChooseOwn(pc));
+    PetscCall(ChooseOwn(pc, dim));
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (size > 1) PetscCall(ConstrainedSolverChooseMUMPS(pc));
