@@ -34,7 +34,6 @@ typedef struct {
   Vec            in, out;            /* the last product with S */
   PetscInt64     product_of;         /* state of the S of that; -1: none */
   Mat            derivative;         /* of P at the trial forces, times r [N/m] */
-  Mat            shifted;            /* the matrix of entries, less (1 - eps) / r on the diagonal [m/N] */
   Mat            jacobian, operator; /* by entries; products with it, where entries precondition alone, or NULL */
   PetscInt64     jacobian_of;        /* state of the entries that it has; -1: none */
   PetscBool      factored;           /* there are factors of an earlier Jacobian of this pattern */

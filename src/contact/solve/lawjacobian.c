@@ -43,17 +43,21 @@ static PetscErrorCode FillDerivative(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* J = I - D (I - r (S + eps diag S)) = I + D r (S - (1 - eps) / r) */
-static PetscErrorCode FillJacobian(const LawProblem *problem, Mat *J)
+/* J = I - D (I - r (S + eps diag S)) = I + D r S - (1 - eps) D */
+static PetscErrorCode FillJacobian(const LawProblem *problem, Mat J)
 {
   PetscFunctionBegin;
-  PetscCall(MatCopy(problem->entries, problem->shifted, SAME_NONZERO_PATTERN));
-  for (PetscInt i = 0; i < problem->n; i++)
-    PetscCall(MatSetValue(problem->shifted, i, i, -(1 - problem->proximal) * problem->weight[i], ADD_VALUES));
-  PetscCall(MatAssemblyBegin(problem->shifted, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(problem->shifted, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatMatMult(problem->derivative, problem->shifted, MAT_REUSE_MATRIX, PETSC_DETERMINE, J));
-  PetscCall(MatShift(*J, 1));
+  PetscCall(MatMatMult(problem->derivative, problem->entries, MAT_REUSE_MATRIX, PETSC_DETERMINE, &J));
+  for (PetscInt node = 0; node < problem->n_nodes; node++) {
+    const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
+    const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
+
+    for (PetscInt k = 0; k < rows; k++)
+      for (PetscInt l = 0; l < rows; l++)
+        PetscCall(MatSetValue(J, first + k, first + l, (k == l) - (1 - problem->proximal) * derivative[k * rows + l], ADD_VALUES));
+  }
+  PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -121,7 +125,7 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
     if (!stale) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(SNESSetLagPreconditioner(snes, LAW_LAG_AFTER_NEXT));
   }
-  PetscCall(FillJacobian(problem, &P));
+  PetscCall(FillJacobian(problem, P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -148,10 +152,8 @@ PetscErrorCode LawProblemCreateJacobian(LawProblem *problem)
 {
   PetscFunctionBegin;
   PetscCall(MatDestroy(&problem->jacobian));
-  PetscCall(MatDestroy(&problem->shifted));
   PetscCall(CreateDerivative(problem));
-  PetscCall(MatDuplicate(problem->entries, MAT_DO_NOT_COPY_VALUES, &problem->shifted));
-  PetscCall(MatMatMult(problem->derivative, problem->shifted, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &problem->jacobian));
+  PetscCall(MatMatMult(problem->derivative, problem->entries, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &problem->jacobian));
   PetscCall(MatDestroy(&problem->operator));
   if (LawProblemIsLagged(problem)) {
     PetscCall(MatCreateShell(PETSC_COMM_SELF, problem->n, problem->n, problem->n, problem->n, problem, &problem->operator));

@@ -201,7 +201,6 @@ static PetscErrorCode DestroySolvers(LawProblem *problem)
   PetscCall(SNESDestroy(&problem->newton));
   PetscCall(SNESDestroy(&problem->nodes));
   PetscCall(MatDestroy(&problem->derivative));
-  PetscCall(MatDestroy(&problem->shifted));
   PetscCall(MatDestroy(&problem->jacobian));
   PetscCall(MatDestroy(&problem->operator));
   PetscCall(VecDestroy(&problem->x));
