@@ -20,10 +20,9 @@ static PetscErrorCode ContactStep_Spring(Contact contact)
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(spring->force, contact->start.force, contact->rows.n));
-  for (PetscInt guess = 0; off; guess++) {
+  for (PetscInt guess = 0; off && !ContactFailed(contact); guess++) { /* a body's step that fails may be made again in halves */
     PetscCheck(guess < 50, PetscObjectComm((PetscObject)contact), PETSC_ERR_NOT_CONVERGED, "The spring forces do not settle");
     PetscCall(ContactIntegrateForces(contact, spring->force));
-    if (ContactFailed(contact)) break; /* a body's step, which may be made again in halves */
     off = PETSC_FALSE;
     for (PetscInt i = 0; i < contact->rows.n; i++) {
       const PetscReal depth  = PetscMax(-contact->end.gap[i], 0);
