@@ -1,6 +1,7 @@
 /* A substep of a linear body on TSALPHA2: the residual at a first iterate, one solution with the factors of the constant effective matrix,
    and Newmark's formulas: an iteration of Newton's method. */
 #include "implicitimpl.h"
+#include <impakt/private/simd.h>
 
 /* Acceleration at the end of the substep, a1 = (u1 - u0) / (beta dt^2) - v0 / (beta dt) - (1 - 2 beta) / (2 beta) a0, u1 being U */
 PetscErrorCode BodyImplicitGetAcceleration(Body body, Vec U, Vec a1)
@@ -33,20 +34,48 @@ static PetscErrorCode ComputeStage(Body body, Vec U)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* u -= du, acceleration from that at the start and at the stage, and velocity by both ends: in one pass over the vectors, since sums of
+   vectors, one by one, take 5 % of a run of short bars */
+SIMD_CLONES static void MoveEnds(PetscInt n, const PetscReal by[6], const PetscScalar du[], const PetscScalar stage_a[], PetscScalar u[],
+                                 PetscScalar v[], PetscScalar a[])
+{
+#pragma omp simd
+  for (PetscInt i = 0; i < n; i++) {
+    const PetscScalar start = a[i], end = by[0] * stage_a[i] + by[1] * du[i] + by[2] * start;
+
+    u[i] += by[3] * du[i];
+    v[i] += by[4] * start + by[5] * end;
+    a[i] = end;
+  }
+}
+
 /* The displacement at the end of the substep less a change of it at the stage, with the velocity and the acceleration there */
 static PetscErrorCode MoveEnd(Body body, Vec du)
 {
   const BodyImplicit *implicit = (const BodyImplicit *)body->integrator->data;
-  const PetscReal     dt = body->time.step, gamma = body->integrator->gamma, alpha_m = implicit->alpha_m;
-  const BodyState    *state = &body->state;
+  const PetscReal     dt = body->time.step, gamma = body->integrator->gamma, alpha_m = implicit->alpha_m, alpha_f = implicit->alpha_f;
+  const PetscReal     by[6] = {
+      1 / alpha_m, -1 / (alpha_f * body->integrator->beta * dt * dt), (alpha_m - 1) / alpha_m, -1 / alpha_f, dt * (1 - gamma), dt * gamma};
+  const PetscScalar *change, *stage_a;
+  PetscScalar       *u, *v, *a;
 
   PetscFunctionBegin;
-  PetscCall(VecAXPY(state->u, -1 / implicit->alpha_f, du));
-  if (!implicit->stage_a) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecAXPY(state->v, dt * (1 - gamma), state->a));
-  PetscCall(VecAXPBYPCZ(state->a, 1 / alpha_m, -1 / (implicit->alpha_f * body->integrator->beta * dt * dt), (alpha_m - 1) / alpha_m,
-                        implicit->stage_a, du));
-  PetscCall(VecAXPY(state->v, dt * gamma, state->a));
+  if (!implicit->stage_a) {
+    PetscCall(VecAXPY(body->state.u, -1 / alpha_f, du));
+    PetscFunctionReturn(PETSC_SUCCESS);
+  }
+  PetscCall(VecGetArrayRead(du, &change));
+  PetscCall(VecGetArrayRead(implicit->stage_a, &stage_a));
+  PetscCall(VecGetArray(body->state.u, &u));
+  PetscCall(VecGetArray(body->state.v, &v));
+  PetscCall(VecGetArray(body->state.a, &a));
+  MoveEnds(body->mesh.owned_nodes * body->mesh.dim, by, change, stage_a, u, v, a);
+  PetscCall(VecRestoreArray(body->state.a, &a));
+  PetscCall(VecRestoreArray(body->state.v, &v));
+  PetscCall(VecRestoreArray(body->state.u, &u));
+  PetscCall(VecRestoreArrayRead(implicit->stage_a, &stage_a));
+  PetscCall(VecRestoreArrayRead(du, &change));
+  PetscCall(PetscLogFlops(11.0 * body->mesh.owned_nodes * body->mesh.dim));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
