@@ -76,7 +76,6 @@ typedef struct {
   PetscBool   bonded;     /* it is tied, or a node of it sticks already, see src/contact/rows/bonded.c: its rows stay as they are */
   PetscBool   keeps_mass; /* its nodes are tied and keep their mass, see src/contact/rows/tiedmass.c */
   PetscBool   rests;      /* one of its bodies has no inertia */
-  PetscBool   goes_on;    /* forces along normals are guessed to go on as in the last step */
   PetscBool   ahead;      /* its rows are laid where the last attempt at the step has ended, see src/contact/rows/layahead.c */
   PetscInt    intervals;  /* of the controller step, between whose ends its force is linear */
   PetscBool   own_law;    /* it has a law of its own */

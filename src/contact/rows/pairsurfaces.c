@@ -261,20 +261,17 @@ PetscErrorCode ContactCreateTransfer(Contact contact, ContactPair *pair)
                              .turns       = contact->options.balance};
   Vec             u[2]    = {NULL, NULL};
   PetscBool       rebuilt;
-  PetscBool       inertia = PETSC_TRUE, linear = PETSC_TRUE, newton = PETSC_TRUE;
+  PetscBool       inertia = PETSC_TRUE, linear = PETSC_TRUE;
   PetscMPIInt     other;
 
   PetscFunctionBegin;
   for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
     inertia = (PetscBool)(inertia && !BodyDoes(contact->bodies[pair->body[side]], BodyIsStatic));
     linear  = (PetscBool)(linear && BodyDoes(contact->bodies[pair->body[side]], BodyIsLinear));
-    newton  = (PetscBool)(newton && !BodyDoes(contact->bodies[pair->body[side]], BodyIsLinear) &&
-                          !BodyDoes(contact->bodies[pair->body[side]], BodyIsExplicit));
     if (!pair->obstacle) PetscCall(ContactGetBoundary(contact, pair->body[side], &options.boundaries[side]));
     if (contact->setup) PetscCall(BodyGetSolution(contact->bodies[pair->body[side]], &u[side], NULL, NULL));
   }
   pair->rests    = (PetscBool)!inertia;
-  pair->goes_on  = (PetscBool)(!inertia || newton);
   options.curved = IsCurved(contact, pair, inertia, linear);
   PetscCall(GetNormalShare(contact, pair, &options.share));
   PetscCall(BodyGetMeshRank(contact->bodies[pair->body[0]], &options.owner));

@@ -8,13 +8,26 @@
    (-contact_monitor). It takes what the step begins with, contact->start, and writes contact->end. */
 #include "stepimpl.h"
 
+/* Whether forces along the normals of a pair go on as in the last step */
+static PetscBool GoesOn(Contact contact, const ContactPair *pair)
+{
+  PetscBool newton = PETSC_TRUE;
+
+  for (PetscInt side = 0; side < (pair->obstacle ? 1 : 2); side++) {
+    const Body body = contact->bodies[pair->body[side]];
+
+    newton = (PetscBool)(newton && !BodyDoes(body, BodyIsLinear) && !BodyDoes(body, BodyIsExplicit));
+  }
+  return (PetscBool)(pair->components == 1 && (pair->rests || newton));
+}
+
 PetscErrorCode ContactStepperGuess(Contact contact, ContactStepper *stepper)
 {
   PetscFunctionBegin;
   for (PetscInt p = 0; p < contact->n_pairs; p++) {
     const ContactPair *pair     = &contact->pairs[p];
     const PetscBool    constant = (PetscBool)(ContactStepperRule(stepper, pair)->shape == BODY_FORCE_CONSTANT);
-    const PetscBool    goes_on  = (PetscBool)(pair->goes_on && pair->components == 1);
+    const PetscBool    goes_on  = GoesOn(contact, pair);
 
     for (PetscInt k = pair->acts_begin; k < pair->acts_end; k++) {
       const PetscInt  i     = contact->rows.acting[k];
