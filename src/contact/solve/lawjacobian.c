@@ -4,7 +4,7 @@
 
 #define FEW_DENSE    500 /* rows of a dense S whose Jacobian is factored each time it changes */
 #define STALE_DENSE  20  /* iterations of the last linear solution beyond which they have grown stale: new ones cost more than 80, */
-#define STALE_SPARSE 5   /* and incomplete ones, where S is products, less than one */
+#define STALE_SPARSE 10  /* and incomplete ones, where S is products, as much as a few */
 
 /* Room for D r, in blocks of the rows of nodes, which may be others later where the Jacobian is dense */
 static PetscErrorCode CreateDerivative(LawProblem *problem)
@@ -90,7 +90,7 @@ static PetscErrorCode TakeDerivatives(LawProblem *problem, const PetscScalar for
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Whether to factor anew: factors are absent or precondition badly. Incomplete ones (S as products) cost less than an iteration. */
+/* Whether to factor anew: factors are absent or precondition badly. Incomplete ones (S as products) cost a few iterations. */
 static PetscErrorCode AreStale(LawProblem *problem, PetscBool *stale)
 {
   PetscInt iterations;

@@ -5,8 +5,8 @@
 #include "stepimpl.h"
 #include <impakt/private/bodyforces.h>
 
-#define FEW_PRODUCTS 500  /* rows up to which S is dense, whose factors take little then */
-#define SMALL        0.01 /* entries of a matrix near S left out, in parts of the largest sum of a row */
+#define FEW_PRODUCTS 500 /* rows up to which S is dense, whose factors take little then */
+#define SMALL 1e-6 /* entries of a matrix near S left out, in parts of the diagonal: of soft bodies' they may be all of a stiff one's */
 
 /* Whether S is products: of many rows, whose bodies tell them exactly and cheaply */
 PetscErrorCode ContactStepperChooseProducts(Contact contact, ContactStepper *stepper)
@@ -94,13 +94,20 @@ PetscErrorCode ContactStepperCreateShell(ContactStepper *stepper, Mat *S)
 /* S as products, and a sparse matrix near it */
 PetscErrorCode ContactStepperCreateProducts(ContactStepper *stepper, Mat *S, Mat *near)
 {
-  PetscReal largest;
+  Vec scale;
 
   PetscFunctionBegin;
   PetscCall(ContactStepperCreateShell(stepper, S));
   PetscCall(MatDuplicate(stepper->assembly.product, MAT_COPY_VALUES, near));
-  PetscCall(MatNorm(*near, NORM_INFINITY, &largest));
-  PetscCall(MatFilter(*near, SMALL * largest, PETSC_TRUE, PETSC_TRUE));
+  PetscCall(MatCreateVecs(*near, &scale, NULL));
+  PetscCall(MatGetDiagonal(*near, scale));
+  PetscCall(VecSqrtAbs(scale));
+  PetscCall(VecReciprocal(scale));
+  PetscCall(MatDiagonalScale(*near, scale, scale));
+  PetscCall(MatFilter(*near, SMALL, PETSC_TRUE, PETSC_TRUE));
+  PetscCall(VecReciprocal(scale));
+  PetscCall(MatDiagonalScale(*near, scale, scale));
+  PetscCall(VecDestroy(&scale));
   PetscCall(MatSetOption(*near, MAT_NEW_NONZERO_ALLOCATION_ERR, PETSC_FALSE)); /* rows that are held have no entries */
   for (PetscInt k = 0; k < stepper->problem.n; k++) PetscCall(MatSetValue(*near, k, k, 0, ADD_VALUES));
   PetscCall(MatAssemblyBegin(*near, MAT_FINAL_ASSEMBLY));
