@@ -92,9 +92,9 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscCall(SNESGetKSP(problem->newton, &ksp));
   PetscCall(SNESGetTolerances(problem->newton, NULL, &rtol, NULL, NULL, NULL));
   enough = ENOUGH * rtol * LawProblemForceScale(problem, problem->force);
-  /* each product takes solutions with the bodies' matrices: no more of them than for what readings are right to, by a mean of rows */
+  /* each product takes solutions with the bodies' matrices: no more of them than the mean of rows needs */
   if (LawProblemHasProducts(problem))
-    enough = PetscMax(enough, MEAN * PetscSqrtReal((PetscReal)problem->n) * problem->resolution / problem->largest);
+    enough = MEAN * PetscSqrtReal((PetscReal)problem->n) * PetscMax(enough / ENOUGH, problem->resolution / problem->largest);
   PetscCall(KSPSetTolerances(ksp, PETSC_CURRENT, enough, PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(PetscArraycpy(start, problem->force, problem->n));
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
