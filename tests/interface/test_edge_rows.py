@@ -33,6 +33,20 @@ def test_plates_slide_without_loss(integrators, shared_run):
     assert run.summary["schwarz"]["max"] <= 6
 
 
+def test_plates_meet_without_loss(impakt):
+    """Edges of plates that meet bulge by 10⁻³ of an element, the finer one's by 2 % less: they are straight as far as weights go. Weights that made up for that cost 11 % of the
+    energy as the edges began to bend, without a word."""
+    run = joined(
+        box("a", (12, 12, 2), (0, 0, 0), (0.1, 0.1, 0.01), "-a_initial_velocity 0,0,10"),
+        box("b", (9, 9, 2), (0, 0, 0.01), (0.1, 0.1, 0.02), "-b_initial_velocity 0,0,-10"),
+        *(f"{material(name, 2e9, 0.3, 1000)} -{name}_material_type neo_hookean -{name}_ts_type centraldifference" for name in "ab"),
+        "-bodies a,b -contact_pairs a.zmax:b.zmin -time_step 5e-7 -time_end 1e-5 -all_mass_redistribute true",
+    )
+    found = impakt(run)
+    assert max(abs(found.summary["system"][f"energy_error_{end}"]) for end in ("min", "max")) <= 1e-4  # measured: 1.4e-5
+    assert found.summary["schwarz"]["max"] <= 6  # measured: 4
+
+
 SQUARE = "-a_dm_plex_dim 2 -a_dm_plex_box_faces 3,3 -a_dm_plex_box_lower -0.07,-0.07 -a_dm_plex_box_upper 0.07,0.07 -a_rotate 64.04"
 DISC = "-b_dm_plex_dim 2 -b_dm_plex_shape ball -b_ball_radius 0.1 -b_ball_divisions 4 -b_ball_keep_volume false -b_ball_centre 0.6728,-0.356"
 
