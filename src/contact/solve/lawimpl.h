@@ -15,7 +15,7 @@ typedef struct {
   PetscReal     *weight;      /* per row: 1 / r of the trial force lambda - r y [m/N] */
   PetscReal     *derivatives; /* per node: those of P that the Jacobian has, ROW_LAW_ROWS^2 */
   PetscReal      resolution;  /* what rows read is right to so much, by round-off of positions [m] */
-  PetscReal      rtol;        /* where S is products: laws hold to so much, as LAW_TOLERANCE elsewhere */
+  PetscReal      rtol;        /* where S is products: laws hold to so much, if that is more than LAW_TOLERANCE */
   PetscReal      proximal;    /* weight of the proximal term, in parts of the diagonal of S */
   PetscBool      regular;     /* S is, so that there need be no such term: springs are on its diagonal */
   PetscScalar   *base, *read; /* per row: a force [N], and what is read under it [m] */

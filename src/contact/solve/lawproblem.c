@@ -229,7 +229,8 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
   PetscCall(SNESSetOptionsPrefix(*snes, prefix));
   PetscCall(SNESSetFunction(*snes, problem->f, ComputeResidual, problem));
   PetscCall(SNESSetType(*snes, type));
-  PetscCall(SNESSetTolerances(*snes, 0, LawProblemHasProducts(problem) ? problem->rtol : LAW_TOLERANCE, 0, most, PETSC_INT_MAX));
+  PetscCall(SNESSetTolerances(*snes, 0, LawProblemHasProducts(problem) ? PetscMax(problem->rtol, LAW_TOLERANCE) : LAW_TOLERANCE, 0, most,
+                              PETSC_INT_MAX));
   PetscCall(SNESSetConvergenceTest(*snes, TestConvergence, problem, NULL));
   PetscCall(SNESSetErrorIfNotConverged(*snes, PETSC_FALSE));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -74,7 +74,6 @@ PetscErrorCode ContactStepperSetUp(Contact contact)
   PetscCall(LawProblemSetUp(&stepper->problem)); /* options are read now: one that stays unread is an error */
   PetscCall(ContactStepperCreateOuter(contact, stepper));
   PetscCall(SNESGetTolerances(stepper->outer, NULL, &stepper->problem.rtol, NULL, NULL, NULL));
-  stepper->problem.rtol = PetscMax(stepper->problem.rtol, LAW_TOLERANCE);
   PetscCall(ContactStepperSetUpTurns(contact, stepper));
   PetscCall(ContactStepperSetUpSprings(contact, stepper));
   PetscFunctionReturn(PETSC_SUCCESS);
