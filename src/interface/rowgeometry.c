@@ -3,7 +3,7 @@
 
 /* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: the partner's nodes lie within 1e-2
    of the face size of a line or of a point. Where an edge bulges by less, weights that make up for the bulge of the other body's edge would
-   be other ones by a third as soon as it is bent at all, and plates that meet would lose a tenth of their energy. */
+   change by 0.8 as soon as it is bent at all, and plates that meet would lose a tenth of their energy. */
 #define NOTHING_NEW 1e-4
 /* Of a node at an edge the partner's nodes may lie on its edge alone, which is straight to less than this part of the face, and as the
    bodies bulge its place comes to lie beside that line by more than the line is bent. Weights that make up for that are the larger the
