@@ -71,6 +71,7 @@ typedef struct {
   PetscMPIInt owner_rank;
   PetscReal   value;    /* its weight */
   PetscReal   goal;     /* what the weight is to become as a row that follows the surfaces slips on; of other rows the weight itself */
+  PetscReal   area;     /* part of the node's area at which its shape function weighs, from 0 to 1 */
   PetscReal   slope[3]; /* mean gradient of its shape function over what a node on a sharp edge sees, 0 in other rows [1/m] */
 } Share;
 
@@ -250,4 +251,5 @@ PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[
 PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
                                 const PetscReal[]);
 PETSC_INTERN PetscReal RowBow(PetscInt, PetscInt, const PetscReal *[], const PetscReal *[], const PetscReal[]);
-PETSC_INTERN void      RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], PetscReal, PetscReal[]);
+PETSC_INTERN void      RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal[],
+                                  PetscReal, PetscReal[]);

@@ -104,28 +104,29 @@ static void ComputeDual(const Patch *patch, PetscReal dual[4][4])
     for (PetscInt j = 0; j < n; j++) dual[which[i]][which[j]] = patch->lumped[which[i]] * a[i][n + j] * scale[i] * scale[j];
 }
 
-/* Appends the integrals of the nodes of face f with one partner to `shares`, and the ranks that own these nodes to `owners`. `weights`: the
-   integrals of the functions of the nodes; `edges`: nodes on sharp edges get slopes */
+/* Appends the integrals of the nodes of face f with one partner to `shares`, and the ranks that own these nodes to `owners`. `areas`: the
+   integrals of the functions of both; `edges`: nodes on sharp edges get slopes */
 static void AddShares(Surface surface, PetscBool edges, PetscInt f, PetscInt n_partner, const Face *partner, PetscReal values[4][4],
-                      const PetscReal weights[], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
+                      PetscReal areas[4][4], PetscInt *n_shares, Share shares[], PetscMPIInt owners[])
 {
   const PetscInt n            = surface->data.face_nodes;
   PetscReal      slopes[4][3] = {{0}};
 
   if (edges && n > 1) FaceGradients(n_partner, partner->x, slopes);
   for (PetscInt k = 0; k < n; k++) {
-    const PetscInt node = surface->data.faces[f * n + k];
+    const PetscInt node   = surface->data.faces[f * n + k];
+    PetscReal      weight = 0;
 
+    for (PetscInt j = 0; j < n_partner && edges && surface->sharp[node]; j++) weight += areas[k][j];
     for (PetscInt j = 0; j < n_partner; j++) {
-      const PetscReal weight = edges && surface->sharp[node] ? weights[k] : 0;
-
-      if (values[k][j] == 0 && weight == 0) continue;
+      if (values[k][j] == 0 && areas[k][j] == 0 && weight == 0) continue;
       owners[*n_shares]     = surface->owner_rank[node];
       shares[(*n_shares)++] = (Share){.row         = surface->owner_index[node],
                                       .dof         = partner->dofs[j],
                                       .owner_index = partner->owner_index[j],
                                       .owner_rank  = partner->owner_rank[j],
                                       .value       = values[k][j],
+                                      .area        = areas[k][j],
                                       .slope       = {weight * slopes[j][0], weight * slopes[j][1], weight * slopes[j][2]}};
     }
   }
@@ -200,7 +201,7 @@ static PetscErrorCode IntegrateFace(Surface surface, const Segments *segments, P
       for (PetscInt j = 0; j < n_partner; j++) weights[k] += cross[i - begin][k][j];
       for (PetscInt d = 0; d < 3; d++) seen[3 * nodes[k] + d] += weights[k] * partner->normal[d];
     }
-    AddShares(surface, segments->guards, f, n_partner, partner, values, weights, n_shares, shares, owners);
+    AddShares(surface, segments->guards, f, n_partner, partner, values, cross[i - begin], n_shares, shares, owners);
   }
   PetscCall(PetscFree(cross));
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -1,14 +1,9 @@
 /* One row: weights that balance forces and moments, the normal, and the bend of the partner. */
 #include "interfaceimpl.h"
 
-/* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: the partner's nodes lie within 1e-2
-   of the face size of a line or of a point. Where an edge bulges by less, weights that make up for the bulge of the other body's edge would
-   change by 0.8 as soon as it is bent at all, and plates that meet would lose a tenth of their energy. */
-#define NOTHING_NEW 1e-4
-/* Of a node at an edge the partner's nodes may lie on its edge alone, which is straight to less than this part of the face, and as the
-   bodies bulge its place comes to lie beside that line by more than the line is bent. Weights that make up for that are the larger the
-   straighter it is: there a force keeps its moment about the line. */
-#define LINE 0.1
+/* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: what the node shares with the partner
+   lies within 1e-4 of the face size of a line or of a point */
+#define NOTHING_NEW 1e-8
 /* Of a node at a corner, whose normal is not that of its faces, what lies before a face lies the more beside the normal the farther it is
    away. Beyond this, in parts of the face, weights would continue the partner as a line. */
 #define BESIDE 2
@@ -58,31 +53,32 @@ static PetscReal Remainder(PetscInt a, PetscReal lower[3][3], const PetscReal co
   return rest[a];
 }
 
-/* Whether the partner's nodes lie all but on a line across the a-th condition, and the row's place beside it, or far beside all of them */
+/* Whether the row's place lies far beside all of the partner's nodes, as the a-th condition sees them */
 static PetscBool IsBeside(PetscInt a, PetscReal lower[3][3], PetscInt n, const PetscReal x[], PetscReal tangents[2][3], PetscReal size,
-                          const PetscReal *partners[], const PetscReal weights[])
+                          const PetscReal *partners[], const PetscReal areas[])
 {
   const PetscReal place[3] = {1, 0, 0}, there = Remainder(a, lower, place);
-  PetscReal       least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL, beside;
+  PetscReal       least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
 
   for (PetscInt j = 0; j < n; j++) {
     PetscReal condition[3], rest;
 
-    if (weights[j] == 0) continue;
+    if (areas[j] == 0) continue;
     FindConditions(x, tangents, size, partners[j], condition);
     rest  = Remainder(a, lower, condition);
     least = PetscMin(least, rest);
     most  = PetscMax(most, rest);
   }
-  beside = PetscMax(least - there, there - most);
-  return (PetscBool)(beside > BESIDE || (most - least < LINE && beside > most - least));
+  return (PetscBool)(PetscMax(least - there, there - most) > BESIDE);
 }
 
-/* Changes the weights by as little as possible, each in proportion to its size, such that they sum to one and sum_j P_j x_j - x is along
-   the normal: then a force along the normal has the same resultant and the same moment on both sides. Along a tangent in which the
-   partner's nodes do not differ, or by too little, or lie far away, nothing is changed. */
-void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], PetscReal size,
-                PetscReal weights[])
+/* Changes the weights by as little as possible, each in proportion to the part of the row's area that its node shares, such that they sum to
+   one and sum_j P_j x_j - x is along the normal: then a force along the normal has the same resultant and the same moment on both sides.
+   A node at an edge may see the partner's edge alone, by its dual function, but shares area with nodes behind it: these make up for edges
+   that bulge, by 1e-2 of the weights or less. Along a tangent in which the partner's nodes do not differ, or lie far away, nothing is
+   changed. */
+void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
+                const PetscReal areas[], PetscReal size, PetscReal weights[])
 {
   PetscReal tangents[2][3], gram[3][3] = {{0}}, lower[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
 
@@ -94,11 +90,11 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     FindConditions(x, tangents, size, partners[j], condition);
     for (PetscInt a = 0; a < dim; a++) {
       rest[a] -= weights[j] * condition[a];
-      for (PetscInt b = 0; b < dim; b++) gram[a][b] += PetscAbsReal(weights[j]) * condition[a] * condition[b];
+      for (PetscInt b = 0; b < dim; b++) gram[a][b] += areas[j] * condition[a] * condition[b];
     }
   }
   for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
-    if (gram[a][a] < NOTHING_NEW || (a && IsBeside(a, lower, n, x, tangents, size, partners, weights))) {
+    if (gram[a][a] < NOTHING_NEW || (a && IsBeside(a, lower, n, x, tangents, size, partners, areas))) {
       for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
       rest[a] = 0;
       continue;
@@ -118,7 +114,7 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     PetscReal condition[3];
 
     FindConditions(x, tangents, size, partners[j], condition);
-    weights[j] += PetscAbsReal(weights[j]) * (factors[0] + factors[1] * condition[1] + factors[2] * condition[2]);
+    weights[j] += areas[j] * (factors[0] + factors[1] * condition[1] + factors[2] * condition[2]);
   }
 }
 
@@ -156,11 +152,13 @@ void RowNormal(PetscInt dim, PetscInt n, PetscReal share, const PetscReal node[]
 /* How much closer the partner is than its faces, at the place of a row, if it is curved as its normals m_j say [m]. Half way between its
    nodes and the planes through them across their normals a surface of second order is met:
 
-     gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n)) */
+     gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n)),
+
+   as far as the bends from the normal of the row count */
 PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
                    const PetscReal *normals[], const PetscReal weights[])
 {
-  PetscReal bulge = 0, counts = 1;
+  PetscReal bulge = 0;
 
   for (PetscInt j = 0; j < n; j++) {
     PetscReal along = 0, plane = 0, cosine = 0;
@@ -171,11 +169,9 @@ PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscRea
       plane += normals[j][d] * (partners[j][d] - x[d]);
       cosine += normals[j][d] * normal[d];
     }
-    counts = PetscMin(counts, BendCounts(-cosine));
-    if (counts == 0) return 0;
-    bulge += 0.5 * weights[j] * (along - plane / cosine);
+    if (BendCounts(-cosine) > 0) bulge += 0.5 * BendCounts(-cosine) * weights[j] * (along - plane / cosine);
   }
-  return counts * bulge;
+  return bulge;
 }
 
 /* Depth that a row may have between surfaces that only touch [m]. The dual functions are negative at the far ends of a node's faces, so

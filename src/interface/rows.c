@@ -63,20 +63,22 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
 
       PetscReal slope = 0;
 
-      sum.value = sum.goal = 0;
+      sum.value = sum.goal = sum.area = 0;
       for (PetscInt d = 0; d < 3; d++) sum.slope[d] = 0;
       for (; share < n_shares && shares[share].row == row && shares[share].dof == sum.dof; share++) {
         sum.value += shares[share].value;
         sum.goal += shares[share].goal;
+        sum.area += shares[share].area;
         for (PetscInt d = 0; d < 3; d++) sum.slope[d] += shares[share].slope[d];
       }
       sum.value /= lumped[row];
       sum.goal /= lumped[row];
+      sum.area /= lumped[row];
       for (PetscInt d = 0; d < 3; d++) {
         sum.slope[d] /= lumped[row];
         slope += PetscAbsReal(sum.slope[d]);
       }
-      if (covered && (PetscAbsReal(sum.value) > PRUNE || PetscAbsReal(sum.goal) > PRUNE || slope > 0)) set->shares[count++] = sum;
+      if (covered && (PetscAbsReal(sum.value) > PRUNE || PetscAbsReal(sum.goal) > PRUNE || sum.area > PRUNE || slope > 0)) set->shares[count++] = sum;
     }
     set->opposite[row] = (PetscBool)(count > set->offsets[row]);
   }
@@ -136,15 +138,16 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
   const PetscReal   *x = data->positions + 3 * row, **normals, **smooth, **partners;
-  PetscReal *weights, present = 0, across[3], normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
+  PetscReal *weights, *areas, present = 0, across[3], normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
   set->gap[row] = PETSC_MAX_REAL;
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc4(n, &weights, n, &partners, n, &normals, n, &smooth));
+  PetscCall(PetscMalloc5(n, &weights, n, &areas, n, &partners, n, &normals, n, &smooth));
   for (PetscInt j = 0; j < n; j++) {
     weights[j]  = set->shares[first + j].goal;
+    areas[j]    = set->shares[first + j].area;
     partners[j] = transfer->column_x + 3 * set->columns[first + j];
     normals[j]  = transfer->column_moved + 3 * set->columns[first + j];
     smooth[j]   = transfer->column_normals + 3 * set->columns[first + j];
@@ -154,7 +157,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
     for (PetscInt d = 0; d < 3; d++) normal[d] = -normal[d];
   } else if (transfer->options.curved) RowNormal(dim, n, transfer->options.share, data->normals + 3 * row, smooth, weights, normal);
   PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
-  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, x, normal, partners, data->sizes[row], weights); /* twice for round-off */
+  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, x, normal, partners, areas, data->sizes[row], weights); /* twice for round-off */
   for (PetscInt d = 0; d < dim; d++) {
     PetscReal now = 0;
 
@@ -168,7 +171,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
     set->shares[first + j].goal = weights[j];
     if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
   }
-  PetscCall(PetscFree4(weights, partners, normals, smooth));
+  PetscCall(PetscFree5(weights, areas, partners, normals, smooth));
   set->rest[row]     = transfer->goes_on[row] ? 1 : 0;
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind + TOUCHING * data->sizes[row], set->bow[row]));
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
@@ -202,7 +205,7 @@ static PetscErrorCode KeepShares(Transfer transfer, PetscReal lumped[], PetscInt
       all[count] = old->shares[i];
       if (!transfer->keep[row]) {
         all[count].value *= lumped[row];
-        all[count].goal = 0;
+        all[count].goal = all[count].area = 0;
         for (PetscInt d = 0; d < 3; d++) all[count].slope[d] = 0;
       }
       count++;

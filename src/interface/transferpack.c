@@ -3,7 +3,7 @@
 #include "interfaceimpl.h"
 #include "transfervisit.h"
 
-#define N_SHARE 11 /* key of its row, position of the partner's node, weight, goal and slope */
+#define N_SHARE 12 /* key of its row, position of the partner's node, weight, goal, slope and area */
 
 static PetscErrorCode PackShares(Transfer transfer, Tables tables)
 {
@@ -21,6 +21,7 @@ static PetscErrorCode PackShares(Transfer transfer, Tables tables)
       packed[N_SHARE * j + 6] = rows->shares[j].value;
       packed[N_SHARE * j + 7] = rows->shares[j].goal;
       PetscCall(PetscArraycpy(packed + N_SHARE * j + 8, rows->shares[j].slope, 3));
+      packed[N_SHARE * j + 11] = rows->shares[j].area;
     }
   PetscCall(TablesAdd(tables, "shares", n, N_SHARE, packed));
   PetscCall(PetscFree(packed));
@@ -88,7 +89,8 @@ static PetscErrorCode UnpackShares(Transfer transfer, Tables tables)
                             .owner_index = (PetscInt)owner[4],
                             .dof         = (PetscInt)owner[5],
                             .value       = packed[N_SHARE * j + 6],
-                            .goal        = packed[N_SHARE * j + 7]};
+                            .goal        = packed[N_SHARE * j + 7],
+                            .area        = packed[N_SHARE * j + 11]};
     PetscCall(PetscArraycpy(shares[count].slope, packed + N_SHARE * j + 8, 3));
     count++;
   }

@@ -4,7 +4,7 @@
 #include "hdf5file.h"
 #include <sys/bytesum.h>
 
-#define CHECKPOINT_FORMAT 15 /* of what a checkpoint has in it; to be raised with each change that older programs cannot read */
+#define CHECKPOINT_FORMAT 16 /* of what a checkpoint has in it; to be raised with each change that older programs cannot read */
 /* Bytes that are sent, written or summed at a time; a multiple of 8 */
 #define CHECKPOINT_BLOCK ((size_t)1 << 26)
 
