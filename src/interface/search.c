@@ -4,65 +4,68 @@
 /* Faces in a leaf at most, a trade between the numbers of boxes and of faces that are compared */
 #define LEAF 4
 
-/* The middle of a face along axis d, times its number of nodes */
-static PetscReal Middle(PetscInt n, const Face *face, PetscInt d)
+/* Puts those of n numbers in `order` first, `half` of them, whose values are least, in no order: O(n), whatever the order was (C. A. R. Hoare,
+   Algorithm 65: Find, Communications of the ACM 4, 1961) */
+static void Halve(PetscInt half, PetscInt n, const PetscReal values[], PetscInt order[])
 {
-  PetscReal sum = 0;
+  PetscInt begin = 0, end = n - 1;
 
-  for (PetscInt k = 0; k < n; k++) sum += face->x[k][d];
-  return sum;
-}
+  while (begin < end) {
+    const PetscReal pivot = values[order[half]];
+    PetscInt        i = begin, j = end;
 
-static int CompareMiddles(const void *a, const void *b, void *context)
-{
-  const PetscReal *middles = (const PetscReal *)context, left = middles[*(const PetscInt *)a], right = middles[*(const PetscInt *)b];
+    do {
+      while (values[order[i]] < pivot) i++;
+      while (values[order[j]] > pivot) j--;
+      if (i <= j) {
+        const PetscInt first = order[i];
 
-  return left < right ? -1 : left > right;
-}
-
-static void BoundFaces(PetscInt n, const Face faces[], const PetscInt order[], Box *box)
-{
-  BoxFind(0, NULL, box->bounds);
-  for (PetscInt i = box->begin; i < box->end; i++) {
-    PetscReal face[6];
-
-    BoxFind(n, faces[order[i]].x[0], face);
-    for (PetscInt k = 0; k < 6; k++) box->bounds[k] = PetscMin(box->bounds[k], face[k]);
+        order[i++] = order[j];
+        order[j--] = first;
+      }
+    } while (i <= j);
+    if (j < half) begin = i;
+    if (i > half) end = j;
   }
 }
 
 /* A tree of the boxes that bound some faces, each box halved along its longest axis */
 PetscErrorCode TreeCreate(PetscInt face_nodes, PetscInt n, const Face faces[], Tree *tree)
 {
-  PetscReal *middles;
+  PetscReal *bounds, *middles; /* of boxes of faces: the middle along an axis, twice */
 
   PetscFunctionBegin;
   PetscCall(PetscMemzero(tree, sizeof(*tree)));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscMalloc2(n, &tree->order, 2 * n, &tree->boxes));
-  PetscCall(PetscMalloc1(n, &middles));
-  for (PetscInt i = 0; i < n; i++) tree->order[i] = i;
+  PetscCall(PetscMalloc2(6 * n, &bounds, n, &middles));
+  for (PetscInt i = 0; i < n; i++) {
+    tree->order[i] = i;
+    BoxFind(face_nodes, faces[i].x[0], bounds + 6 * i);
+  }
   tree->boxes[0].begin = 0;
   tree->boxes[0].end   = n;
   tree->n_boxes        = 1;
   for (PetscInt b = 0; b < tree->n_boxes; b++) {
-    Box     *box  = &tree->boxes[b];
-    PetscInt axis = 0, half = (box->begin + box->end) / 2;
+    Box      *box   = &tree->boxes[b];
+    PetscInt *order = tree->order + box->begin, count = box->end - box->begin, axis = 0, half = box->begin + count / 2;
 
-    BoundFaces(face_nodes, faces, tree->order, box);
+    BoxFind(0, NULL, box->bounds);
+    for (PetscInt i = 0; i < count; i++)
+      for (PetscInt k = 0; k < 6; k++) box->bounds[k] = PetscMin(box->bounds[k], bounds[6 * order[i] + k]);
     box->child = -1;
-    if (box->end - box->begin <= LEAF) continue;
+    if (count <= LEAF) continue;
     for (PetscInt d = 1; d < 3; d++)
       if (box->bounds[d] + box->bounds[3 + d] < box->bounds[axis] + box->bounds[3 + axis]) axis = d;
-    for (PetscInt i = box->begin; i < box->end; i++) middles[tree->order[i]] = Middle(face_nodes, &faces[tree->order[i]], axis);
-    PetscCall(PetscTimSort(box->end - box->begin, tree->order + box->begin, sizeof(PetscInt), CompareMiddles, middles));
+    for (PetscInt i = 0; i < count; i++) middles[order[i]] = bounds[6 * order[i] + axis] - bounds[6 * order[i] + 3 + axis];
+    Halve(count / 2, count, middles, order);
     box->child                       = tree->n_boxes;
     tree->boxes[tree->n_boxes].begin = box->begin;
     tree->boxes[tree->n_boxes++].end = half;
     tree->boxes[tree->n_boxes].begin = half;
     tree->boxes[tree->n_boxes++].end = box->end;
   }
-  PetscCall(PetscFree(middles));
+  PetscCall(PetscFree2(bounds, middles));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
