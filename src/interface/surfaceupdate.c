@@ -1,11 +1,11 @@
 /* Where a surface is now, with its normals and areas. */
 #include "interfaceimpl.h"
 
-/* Positions of all nodes of this rank under the displacements u; NULL: the reference positions */
-static PetscErrorCode UpdatePositions(Surface surface, Vec u)
+/* Positions of all nodes of this rank under the displacements u + time v; u NULL: the reference positions; v NULL: under u */
+static PetscErrorCode UpdatePositions(Surface surface, Vec u, PetscReal time, Vec v)
 {
   SurfaceData       *data = &surface->data;
-  const PetscScalar *values;
+  const PetscScalar *values, *rates;
   PetscInt           start;
 
   PetscFunctionBegin;
@@ -13,8 +13,14 @@ static PetscErrorCode UpdatePositions(Surface surface, Vec u)
   if (!u) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(VecGetOwnershipRange(u, &start, NULL));
   PetscCall(VecGetArrayRead(u, &values));
+  PetscCall(VecGetArrayRead(v ? v : u, &rates));
   for (PetscInt i = 0; i < data->n_owned; i++)
-    for (PetscInt d = 0; d < data->dim; d++) data->positions[3 * i + d] += PetscRealPart(values[data->dofs[i] - start + d]);
+    for (PetscInt d = 0; d < data->dim; d++) {
+      const PetscInt k = data->dofs[i] - start + d;
+
+      data->positions[3 * i + d] += PetscRealPart(v ? time * rates[k] + values[k] : values[k]);
+    }
+  PetscCall(VecRestoreArrayRead(v ? v : u, &rates));
   PetscCall(VecRestoreArrayRead(u, &values));
   if (!surface->divided) PetscFunctionReturn(PETSC_SUCCESS);
   PetscCall(PetscSFBcastBegin(surface->vectors, MPIU_REAL, data->positions, data->positions, MPI_REPLACE));
@@ -167,11 +173,11 @@ PetscErrorCode SurfaceSetNear(Surface surface, const PetscBool near[])
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* As SurfaceUpdate(), but for normals, areas and sizes of nodes that are not near */
-PetscErrorCode SurfaceMove(Surface surface, Vec u)
+/* As SurfaceUpdate(), but for normals, areas and sizes of nodes that are not near, and under the displacements u + time v; v NULL: u */
+PetscErrorCode SurfaceMove(Surface surface, Vec u, PetscReal time, Vec v)
 {
   PetscFunctionBegin;
-  PetscCall(UpdatePositions(surface, u));
+  PetscCall(UpdatePositions(surface, u, time, v));
   PetscCall(UpdateNodes(surface));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -183,7 +189,7 @@ PetscErrorCode SurfaceUpdate(Surface surface, Vec u)
 
   PetscFunctionBegin;
   surface->near = NULL; /* all nodes */
-  PetscCall(SurfaceMove(surface, u));
+  PetscCall(SurfaceMove(surface, u, 0, NULL));
   surface->near = near;
   PetscFunctionReturn(PETSC_SUCCESS);
 }

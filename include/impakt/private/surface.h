@@ -51,7 +51,7 @@ PETSC_EXTERN PetscErrorCode SurfaceKeepFacing(Surface, Surface, Obstacle, PetscB
 PETSC_EXTERN PetscErrorCode SurfaceSetRound(Surface, PetscBool);
 PETSC_EXTERN PetscErrorCode SurfaceSetAxisymmetric(Surface);
 PETSC_EXTERN PetscErrorCode SurfaceSetMirrors(Surface, PetscInt, const PetscInt[], PetscInt);
-PETSC_EXTERN PetscErrorCode SurfaceMove(Surface, Vec);
+PETSC_EXTERN PetscErrorCode SurfaceMove(Surface, Vec, PetscReal, Vec);
 PETSC_EXTERN PetscErrorCode SurfaceSetNear(Surface, const PetscBool[]);
 PETSC_EXTERN PetscErrorCode SurfaceUpdate(Surface, Vec);
 PETSC_EXTERN PetscErrorCode SurfacesFindDepths(MPI_Comm, PetscInt, const Surface[], PetscInt, const Obstacle[], PetscInt *,

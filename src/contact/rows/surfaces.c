@@ -31,10 +31,11 @@ PetscErrorCode ContactMoveSurfaces(Contact contact)
 {
   PetscFunctionBegin;
   for (PetscInt s = 0; s < contact->n_surfaces; s++) {
-    Vec u;
+    const PetscInt b = contact->surfaces[s].body;
+    Vec            u, v;
 
-    PetscCall(ContactGetRowPlace(contact, contact->surfaces[s].body, &u));
-    PetscCall(SurfaceMove(contact->surfaces[s].surface, u));
+    PetscCall(BodyGetSolution(contact->bodies[b], &u, &v, NULL));
+    PetscCall(SurfaceMove(contact->surfaces[s].surface, u, contact->ahead[b], contact->ahead[b] != 0 ? v : NULL));
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
