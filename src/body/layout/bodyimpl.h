@@ -275,7 +275,7 @@ struct _p_Body {
   BodyState substep_start;  /* u and v, which are NULL unless loads or the integrator read them; of one substep those of `saved` */
   /* contact forces at the start of the step that are not those of the end of the last one, see BodySetStartForce() */
   struct {
-    Vec       a;       /* the saved acceleration as it was [m/s^2]; NULL until needed */
+    Vec       a;       /* the saved acceleration as it was, where forces on rows may change it [m/s^2]; NULL until needed */
     Vec       change;  /* work space of BodyTurnToMeanForce() [m/s^2]; NULL until BodySetMeanForces() */
     PetscBool changed; /* the saved acceleration is not that of the last step's end */
     PetscReal energy;  /* that these forces bring to the first state, see BodyNoteStartEnergy() [J] */
@@ -491,6 +491,7 @@ PETSC_INTERN PetscErrorCode BodyWriteTrace(Body, Mat, Vec, Trace, PetscInt);
 PETSC_INTERN PetscErrorCode BodyAddNearRows(Body, const PetscScalar[], Vec);
 PETSC_INTERN PetscBool      BodyNearRowsAreZero(Body, const PetscScalar[]);
 PETSC_INTERN PetscErrorCode BodyListContactDofs(Body);
+PETSC_INTERN PetscErrorCode BodyCopyContactNodes(Body, Vec, Vec);
 PETSC_INTERN PetscErrorCode BodyMarkColumns(Mat, Vec);
 PETSC_INTERN PetscErrorCode BodyWriteTraces(Body, PetscInt);
 PETSC_INTERN PetscErrorCode BodyWriteRest(Body);

@@ -56,6 +56,22 @@ PetscErrorCode BodyListContactDofs(Body body)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* BodyCopyContactNodes - what a vector has at the nodes that near rows act on, to another */
+PetscErrorCode BodyCopyContactNodes(Body body, Vec from, Vec to)
+{
+  const PetscScalar *values;
+  PetscScalar       *copy;
+
+  PetscFunctionBegin;
+  if (!body->nodes.force) PetscCall(BodyListContactDofs(body));
+  PetscCall(VecGetArrayRead(from, &values));
+  PetscCall(VecGetArray(to, &copy));
+  for (PetscInt k = 0; k < body->nodes.n; k++) copy[body->nodes.dofs[k]] = values[body->nodes.dofs[k]];
+  PetscCall(VecRestoreArray(to, &copy));
+  PetscCall(VecRestoreArrayRead(from, &values));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* x = M^{-1} B^T force, one force for each row of this rank, and that of what does not go over from the rows of the last step where
    `stopped`: vecs[k] += scales[k] x */
 PetscErrorCode BodyAddAnswerOfNodes(Body body, const PetscScalar force[], PetscBool stopped, PetscInt n, const PetscReal scales[],

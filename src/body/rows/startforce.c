@@ -38,13 +38,22 @@ static PetscErrorCode ComputeChange(Body body, const PetscScalar force[], Vec ch
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
+/* Copies the acceleration at the start where forces on rows may change it. The first state's energy is that of all nodes. */
+static PetscErrorCode CopyStart(Body body, Vec from, Vec to)
+{
+  PetscFunctionBegin;
+  if (body->saved.step && BodyAnswersByNodes(body)) PetscCall(BodyCopyContactNodes(body, from, to));
+  else PetscCall(VecCopy(from, to));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
 /* Notes the acceleration with which the step begins, before forces at its start change that: BodyDropStartForce() goes back to it */
 PetscErrorCode BodyNoteStart(Body body)
 {
   PetscFunctionBegin;
   if (body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->start.a) PetscCall(BodyCreateVec(body, &body->start.a));
-  PetscCall(VecCopy(body->saved.a, body->start.a));
+  PetscCall(CopyStart(body, body->saved.a, body->start.a));
   body->start.changed = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -62,7 +71,7 @@ PetscErrorCode BodySetStartForce(Body body, const PetscScalar force[], const Pet
   if (!body->integrator->has_inertia) PetscFunctionReturn(PETSC_SUCCESS);
   if (!body->start.changed && !moved && by_nodes && !BodyHandsOver(body) && BodyNearRowsAreZero(body, force))
     PetscFunctionReturn(PETSC_SUCCESS); /* as it is */
-  if (body->start.changed) PetscCall(VecCopy(body->start.a, body->saved.a));
+  if (body->start.changed) PetscCall(CopyStart(body, body->start.a, body->saved.a));
   PetscCall(BodyNoteStart(body));
   if (moved || !by_nodes) PetscCall(BodyRestore(body));
   PetscCall(BodySetHandoverRest(body, rest));
@@ -80,7 +89,7 @@ PetscErrorCode BodyDropStartForce(Body body)
 {
   PetscFunctionBegin;
   if (!body->start.changed) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(VecCopy(body->start.a, body->saved.a));
+  PetscCall(CopyStart(body, body->start.a, body->saved.a));
   PetscCall(BodySetHandoverRest(body, NULL));
   body->start.changed = PETSC_FALSE;
   PetscCall(BodyRestore(body));
