@@ -57,12 +57,15 @@ typedef struct {
 /* A node of a tree of boxes that bound faces */
 typedef struct {
   PetscReal bounds[6];         /* see impakt/private/box.h */
-  PetscInt  begin, end, child; /* its faces are order[begin] to order[end - 1]; the first of its two children, -1 for a leaf */
+  PetscInt  begin, end, child; /* its faces are order[begin] to order[end - 1]; the first of its two children, or: */
 } Box;
+#define TREE_LEAF  (-1) /* it has none, */
+#define TREE_WHOLE 0    /* or no query has looked into it */
 typedef struct {
-  PetscInt  n_boxes, *order;
-  Box      *boxes;
-  PetscInt *found, max_found; /* work space of the query */
+  PetscInt   n_boxes, *order;
+  Box       *boxes;
+  PetscReal *bounds, *middles; /* per face: its box; twice the middle of that along an axis */
+  PetscInt  *found, max_found; /* work space of the query */
 } Tree;
 
 /* The share of one Neumann node in one row */
@@ -216,7 +219,7 @@ PETSC_INTERN PetscErrorCode TreeCreate(PetscInt, PetscInt, const Face[], Tree *)
 PETSC_INTERN PetscErrorCode TreeDestroy(Tree *);
 PETSC_INTERN PetscErrorCode TreeQuery(Tree *, const Frame *, const PetscReal[], const PetscReal[], PetscInt *, const PetscInt *[]);
 PETSC_INTERN void           BoxDistances(const PetscReal[6], const PetscReal[], PetscReal *, PetscReal *);
-PETSC_INTERN void           TreeFindClosest(const Tree *, PetscInt, const Face[], const PetscReal[], Closest *);
+PETSC_INTERN void           TreeFindClosest(Tree *, PetscInt, const Face[], const PetscReal[], Closest *);
 
 PETSC_INTERN PetscErrorCode CreateVectorForest(MPI_Comm, PetscInt, PetscInt, const PetscInt[], const PetscSFNode[], PetscSF *);
 PETSC_INTERN PetscErrorCode ExchangeRecords(MPI_Comm, size_t, PetscInt, const PetscMPIInt[], const void *, PetscInt *, void **);

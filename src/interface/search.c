@@ -29,50 +29,54 @@ static void Halve(PetscInt half, PetscInt n, const PetscReal values[], PetscInt 
   }
 }
 
-/* A tree of the boxes that bound some faces, each box halved along its longest axis */
+/* Another box of a tree, about the faces order[begin] to order[end - 1] */
+static void AddBox(Tree *tree, PetscInt begin, PetscInt end)
+{
+  Box *box = &tree->boxes[tree->n_boxes++];
+
+  box->begin = begin;
+  box->end   = end;
+  box->child = end - begin > LEAF ? TREE_WHOLE : TREE_LEAF;
+  BoxFind(0, NULL, box->bounds);
+  for (PetscInt i = begin; i < end; i++)
+    for (PetscInt k = 0; k < 6; k++) box->bounds[k] = PetscMin(box->bounds[k], tree->bounds[6 * tree->order[i] + k]);
+}
+
+/* Halves a box along its longest axis when a query first looks into it: those far from all that is asked for stay whole */
+static void LookInto(Tree *tree, Box *box)
+{
+  const PetscInt n = box->end - box->begin, half = box->begin + n / 2;
+  PetscInt      *order = tree->order + box->begin, axis = 0;
+
+  if (box->child != TREE_WHOLE) return;
+  for (PetscInt d = 1; d < 3; d++)
+    if (box->bounds[d] + box->bounds[3 + d] < box->bounds[axis] + box->bounds[3 + axis]) axis = d;
+  for (PetscInt i = 0; i < n; i++) tree->middles[order[i]] = tree->bounds[6 * order[i] + axis] - tree->bounds[6 * order[i] + 3 + axis];
+  Halve(n / 2, n, tree->middles, order);
+  box->child = tree->n_boxes;
+  AddBox(tree, box->begin, half);
+  AddBox(tree, half, box->end);
+}
+
+/* A tree of the boxes that bound some faces */
 PetscErrorCode TreeCreate(PetscInt face_nodes, PetscInt n, const Face faces[], Tree *tree)
 {
-  PetscReal *bounds, *middles; /* of boxes of faces: the middle along an axis, twice */
-
   PetscFunctionBegin;
   PetscCall(PetscMemzero(tree, sizeof(*tree)));
   if (!n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc2(n, &tree->order, 2 * n, &tree->boxes));
-  PetscCall(PetscMalloc2(6 * n, &bounds, n, &middles));
+  PetscCall(PetscMalloc4(n, &tree->order, 2 * n, &tree->boxes, 6 * n, &tree->bounds, n, &tree->middles));
   for (PetscInt i = 0; i < n; i++) {
     tree->order[i] = i;
-    BoxFind(face_nodes, faces[i].x[0], bounds + 6 * i);
+    BoxFind(face_nodes, faces[i].x[0], tree->bounds + 6 * i);
   }
-  tree->boxes[0].begin = 0;
-  tree->boxes[0].end   = n;
-  tree->n_boxes        = 1;
-  for (PetscInt b = 0; b < tree->n_boxes; b++) {
-    Box      *box   = &tree->boxes[b];
-    PetscInt *order = tree->order + box->begin, count = box->end - box->begin, axis = 0, half = box->begin + count / 2;
-
-    BoxFind(0, NULL, box->bounds);
-    for (PetscInt i = 0; i < count; i++)
-      for (PetscInt k = 0; k < 6; k++) box->bounds[k] = PetscMin(box->bounds[k], bounds[6 * order[i] + k]);
-    box->child = -1;
-    if (count <= LEAF) continue;
-    for (PetscInt d = 1; d < 3; d++)
-      if (box->bounds[d] + box->bounds[3 + d] < box->bounds[axis] + box->bounds[3 + axis]) axis = d;
-    for (PetscInt i = 0; i < count; i++) middles[order[i]] = bounds[6 * order[i] + axis] - bounds[6 * order[i] + 3 + axis];
-    Halve(count / 2, count, middles, order);
-    box->child                       = tree->n_boxes;
-    tree->boxes[tree->n_boxes].begin = box->begin;
-    tree->boxes[tree->n_boxes++].end = half;
-    tree->boxes[tree->n_boxes].begin = half;
-    tree->boxes[tree->n_boxes++].end = box->end;
-  }
-  PetscCall(PetscFree2(bounds, middles));
+  AddBox(tree, 0, n);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 PetscErrorCode TreeDestroy(Tree *tree)
 {
   PetscFunctionBegin;
-  PetscCall(PetscFree2(tree->order, tree->boxes));
+  PetscCall(PetscFree4(tree->order, tree->boxes, tree->bounds, tree->middles));
   PetscCall(PetscFree(tree->found));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -104,10 +108,11 @@ PetscErrorCode TreeQuery(Tree *tree, const Frame *frame, const PetscReal lower[]
   *n = 0;
   if (tree->n_boxes) stack[depth++] = 0;
   while (depth) {
-    const Box *box = &tree->boxes[stack[--depth]];
+    Box *box = &tree->boxes[stack[--depth]];
 
     if (!BoxMeets(box, frame, lower, upper)) continue;
-    if (box->child >= 0) {
+    LookInto(tree, box);
+    if (box->child != TREE_LEAF) {
       stack[depth++] = box->child;
       stack[depth++] = box->child + 1;
       continue;
@@ -133,23 +138,29 @@ void BoxDistances(const PetscReal box[6], const PetscReal x[], PetscReal *least,
 }
 
 /* The closest point of the faces of a tree, no farther than `closest` says: that with which it begins */
-void TreeFindClosest(const Tree *tree, PetscInt n, const Face faces[], const PetscReal x[], Closest *closest)
+void TreeFindClosest(Tree *tree, PetscInt n, const Face faces[], const PetscReal x[], Closest *closest)
 {
-  PetscInt stack[128], depth = 0;
+  PetscInt  stack[128], depth = 0;
+  PetscReal squares[128]; /* of the distances of these boxes */
 
+  squares[0] = 0;
   if (tree->n_boxes) stack[depth++] = 0;
   while (depth) {
-    const Box *box = &tree->boxes[stack[--depth]];
-    PetscReal  least[2], largest;
+    Box      *box = &tree->boxes[stack[--depth]];
+    PetscReal least[2], largest;
 
-    BoxDistances(box->bounds, x, &least[0], &largest);
-    if (least[0] > (1 + CLOSEST_SAME_POINT) * closest->square) continue; /* other faces at the same corner say on which side x is */
-    if (box->child < 0) {
+    if (squares[depth] > (1 + CLOSEST_SAME_POINT) * closest->square) continue; /* other faces at the same corner say on which side x is */
+    LookInto(tree, box);
+    if (box->child == TREE_LEAF) {
       for (PetscInt i = box->begin; i < box->end; i++) FaceFindClosest(n, &faces[tree->order[i]], x, closest);
       continue;
     }
     for (PetscInt k = 0; k < 2; k++) BoxDistances(tree->boxes[box->child + k].bounds, x, &least[k], &largest);
-    stack[depth++] = box->child + (least[0] <= least[1]); /* the nearer one comes first */
-    stack[depth++] = box->child + (least[0] > least[1]);
+    for (PetscInt k = 0; k < 2; k++) { /* the nearer one comes first */
+      const PetscInt which = (least[0] <= least[1]) != k;
+
+      squares[depth] = least[which];
+      stack[depth++] = box->child + which;
+    }
   }
 }
