@@ -64,10 +64,10 @@ static PetscErrorCode SweepFirst(LawProblem *problem)
   PetscCall(LawProblemHolds(problem, &problem->solved));
   if (!problem->solved && !problem->softens && !LawProblemHasProducts(problem)) {
     PetscCall(LawProblemSweep(problem, problem->force));
-    PetscCall(PetscArraycpy(before, problem->force, problem->n));
-    PetscCall(LawProblemSweep(problem, problem->force));
-    for (PetscInt i = 0; i < problem->n; i++) change = PetscMax(change, PetscAbsScalar(problem->force[i] - before[i]));
     PetscCall(LawProblemHolds(problem, &problem->solved)); /* which what is no number does not */
+    PetscCall(PetscArraycpy(before, problem->force, problem->n));
+    if (problem->solved) PetscCall(LawProblemSweep(problem, problem->force));
+    for (PetscInt i = 0; i < problem->n; i++) change = PetscMax(change, PetscAbsScalar(problem->force[i] - before[i]));
     problem->solved     = (PetscBool)(problem->solved && change <= PETSC_MACHINE_EPSILON * LawProblemForceScale(problem, problem->force));
     problem->iterations = problem->solved;
   }
