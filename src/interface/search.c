@@ -4,8 +4,8 @@
 /* Faces in a leaf at most, a trade between the numbers of boxes and of faces that are compared */
 #define LEAF 4
 
-/* Puts those of n numbers in `order` first, `half` of them, whose values are least, in no order: O(n), whatever the order was (C. A. R. Hoare,
-   Algorithm 65: Find, Communications of the ACM 4, 1961) */
+/* Puts those `half` of n numbers in `order` first whose values are least. O(n) where they were in order or in none (C. A. R. Hoare,
+   Algorithm 65: Find, Communications of the ACM 4, 1961). */
 static void Halve(PetscInt half, PetscInt n, const PetscReal values[], PetscInt order[])
 {
   PetscInt begin = 0, end = n - 1;
