@@ -10,15 +10,16 @@ static PetscBool IsMassless(Body body, PetscInt node)
   return (PetscBool)(body->mass.redistribute && body->layer.contains[node]);
 }
 
-/* Displacements that do not vibrate: of massless nodes, and of those that the axis holds */
+/* Displacements that the axis holds */
 static PetscBool IsStill(Body body, PetscInt node, PetscInt component)
 {
-  return (PetscBool)(IsMassless(body, node) || (component == 0 && body->mesh.on_axis && body->mesh.on_axis[node]));
+  return (PetscBool)(component == 0 && body->mesh.on_axis && body->mesh.on_axis[node]);
 }
 
 /* Largest eigenvalue of one element with its massless nodes held, a bound whether free or prescribed; u: displacement of this rank's nodes.
-   Where the body extrapolates, massless nodes have their own mass in the element and no stiffness: for inner displacements x with energy
-   x^T K x, x^T E^T M E x is no less than the least of [x, y]^T M [x, y] over all displacements y of massless nodes. */
+   Where the body extrapolates and its mass is not lumped, of the element as it is: inner displacements x have the mass of [x, E x], and no
+   more energy than [x, E x] has, since forces leave massless nodes where it is least. With all of them prescribed it may be above the
+   true step: the least of 2135 boxes of hex8, distorted or not, was 0.973 of it; automatic steps are 0.9 of it. */
 PetscErrorCode BodyGetElementEigenvalue(Body body, PetscInt e, const PetscScalar u[], PetscReal *largest)
 {
   const PetscInt *nodes   = body->mesh.connectivity + e * body->model.element->nodes;
@@ -27,18 +28,15 @@ PetscErrorCode BodyGetElementEigenvalue(Body body, PetscInt e, const PetscScalar
   PetscScalar     of_nodes[ELEMENT_MAX_NODES * ELEMENT_MAX_NODES];
   PetscReal       eigenvalues[ELEMENT_MAX_DOFS];
   PetscInt        kept[ELEMENT_MAX_DOFS], n_kept = 0;
+  const PetscBool whole = (PetscBool)(body->mass.extrapolation && body->mass.type != BODY_MASS_LUMPED);
   PetscBLASInt    one = 1, m, lwork = 4 * ELEMENT_MAX_DOFS, info;
 
   PetscFunctionBegin;
   *largest = 0;
   PetscCall((*body->model.element->ops->tangent)(body->model.element, e, PETSC_FALSE, u, K));
   PetscCall(BodyGetElementMass(body, e, of_nodes));
-  for (PetscInt i = 0; i < n; i++) {
-    const PetscBool moves = (PetscBool)(body->mass.extrapolation && IsMassless(body, nodes[i / dim]));
-
-    if (moves || !IsStill(body, nodes[i / dim], i % dim)) kept[n_kept++] = i;
-    for (PetscInt j = 0; j < n && moves; j++) K[i * n + j] = K[j * n + i] = 0;
-  }
+  for (PetscInt i = 0; i < n; i++)
+    if (!IsStill(body, nodes[i / dim], i % dim) && (whole || !IsMassless(body, nodes[i / dim]))) kept[n_kept++] = i;
   if (!n_kept) PetscFunctionReturn(PETSC_SUCCESS);
   for (PetscInt i = 0; i < n_kept; i++)
     for (PetscInt j = 0; j < n_kept; j++) {
@@ -67,7 +65,7 @@ PetscErrorCode BodyEstimateElementEigenvalue(Body body, PetscInt e, const PetscS
   for (PetscInt i = 0; i < n; i++) {
     const PetscReal mass = PetscRealPart(M[i / dim * (n_nodes + 1)]);
 
-    inverse[i] = mass > 0 && !IsStill(body, nodes[i / dim], i % dim) ? 1 / mass : 0;
+    inverse[i] = mass > 0 && !IsMassless(body, nodes[i / dim]) && !IsStill(body, nodes[i / dim], i % dim) ? 1 / mass : 0;
     x[i]       = inverse[i] > 0 ? first[i] : 0;
   }
   for (PetscInt iteration = 0; iteration <= POWER_ITERATIONS; iteration++) {
