@@ -24,40 +24,24 @@ static PetscErrorCode CreateDerivative(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* D r, with the derivatives D of P */
-static PetscErrorCode FillDerivative(LawProblem *problem)
+/* Adds D r to a matrix, with the derivatives D of P, or I - (1 - eps) D */
+static PetscErrorCode AddDerivatives(const LawProblem *problem, PetscBool times_r, Mat matrix)
 {
   PetscFunctionBegin;
-  PetscCall(MatZeroEntries(problem->derivative));
   for (PetscInt node = 0; node < problem->n_nodes; node++) {
     const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
     const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
 
     for (PetscInt k = 0; k < rows; k++)
-      for (PetscInt l = 0; l < rows; l++)
-        PetscCall(
-            MatSetValue(problem->derivative, first + k, first + l, derivative[k * rows + l] / problem->weight[first + l], INSERT_VALUES));
-  }
-  PetscCall(MatAssemblyBegin(problem->derivative, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(problem->derivative, MAT_FINAL_ASSEMBLY));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
+      for (PetscInt l = 0; l < rows; l++) {
+        const PetscReal d = derivative[k * rows + l];
 
-/* J = I - D (I - r (S + eps diag S)) = I + D r S - (1 - eps) D */
-static PetscErrorCode FillJacobian(const LawProblem *problem, Mat J)
-{
-  PetscFunctionBegin;
-  PetscCall(MatMatMult(problem->derivative, problem->entries, MAT_REUSE_MATRIX, PETSC_DETERMINE, &J));
-  for (PetscInt node = 0; node < problem->n_nodes; node++) {
-    const PetscInt   first = problem->begin[node], rows = problem->begin[node + 1] - first;
-    const PetscReal *derivative = problem->derivatives + node * ROW_LAW_ROWS * ROW_LAW_ROWS;
-
-    for (PetscInt k = 0; k < rows; k++)
-      for (PetscInt l = 0; l < rows; l++)
-        PetscCall(MatSetValue(J, first + k, first + l, (k == l) - (1 - problem->proximal) * derivative[k * rows + l], ADD_VALUES));
+        PetscCall(MatSetValue(matrix, first + k, first + l,
+                              times_r ? d / problem->weight[first + l] : (k == l) - (1 - problem->proximal) * d, ADD_VALUES));
+      }
   }
-  PetscCall(MatAssemblyBegin(J, MAT_FINAL_ASSEMBLY));
-  PetscCall(MatAssemblyEnd(J, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyBegin(matrix, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(matrix, MAT_FINAL_ASSEMBLY));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,13 +103,16 @@ static PetscErrorCode ComputeJacobian(SNES snes, Vec X, Mat J, Mat P, void *ctx)
   PetscCall(TakeDerivatives(problem, x, y, &other));
   PetscCall(VecRestoreArrayRead(X, &x));
   if (!other) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(FillDerivative(problem));
+  PetscCall(MatZeroEntries(problem->derivative));
+  PetscCall(AddDerivatives(problem, PETSC_TRUE, problem->derivative));
   if (LawProblemIsLagged(problem)) { /* what is multiplied with is J as it is, and its entries are for the preconditioner alone */
     PetscCall(AreStale(problem, &stale));
     if (!stale) PetscFunctionReturn(PETSC_SUCCESS);
     PetscCall(SNESSetLagPreconditioner(snes, LAW_LAG_AFTER_NEXT));
   }
-  PetscCall(FillJacobian(problem, P));
+  /* J = I - D (I - r (S + eps diag S)) = I + D r S - (1 - eps) D */
+  PetscCall(MatMatMult(problem->derivative, problem->entries, MAT_REUSE_MATRIX, PETSC_DETERMINE, &P));
+  PetscCall(AddDerivatives(problem, PETSC_FALSE, P));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
