@@ -10,23 +10,21 @@
 #define ENOUGH        0.5 /* linear iterations leave this part of the tolerance of Newton's method, */
 #define MEAN          0.2 /* or, in the mean, this part of what readings are right to */
 
-/* By one of the solvers, from `force` on */
-static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, SNESConvergedReason *reason)
+/* By one of the solvers, from `force` on, in so many iterations at most, or as many as it has */
+static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, PetscInt most, SNESConvergedReason *reason)
 {
-  PetscScalar *x;
-  PetscInt     iterations;
+  PetscInt iterations, own;
 
   PetscFunctionBegin;
-  PetscCall(VecGetArrayWrite(problem->x, &x));
-  PetscCall(PetscArraycpy(x, problem->force, problem->n));
-  PetscCall(VecRestoreArrayWrite(problem->x, &x));
+  PetscCall(SNESGetTolerances(snes, NULL, NULL, NULL, &own, NULL));
+  PetscCall(SNESSetTolerances(snes, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT, most, PETSC_CURRENT));
+  PetscCall(VecPlaceArray(problem->x, problem->force));
   PetscCall(SNESSolve(snes, NULL, problem->x));
+  PetscCall(VecResetArray(problem->x));
+  PetscCall(SNESSetTolerances(snes, PETSC_CURRENT, PETSC_CURRENT, PETSC_CURRENT, own, PETSC_CURRENT));
   PetscCall(SNESGetConvergedReason(snes, reason));
   PetscCall(SNESGetIterationNumber(snes, &iterations));
   problem->iterations += iterations;
-  PetscCall(VecGetArray(problem->x, &x));
-  PetscCall(PetscArraycpy(problem->force, x, problem->n));
-  PetscCall(VecRestoreArray(problem->x, &x));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -35,18 +33,13 @@ static PetscErrorCode SolveBy(LawProblem *problem, SNES snes, SNESConvergedReaso
    at once (majorise and minimise; Bourdin, Francfort, Marigo 2000 alternate so between gaps and damage). */
 static PetscErrorCode SolveBySecants(LawProblem *problem, PetscInt iterations, SNESConvergedReason *reason)
 {
-  PetscInt most;
-
   PetscFunctionBegin;
-  PetscCall(SNESGetTolerances(problem->newton, NULL, NULL, NULL, &most, NULL));
-  PetscCall(SNESSetTolerances(problem->newton, PETSC_CURRENT, PETSC_CURRENT, 0, iterations, PETSC_INT_MAX));
   for (PetscInt back = 0; back < 2; back++) {
     problem->secant      = (PetscBool)!back;
     problem->jacobian_of = -1;
     LawProblemFindWeights(problem);
-    if (!back) PetscCall(SolveBy(problem, problem->newton, reason));
+    if (!back) PetscCall(SolveBy(problem, problem->newton, iterations, reason));
   }
-  PetscCall(SNESSetTolerances(problem->newton, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -98,21 +91,19 @@ static PetscErrorCode SolveOnce(LawProblem *problem)
   PetscCall(KSPSetTolerances(ksp, PETSC_CURRENT, enough, PETSC_CURRENT, PETSC_CURRENT));
   PetscCall(PetscArraycpy(start, problem->force, problem->n));
   PetscCall(SNESGetTolerances(problem->nodes, NULL, NULL, NULL, &most, NULL));
-  PetscCall(SolveBy(problem, problem->newton, &reason));
+  PetscCall(SolveBy(problem, problem->newton, PETSC_CURRENT, &reason));
   for (; reason < 0 && sweeps <= (LawProblemHasProducts(problem) ? PetscMin(most, MOST_NEAR) : most); sweeps *= 4) {
     PetscCall(PetscInfo(
         problem->newton, "law of %" PetscInt_FMT " rows: %s after %" PetscInt_FMT " iterations, now %" PetscInt_FMT " sweeps %s\n",
         problem->n, SNESConvergedReasons[reason], problem->iterations, sweeps, problem->softens ? "with secants" : "node by node"));
     problem->by_nodes = PETSC_TRUE;
     PetscCall(PetscArraycpy(problem->force, start, problem->n));
-    PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, sweeps, PETSC_INT_MAX));
     if (problem->softens) PetscCall(SolveBySecants(problem, sweeps, &reason));
-    else PetscCall(SolveBy(problem, problem->nodes, &reason));
+    else PetscCall(SolveBy(problem, problem->nodes, sweeps, &reason));
     if (reason == SNES_DIVERGED_NAN) break;
     PetscCall(PetscArraycpy(start, problem->force, problem->n));
-    if (reason < 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, &reason));
+    if (reason < 0 || reason == SNES_CONVERGED_ITS) PetscCall(SolveBy(problem, problem->newton, PETSC_CURRENT, &reason));
   }
-  PetscCall(SNESSetTolerances(problem->nodes, PETSC_CURRENT, PETSC_CURRENT, 0, most, PETSC_INT_MAX));
   problem->solved = (PetscBool)(reason > 0);
   PetscFunctionReturn(PETSC_SUCCESS);
 }
