@@ -42,13 +42,12 @@ static PetscErrorCode Renew(Contact contact, ContactStepper *stepper, PetscInt b
   PetscCall(PetscArraycpy(entries->block, entries->own, entries->n * entries->n));
   PetscCall(StepperSecantsResize(&entries->secants, entries->n, 0));
   entries->corrected = PETSC_TRUE;
-  stepper->assembled = -1;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* The block of a body is corrected by what the last two passes have shown of it, unless it has told right. Where secants of earlier steps
    have made it worse than the body's own one they are forgotten. */
-static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, PetscInt b, PetscBool *renewed)
+static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, PetscInt b)
 {
   LawProblem     *problem = &stepper->problem;
   StepperEntries *entries = &stepper->assembly.of_body[b];
@@ -76,31 +75,29 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
   off       = Largest(n, product, gone);
   if (entries->follows && off > RENEW * Largest(n, product, NULL) + SURE * problem->resolution) {
     PetscCall(Renew(contact, stepper, b));
-    *renewed = stepper->corrected = PETSC_TRUE;
+    stepper->corrected = PETSC_TRUE;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   if (stepper->passes == 1 && at && StepperSecantMultiply(n, entries->own, force, product + n) > 0 && Largest(n, product + n, gone) < off) {
     PetscCall(PetscArraymove(secants->values, force, 2 * n));
     PetscCall(StepperSecantsResize(secants, n, 1));
     PetscCall(PetscArraycpy(entries->block, entries->own, n * n));
-    at        = 0;
-    force     = secants->values;
-    gone      = force + n;
-    told_work = StepperSecantMultiply(n, entries->block, force, product);
-    off       = Largest(n, product, gone);
-    *renewed = stepper->corrected = PETSC_TRUE;
-    stepper->assembled            = -1;
+    at                 = 0;
+    force              = secants->values;
+    gone               = force + n;
+    told_work          = StepperSecantMultiply(n, entries->block, force, product);
+    off                = Largest(n, product, gone);
+    stepper->corrected = PETSC_TRUE;
   }
   if (off <= EXACT * Largest(n, product, NULL) + problem->resolution || !(work > CURVATURE * told_work) || !(told_work > 0)) {
     secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
   one = (PetscBool)(BodyDoes(contact->bodies[b], BodyIsLinear) && StepperSecantHolds(n, force, product, problem->resolution));
-  PetscCall(StepperSecantCorrect(entries, force, product, one, problem));
-  stepper->assembled = -1;
+  StepperSecantCorrect(entries, force, product, one);
   if (!one && off <= SURE * problem->resolution) { /* for this step alone: the next one makes the block anew */
-    secants->n_pairs   = at;
-    entries->corrected = PETSC_FALSE;
+    secants->n_pairs = at;
+    entries->forgets = PETSC_TRUE;
   }
   stepper->corrected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);
@@ -123,17 +120,16 @@ PetscErrorCode ContactStepperCorrectS(Contact contact, ContactStepper *stepper)
     const StepperEntries *entries = &stepper->assembly.of_body[b];
 
     if (!entries->n || entries->alone) continue;
-    if (stepper->has_told) PetscCall(CorrectBody(contact, stepper, b, &renewed));
+    if (stepper->has_told) PetscCall(CorrectBody(contact, stepper, b));
     else if (entries->follows) {
       PetscCall(Renew(contact, stepper, b));
       renewed = PETSC_TRUE;
     }
   }
-  if (stepper->corrected) {
-    PetscCall(MatAssemblyBegin(problem->S, MAT_FINAL_ASSEMBLY));
-    PetscCall(MatAssemblyEnd(problem->S, MAT_FINAL_ASSEMBLY));
+  if (stepper->corrected || renewed) {
+    stepper->assembled = -1;
+    PetscCall(ContactStepperAssemble(contact, stepper));
   }
-  if (renewed) PetscCall(ContactStepperAssemble(contact, stepper));
   PetscCall(PetscArraycpy(stepper->told, problem->base, n));
   PetscCall(PetscArraycpy(stepper->told + n, stepper->ends, 2 * n));
   stepper->has_told = PETSC_TRUE;

@@ -67,9 +67,10 @@ PetscErrorCode ContactStepperBeginSecants(Contact contact, ContactStepper *stepp
     StepperEntries *entries = &stepper->assembly.of_body[b];
 
     PetscCall(Copy(&entries->kept, same_size ? 0 : entries->kept.n_pairs, &entries->secants));
-    if (!(contact->attempt.again || contact->energy.again) || !entries->n || entries->alone) continue;
-    entries->corrected = PETSC_FALSE; /* the attempt before at this step may have corrected it */
-    stepper->assembled = -1;
+    if (!entries->n || entries->alone) continue;
+    if (!(contact->attempt.again || contact->energy.again || entries->forgets)) continue;
+    entries->corrected = entries->forgets = PETSC_FALSE; /* the attempt before at this step may have corrected it */
+    stepper->assembled                    = -1;
   }
   PetscFunctionReturn(PETSC_SUCCESS);
 }
@@ -135,34 +136,23 @@ PetscBool StepperSecantHolds(PetscInt n, const PetscScalar force[], const PetscS
   return (PetscBool)(more > SURE_WORK * resolution * PetscSqrtReal(square));
 }
 
-/* Corrects the block by a secant, and S unless NULL; `product`: how the block has it; by one or two vectors, over their work. */
-PetscErrorCode StepperSecantCorrect(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool one,
-                                    LawProblem *problem)
+/* Corrects the block by a secant; `product`: how the block has it; by one or two vectors, over their work */
+void StepperSecantCorrect(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool one)
 {
-  const PetscInt     n      = entries->n;
-  const PetscScalar *gone   = force + n;
-  PetscScalar       *change = product + n; /* of a column */
+  const PetscInt     n    = entries->n;
+  const PetscScalar *gone = force + n;
   PetscReal          work = 0, told_work = 0;
 
-  PetscFunctionBegin;
   for (PetscInt k = 0; k < n; k++) {
     if (one) product[k] -= gone[k];
     work += PetscRealPart(force[k] * gone[k]);
     told_work += PetscRealPart(force[k] * product[k]);
   }
   for (PetscInt l = 0; l < n; l++) {
-    const PetscInt    j       = entries->places[l];
     const PetscScalar by_gone = one ? 0 : gone[l] / work, by_product = product[l] / told_work;
 
-    for (PetscInt k = 0; k < n; k++) {
-      change[k] = by_gone * gone[k] - by_product * product[k];
-      entries->block[l * n + k] += change[k];
-    }
-    if (!problem) continue;
-    PetscCall(MatSetValues(problem->S, n, entries->places, 1, &j, change, ADD_VALUES));
-    problem->diagonal[j] += PetscRealPart(change[l]);
+    for (PetscInt k = 0; k < n; k++) entries->block[l * n + k] += by_gone * gone[k] - by_product * product[k];
   }
-  PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* A block of the touching rows, from the body's own one and secants, unless it is there. Those of other rows are forgotten. */
@@ -188,7 +178,7 @@ PetscErrorCode ContactStepperCorrectBlock(Contact contact, ContactStepper *stepp
 
     if (!(StepperSecantMultiply(n, entries->block, force, product) > 0)) continue;
     one = (PetscBool)(BodyDoes(contact->bodies[b], BodyIsLinear) && StepperSecantHolds(n, force, product, stepper->problem.resolution));
-    PetscCall(StepperSecantCorrect(entries, force, product, one, NULL));
+    StepperSecantCorrect(entries, force, product, one);
   }
   entries->corrected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

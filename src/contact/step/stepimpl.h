@@ -43,6 +43,7 @@ typedef struct {
   PetscScalar   *own;               /* the same, as the body has it, without secants */
   PetscBool      follows;           /* `own` is as the body has answered in some pass of the step */
   PetscBool      corrected;         /* `block` is `own` corrected by `secants`, and by no others */
+  PetscBool      forgets;           /* the next step makes `block` anew */
   StepperSecants secants, kept;     /* of this step and those before it; those of accepted steps */
   Vec            force, way;        /* work space of products: of all rows of the body, or NULL */
 } StepperEntries;
@@ -192,7 +193,7 @@ PETSC_INTERN PetscErrorCode StepperSecantsResize(StepperSecants *, PetscInt, Pet
 PETSC_INTERN PetscErrorCode StepperSecantsDestroy(StepperSecants *);
 PETSC_INTERN PetscReal      StepperSecantMultiply(PetscInt, const PetscScalar[], const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscBool      StepperSecantHolds(PetscInt, const PetscScalar[], const PetscScalar[], PetscReal);
-PETSC_INTERN PetscErrorCode StepperSecantCorrect(StepperEntries *, const PetscScalar[], PetscScalar[], PetscBool, LawProblem *);
+PETSC_INTERN void           StepperSecantCorrect(StepperEntries *, const PetscScalar[], PetscScalar[], PetscBool);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpTurns(Contact, ContactStepper *);
 PETSC_INTERN PetscBool      ContactStepperMayTurn(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperBeginTurns(Contact, ContactStepper *);
