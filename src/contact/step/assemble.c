@@ -29,8 +29,7 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
 
     PetscCall(PetscFree4(entries->rows, entries->places, entries->begin, entries->product));
     PetscCall(PetscFree4(entries->columns, entries->dofs, entries->values, entries->answers));
-    PetscCall(PetscFree(entries->block));
-    PetscCall(PetscFree(entries->own));
+    PetscCall(PetscFree2(entries->block, entries->own));
     PetscCall(StepperSecantsDestroy(&entries->secants));
     PetscCall(StepperSecantsDestroy(&entries->kept));
     PetscCall(VecDestroy(&entries->force));
@@ -117,10 +116,8 @@ static PetscErrorCode BeginBlock(Contact contact, ContactStepper *stepper, Petsc
   PetscFunctionBegin;
   if (n * n > entries->block_room) {
     entries->block_room = 2 * n * n;
-    PetscCall(PetscFree(entries->block));
-    PetscCall(PetscFree(entries->own));
-    PetscCall(PetscMalloc1(entries->block_room, &entries->block));
-    PetscCall(PetscMalloc1(entries->block_room, &entries->own));
+    PetscCall(PetscFree2(entries->block, entries->own));
+    PetscCall(PetscMalloc2(entries->block_room, &entries->block, entries->block_room, &entries->own));
   }
   entries->corrected = PETSC_FALSE;
   PetscCall(PetscArrayzero(entries->own, n * n));

@@ -32,16 +32,15 @@ static PetscReal Largest(PetscInt n, const PetscScalar product[], const PetscSca
   return largest;
 }
 
-/* The block of a body is as the body has answered in the last pass */
+/* The block of a body is as the body has answered in the last pass, once S is assembled */
 static PetscErrorCode Renew(Contact contact, ContactStepper *stepper, PetscInt b)
 {
   StepperEntries *entries = &stepper->assembly.of_body[b];
 
   PetscFunctionBegin;
   PetscCall(ContactStepperMakeBlock(contact, stepper, b));
-  PetscCall(PetscArraycpy(entries->block, entries->own, entries->n * entries->n));
-  PetscCall(StepperSecantsResize(&entries->secants, entries->n, 0));
-  entries->corrected = PETSC_TRUE;
+  entries->secants.n_pairs = 0;
+  entries->corrected       = PETSC_FALSE;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -93,8 +92,7 @@ static PetscErrorCode CorrectBody(Contact contact, ContactStepper *stepper, Pets
     secants->n_pairs = at;
     PetscFunctionReturn(PETSC_SUCCESS);
   }
-  one = (PetscBool)(BodyDoes(contact->bodies[b], BodyIsLinear) && StepperSecantHolds(n, force, product, problem->resolution));
-  StepperSecantCorrect(entries, force, product, one);
+  one = StepperSecantCorrect(entries, BodyDoes(contact->bodies[b], BodyIsLinear), problem->resolution, force, product);
   if (!one && off <= SURE * problem->resolution) { /* for this step alone: the next one makes the block anew */
     secants->n_pairs = at;
     entries->forgets = PETSC_TRUE;

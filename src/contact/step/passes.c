@@ -252,12 +252,7 @@ PetscErrorCode ContactStepperIterate(Contact contact, ContactStepper *stepper)
 
   PetscFunctionBegin;
   PetscCall(VecGetArrayWrite(stepper->x, &x));
-  PetscCall(PetscArrayzero(x, contact->rows.n));
-  for (PetscInt k = 0; k < contact->rows.n_acting; k++) {
-    const PetscInt i = contact->rows.acting[k];
-
-    if (stepper->touches[i]) x[i] = contact->end.force[i];
-  }
+  PetscCall(PetscArraycpy(x, contact->end.force, contact->rows.n)); /* none of rows that do not touch, see guess.c */
   PetscCall(VecRestoreArrayWrite(stepper->x, &x));
   PetscCall(ContactStepperFindGroups(contact, stepper));
   PetscCall(FindScales(contact, stepper));

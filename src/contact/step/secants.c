@@ -26,22 +26,16 @@ PetscErrorCode StepperSecantsDestroy(StepperSecants *secants)
 /* Room for so many secants of n rows; those that there are stay, if they are of as many */
 PetscErrorCode StepperSecantsResize(StepperSecants *secants, PetscInt n, PetscInt n_pairs)
 {
-  const PetscInt size = 2 * n * n_pairs, used = n == secants->n ? 2 * n * PetscMin(n_pairs, secants->n_pairs) : 0;
+  const PetscInt size = 2 * n * n_pairs;
 
   PetscFunctionBegin;
   if (n > secants->row_room) {
     secants->row_room = 2 * n;
-    PetscCall(PetscFree(secants->rows));
-    PetscCall(PetscMalloc1(secants->row_room, &secants->rows));
+    PetscCall(PetscRealloc((size_t)secants->row_room * sizeof(*secants->rows), &secants->rows));
   }
   if (size > secants->room) {
-    PetscScalar *values;
-
     secants->room = 2 * size;
-    PetscCall(PetscMalloc1(secants->room, &values));
-    PetscCall(PetscArraycpy(values, secants->values, used));
-    PetscCall(PetscFree(secants->values));
-    secants->values = values;
+    PetscCall(PetscRealloc((size_t)secants->room * sizeof(*secants->values), &secants->values));
   }
   secants->n       = n;
   secants->n_pairs = n_pairs;
@@ -124,7 +118,7 @@ PetscReal StepperSecantMultiply(PetscInt n, const PetscScalar block[], const Pet
 }
 
 /* Whether a secant of a linear body is one of those that hold all at once; `product`: how the block has it */
-PetscBool StepperSecantHolds(PetscInt n, const PetscScalar force[], const PetscScalar product[], PetscReal resolution)
+static PetscBool Holds(PetscInt n, const PetscScalar force[], const PetscScalar product[], PetscReal resolution)
 {
   const PetscScalar *gone = force + n;
   PetscReal          more = 0, square = 0;
@@ -136,11 +130,13 @@ PetscBool StepperSecantHolds(PetscInt n, const PetscScalar force[], const PetscS
   return (PetscBool)(more > SURE_WORK * resolution * PetscSqrtReal(square));
 }
 
-/* Corrects the block by a secant; `product`: how the block has it; by one or two vectors, over their work */
-void StepperSecantCorrect(StepperEntries *entries, const PetscScalar force[], PetscScalar product[], PetscBool one)
+/* Corrects the block by a secant, by one vector (true) or two, over their work; `product`: how the block has it */
+PetscBool StepperSecantCorrect(StepperEntries *entries, PetscBool linear, PetscReal resolution, const PetscScalar force[],
+                               PetscScalar product[])
 {
   const PetscInt     n    = entries->n;
   const PetscScalar *gone = force + n;
+  const PetscBool    one  = (PetscBool)(linear && Holds(n, force, product, resolution));
   PetscReal          work = 0, told_work = 0;
 
   for (PetscInt k = 0; k < n; k++) {
@@ -153,6 +149,7 @@ void StepperSecantCorrect(StepperEntries *entries, const PetscScalar force[], Pe
 
     for (PetscInt k = 0; k < n; k++) entries->block[l * n + k] += by_gone * gone[k] - by_product * product[k];
   }
+  return one;
 }
 
 /* A block of the touching rows, from the body's own one and secants, unless it is there. Those of other rows are forgotten. */
@@ -174,11 +171,9 @@ PetscErrorCode ContactStepperCorrectBlock(Contact contact, ContactStepper *stepp
   for (PetscInt j = 0; j < secants->n_pairs; j++) {
     const PetscScalar *force   = secants->values + 2 * n * j;
     PetscScalar       *product = entries->product;
-    PetscBool          one;
 
-    if (!(StepperSecantMultiply(n, entries->block, force, product) > 0)) continue;
-    one = (PetscBool)(BodyDoes(contact->bodies[b], BodyIsLinear) && StepperSecantHolds(n, force, product, stepper->problem.resolution));
-    StepperSecantCorrect(entries, force, product, one);
+    if (StepperSecantMultiply(n, entries->block, force, product) > 0)
+      (void)StepperSecantCorrect(entries, BodyDoes(contact->bodies[b], BodyIsLinear), stepper->problem.resolution, force, product);
   }
   entries->corrected = PETSC_TRUE;
   PetscFunctionReturn(PETSC_SUCCESS);

@@ -29,32 +29,31 @@ PetscReal ContactStepperKeeps(Contact contact, const ContactStepper *stepper, Pe
   return damper / (stepper->springs.stiffness[p] + damper);
 }
 
-/* Area of a row's node, by which springs and dampers are stiffer [m^2; 1 in one dimension] */
-static PetscReal GetArea(Contact contact, PetscInt i)
+/* ContactStepperGetSpring - the stiffnesses of spring and damper of a row of this rank [N/m], [N s/m] */
+void ContactStepperGetSpring(Contact contact, const ContactStepper *stepper, PetscInt i, PetscReal *spring, PetscReal *damper)
 {
-  return contact->dim == 1 ? 1 : contact->rows.area[i] * contact->resultants.cross_section[contact->rows.pair[i]];
+  const PetscInt  p    = contact->rows.pair[i];
+  const PetscReal area = contact->dim == 1 ? 1 : contact->rows.area[i] * contact->resultants.cross_section[p];
+
+  *spring = area * stepper->springs.stiffness[p];
+  *damper = area * OfDampers(contact, stepper) * contact->step;
 }
 
 /* 1/K of a row of this rank [m/N] */
 static PetscReal Softness(Contact contact, const ContactStepper *stepper, PetscInt i)
 {
-  const PetscReal stiffness = GetArea(contact, i) * (stepper->springs.stiffness[contact->rows.pair[i]] + OfDampers(contact, stepper));
+  PetscReal spring, damper;
 
-  return stiffness > 0 ? 1 / stiffness : 0;
-}
-
-/* ContactStepperGetSpring - the stiffnesses of spring and damper of a row of this rank [N/m], [N s/m] */
-void ContactStepperGetSpring(Contact contact, const ContactStepper *stepper, PetscInt i, PetscReal *spring, PetscReal *damper)
-{
-  *spring = GetArea(contact, i) * stepper->springs.stiffness[contact->rows.pair[i]];
-  *damper = GetArea(contact, i) * OfDampers(contact, stepper) * contact->step;
+  ContactStepperGetSpring(contact, stepper, i, &spring, &damper);
+  return spring + damper > 0 ? 1 / (spring + damper / contact->step) : 0;
 }
 
 /* Energy of the spring of a row [J]. One across a normal has no gap: its force counts; a gap below 0 is how far it is stretched. */
 static PetscReal StoredEnergy(Contact contact, PetscInt i, PetscReal gap)
 {
-  const PetscReal spring = GetArea(contact, i) * Stepper(contact)->springs.stiffness[contact->rows.pair[i]];
+  PetscReal spring, damper;
 
+  ContactStepperGetSpring(contact, Stepper(contact), i, &spring, &damper);
   if (gap < 0 || (contact->rows.tied[i] && !ContactRowRubs(contact, i))) return 0.5 * spring * PetscSqr(gap);
   return ContactRowRubs(contact, i) && spring > 0 ? 0.5 * PetscSqr(contact->end.force[i]) / spring : 0;
 }

@@ -192,8 +192,7 @@ PETSC_INTERN PetscErrorCode ContactStepperCorrectBlock(Contact, ContactStepper *
 PETSC_INTERN PetscErrorCode StepperSecantsResize(StepperSecants *, PetscInt, PetscInt);
 PETSC_INTERN PetscErrorCode StepperSecantsDestroy(StepperSecants *);
 PETSC_INTERN PetscReal      StepperSecantMultiply(PetscInt, const PetscScalar[], const PetscScalar[], PetscScalar[]);
-PETSC_INTERN PetscBool      StepperSecantHolds(PetscInt, const PetscScalar[], const PetscScalar[], PetscReal);
-PETSC_INTERN void           StepperSecantCorrect(StepperEntries *, const PetscScalar[], PetscScalar[], PetscBool);
+PETSC_INTERN PetscBool      StepperSecantCorrect(StepperEntries *, PetscBool, PetscReal, const PetscScalar[], PetscScalar[]);
 PETSC_INTERN PetscErrorCode ContactStepperSetUpTurns(Contact, ContactStepper *);
 PETSC_INTERN PetscBool      ContactStepperMayTurn(Contact);
 PETSC_INTERN PetscErrorCode ContactStepperBeginTurns(Contact, ContactStepper *);
