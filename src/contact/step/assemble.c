@@ -11,16 +11,6 @@
 #define ZERO      1e-14 /* entries of rows that are zero but for round-off; the largest are 1 or so */
 #define SMALL     1e-3  /* entries that are left out where S is approximate all the same, in parts of the largest of their row */
 
-static PetscErrorCode DestroyRows(StepperAssembly *assembly)
-{
-  PetscFunctionBegin;
-  PetscCall(PetscFree(assembly->begin));
-  PetscCall(PetscFree2(assembly->columns, assembly->values));
-  PetscCall(MatDestroy(&assembly->rows));
-  PetscCall(MatDestroy(&assembly->product));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
 {
   PetscFunctionBegin;
@@ -36,7 +26,7 @@ PetscErrorCode ContactStepperDestroyAssembly(StepperAssembly *assembly)
     PetscCall(VecDestroy(&entries->way));
   }
   PetscCall(PetscFree(assembly->of_body));
-  PetscCall(DestroyRows(assembly));
+  PetscCall(MatDestroy(&assembly->product));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -153,8 +143,8 @@ PetscErrorCode ContactStepperMakeBlock(Contact contact, ContactStepper *stepper,
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* The entries that a body whose nodes answer to the forces on them alone has in R */
-static PetscErrorCode ScaleEntries(Contact contact, StepperEntries *entries, Vec diagonal)
+/* The entries that a body whose nodes answer to the forces on them alone has in R, with columns behind those of bodies before it */
+static PetscErrorCode ScaleEntries(Contact contact, StepperEntries *entries, Vec diagonal, PetscInt *n_columns)
 {
   const PetscScalar *values;
   PetscScalar       *roots = entries->answers;
@@ -167,57 +157,45 @@ static PetscErrorCode ScaleEntries(Contact contact, StepperEntries *entries, Vec
     roots[d] = entries->dofs[d] >= begin && entries->dofs[d] < end ? PetscSqrtScalar(values[entries->dofs[d] - begin]) : 0;
   PetscCall(VecRestoreArrayRead(diagonal, &values));
   PetscCall(ContactReduce(contact, entries->n_dofs, MPIU_SCALAR, MPIU_SUM, roots));
-  for (PetscInt e = 0; e < entries->begin[entries->n]; e++) entries->values[e] *= roots[entries->columns[e]];
+  for (PetscInt e = 0; e < entries->begin[entries->n]; e++) {
+    entries->values[e] *= roots[entries->columns[e]];
+    entries->columns[e] += *n_columns;
+  }
+  *n_columns += entries->n_dofs;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
 /* R R^T. Columns of R are the displacements in which rows have entries, those of one body behind those of another. */
-static PetscErrorCode MultiplyRows(PetscInt n, StepperAssembly *assembly)
+static PetscErrorCode MultiplyRows(PetscInt n, PetscInt n_columns, StepperAssembly *assembly)
 {
-  PetscInt    *begin, *columns, total, n_columns = 0;
-  PetscScalar *values;
-  PetscBool    same = (PetscBool)(assembly->rows && assembly->n == n);
+  PetscInt *counts;
+  Mat       R, transpose;
 
   PetscFunctionBegin;
-  PetscCall(PetscCalloc1(n + 2, &begin));
+  PetscCall(PetscCalloc1(n, &counts));
   for (PetscInt b = 0; b < assembly->n_bodies; b++) {
     const StepperEntries *entries = &assembly->of_body[b];
 
-    for (PetscInt k = 0; k < entries->n && entries->alone; k++) begin[entries->places[k] + 2] += entries->begin[k + 1] - entries->begin[k];
+    for (PetscInt k = 0; k < entries->n && entries->alone; k++) counts[entries->places[k]] += entries->begin[k + 1] - entries->begin[k];
   }
-  for (PetscInt k = 0; k <= n; k++) begin[k + 1] += begin[k];
-  total = begin[n + 1];
-  PetscCall(PetscMalloc2(total, &columns, total, &values));
+  PetscCall(MatCreateSeqAIJ(PETSC_COMM_SELF, n, n_columns, 0, counts, &R));
+  PetscCall(PetscFree(counts));
   for (PetscInt b = 0; b < assembly->n_bodies; b++) {
     const StepperEntries *entries = &assembly->of_body[b];
 
-    if (!entries->n || !entries->alone) continue;
-    for (PetscInt k = 0; k < entries->n; k++)
-      for (PetscInt e = entries->begin[k]; e < entries->begin[k + 1]; e++) {
-        const PetscInt at = begin[entries->places[k] + 1]++; /* so that it becomes where the next row begins */
+    for (PetscInt k = 0; k < entries->n && entries->alone; k++) {
+      const PetscInt begin = entries->begin[k], count = entries->begin[k + 1] - begin;
 
-        columns[at] = n_columns + entries->columns[e];
-        values[at]  = entries->values[e];
-      }
-    n_columns += entries->n_dofs;
+      PetscCall(MatSetValues(R, 1, &entries->places[k], count, entries->columns + begin, entries->values + begin, INSERT_VALUES));
+    }
   }
-  if (same) PetscCall(PetscArraycmp(begin, assembly->begin, n + 1, &same));
-  if (same) PetscCall(PetscArraycmp(columns, assembly->columns, total, &same));
-  if (same) {
-    PetscCall(PetscArraycpy(assembly->values, values, total));
-    PetscCall(PetscFree(begin));
-    PetscCall(PetscFree2(columns, values));
-    PetscCall(PetscObjectStateIncrease((PetscObject)assembly->rows));
-  } else {
-    PetscCall(DestroyRows(assembly));
-    assembly->n       = n;
-    assembly->begin   = begin;
-    assembly->columns = columns;
-    assembly->values  = values;
-    PetscCall(MatCreateSeqAIJWithArrays(PETSC_COMM_SELF, n, n_columns, begin, columns, values, &assembly->rows));
-  }
-  PetscCall(MatMatTransposeMult(assembly->rows, assembly->rows, same ? MAT_REUSE_MATRIX : MAT_INITIAL_MATRIX, PETSC_DETERMINE,
-                                &assembly->product));
+  PetscCall(MatAssemblyBegin(R, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatAssemblyEnd(R, MAT_FINAL_ASSEMBLY));
+  PetscCall(MatTranspose(R, MAT_INITIAL_MATRIX, &transpose)); /* MatMatTransposeMult() takes longer */
+  PetscCall(MatDestroy(&assembly->product));
+  PetscCall(MatMatMult(R, transpose, MAT_INITIAL_MATRIX, PETSC_DETERMINE, &assembly->product));
+  PetscCall(MatDestroy(&transpose));
+  PetscCall(MatDestroy(&R));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -286,7 +264,8 @@ static PetscErrorCode SumParts(ContactStepper *stepper, PetscBool sparse, Mat *S
 /* What S is made of, from the bodies; of products a matrix near S is made, as if each dof of a layer moved alone */
 static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
 {
-  StepperAssembly *assembly = &stepper->assembly;
+  StepperAssembly *assembly  = &stepper->assembly;
+  PetscInt         n_columns = 0; /* of R */
 
   PetscFunctionBegin;
   for (PetscInt b = 0; b < contact->n_bodies; b++) {
@@ -308,11 +287,11 @@ static PetscErrorCode GetParts(Contact contact, ContactStepper *stepper)
         GetEntries(contact, entries, b, rows, (PetscBool)(BodyDoes(body, BodyIsExplicit) && !BodyDoes(body, BodyIsLinear) && !diagonal)));
     PetscCall(ListDofs(entries));
     entries->alone = (PetscBool)(diagonal != NULL);
-    if (diagonal) PetscCall(ScaleEntries(contact, entries, diagonal));
+    if (diagonal) PetscCall(ScaleEntries(contact, entries, diagonal, &n_columns));
     else PetscCall(BeginBlock(contact, stepper, b));
     PetscCall(VecDestroy(&of_layer));
   }
-  if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MultiplyRows(stepper->problem.n, assembly));
+  if (AnyBody(assembly, PETSC_TRUE)) PetscCall(MultiplyRows(stepper->problem.n, n_columns, assembly));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

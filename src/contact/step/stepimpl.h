@@ -53,10 +53,7 @@ typedef struct {
   PetscInt        n_bodies;
   PetscInt64      of_state; /* of rows, of which bodies have been asked last */
   StepperEntries *of_body;
-  /* R, the rows of bodies whose nodes answer alone: where each of n begins, and per entry */
-  PetscInt     n, *begin, *columns;
-  PetscScalar *values;
-  Mat          rows, product; /* R, R R^T */
+  Mat             product; /* R R^T, with R the rows of bodies whose nodes answer alone */
 } StepperAssembly;
 
 /* Turns of gaps, see turns.c */
