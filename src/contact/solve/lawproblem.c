@@ -195,39 +195,12 @@ static PetscErrorCode SweepNodes(SNES snes, Vec X, Vec B, void *ctx)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-static PetscErrorCode DestroySolvers(LawProblem *problem)
-{
-  PetscFunctionBegin;
-  PetscCall(SNESDestroy(&problem->newton));
-  PetscCall(SNESDestroy(&problem->nodes));
-  PetscCall(MatDestroy(&problem->derivative));
-  PetscCall(MatDestroy(&problem->jacobian));
-  PetscCall(MatDestroy(&problem->operator));
-  PetscCall(VecDestroy(&problem->x));
-  PetscCall(VecDestroy(&problem->f));
-  PetscCall(VecDestroy(&problem->y));
-  PetscCall(VecDestroy(&problem->in));
-  PetscCall(VecDestroy(&problem->out));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
-static PetscErrorCode CreateVecs(LawProblem *problem)
-{
-  PetscFunctionBegin;
-  PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->x));
-  PetscCall(VecDuplicate(problem->x, &problem->f));
-  PetscCall(VecDuplicate(problem->x, &problem->y));
-  PetscCall(VecDuplicate(problem->x, &problem->in));
-  PetscCall(VecDuplicate(problem->x, &problem->out));
-  PetscFunctionReturn(PETSC_SUCCESS);
-}
-
 static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNESType type, PetscInt most, SNES *snes)
 {
   PetscFunctionBegin;
+  PetscCall(SNESDestroy(snes));
   PetscCall(SNESCreate(PETSC_COMM_SELF, snes));
   PetscCall(SNESSetOptionsPrefix(*snes, prefix));
-  PetscCall(SNESSetFunction(*snes, problem->f, ComputeResidual, problem));
   PetscCall(SNESSetType(*snes, type));
   PetscCall(SNESSetTolerances(*snes, 0, LawProblemHasProducts(problem) ? PetscMax(problem->rtol, LAW_TOLERANCE) : LAW_TOLERANCE, 0, most,
                               PETSC_INT_MAX));
@@ -244,11 +217,8 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PC              pc;
 
   PetscFunctionBegin;
-  PetscCall(DestroySolvers(problem));
   PetscCall(OptionsTextHas("-" LAW_PREFIX, &problem->asked));
-  PetscCall(CreateVecs(problem));
   PetscCall(CreateSNES(problem, LAW_PREFIX, SNESNEWTONLS, MOST_NEWTON, &problem->newton));
-  PetscCall(LawProblemCreateJacobian(problem));
   PetscCall(SNESGetLineSearch(problem->newton, &line_search));
   PetscCall(SNESLineSearchSetType(line_search, LINESEARCH_FULL_STEP));
   PetscCall(SNESGetKSP(problem->newton, &ksp));
@@ -280,22 +250,36 @@ static PetscErrorCode CreateSolvers(LawProblem *problem)
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
-/* Solvers with factors of a dense matrix, for other rows: to read their options anew costs more than a small solution */
+static PetscErrorCode DestroyVecs(LawProblem *problem)
+{
+  PetscFunctionBegin;
+  PetscCall(MatDestroy(&problem->derivative));
+  PetscCall(MatDestroy(&problem->jacobian));
+  PetscCall(MatDestroy(&problem->operator));
+  PetscCall(VecDestroy(&problem->x));
+  PetscCall(VecDestroy(&problem->f));
+  PetscCall(VecDestroy(&problem->y));
+  PetscCall(VecDestroy(&problem->in));
+  PetscCall(VecDestroy(&problem->out));
+  PetscFunctionReturn(PETSC_SUCCESS);
+}
+
+/* Vectors and matrices of solvers for the rows there are */
 static PetscErrorCode ResizeSolvers(LawProblem *problem)
 {
-  SNES solvers[2] = {problem->newton, problem->nodes};
-
   PetscFunctionBegin;
-  problem->newton = problem->nodes = NULL;
-  PetscCall(DestroySolvers(problem));
-  PetscCall(CreateVecs(problem));
-  for (PetscInt k = 0; k < 2; k++) {
-    PetscCall(SNESReset(solvers[k]));
-    PetscCall(SNESSetFunction(solvers[k], problem->f, ComputeResidual, problem));
-  }
-  problem->newton = solvers[0];
-  problem->nodes  = solvers[1];
+  PetscCall(DestroyVecs(problem));
+  PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->x));
+  PetscCall(VecDuplicate(problem->x, &problem->f));
+  PetscCall(VecDuplicate(problem->x, &problem->y));
+  PetscCall(VecDuplicate(problem->x, &problem->in));
+  PetscCall(VecDuplicate(problem->x, &problem->out));
+  PetscCall(SNESReset(problem->newton));
+  PetscCall(SNESReset(problem->nodes));
+  PetscCall(SNESSetFunction(problem->newton, problem->f, ComputeResidual, problem));
+  PetscCall(SNESSetFunction(problem->nodes, problem->f, ComputeResidual, problem));
   PetscCall(LawProblemCreateJacobian(problem));
+  problem->rows = problem->n;
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -333,26 +317,27 @@ PetscErrorCode LawProblemSetUp(LawProblem *problem)
    its size and kind. `near`: (NULL where S has entries) a sparse matrix for S that is only multiplied with. `begin` is known. */
 PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
 {
-  const PetscBool products = (PetscBool)(near != NULL), other = (PetscBool)(products != LawProblemHasProducts(problem));
-  const PetscBool another = (PetscBool)(*S != problem->S), direct = (PetscBool)(problem->newton && !problem->sparse && !problem->operator);
+  const PetscBool    products = LawProblemHasProducts(problem), lagged = (PetscBool)(problem->operator!= NULL);
+  const PetscBool    another = (PetscBool)(*S != problem->S), sparse = problem->sparse;
   const PetscScalar *diagonal;
   PetscBool          dense;
 
   PetscFunctionBegin;
-  if (!products) PetscCall(PetscObjectReference((PetscObject)*S));
+  if (!near) PetscCall(PetscObjectReference((PetscObject)*S));
   PetscCall(MatDestroy(&problem->S));
   PetscCall(MatDestroy(&problem->entries));
   problem->S       = *S;
-  problem->entries = products ? *near : *S;
+  problem->entries = near ? *near : *S;
   *S               = NULL;
-  if (products) *near = NULL;
+  if (near) *near = NULL;
   PetscCall(PetscObjectTypeCompare((PetscObject)problem->entries, MATSEQDENSE, &dense));
-  if (problem->n != problem->rows || problem->sparse == dense || other) {
-    problem->sparse = (PetscBool)!dense;
-    if (direct && dense && !LawProblemIsLagged(problem)) PetscCall(ResizeSolvers(problem));
-    else PetscCall(CreateSolvers(problem));
-    problem->rows = problem->n;
-  } else if (another && problem->sparse) PetscCall(LawProblemCreateJacobian(problem));
+  problem->sparse = (PetscBool)!dense;
+  /* to read options anew costs more than a small solution */
+  if (!problem->newton || sparse == dense || products != LawProblemHasProducts(problem) || lagged != LawProblemIsLagged(problem)) {
+    PetscCall(CreateSolvers(problem));
+    PetscCall(ResizeSolvers(problem));
+  } else if (problem->n != problem->rows) PetscCall(ResizeSolvers(problem));
+  else if (another && problem->sparse) PetscCall(LawProblemCreateJacobian(problem));
   if (another) problem->jacobian_of = -1;
   problem->product_of = -1;
   PetscCall(MatGetDiagonal(problem->entries, problem->out));
@@ -365,7 +350,9 @@ PetscErrorCode LawProblemTakeS(LawProblem *problem, Mat *S, Mat *near)
 PetscErrorCode LawProblemDestroy(LawProblem *problem)
 {
   PetscFunctionBegin;
-  PetscCall(DestroySolvers(problem));
+  PetscCall(SNESDestroy(&problem->newton));
+  PetscCall(SNESDestroy(&problem->nodes));
+  PetscCall(DestroyVecs(problem));
   PetscCall(PetscFree7(problem->begin, problem->limit, problem->base, problem->read, problem->centre, problem->force, problem->work));
   PetscCall(PetscFree5(problem->diagonal, problem->weight, problem->law, problem->glue, problem->derivatives));
   PetscCall(MatDestroy(&problem->S));
