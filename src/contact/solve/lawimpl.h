@@ -31,7 +31,7 @@ typedef struct {
   PetscBool      solved;      /* there is a solution since the last call */
   PetscBool      by_nodes;    /* Newton's method failed, so that sweeps or secants came in */
   PetscBool      sparse;      /* the matrix of entries is */
-  Vec            x, f, y;
+  Vec            x, y;
   Vec            in, out;            /* the last product with S */
   PetscInt64     product_of;         /* state of the S of that; -1: none */
   Mat            derivative;         /* of P at the trial forces, times r [N/m] */

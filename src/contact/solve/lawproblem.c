@@ -201,6 +201,7 @@ static PetscErrorCode CreateSNES(LawProblem *problem, const char prefix[], SNEST
   PetscCall(SNESDestroy(snes));
   PetscCall(SNESCreate(PETSC_COMM_SELF, snes));
   PetscCall(SNESSetOptionsPrefix(*snes, prefix));
+  PetscCall(SNESSetFunction(*snes, NULL, ComputeResidual, problem));
   PetscCall(SNESSetType(*snes, type));
   PetscCall(SNESSetTolerances(*snes, 0, LawProblemHasProducts(problem) ? PetscMax(problem->rtol, LAW_TOLERANCE) : LAW_TOLERANCE, 0, most,
                               PETSC_INT_MAX));
@@ -257,7 +258,6 @@ static PetscErrorCode DestroyVecs(LawProblem *problem)
   PetscCall(MatDestroy(&problem->jacobian));
   PetscCall(MatDestroy(&problem->operator));
   PetscCall(VecDestroy(&problem->x));
-  PetscCall(VecDestroy(&problem->f));
   PetscCall(VecDestroy(&problem->y));
   PetscCall(VecDestroy(&problem->in));
   PetscCall(VecDestroy(&problem->out));
@@ -270,14 +270,11 @@ static PetscErrorCode ResizeSolvers(LawProblem *problem)
   PetscFunctionBegin;
   PetscCall(DestroyVecs(problem));
   PetscCall(VecCreateSeq(PETSC_COMM_SELF, problem->n, &problem->x));
-  PetscCall(VecDuplicate(problem->x, &problem->f));
   PetscCall(VecDuplicate(problem->x, &problem->y));
   PetscCall(VecDuplicate(problem->x, &problem->in));
   PetscCall(VecDuplicate(problem->x, &problem->out));
   PetscCall(SNESReset(problem->newton));
   PetscCall(SNESReset(problem->nodes));
-  PetscCall(SNESSetFunction(problem->newton, problem->f, ComputeResidual, problem));
-  PetscCall(SNESSetFunction(problem->nodes, problem->f, ComputeResidual, problem));
   PetscCall(LawProblemCreateJacobian(problem));
   problem->rows = problem->n;
   PetscFunctionReturn(PETSC_SUCCESS);

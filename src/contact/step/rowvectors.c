@@ -11,6 +11,12 @@ PetscErrorCode ContactStepperCreateVecs(Contact contact, ContactStepper *stepper
   stepper->answer            = BodyApplyCompliance;
   stepper->assembly.n_bodies = contact->n_bodies;
   PetscCall(PetscCalloc1(contact->n_bodies, &stepper->assembly.of_body));
+  for (PetscInt b = 0; b < contact->n_bodies; b++) {
+    StepperEntries *entries = &stepper->assembly.of_body[b];
+    const PetscInt  room    = contact->body_rows[b].n_all;
+
+    PetscCall(PetscMalloc4(room, &entries->rows, room, &entries->places, room + 1, &entries->begin, 2 * room, &entries->product));
+  }
   PetscCall(PetscMalloc1(contact->n_pairs, &stepper->laws));
   PetscCall(PetscCalloc4(n, &stepper->touches, n, &stepper->joined, n, &stepper->joins, n, &stepper->grows));
   PetscCall(PetscCalloc7(n, &stepper->last, n, &stepper->rate, n, &stepper->lets, n, &stepper->none, n, &stepper->mine, n, &stepper->before,
@@ -80,35 +86,17 @@ PetscErrorCode ContactStepperListRows(Contact contact, ContactStepper *stepper)
 /* The touching rows of each body, by their numbers among its rows, and their places in the list of all */
 PetscErrorCode ContactStepperListBodyRows(Contact contact, ContactStepper *stepper)
 {
-  StepperAssembly *assembly = &stepper->assembly;
-
   PetscFunctionBegin;
-  for (PetscInt b = 0; b < contact->n_bodies; b++) assembly->of_body[b].n = 0;
-  for (PetscInt fills = 0; fills < 2; fills++) {
-    for (PetscInt k = 0; k < stepper->problem.n; k++) {
-      const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]];
+  for (PetscInt b = 0; b < contact->n_bodies; b++) stepper->assembly.of_body[b].n = 0;
+  for (PetscInt k = 0; k < stepper->problem.n; k++) {
+    const ContactPair *pair = &contact->pairs[contact->ranks.row_pair[stepper->rows[k]]];
 
-      for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
-        const PetscInt  b       = pair->body[side];
-        StepperEntries *entries = &assembly->of_body[b];
+    for (PetscInt side = 0; side < ContactPairBodies(pair); side++) {
+      const ContactBodyRows *of      = &contact->body_rows[pair->body[side]];
+      StepperEntries        *entries = &stepper->assembly.of_body[pair->body[side]];
 
-        if (fills) {
-          PetscCall(PetscFindInt(stepper->rows[k], contact->body_rows[b].n_all, contact->body_rows[b].all, &entries->rows[entries->n]));
-          entries->places[entries->n] = k;
-        }
-        entries->n++;
-      }
-    }
-    for (PetscInt b = 0; b < contact->n_bodies && !fills; b++) {
-      StepperEntries *entries = &assembly->of_body[b];
-
-      if (entries->n > entries->row_room) {
-        entries->row_room = 2 * entries->n;
-        PetscCall(PetscFree4(entries->rows, entries->places, entries->begin, entries->product));
-        PetscCall(PetscMalloc4(entries->row_room, &entries->rows, entries->row_room, &entries->places, entries->row_room + 1,
-                               &entries->begin, 2 * entries->row_room, &entries->product));
-      }
-      entries->n = 0;
+      PetscCall(PetscFindInt(stepper->rows[k], of->n_all, of->all, &entries->rows[entries->n]));
+      entries->places[entries->n++] = k;
     }
   }
   PetscFunctionReturn(PETSC_SUCCESS);

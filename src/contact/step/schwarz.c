@@ -192,7 +192,7 @@ static PetscErrorCode Reset(Contact contact)
   PetscCall(PetscFree2(stepper->aligns[0], stepper->aligns[1]));
   PetscCall(PetscFree3(stepper->parameters, stepper->history, stepper->grown));
   PetscCall(PetscFree5(turns->fixed, turns->joined, turns->softness, turns->start, turns->read));
-  PetscCall(PetscFree6(turns->uneven, turns->lever, turns->own, turns->shift, turns->places, turns->column));
+  PetscCall(PetscFree4(turns->uneven, turns->lever, turns->own, turns->shift));
   PetscCall(PetscFree3(springs->stiffness, springs->softness, springs->multiplier));
   PetscCall(PetscFree7(stepper->rules, stepper->group, stepper->moves, stepper->rests, stepper->done, stepper->scale, stepper->off));
   PetscCall(PetscMemzero((char *)stepper + offsetof(ContactStepper, outer), sizeof(*stepper) - offsetof(ContactStepper, outer)));

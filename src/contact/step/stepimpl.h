@@ -30,22 +30,22 @@ typedef struct {
 
 /* The touching rows of a body: entries of all ranks, row by row */
 typedef struct {
-  PetscBool      alone;             /* S needs no block of it: no node of the body answers to forces on others, or S is products */
-  PetscInt       n, row_room, room; /* rows; room for rows, and for entries */
-  PetscInt      *rows, *places;     /* per row: its number among those of the body, and its place among the touching ones */
-  PetscInt      *begin;             /* per row: its first entry; n + 1 */
-  PetscScalar   *product;           /* work space: two per row */
-  PetscInt       n_dofs, *dofs;     /* displacements in which rows have entries, ascending */
-  PetscInt      *columns;           /* per entry: the place of the displacement in `dofs` */
-  PetscScalar   *values, *answers;  /* per entry, with the sign by which the row's gap goes with the body; work space */
-  PetscInt       block_room;        /* room for the block */
-  PetscScalar   *block;             /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
-  PetscScalar   *own;               /* the same, as the body has it, without secants */
-  PetscBool      follows;           /* `own` is as the body has answered in some pass of the step */
-  PetscBool      corrected;         /* `block` is `own` corrected by `secants`, and by no others */
-  PetscBool      forgets;           /* the next step makes `block` anew */
-  StepperSecants secants, kept;     /* of this step and those before it; those of accepted steps */
-  Vec            force, way;        /* work space of products: of all rows of the body, or NULL */
+  PetscBool      alone;            /* S needs no block of it: no node of the body answers to forces on others, or S is products */
+  PetscInt       n, room;          /* rows; room for entries */
+  PetscInt      *rows, *places;    /* per row: its number among those of the body, and its place among the touching ones */
+  PetscInt      *begin;            /* per row: its first entry; n + 1 */
+  PetscScalar   *product;          /* work space: two per row */
+  PetscInt       n_dofs, *dofs;    /* displacements in which rows have entries, ascending */
+  PetscInt      *columns;          /* per entry: the place of the displacement in `dofs` */
+  PetscScalar   *values, *answers; /* per entry, with the sign by which the row's gap goes with the body; work space */
+  PetscInt       block_room;       /* room for the block */
+  PetscScalar   *block;            /* n by n, unless it is `alone`: displacements of rows by forces on them [m/N] */
+  PetscScalar   *own;              /* the same, as the body has it, without secants */
+  PetscBool      follows;          /* `own` is as the body has answered in some pass of the step */
+  PetscBool      corrected;        /* `block` is `own` corrected by `secants`, and by no others */
+  PetscBool      forgets;          /* the next step makes `block` anew */
+  StepperSecants secants, kept;    /* of this step and those before it; those of accepted steps */
+  Vec            force, way;       /* work space of products: of all rows of the body, or NULL */
 } StepperEntries;
 
 /* What S is made of, see assemble.c */
@@ -64,11 +64,9 @@ typedef struct {
   /* per turn [m] */
   PetscReal *start, *read; /* t_0; with which rows have read what they have */
   /* per touching row of all ranks */
-  PetscReal   *uneven, *lever; /* C and L, two numbers of each */
-  PetscReal   *own, *shift;    /* what the diagonal of S has of turns [m/N]; by what turns have changed what is read, after the pass [m] */
-  PetscInt    *places;         /* work space */
-  PetscScalar *column;
-  PetscInt     rounds; /* how often the law has been solved for t_0 */
+  PetscReal *uneven, *lever; /* C and L, two numbers of each */
+  PetscReal *own, *shift;    /* what the diagonal of S has of turns [m/N]; by what turns have changed what is read, after the pass [m] */
+  PetscInt   rounds;         /* how often the law has been solved for t_0 */
 } StepperTurns;
 
 /* Springs and dampers that users have asked for: of the penalty method, and of the augmented Lagrangian */

@@ -39,8 +39,8 @@ PetscErrorCode ContactStepperSetUpTurns(Contact contact, ContactStepper *stepper
   PetscFunctionBegin;
   PetscCall(PetscCalloc5(contact->n_pairs, &turns->fixed, contact->n_pairs, &turns->joined, contact->n_pairs, &turns->softness,
                          contact->turns.n, &turns->start, contact->turns.n, &turns->read));
-  PetscCall(PetscCalloc6(AXES * n_all, &turns->uneven, AXES * n_all, &turns->lever, contact->rows.n_all, &turns->own, contact->rows.n_all,
-                         &turns->shift, n_all, &turns->places, n_all, &turns->column));
+  PetscCall(PetscCalloc4(AXES * n_all, &turns->uneven, AXES * n_all, &turns->lever, contact->rows.n_all, &turns->own, contact->rows.n_all,
+                         &turns->shift));
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 
@@ -119,24 +119,16 @@ PetscErrorCode ContactStepperAddTurns(Contact contact, ContactStepper *stepper, 
 
   PetscFunctionBegin;
   if (!contact->turns.n) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscArrayzero(turns->own, n));
-  for (PetscInt p = 0; p < contact->n_pairs; p++) {
-    PetscInt count = 0;
+  for (PetscInt j = 0; j < n; j++) {
+    const PetscInt p = contact->ranks.row_pair[stepper->rows[j]];
 
-    for (PetscInt i = 0; i < n && CountTurns(contact, p); i++)
-      if (contact->ranks.row_pair[stepper->rows[i]] == p) turns->places[count++] = i;
-    for (PetscInt l = 0; l < count; l++) {
-      const PetscInt j = turns->places[l];
+    for (PetscInt i = 0; i < n; i++) {
+      PetscReal value = 0;
 
-      for (PetscInt k = 0; k < count; k++) {
-        const PetscInt i = turns->places[k];
-
-        turns->column[k] = 0;
-        for (PetscInt a = 0; a < AXES; a++)
-          turns->column[k] += turns->softness[p] * turns->lever[AXES * i + a] * turns->uneven[AXES * j + a];
-      }
-      turns->own[j] = PetscRealPart(turns->column[l]);
-      PetscCall(MatSetValues(S, count, turns->places, 1, &j, turns->column, ADD_VALUES));
+      if (contact->ranks.row_pair[stepper->rows[i]] != p) continue;
+      for (PetscInt a = 0; a < AXES; a++) value += turns->softness[p] * turns->lever[AXES * i + a] * turns->uneven[AXES * j + a];
+      PetscCall(MatSetValue(S, i, j, value, ADD_VALUES));
+      if (i == j) turns->own[i] = value;
     }
   }
   PetscCall(MatAssemblyBegin(S, MAT_FINAL_ASSEMBLY));
