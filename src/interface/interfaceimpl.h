@@ -89,7 +89,7 @@ typedef struct {
   PetscReal *gap, *area, *normals; /* normals: dim each */
   PetscReal *partner;              /* of a node on a sharp edge: mean outward normal of what it sees of the partner at the build, if that
                                       has no sharp edge there, else 0; 3 each */
-  PetscReal *bow;                  /* depth that the bend of the partner's faces makes of surfaces that only touch [m] */
+  PetscReal *bow;                  /* depth that the row may have between surfaces that only touch [m] */
   PetscReal *rest;                 /* how far its weights still are from their goals, from 1 at the last build to 0 */
   PetscInt  *offsets;              /* of each row among the shares, n + 1 */
   Share     *shares;               /* sorted by row and dof */
@@ -253,6 +253,6 @@ PETSC_INTERN int            ShareCompare(const void *, const void *, void *);
 PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
                                 const PetscReal[]);
-PETSC_INTERN PetscReal RowBow(PetscInt, PetscInt, const PetscReal *[], const PetscReal *[], const PetscReal[]);
+PETSC_INTERN PetscReal RowBow(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal[]);
 PETSC_INTERN void      RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal[],
                                   PetscReal, PetscReal[]);

@@ -7,8 +7,6 @@
 /* Of a node at a corner, whose normal is not that of its faces, what lies before a face lies the more beside the normal the farther it is
    away. Beyond this, in parts of the face, weights would continue the partner as a line. */
 #define BESIDE 2
-/* Squared chord of 50 degrees, the most by which a node's normal may differ from the mean of a row on a bent surface, not an edge */
-#define BENT_CHORD 0.715
 /* Cosines of the angles up to which normals of both sides belong to a bend, 10 degrees, and from which on to an edge, 18 degrees. Discs of
    16 edges, whose faces are 22 degrees from each other, roll on their edges. */
 #define BENT 0.985
@@ -175,27 +173,17 @@ PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscRea
 }
 
 /* Depth that a row may have between surfaces that only touch [m]. The dual functions are negative at the far ends of a node's faces, so
-   that the row of the node at which two balls meet sees the partner in front of its vertex: by no more than the partner's nodes lie behind
-   the plane there, which is half the turn of their normals times their distance. */
-PetscReal RowBow(PetscInt dim, PetscInt n, const PetscReal *partners[], const PetscReal *normals[], const PetscReal weights[])
+   that the row of the node at which two balls meet, or before which the partner has a corner, sees the partner in front of its vertex: by
+   no more than the nodes with such weights lie before the node. */
+PetscReal RowBow(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], const PetscReal weights[])
 {
-  PetscReal middle[3] = {0}, mean[3] = {0}, bow = 0;
+  PetscReal bow = 0;
 
-  if (dim == 1) return 0;
-  for (PetscInt j = 0; j < n; j++)
-    for (PetscInt d = 0; d < dim; d++) {
-      middle[d] += weights[j] * partners[j][d];
-      mean[d] += weights[j] * normals[j][d];
-    }
-  (void)Normalize(mean);
   for (PetscInt j = 0; j < n; j++) {
-    PetscReal turn = 0, distance = 0;
+    PetscReal gap = 0;
 
-    for (PetscInt d = 0; d < dim; d++) {
-      turn += PetscSqr(normals[j][d] - mean[d]);
-      distance += PetscSqr(partners[j][d] - middle[d]);
-    }
-    if (turn <= BENT_CHORD) bow += 0.5 * PetscAbsReal(weights[j]) * PetscSqrtReal(turn * distance);
+    for (PetscInt d = 0; d < dim; d++) gap += normal[d] * (partners[j][d] - x[d]);
+    bow -= PetscMin(weights[j], 0) * PetscMax(gap, 0);
   }
   return bow;
 }

@@ -127,29 +127,27 @@ static PetscBool SeesSmooth(Transfer transfer, PetscInt node, const PetscReal se
   return PETSC_TRUE;
 }
 
-/* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or what the bow of the partner's faces makes of nodes
-   that touch, and ahead [m]. The weights of a node beyond the end of the partner continue the partner as a straight line. Its gap is
+/* Corrects the weights of a row, and keeps the row if its gap lies between -behind, or the bow that a row may have of surfaces that only
+   touch, and ahead [m]. The weights of a node beyond the end of the partner continue the partner as a straight line. Its gap is
    counted from the gap `end` [m] where the partner ends: so the node touches when the end of the partner does, not before or after.
-   Corrected weights are goals: those of a row that goes on from where it is stay, and its present gap is that of its goals. Normals of the
-   partner's nodes, those on sharp edges too, are in `column_moved`. */
+   Corrected weights are goals: those of a row that goes on from where it is stay, and its present gap is that of its goals. */
 static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, const PetscReal seen[], PetscReal ahead, PetscReal behind,
                                 RowSet *set)
 {
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
-  const PetscReal   *x = data->positions + 3 * row, **normals, **smooth, **partners;
+  const PetscReal   *x = data->positions + 3 * row, **smooth, **partners;
   PetscReal *weights, *areas, present = 0, across[3], normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
   set->gap[row] = PETSC_MAX_REAL;
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc5(n, &weights, n, &areas, n, &partners, n, &normals, n, &smooth));
+  PetscCall(PetscMalloc4(n, &weights, n, &areas, n, &partners, n, &smooth));
   for (PetscInt j = 0; j < n; j++) {
     weights[j]  = set->shares[first + j].goal;
     areas[j]    = set->shares[first + j].area;
     partners[j] = transfer->column_x + 3 * set->columns[first + j];
-    normals[j]  = transfer->column_moved + 3 * set->columns[first + j];
     smooth[j]   = transfer->column_normals + 3 * set->columns[first + j];
   }
   if (SeesSmooth(transfer, row, seen, set->area[row], set->partner + 3 * row)) {
@@ -164,14 +162,19 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
     for (PetscInt j = 0; j < n; j++) now += weights[j] * partners[j][d];
     present += normal[d] * (now - x[d]);
   }
-  set->bow[row] = RowBow(dim, n, partners, normals, weights);
+  set->bow[row] = RowBow(dim, n, x, normal, partners, weights);
   if (set->beyond[row]) present = end;
-  else if (transfer->options.curved) present -= RowBulge(dim, n, x, normal, partners, smooth, weights);
+  else if (transfer->options.curved) {
+    const PetscReal bulge = RowBulge(dim, n, x, normal, partners, smooth, weights);
+
+    present -= bulge;
+    set->bow[row] += PetscMax(bulge, 0);
+  }
   for (PetscInt j = 0; j < n; j++) {
     set->shares[first + j].goal = weights[j];
     if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
   }
-  PetscCall(PetscFree5(weights, areas, partners, normals, smooth));
+  PetscCall(PetscFree4(weights, areas, partners, smooth));
   set->rest[row]     = transfer->goes_on[row] ? 1 : 0;
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind + TOUCHING * data->sizes[row], set->bow[row]));
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
@@ -306,7 +309,6 @@ PetscErrorCode TransferBuildRows(Transfer transfer, Vec u_dirichlet, Vec u_neuma
   PetscCall(TransferSetUpColumns(transfer, &set, PETSC_TRUE));
   PetscCall(RowSetGetColumns(&set, neumann->positions, transfer->column_x));
   PetscCall(RowSetGetColumns(&set, transfer->neumann->smooth, transfer->column_normals));
-  PetscCall(RowSetGetColumns(&set, neumann->normals, transfer->column_moved)); /* free until bodies move again */
   for (PetscInt row = 0; row < transfer->n; row++) {
     set.beyond[row] = (PetscBool)(marks[row] == MARK_BEYOND);
     set.area[row]   = lumped[row];

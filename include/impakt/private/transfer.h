@@ -35,7 +35,7 @@ typedef struct {
   const PetscBool *changed;  /* the last update has built the row anew, and has changed it */
   const PetscBool *followed; /* the row has followed the surfaces since, see TransferFollow() */
   const PetscReal *slip;     /* by how much the partner had slipped between the two last builds of the row, in parts of the face size */
-  const PetscReal *bow;      /* depth that the row may have between surfaces which only touch, since the partner's faces are bent [m] */
+  const PetscReal *bow;      /* depth that the row may have between surfaces which only touch [m] */
 } TransferRows;
 
 /*
