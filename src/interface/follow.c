@@ -56,7 +56,8 @@ static PetscErrorCode Correct(Transfer transfer, PetscInt row, const PetscReal a
     x[d]      = data->positions[3 * row + d] - ahead[d];
     normal[d] = set->normals[dim * row + d];
   }
-  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, x, normal, partners, areas, data->sizes[row], weights); /* twice for round-off */
+  for (PetscInt pass = 0; pass < 2; pass++)
+    RowCorrect(dim, n, x, normal, partners, areas, data->sizes[row], weights); /* twice for round-off */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

@@ -78,6 +78,9 @@ typedef struct {
   PetscReal   slope[3]; /* mean gradient of its shape function over what a node on a sharp edge sees, 0 in other rows [1/m] */
 } Share;
 
+/* Smaller weights and parts of areas are round-off, and would only fill the matrices */
+#define ROUND_OFF_WEIGHT 1e-12
+
 /* Most partners of a row that follows the surfaces: with so many faces to one of the other side it hardly slips by a bound */
 #define FOLLOW_MAX 256
 
@@ -252,7 +255,7 @@ PETSC_INTERN PetscErrorCode RowSetDestroy(RowSet *);
 PETSC_INTERN int            ShareCompare(const void *, const void *, void *);
 PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal[]);
 PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
-                                const PetscReal[]);
+                                const PetscReal[], const Share[]);
 PETSC_INTERN PetscReal RowBow(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal[]);
-PETSC_INTERN void      RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal[],
-                                  PetscReal, PetscReal[]);
+PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal,
+                             PetscReal[]);

@@ -1,9 +1,12 @@
 /* One row: weights that balance forces and moments, the normal, and the bend of the partner. */
 #include "interfaceimpl.h"
 
-/* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: what the node shares with the partner
-   lies within 1e-4 of the face size of a line or of a point */
+/* A diagonal entry of the scaled equations of RowCorrect() below which its condition says nothing new: what the node shares with the
+   partner lies within 1e-4 of the face size of a line or of a point */
 #define NOTHING_NEW 1e-8
+/* What a weight changes in proportion to has this part of the node's area beside its size: where a row sees the partner's edge alone, nodes
+   behind the edge make up for what those on it cannot, and elsewhere they hardly change */
+#define OF_AREA 0.01
 /* Of a node at a corner, whose normal is not that of its faces, what lies before a face lies the more beside the normal the farther it is
    away. Beyond this, in parts of the face, weights would continue the partner as a line. */
 #define BESIDE 2
@@ -70,11 +73,15 @@ static PetscBool IsBeside(PetscInt a, PetscReal lower[3][3], PetscInt n, const P
   return (PetscBool)(PetscMax(least - there, there - most) > BESIDE);
 }
 
-/* Changes the weights by as little as possible, each in proportion to the part of the row's area that its node shares, such that they sum to
-   one and sum_j P_j x_j - x is along the normal: then a force along the normal has the same resultant and the same moment on both sides.
-   A node at an edge may see the partner's edge alone, by its dual function, but shares area with nodes behind it: these make up for edges
-   that bulge, by 1e-2 of the weights or less. Along a tangent in which the partner's nodes do not differ, or lie far away, nothing is
-   changed. */
+/* What the change of a weight is proportional to */
+static PetscReal Mobility(PetscReal weight, PetscReal area)
+{
+  return PetscAbsReal(weight) + OF_AREA * area;
+}
+
+/* Changes the weights by as little as possible, each in proportion to its size and area, such that they sum to one and sum_j P_j x_j - x is
+   along the normal: then a force along the normal has the same resultant and the same moment on both sides. Along a tangent in which the
+   partner's nodes do not differ, or lie far away, nothing is changed. */
 void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
                 const PetscReal areas[], PetscReal size, PetscReal weights[])
 {
@@ -88,7 +95,7 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     FindConditions(x, tangents, size, partners[j], condition);
     for (PetscInt a = 0; a < dim; a++) {
       rest[a] -= weights[j] * condition[a];
-      for (PetscInt b = 0; b < dim; b++) gram[a][b] += areas[j] * condition[a] * condition[b];
+      for (PetscInt b = 0; b < dim; b++) gram[a][b] += Mobility(weights[j], areas[j]) * condition[a] * condition[b];
     }
   }
   for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
@@ -112,7 +119,7 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     PetscReal condition[3];
 
     FindConditions(x, tangents, size, partners[j], condition);
-    weights[j] += areas[j] * (factors[0] + factors[1] * condition[1] + factors[2] * condition[2]);
+    weights[j] += Mobility(weights[j], areas[j]) * (factors[0] + factors[1] * condition[1] + factors[2] * condition[2]);
   }
 }
 
@@ -150,32 +157,35 @@ void RowNormal(PetscInt dim, PetscInt n, PetscReal share, const PetscReal node[]
 /* How much closer the partner is than its faces, at the place of a row, if it is curved as its normals m_j say [m]. Half way between its
    nodes and the planes through them across their normals a surface of second order is met:
 
-     gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n)),
+     gap = sum_j P_j 1/2 (n . (x_j - x) + m_j . (x_j - x) / (m_j . n))
 
-   as far as the bends from the normal of the row count */
+   Where the row sees an edge, by its dual functions, it sees faces. */
 PetscReal RowBulge(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
-                   const PetscReal *normals[], const PetscReal weights[])
+                   const PetscReal *normals[], const PetscReal weights[], const Share shares[])
 {
-  PetscReal bulge = 0;
+  PetscReal bulge = 0, counts = 1;
 
   for (PetscInt j = 0; j < n; j++) {
     PetscReal along = 0, plane = 0, cosine = 0;
 
-    if (IsOnEdge(normals[j])) continue;
+    if (PetscAbsReal(shares[j].goal) <= ROUND_OFF_WEIGHT || IsOnEdge(normals[j])) continue;
     for (PetscInt d = 0; d < dim; d++) {
       along += normal[d] * (partners[j][d] - x[d]);
       plane += normals[j][d] * (partners[j][d] - x[d]);
       cosine += normals[j][d] * normal[d];
     }
-    if (BendCounts(-cosine) > 0) bulge += 0.5 * BendCounts(-cosine) * weights[j] * (along - plane / cosine);
+    counts = PetscMin(counts, BendCounts(-cosine));
+    if (counts == 0) return 0;
+    bulge += 0.5 * weights[j] * (along - plane / cosine);
   }
-  return bulge;
+  return counts * bulge;
 }
 
 /* Depth that a row may have between surfaces that only touch [m]. The dual functions are negative at the far ends of a node's faces, so
    that the row of the node at which two balls meet, or before which the partner has a corner, sees the partner in front of its vertex: by
    no more than the nodes with such weights lie before the node. */
-PetscReal RowBow(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], const PetscReal weights[])
+PetscReal RowBow(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
+                 const PetscReal weights[])
 {
   PetscReal bow = 0;
 

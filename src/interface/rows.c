@@ -5,7 +5,6 @@
 #define COVERED 1e-6
 /* Gaps of surfaces that only touch are round-off, which is smaller [of the face] */
 #define TOUCHING 1e-6
-#define PRUNE    1e-12 /* smaller weights are round-off, and would only fill the matrices */
 /* In a rebuild, partners are looked for this far behind at least [parts of the smallest face] */
 #define LEAST_DEPTH 0.5
 /* Gaps are along normals, which may be oblique to the shortest way out of an overlap: this many times as long, at 60 degrees */
@@ -78,7 +77,9 @@ static PetscErrorCode MergeShares(PetscInt n, const PetscBool keep[], const Pets
         sum.slope[d] /= lumped[row];
         slope += PetscAbsReal(sum.slope[d]);
       }
-      if (covered && (PetscAbsReal(sum.value) > PRUNE || PetscAbsReal(sum.goal) > PRUNE || sum.area > PRUNE || slope > 0)) set->shares[count++] = sum;
+      if (covered && (PetscAbsReal(sum.value) > ROUND_OFF_WEIGHT || PetscAbsReal(sum.goal) > ROUND_OFF_WEIGHT ||
+                      sum.area > ROUND_OFF_WEIGHT || slope > 0))
+        set->shares[count++] = sum;
     }
     set->opposite[row] = (PetscBool)(count > set->offsets[row]);
   }
@@ -137,7 +138,8 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
   const PetscReal   *x = data->positions + 3 * row, **smooth, **partners;
-  PetscReal *weights, *areas, present = 0, across[3], normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
+  PetscReal         *weights, *areas, present = 0, across[3],
+                                      normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
@@ -155,7 +157,8 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
     for (PetscInt d = 0; d < 3; d++) normal[d] = -normal[d];
   } else if (transfer->options.curved) RowNormal(dim, n, transfer->options.share, data->normals + 3 * row, smooth, weights, normal);
   PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
-  for (PetscInt pass = 0; pass < 2; pass++) RowCorrect(dim, n, x, normal, partners, areas, data->sizes[row], weights); /* twice for round-off */
+  for (PetscInt pass = 0; pass < 2; pass++)
+    RowCorrect(dim, n, x, normal, partners, areas, data->sizes[row], weights); /* twice for round-off */
   for (PetscInt d = 0; d < dim; d++) {
     PetscReal now = 0;
 
@@ -165,7 +168,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
   set->bow[row] = RowBow(dim, n, x, normal, partners, weights);
   if (set->beyond[row]) present = end;
   else if (transfer->options.curved) {
-    const PetscReal bulge = RowBulge(dim, n, x, normal, partners, smooth, weights);
+    const PetscReal bulge = RowBulge(dim, n, x, normal, partners, smooth, weights, set->shares + first);
 
     present -= bulge;
     set->bow[row] += PetscMax(bulge, 0);
