@@ -140,7 +140,8 @@ static PetscErrorCode LookAtSteps(Controller controller, Contact contact, const 
                   (double)(100 * results->momentum_error_max)));
   if (results->momentum_scale > 0 && results->angular_momentum_error_max > ANGULAR_ERROR)
     PetscCall(Add(verdict, VERDICT_RUN,
-                  "the angular momentum error is %.3g %%; it is less with nonlinear materials where bodies turn, and with a smaller -time_step",
+                  "the angular momentum error is %.3g %%; it is less with nonlinear materials where bodies turn, and with a smaller "
+                  "-time_step",
                   (double)(100 * results->angular_momentum_error_max)));
   if (counts.unlimited_steps && !(gain <= traits.energy_excess))
     PetscCall(Add(verdict, VERDICT_RUN, "%" PetscInt_FMT " step%s gained more energy at contact than -contact_energy_excess allows%s%s",

@@ -127,7 +127,7 @@ static void keeps_all_moments(void **state)
         bar_destroy(&body, options);
       }
       for (PetscInt k = 0; k < n * n; k++) near(products[AUTO][k], products[KEPT][k], 1e-12 * 9 * 4); /* 9 kg, (2 m)^2 */
-      assert_true(step[AUTO] >= step[KEPT] * (1 - 1e-12)); /* round-off of equal eigenvalues */
+      assert_true(step[AUTO] >= step[KEPT] * (1 - 1e-12));                                            /* round-off of equal eigenvalues */
     }
 }
 
