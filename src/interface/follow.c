@@ -45,19 +45,16 @@ static PetscErrorCode Correct(Transfer transfer, PetscInt row, const PetscReal a
   const RowSet      *set   = &transfer->rows;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
   const PetscReal   *partners[FOLLOW_MAX];
-  PetscReal          areas[FOLLOW_MAX], x[3] = {0}, normal[3] = {0};
+  PetscReal          x[3] = {0}, normal[3] = {0};
 
   PetscFunctionBegin;
-  for (PetscInt j = 0; j < n; j++) {
-    partners[j] = transfer->column_x + 3 * set->columns[first + j];
-    areas[j]    = set->shares[first + j].area;
-  }
+  for (PetscInt j = 0; j < n; j++) partners[j] = transfer->column_x + 3 * set->columns[first + j];
   for (PetscInt d = 0; d < dim; d++) {
     x[d]      = data->positions[3 * row + d] - ahead[d];
     normal[d] = set->normals[dim * row + d];
   }
   for (PetscInt pass = 0; pass < 2; pass++)
-    RowCorrect(dim, n, x, normal, partners, areas, data->sizes[row], weights); /* twice for round-off */
+    RowCorrect(dim, n, x, normal, partners, set->shares + first, data->sizes[row], weights); /* twice for round-off */
   PetscFunctionReturn(PETSC_SUCCESS);
 }
 

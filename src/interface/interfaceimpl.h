@@ -257,5 +257,5 @@ PETSC_INTERN void      RowNormal(PetscInt, PetscInt, PetscReal, const PetscReal[
 PETSC_INTERN PetscReal RowBulge(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal *[],
                                 const PetscReal[], const Share[]);
 PETSC_INTERN PetscReal RowBow(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal[]);
-PETSC_INTERN void RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const PetscReal[], PetscReal,
-                             PetscReal[]);
+PETSC_INTERN void      RowCorrect(PetscInt, PetscInt, const PetscReal[], const PetscReal[], const PetscReal *[], const Share[], PetscReal,
+                                  PetscReal[]);

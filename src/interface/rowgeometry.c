@@ -56,7 +56,7 @@ static PetscReal Remainder(PetscInt a, PetscReal lower[3][3], const PetscReal co
 
 /* Whether the row's place lies far beside all of the partner's nodes, as the a-th condition sees them */
 static PetscBool IsBeside(PetscInt a, PetscReal lower[3][3], PetscInt n, const PetscReal x[], PetscReal tangents[2][3], PetscReal size,
-                          const PetscReal *partners[], const PetscReal areas[])
+                          const PetscReal *partners[], const Share shares[])
 {
   const PetscReal place[3] = {1, 0, 0}, there = Remainder(a, lower, place);
   PetscReal       least = PETSC_MAX_REAL, most = -PETSC_MAX_REAL;
@@ -64,7 +64,7 @@ static PetscBool IsBeside(PetscInt a, PetscReal lower[3][3], PetscInt n, const P
   for (PetscInt j = 0; j < n; j++) {
     PetscReal condition[3], rest;
 
-    if (areas[j] == 0) continue;
+    if (shares[j].area == 0) continue;
     FindConditions(x, tangents, size, partners[j], condition);
     rest  = Remainder(a, lower, condition);
     least = PetscMin(least, rest);
@@ -82,8 +82,8 @@ static PetscReal Mobility(PetscReal weight, PetscReal area)
 /* Changes the weights by as little as possible, each in proportion to its size and area, such that they sum to one and sum_j P_j x_j - x is
    along the normal: then a force along the normal has the same resultant and the same moment on both sides. Along a tangent in which the
    partner's nodes do not differ, or lie far away, nothing is changed. */
-void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[],
-                const PetscReal areas[], PetscReal size, PetscReal weights[])
+void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal normal[], const PetscReal *partners[], const Share shares[],
+                PetscReal size, PetscReal weights[])
 {
   PetscReal tangents[2][3], gram[3][3] = {{0}}, lower[3][3] = {{0}}, rest[3] = {1, 0, 0}, factors[3] = {0};
 
@@ -95,11 +95,11 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     FindConditions(x, tangents, size, partners[j], condition);
     for (PetscInt a = 0; a < dim; a++) {
       rest[a] -= weights[j] * condition[a];
-      for (PetscInt b = 0; b < dim; b++) gram[a][b] += Mobility(weights[j], areas[j]) * condition[a] * condition[b];
+      for (PetscInt b = 0; b < dim; b++) gram[a][b] += Mobility(weights[j], shares[j].area) * condition[a] * condition[b];
     }
   }
   for (PetscInt a = 0; a < dim; a++) { /* Gaussian elimination that leaves out equations which say nothing new */
-    if (gram[a][a] < NOTHING_NEW || (a && IsBeside(a, lower, n, x, tangents, size, partners, areas))) {
+    if (gram[a][a] < NOTHING_NEW || (a && IsBeside(a, lower, n, x, tangents, size, partners, shares))) {
       for (PetscInt b = 0; b < dim; b++) gram[a][b] = gram[b][a] = a == b;
       rest[a] = 0;
       continue;
@@ -119,7 +119,7 @@ void RowCorrect(PetscInt dim, PetscInt n, const PetscReal x[], const PetscReal n
     PetscReal condition[3];
 
     FindConditions(x, tangents, size, partners[j], condition);
-    weights[j] += Mobility(weights[j], areas[j]) * (factors[0] + factors[1] * condition[1] + factors[2] * condition[2]);
+    weights[j] += Mobility(weights[j], shares[j].area) * (factors[0] + factors[1] * condition[1] + factors[2] * condition[2]);
   }
 }
 

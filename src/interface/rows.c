@@ -138,17 +138,15 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
   const SurfaceData *data  = &transfer->dirichlet->data;
   const PetscInt     first = set->offsets[row], n = set->offsets[row + 1] - first, dim = transfer->dim;
   const PetscReal   *x = data->positions + 3 * row, **smooth, **partners;
-  PetscReal         *weights, *areas, present = 0, across[3],
-                                      normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
+  PetscReal *weights, present = 0, across[3], normal[3] = {data->normals[3 * row], data->normals[3 * row + 1], data->normals[3 * row + 2]};
 
   PetscFunctionBegin;
   PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
   set->gap[row] = PETSC_MAX_REAL;
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
-  PetscCall(PetscMalloc4(n, &weights, n, &areas, n, &partners, n, &smooth));
+  PetscCall(PetscMalloc3(n, &weights, n, &partners, n, &smooth));
   for (PetscInt j = 0; j < n; j++) {
     weights[j]  = set->shares[first + j].goal;
-    areas[j]    = set->shares[first + j].area;
     partners[j] = transfer->column_x + 3 * set->columns[first + j];
     smooth[j]   = transfer->column_normals + 3 * set->columns[first + j];
   }
@@ -158,7 +156,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
   } else if (transfer->options.curved) RowNormal(dim, n, transfer->options.share, data->normals + 3 * row, smooth, weights, normal);
   PetscCall(PetscArraycpy(set->normals + dim * row, normal, dim));
   for (PetscInt pass = 0; pass < 2; pass++)
-    RowCorrect(dim, n, x, normal, partners, areas, data->sizes[row], weights); /* twice for round-off */
+    RowCorrect(dim, n, x, normal, partners, set->shares + first, data->sizes[row], weights); /* twice for round-off */
   for (PetscInt d = 0; d < dim; d++) {
     PetscReal now = 0;
 
@@ -177,7 +175,7 @@ static PetscErrorCode FinishRow(Transfer transfer, PetscInt row, PetscReal end, 
     set->shares[first + j].goal = weights[j];
     if (!transfer->goes_on[row]) set->shares[first + j].value = weights[j];
   }
-  PetscCall(PetscFree4(weights, areas, partners, smooth));
+  PetscCall(PetscFree3(weights, partners, smooth));
   set->rest[row]     = transfer->goes_on[row] ? 1 : 0;
   set->opposite[row] = (PetscBool)(present <= ahead && present >= -PetscMax(behind + TOUCHING * data->sizes[row], set->bow[row]));
   if (!set->opposite[row]) PetscFunctionReturn(PETSC_SUCCESS);
